@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "commands.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/case/run_case.hpp"
+#include "ricochet/io/progress.hpp"
+#include "ricochet/mesh/read_mesh.hpp"
+
+namespace ricochet::program {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void describe_mesh(const std::string& path) {
+  MeshFile file;
+  file.path = path;
+  const Mesh mesh = read_mesh(file);
+  fmt::print("{}: mesh of dimension {}, degree {}, {} nodes\n", path, mesh.dimension, mesh.degree, mesh.node_count());
+  for (const CellBlock& block : mesh.cells) fmt::print("  cells   {:>9} {}s\n", block.size(), name(block.shape));
+  for (const CellBlock& block : mesh.facets) fmt::print("  facets  {:>9} {}s\n", block.size(), name(block.shape));
+  for (const Group& group : mesh.groups) {
+    fmt::print("  group   {:>9} of dimension {} in \"{}\"\n", group.members.size(), group.dimension, group.name);
+  }
+  for (int k = 0; k < mesh.dimension; ++k) {
+    fmt::print("  {} from {:.6g} to {:.6g}\n", "xyz"[k], mesh.nodes.row(k).minCoeff(), mesh.nodes.row(k).maxCoeff());
+  }
+}
+
+void describe_case(const std::string& path) {
+  const Case input = read_case(path);
+  fmt::print("{}: {}\n", path, input.title.empty() ? "a case" : input.title);
+  fmt::print("  mesh    {} (displacement of degree {})\n", input.mesh.file, input.mesh.degree);
+  for (const MaterialSection& m : input.materials) {
+    fmt::print("  material \"{}\": density {:g}, lambda {:g}, mu {:g}\n", m.group, m.density, m.lambda, m.mu);
+  }
+  for (const ContactSection& c : input.contacts)
+    fmt::print("  contact of \"{}\" with obstacle \"{}\"\n", c.group, c.obstacle);
+  fmt::print("  scheme {}, mass {}, {} steps of {:g} to {:g}\n", input.time.scheme, input.mass.type,
+             step_count(input.time), input.time.step, input.time.end);
+}
+
+double ratio(double a, double b) {
+  return b != 0.0 ? a / b : 0.0;
+}
+
+void describe_result(const std::string& directory) {
+  const RunSummary s = read_summary(directory + "/summary.json");
+  const ColumnDigest energy = s.digest("total_energy");
+  const ColumnDigest residual = s.digest("energy_residual");
+  fmt::print("{}: {}{}\n", directory, s.title.empty() ? s.case_file : s.title, s.status == "done" ? "" : " (FAILED)");
+  if (!s.message.empty()) fmt::print("  {}\n", s.message);
+  fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass, s.dimension, s.degree);
+  fmt::print("  {} nodes, {} cells, {} contact points, {} steps of {:g}, {} frames\n", s.nodes, s.cells,
+             s.contact_points, s.steps, s.step, s.frames);
+  fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
+             energy.maximum);
+  fmt::print("  energy account closes to {:.1e} of the largest energy\n",
+             ratio(std::max(std::abs(residual.minimum), std::abs(residual.maximum)), s.energy_scale()));
+  fmt::print("  deepest interpenetration {:.3g}, largest rotation {:.3g} rad\n", s.digest("max_penetration").maximum,
+             s.digest("max_rotation").maximum);
+  for (std::size_t i = 0; i < s.probes.size(); ++i) {
+    const Probe& probe = s.probes[i];
+    fmt::print("  probe \"{}\" {:.3g} from the point asked for", probe.name, probe.distance);
+    if (probe.contact_point >= 0) {
+      const ColumnDigest force = s.digest(probe.name + ".reaction_normal");
+      fmt::print(", largest contact force {:.6g}, total variation {:.4g}", force.maximum, force.total_variation);
+    }
+    fmt::print("\n");
+  }
+  fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
+             s.timings.empty() ? "" : duration_text(s.timings.back().second));
+  for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
+}
+
+/// One line per run: what a reader needs to choose between them.
+void compare_results(const std::vector<std::string>& directories) {
+  fmt::print("{:<28} {:<16} {:<20} {:>11} {:>11} {:>16} {:>13} {:>9}\n", "run", "scheme", "mass", "energy end",
+             "energy max", "variation of", "deepest inter-", "time per");
+  fmt::print("{:<28} {:<16} {:<20} {:>11} {:>11} {:>16} {:>13} {:>9}\n", "", "", "", "/ start", "/ start",
+             "contact force", "penetration", "step, ms");
+  for (const std::string& directory : directories) {
+    const RunSummary s = read_summary(directory + "/summary.json");
+    const ColumnDigest energy = s.digest("total_energy");
+    // The first probe on a contact boundary; where there is none, the resultant in its largest direction.
+    double variation = 0.0;
+    const auto probe =
+        std::find_if(s.probes.begin(), s.probes.end(), [](const Probe& p) { return p.contact_point >= 0; });
+    if (probe != s.probes.end()) {
+      variation = s.digest(probe->name + ".reaction_normal").total_variation;
+    } else {
+      for (const char* axis : {"x", "y", "z"})
+        variation = std::max(variation, s.digest(fmt::format("contact_force_{}", axis)).total_variation);
+    }
+    fmt::print("{:<28} {:<16} {:<20} {:>11.6g} {:>11.4g} {:>16.4g} {:>13.3g} {:>9.3g}{}\n", directory, s.scheme, s.mass,
+               ratio(energy.last, energy.first), ratio(energy.maximum, energy.first), variation,
+               s.digest("max_penetration").maximum, 1e3 * s.time_per_step, s.status == "done" ? "" : "  FAILED");
+  }
+}
+
+bool is_result(const std::string& path) {
+  return fs::is_directory(path);
+}
+
+}  // namespace
+
+int info(const std::vector<std::string>& paths) {
+  if (paths.size() > 1 && std::all_of(paths.begin(), paths.end(), is_result)) {
+    compare_results(paths);
+    return 0;
+  }
+  for (const std::string& path : paths) {
+    if (!fs::exists(path)) throw Error(ErrorKind::file_access, fmt::format("{}: no such file or directory", path));
+    if (is_result(path)) {
+      describe_result(path);
+    } else if (fs::path(path).extension() == ".toml") {
+      describe_case(path);
+    } else {
+      describe_mesh(path);
+    }
+  }
+  return 0;
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "commands.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/case/run_case.hpp"
+#include "ricochet/io/progress.hpp"
+
+namespace ricochet::program {
+
+namespace {
+
+void print_summary(const RunSummary& s, const std::string& directory) {
+  const ColumnDigest energy = s.digest("total_energy");
+  const ColumnDigest residual = s.digest("energy_residual");
+  const double scale = s.energy_scale();
+  const double largest_residual = std::max(std::abs(residual.minimum), std::abs(residual.maximum));
+  fmt::print("{}\n", s.title.empty() ? s.case_file : s.title);
+  fmt::print("  scheme {}, mass {}, {} nodes, {} contact points, {} steps of {:g}\n", s.scheme, s.mass, s.nodes,
+             s.contact_points, s.steps, s.step);
+  fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
+             energy.maximum);
+  fmt::print("  energy account closes to {:.1e} of the largest energy\n",
+             scale > 0.0 ? largest_residual / scale : largest_residual);
+  fmt::print("  deepest interpenetration {:.3g}\n", s.digest("max_penetration").maximum);
+  fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
+             s.timings.empty() ? "" : duration_text(s.timings.back().second));
+  for (const ExpectationResult& e : s.expectations) {
+    if (!e.checked) {
+      fmt::print("  expect  {}: not checked ({})\n", e.quantity, e.note);
+    } else {
+      fmt::print("  expect  {}: {} (wanted {}, found {:.9g}{})\n", e.quantity, e.holds ? "holds" : "DOES NOT HOLD",
+                 e.wanted, e.value, e.note.empty() ? "" : "; " + e.note);
+    }
+  }
+  for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
+  fmt::print("  results in {}\n", directory);
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  const Case input = read_case(arguments.case_file, arguments.overrides);
+  RunOptions options{arguments.output_directory, arguments.force, arguments.quiet};
+  if (options.output_directory.empty()) {
+    options.output_directory =
+        (std::filesystem::path("out") / std::filesystem::path(arguments.case_file).stem()).string();
+  }
+  const RunSummary summary = run_case(input, options);
+  print_summary(summary, options.output_directory);
+  for (const ExpectationResult& e : summary.expectations) {
+    if (e.checked && !e.holds) {
+      throw Error(ErrorKind::expectation,
+                  fmt::format("{}: expected {} to be {}, found {:.9g}{}", e.location, e.quantity, e.wanted, e.value,
+                              e.note.empty() ? "" : " (" + e.note + ")"));
+    }
+  }
+  return 0;
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,25 @@
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "ricochet/case/model.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/case/run_case.hpp"
+#include "ricochet/mesh/read_mesh.hpp"
+
+namespace ricochet::program {
+
+int validate(const std::string& case_file, const std::vector<std::string>& overrides) {
+  const Case input = read_case(case_file, overrides);
+  if (needs_gmsh_program(input.mesh.file)) {
+    // A .geo file can run shell commands: only `run` hands one to gmsh.
+    fmt::print("{}: valid, as far as can be told without meshing {}\n", case_file, input.mesh.file);
+    return 0;
+  }
+  const std::unique_ptr<Model> model = build_model(input);
+  fmt::print("{}: valid: {} nodes, {} cells, {} contact points, {} supported dofs, {} steps\n", case_file,
+             model->space.node_count(), model->mesh.cell_count(), model->problem.contact.size(),
+             model->problem.supports.size(), step_count(input.time));
+  return 0;
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,99 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "commands.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/parallel.hpp"
+#include "ricochet/version.hpp"
+
+namespace {
+
+using namespace ricochet;
+
+struct Arguments {
+  program::RunArguments run;
+  std::string validate_file;
+  std::vector<std::string> validate_overrides;
+  std::vector<std::string> info_paths;
+  bool markdown = false;
+  std::string log_level = "info";
+  int threads = 1;
+};
+
+void add_common(CLI::App& command, Arguments& arguments) {
+  command.add_option("--log-level", arguments.log_level, "trace, debug, info, warning, error or off")
+      ->type_name("LEVEL");
+}
+
+int dispatch(int argc, char** argv) {
+  CLI::App app{"Ricochet simulates elastic bodies that strike, rest on, slide along and leave obstacles."};
+  app.set_version_flag("--version", std::string("ricochet ") + version);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 done; 1 wrong use of the command line; 2 invalid case or mesh; 3 a step did not converge;\n"
+      "4 cannot read or write a file; 5 done, but an [[expect]] entry of the case does not hold.");
+  Arguments arguments;
+
+  CLI::App* run = app.add_subcommand("run", "Run a case");
+  run->add_option("case", arguments.run.case_file, "case file")->required()->type_name("CASE.toml");
+  run->add_option("-o,--output", arguments.run.output_directory,
+                  "output directory (default: out/NAME of the case file)")
+      ->type_name("DIR");
+  run->add_option("--set", arguments.run.overrides, "override an entry of the case; may be repeated")
+      ->type_name("key.path=value")
+      ->allow_extra_args(false);
+  run->add_option("--threads", arguments.threads, "number of threads; results do not depend on it")->type_name("N");
+  run->add_flag("--quiet", arguments.run.quiet, "no progress and no messages but warnings and errors");
+  run->add_flag("--force", arguments.run.force, "overwrite a run that is in the output directory");
+  add_common(*run, arguments);
+
+  CLI::App* validate = app.add_subcommand("validate", "Check everything that can be checked without running");
+  validate->add_option("case", arguments.validate_file, "case file")->required()->type_name("CASE.toml");
+  validate->add_option("--set", arguments.validate_overrides, "override an entry of the case")
+      ->type_name("key.path=value")
+      ->allow_extra_args(false);
+  add_common(*validate, arguments);
+
+  CLI::App* info = app.add_subcommand(
+      "info", "Describe a mesh, a case or a result in a few lines; several results are compared in a table");
+  info->add_option("path", arguments.info_paths, "mesh, case file or output directory")
+      ->required()
+      ->type_name("FILE_OR_DIR");
+  add_common(*info, arguments);
+
+  CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
+  schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
+  }
+  log::set_level(log::parse_level(arguments.log_level));
+  if (arguments.run.quiet && !log::enabled(log::Level::debug)) log::set_level(log::Level::warning);
+  set_thread_count(arguments.threads);
+  if (run->parsed()) return program::run(arguments.run);
+  if (validate->parsed()) return program::validate(arguments.validate_file, arguments.validate_overrides);
+  if (info->parsed()) return program::info(arguments.info_paths);
+  return program::schema(arguments.markdown);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const ricochet::Error& problem) {
+    std::fprintf(stderr, "ricochet: %s\n", problem.what());
+    return problem.exit_status();
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "ricochet: out of memory; use a coarser mesh\n");
+    return static_cast<int>(ricochet::ErrorKind::not_converged);
+  } catch (const std::exception& problem) {
+    std::fprintf(stderr, "ricochet: internal error: %s\n", problem.what());
+    return 70;
+  }
+}

@@ -1,0 +1,28 @@
+# Everything comes by name from Debian 12. Each find is strict, so that a missing package is named here and not by the linker.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Basix REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(muparser REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+
+set(BLA_VENDOR OpenBLAS)
+find_package(BLAS REQUIRED)
+
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
+
+# Included and linked by the library's own sources only: nothing of it appears in a public header but Eigen.
+add_library(ricochet_dependencies INTERFACE)
+target_include_directories(ricochet_dependencies SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR} ${HDF5_INCLUDE_DIRS})
+target_link_libraries(ricochet_dependencies INTERFACE
+  Basix::basix fmt::fmt spdlog::spdlog tomlplusplus::tomlplusplus muparser::muparser nlohmann_json::nlohmann_json
+  ${CHOLMOD_LIBRARY} PkgConfig::HDF5 BLAS::BLAS)
+
+add_library(ricochet_program_dependencies INTERFACE)
+target_link_libraries(ricochet_program_dependencies INTERFACE CLI11::CLI11 fmt::fmt)

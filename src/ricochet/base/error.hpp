@@ -1,0 +1,28 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+/// @file Errors a user can meet. Each carries the exit status the program ends with (design: the outside contract).
+namespace ricochet {
+
+enum class ErrorKind : int {
+  usage = 1,          ///< wrong use of the command line
+  invalid_input = 2,  ///< invalid case or mesh
+  not_converged = 3,  ///< a step did not converge
+  file_access = 4,    ///< a file cannot be read or written
+  expectation = 5,    ///< the run is complete but one of its [[expect]] entries does not hold
+};
+
+/// What went wrong, where (file:line:column or entity) and what to do about it, in one message.
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  [[nodiscard]] ErrorKind kind() const { return kind_; }
+  [[nodiscard]] int exit_status() const { return static_cast<int>(kind_); }
+
+ private:
+  ErrorKind kind_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,126 @@
+#include "ricochet/base/expression.hpp"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+// The variables live beside the parser, which holds their addresses: so the parser is rebuilt on every copy.
+struct Expression::Implementation {
+  std::string text;
+  std::map<std::string, double> parameters;
+  double x = 0.0, y = 0.0, z = 0.0, t = 0.0;
+  mu::Parser parser;
+  bool number = true;  ///< a plain constant: no parser is asked
+  double constant = 0.0;
+  bool uses_time = false, uses_position = false;
+
+  void compile();
+};
+
+void Expression::Implementation::compile() {
+  try {
+    parser.DefineVar("x", &x);
+    parser.DefineVar("y", &y);
+    parser.DefineVar("z", &z);
+    parser.DefineVar("t", &t);
+    parser.DefineConst("pi", 3.141592653589793238462643383279502884);
+    for (const auto& [name, value] : parameters) {
+      if (name == "x" || name == "y" || name == "z" || name == "t" || name == "pi") {
+        throw Error(ErrorKind::invalid_input, fmt::format("parameter \"{}\" has a reserved name", name));
+      }
+      parser.DefineConst(name, value);
+    }
+    parser.SetExpr(text);
+    for (const auto& [name, address] : parser.GetUsedVar()) {
+      uses_time = uses_time || name == "t";
+      uses_position = uses_position || name == "x" || name == "y" || name == "z";
+      if (address == nullptr) {
+        std::vector<std::string> known{"x", "y", "z", "t", "pi"};
+        for (const auto& [parameter, value] : parameters) known.push_back(parameter);
+        const std::string near = nearest_name(name, known);
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("in the expression \"{}\": unknown name \"{}\"{}; known are {}", text, name,
+                                near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), join_names(known)));
+      }
+    }
+    number = !uses_time && !uses_position;
+    parser.Eval();  // muParser checks the syntax on the first evaluation
+    if (number) {
+      constant = parser.Eval();
+      if (!std::isfinite(constant)) {
+        throw Error(ErrorKind::invalid_input, fmt::format("the expression \"{}\" has no finite value", text));
+      }
+    }
+  } catch (const mu::Parser::exception_type& problem) {
+    throw Error(ErrorKind::invalid_input, fmt::format("in the expression \"{}\": {}", text, problem.GetMsg()));
+  }
+}
+
+Expression::Expression() : Expression(0.0) {}
+
+Expression::Expression(double constant) : implementation_(std::make_unique<Implementation>()) {
+  implementation_->constant = constant;
+  implementation_->text = fmt::format("{:.17g}", constant);
+}
+
+Expression::Expression(const std::string& text, const std::map<std::string, double>& parameters)
+    : implementation_(std::make_unique<Implementation>()) {
+  implementation_->text = text;
+  implementation_->parameters = parameters;
+  implementation_->compile();
+}
+
+Expression::Expression(const Expression& other) : implementation_(std::make_unique<Implementation>()) {
+  implementation_->text = other.implementation_->text;
+  implementation_->parameters = other.implementation_->parameters;
+  if (other.is_constant()) {
+    implementation_->constant = other.implementation_->constant;
+  } else {
+    implementation_->compile();
+  }
+}
+
+Expression& Expression::operator=(const Expression& other) {
+  if (this != &other) *this = Expression(other);
+  return *this;
+}
+
+Expression::Expression(Expression&&) noexcept = default;
+Expression& Expression::operator=(Expression&&) noexcept = default;
+Expression::~Expression() = default;
+
+double Expression::operator()(double x, double y, double z, double t) const {
+  Implementation& formula = *implementation_;
+  if (formula.number) return formula.constant;
+  formula.x = x;
+  formula.y = y;
+  formula.z = z;
+  formula.t = t;
+  const double value = formula.parser.Eval();
+  if (!std::isfinite(value)) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("the expression \"{}\" has no finite value at x = {}, y = {}, z = {}, t = {}", formula.text,
+                            x, y, z, t));
+  }
+  return value;
+}
+
+bool Expression::depends_on_time() const {
+  return implementation_->uses_time;
+}
+bool Expression::depends_on_position() const {
+  return implementation_->uses_position;
+}
+const std::string& Expression::text() const {
+  return implementation_->text;
+}
+
+}  // namespace ricochet

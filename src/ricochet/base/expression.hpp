@@ -1,0 +1,39 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+/// @file A number given by a user: a constant, or an expression in x, y, z, t and named parameters.
+namespace ricochet {
+
+/// A formula evaluated in double precision (muParser's syntax). Copies are cheap and independent.
+class Expression {
+ public:
+  /// The constant 0.
+  Expression();
+  explicit Expression(double constant);
+  /// Throws Error(invalid_input) that quotes the text, the position and the reason; unknown names are listed with the
+  /// known ones. `parameters` are constants by name; x, y, z and t are reserved.
+  explicit Expression(const std::string& text, const std::map<std::string, double>& parameters = {});
+  Expression(const Expression& other);
+  Expression& operator=(const Expression& other);
+  Expression(Expression&&) noexcept;
+  Expression& operator=(Expression&&) noexcept;
+  ~Expression();
+
+  /// Value at a point and an instant. Throws Error(invalid_input) when it is not finite, with the point and the
+  /// instant.
+  [[nodiscard]] double operator()(double x, double y, double z, double t) const;
+
+  [[nodiscard]] bool depends_on_time() const;
+  [[nodiscard]] bool depends_on_position() const;
+  [[nodiscard]] bool is_constant() const { return !depends_on_time() && !depends_on_position(); }
+  [[nodiscard]] const std::string& text() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,93 @@
+#include "ricochet/base/log.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <utility>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet::log {
+
+namespace {
+
+constexpr std::array<std::pair<const char*, Level>, 6> level_names{{{"trace", Level::trace},
+                                                                    {"debug", Level::debug},
+                                                                    {"info", Level::info},
+                                                                    {"warning", Level::warning},
+                                                                    {"error", Level::error},
+                                                                    {"off", Level::off}}};
+
+spdlog::logger& logger() {
+  static const std::shared_ptr<spdlog::logger> instance = [] {
+    auto made = std::make_shared<spdlog::logger>("ricochet", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    made->set_pattern("%^%l%$: %v");
+    return made;
+  }();
+  return *instance;
+}
+
+std::vector<std::string>& remembered_warnings() {
+  static std::vector<std::string> messages;
+  return messages;
+}
+
+spdlog::level::level_enum spdlog_level(Level level) {
+  switch (level) {
+    case Level::trace:
+      return spdlog::level::trace;
+    case Level::debug:
+      return spdlog::level::debug;
+    case Level::info:
+      return spdlog::level::info;
+    case Level::warning:
+      return spdlog::level::warn;
+    case Level::error:
+      return spdlog::level::err;
+    case Level::off:
+      return spdlog::level::off;
+  }
+  return spdlog::level::info;
+}
+
+}  // namespace
+
+Level parse_level(std::string_view name) {
+  for (const auto& [text, level] : level_names) {
+    if (name == text) return level;
+  }
+  throw Error(ErrorKind::usage,
+              fmt::format("unknown log level \"{}\"; use trace, debug, info, warning, error or off", name));
+}
+
+void set_level(Level level) {
+  logger().set_level(spdlog_level(level));
+}
+bool enabled(Level level) {
+  return logger().should_log(spdlog_level(level));
+}
+
+void debug(const std::string& message) {
+  logger().debug("{}", message);
+}
+void info(const std::string& message) {
+  logger().info("{}", message);
+}
+void warning(const std::string& message) {
+  remembered_warnings().push_back(message);
+  logger().warn("{}", message);
+}
+void error(const std::string& message) {
+  logger().error("{}", message);
+}
+
+const std::vector<std::string>& warnings() {
+  return remembered_warnings();
+}
+void clear_warnings() {
+  remembered_warnings().clear();
+}
+
+}  // namespace ricochet::log

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// @file Small helpers for messages.
+namespace ricochet {
+
+/// The candidate nearest to `word` by edit distance (transpositions count one), or "" when none is near enough to be
+/// what was meant (more than max(2, length/3) edits away).
+std::string nearest_name(std::string_view word, std::span<const std::string> candidates);
+
+/// "a", "a or b", "a, b or c"; with quotes around each when `quoted`.
+std::string join_names(std::span<const std::string> names, std::string_view last_separator = " and ",
+                       bool quoted = true);
+
+}  // namespace ricochet

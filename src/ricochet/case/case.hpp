@@ -1,0 +1,136 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/expression.hpp"
+#include "ricochet/base/types.hpp"
+
+/// @file What a case file says, after parsing and every check that needs no mesh. Field names are the keys of the file.
+/// Units are the user's own and must be consistent; nothing here has a scale.
+namespace ricochet {
+
+/// Where a value stands. `line` is 0 for values given by --set (then `file` is "--set key.path=value") or by default.
+struct SourceLocation {
+  std::string file;
+  int line = 0;
+  int column = 0;
+  /// "file:line:column", or `file` alone.
+  [[nodiscard]] std::string text() const;
+};
+
+struct MeshSection {
+  std::string file;  ///< as resolved: relative paths are relative to the case file's directory
+  std::optional<double> size;
+  double scale = 1.0;
+  int degree = 1;                ///< of the displacement
+  std::string plane = "strain";  ///< "strain" or "stress"
+};
+
+struct DampingSection {
+  double mass = 0.0;       ///< 1/time
+  double stiffness = 0.0;  ///< time
+};
+
+struct MaterialSection {
+  std::string group;
+  double density = 0.0;
+  double lambda = 0.0;  ///< Lamé's first parameter, computed from young and poisson when those were given
+  double mu = 0.0;      ///< shear modulus, likewise
+  DampingSection damping;
+};
+
+struct ObstacleSection {
+  std::string name;
+  std::string type = "plane";
+  std::vector<double> point;
+  std::vector<double> normal;  ///< out of the obstacle, as written (not yet of length one)
+};
+
+struct ContactSection {
+  std::string group;
+  std::string obstacle;
+  double friction = 0.0;
+  std::string multipliers = "nodal";
+};
+
+struct SupportSection {
+  std::string group;
+  std::vector<int> components;  ///< 0, 1, 2 for "x", "y", "z"
+  Expression value;             ///< of t (a displacement)
+};
+
+struct TractionSection {
+  std::string group;
+  std::vector<Expression> value;  ///< of x, y, z, t: force per area of the undeformed boundary
+};
+
+struct LoadSection {
+  std::vector<double> gravity;         ///< acceleration; empty: none
+  std::vector<Expression> body_force;  ///< of x, y, z, t: force per volume; empty: none
+};
+
+struct InitialSection {
+  bool static_equilibrium = false;       ///< displacement = "static"
+  std::vector<Expression> displacement;  ///< of x, y, z; empty: zero
+  std::vector<Expression> velocity;      ///< of x, y, z; empty: zero
+};
+
+struct MassSection {
+  std::string type = "equivalent";
+};
+
+struct TimeSection {
+  std::string scheme;
+  double beta = 0.25;  ///< newmark
+  double gamma = 0.5;  ///< newmark
+  std::string preset;  ///< newmark: "", "trapezoidal" (¼, ½) or "textbook-half" (½, ½): fills beta and gamma
+  double step = 0.0;
+  double end = 0.0;
+};
+
+struct ProbeSection {
+  std::string name;
+  std::vector<double> at;
+};
+
+struct OutputSection {
+  std::optional<long> fields_every;  ///< steps; absent: chosen so that about a hundred frames are written; 0: none
+  long history_every = 1;
+};
+
+struct ExpectSection {
+  std::string quantity;
+  double value = 0.0;
+  std::optional<double> relative, absolute;  ///< tolerances; at least one
+  std::optional<double> minimum, maximum;    ///< instead of value: bounds
+  std::map<std::string, std::string> when;   ///< key path → value as text: only checked in runs where they hold
+};
+
+struct Case {
+  std::string path;  ///< of the case file
+  std::string title;
+  MeshSection mesh;
+  std::vector<MaterialSection> materials;
+  std::vector<ObstacleSection> obstacles;
+  std::vector<ContactSection> contacts;
+  std::vector<SupportSection> supports;
+  std::vector<TractionSection> tractions;
+  LoadSection load;
+  InitialSection initial;
+  MassSection mass;
+  TimeSection time;
+  std::vector<ProbeSection> probes;
+  OutputSection output;
+  std::vector<ExpectSection> expectations;
+  std::vector<std::string> overridden;              ///< key paths given by --set
+  std::map<std::string, SourceLocation> locations;  ///< key path ("contact.0.group") → where it stands
+  std::map<std::string, std::string> values;        ///< key path → value as text, defaults included, for `when`
+
+  /// Location of a key path, or of the nearest enclosing section, or of the file.
+  [[nodiscard]] SourceLocation where(const std::string& key_path) const;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,221 @@
+#include "ricochet/case/keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+namespace {
+
+std::vector<std::string> names_of(const std::vector<Key>& keys) {
+  std::vector<std::string> names;
+  names.reserve(keys.size());
+  for (const Key& key : keys) names.push_back(key.name);
+  return names;
+}
+
+std::string with_range(const std::string& noun, const Range& range) {
+  const std::string article = noun == "integer" ? "an" : "a";
+  if (range.above == 0.0 && !range.below && !range.at_most) return fmt::format("a positive {}", noun);
+  std::vector<std::string> bounds;
+  if (range.above) bounds.push_back(fmt::format("above {}", *range.above));
+  if (range.at_least) bounds.push_back(fmt::format("of at least {}", *range.at_least));
+  if (range.below) bounds.push_back(fmt::format("below {}", *range.below));
+  if (range.at_most) bounds.push_back(fmt::format("of at most {}", *range.at_most));
+  if (bounds.empty()) return fmt::format("{} {}", article, noun);
+  return fmt::format("{} {} {}", article, noun, join_names(bounds, " and ", false));
+}
+
+std::string one_of(const std::vector<std::string>& choices, bool quoted) {
+  return fmt::format("{}{}", choices.size() > 2 ? "one of " : "", join_names(choices, " or ", quoted));
+}
+
+std::vector<std::string> split(const std::string& path) {
+  std::vector<std::string> parts{""};
+  for (const char character : path) {
+    if (character == '.') {
+      parts.emplace_back();
+    } else {
+      parts.back() += character;
+    }
+  }
+  return parts;
+}
+
+std::string join_rest(const std::vector<std::string>& parts, std::size_t first) {
+  std::string text;
+  for (std::size_t i = first; i < parts.size(); ++i) text += (i > first ? "." : "") + parts[i];
+  return text;
+}
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw Error(ErrorKind::invalid_input, message);
+}
+
+// Reads the part of a path that picks one entry of a list or one named section.
+std::string entry_of(const Section& section, const std::vector<std::string>& parts) {
+  if (section.kind == SectionKind::list) {
+    const bool is_number = parts.size() > 1 && !parts[1].empty() && parts[1].size() < 10 &&
+                           parts[1].find_first_not_of("0123456789") == std::string::npos;
+    if (!is_number) {
+      refuse(fmt::format("{} is a list: say which entry, counted from 0, as in {}.0.{}", section_title(section),
+                         section.name, section.keys.front().name));
+    }
+    return std::to_string(std::stol(parts[1]));  // without leading zeros
+  }
+  if (parts.size() < 2 || !is_plain_name(parts[1])) {
+    refuse(fmt::format("the sections {} are named: say which one, as in {}.floor.{}", section_title(section),
+                       section.name, section.keys.front().name));
+  }
+  return parts[1];
+}
+
+// Follows a path on from the key at parts[at].
+void enter_key(const std::vector<std::string>& parts, std::size_t at, KeyPath& path) {
+  const Key& key = *path.key;
+  if (at + 1 == parts.size()) return;
+  if (key.type == KeyType::table) {
+    path.sub_table = key.name;
+    path.key = find_key(key.keys, parts[at + 1]);
+    if (path.key == nullptr) {
+      refuse(unknown_key_message(parts[at + 1], fmt::format("{}.{}", path.section->name, key.name), key.keys));
+    }
+    if (at + 2 == parts.size()) return;
+  } else if (key.type == KeyType::parameters || key.type == KeyType::conditions) {
+    path.sub_table = key.name;
+    path.member = join_rest(parts, at + 1);
+    return;
+  }
+  refuse(fmt::format("\"{}\" is {}: it has no part \"{}\"", path.key->name, wanted(*path.key), parts.back()));
+}
+
+}  // namespace
+
+const Section* find_section(std::string_view name) {
+  const std::vector<Section>& sections = case_sections();
+  const auto found = std::find_if(sections.begin(), sections.end(), [name](const Section& section) {
+    return section.kind != SectionKind::top && section.name == name;
+  });
+  return found != sections.end() ? &*found : nullptr;
+}
+
+const Key* find_key(const std::vector<Key>& keys, std::string_view name) {
+  const auto found = std::find_if(keys.begin(), keys.end(), [name](const Key& key) { return key.name == name; });
+  return found != keys.end() ? &*found : nullptr;
+}
+
+std::string section_title(const Section& section) {
+  switch (section.kind) {
+    case SectionKind::top:
+      return "the top level of the file";
+    case SectionKind::table:
+      return fmt::format("[{}]", section.name);
+    case SectionKind::list:
+      return fmt::format("[[{}]]", section.name);
+    case SectionKind::named:
+      return fmt::format("[{}.NAME]", section.name);
+  }
+  return "";
+}
+
+std::string wanted(const Key& key) {
+  switch (key.type) {
+    case KeyType::text:
+      return key.required ? "a text that is not empty" : "a text";
+    case KeyType::choice:
+      return one_of(key.choices, true);
+    case KeyType::number:
+      return with_range("number", key.range);
+    case KeyType::integer:
+      return key.choices.empty() ? with_range("integer", key.range) : one_of(key.choices, false);
+    case KeyType::vector:
+      return "a vector of 2 or 3 numbers";
+    case KeyType::formula:
+      return fmt::format("a number or an expression in {}", key.variables);
+    case KeyType::formulas:
+      return fmt::format("a vector of 2 or 3 numbers or expressions in {}{}", key.variables,
+                         key.choices.empty() ? "" : ", or " + one_of(key.choices, true));
+    case KeyType::components:
+      return fmt::format("a list with one or more of {}", join_names(key.choices, " and "));
+    case KeyType::parameters:
+      return "a table of numbers";
+    case KeyType::conditions:
+      return "a table of key paths and their values";
+    case KeyType::table:
+      return fmt::format("a table with {}", join_names(names_of(key.keys)));
+  }
+  return "";
+}
+
+std::string wanted_with_unit(const Key& key) {
+  return key.unit.empty() || key.unit == "1" ? wanted(key) : fmt::format("{} (unit: {})", wanted(key), key.unit);
+}
+
+std::string nearest_key(std::string_view name, const std::vector<Key>& keys) {
+  return nearest_name(name, names_of(keys));
+}
+
+std::string nearest_section(std::string_view name) {
+  std::vector<std::string> names;
+  for (const Section& section : case_sections()) {
+    if (section.kind != SectionKind::top) names.push_back(section.name);
+  }
+  return nearest_name(name, names);
+}
+
+std::string unknown_key_message(std::string_view name, const std::string& title, const std::vector<Key>& keys) {
+  const std::string near = nearest_key(name, keys);
+  const std::string hint = near.empty() ? fmt::format("{} {}", keys.size() == 1 ? "its only key is" : "its keys are",
+                                                      join_names(names_of(keys)))
+                                        : fmt::format("did you mean \"{}\"?", near);
+  return fmt::format("unknown key \"{}\" in {}; {}", name, title, hint);
+}
+
+std::string unknown_section_message(std::string_view name) {
+  std::vector<std::string> titles;
+  for (const Section& section : case_sections()) {
+    if (section.kind != SectionKind::top) titles.push_back(section_title(section));
+  }
+  const std::string near = nearest_section(name);
+  const std::string hint = near.empty() ? fmt::format("the sections are {}", join_names(titles, " and ", false))
+                                        : fmt::format("did you mean {}?", section_title(*find_section(near)));
+  return fmt::format("unknown section \"{}\"; {}", name, hint);
+}
+
+KeyPath parse_key_path(const std::string& text) {
+  const std::vector<std::string> parts = split(text);
+  KeyPath path;
+  path.section = find_section(parts[0]);
+  std::size_t at = 0;
+  if (path.section == nullptr) {
+    path.section = &case_sections().front();
+    if (find_key(path.section->keys, parts[0]) == nullptr) refuse(unknown_section_message(parts[0]));
+  } else {
+    at = 1;
+    if (path.section->kind == SectionKind::list || path.section->kind == SectionKind::named) {
+      path.entry = entry_of(*path.section, parts);
+      at = 2;
+    }
+  }
+  if (at >= parts.size()) {
+    refuse(fmt::format("\"{}\" is a section: say which of its keys, as in {}.{}", text, text,
+                       path.section->keys.front().name));
+  }
+  path.key = find_key(path.section->keys, parts[at]);
+  if (path.key == nullptr) refuse(unknown_key_message(parts[at], section_title(*path.section), path.section->keys));
+  enter_key(parts, at, path);
+  return path;
+}
+
+bool is_plain_name(std::string_view name) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), is_plain);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/text.hpp"
+#include "ricochet/case/keys_check.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Kind = TomlNode::Kind;
+
+void refuse(TomlNode& value, const std::string& message, Problems& problems) {
+  value.is_refused = true;
+  problems.add(value.location, message);
+}
+
+void refuse_type(const Key& key, TomlNode& value, Problems& problems) {
+  refuse(value, fmt::format("\"{}\" must be {}; found {}", key.name, wanted_with_unit(key), describe(value)), problems);
+}
+
+bool is_in_range(double number, const Range& range) {
+  return !(range.above && number <= *range.above) && !(range.at_least && number < *range.at_least) &&
+         !(range.below && number >= *range.below) && !(range.at_most && number > *range.at_most);
+}
+
+// Integers are fine where numbers are wanted; from here on they are numbers, so that 1 and 1.0 have one text.
+bool make_finite_number(TomlNode& value) {
+  if (value.kind == Kind::integer) {
+    value.real = static_cast<double>(value.integer);
+    value.kind = Kind::real;
+  }
+  return value.kind == Kind::real && std::isfinite(value.real);
+}
+
+bool is_choice(const std::string& word, const std::vector<std::string>& choices) {
+  return std::find(choices.begin(), choices.end(), word) != choices.end();
+}
+
+// `; did you mean "newmark"?` or nothing.
+std::string suggestion(const TomlNode& value, const std::vector<std::string>& choices) {
+  const std::string near = value.kind == Kind::text ? nearest_name(value.text, choices) : "";
+  return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
+}
+
+void check_choice(const Key& key, TomlNode& value, Problems& problems) {
+  if (value.kind == Kind::text && is_choice(value.text, key.choices)) return;
+  refuse(value,
+         fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted(key), describe(value),
+                     suggestion(value, key.choices)),
+         problems);
+}
+
+void check_number(const Key& key, TomlNode& value, Problems& problems) {
+  const TomlNode found = value;
+  if (make_finite_number(value) && is_in_range(value.real, key.range)) return;
+  value.is_refused = true;
+  const char* finite = found.kind == Kind::real && !std::isfinite(found.real) ? ", which is not finite" : "";
+  problems.add(value.location,
+               fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted_with_unit(key), describe(found), finite));
+}
+
+void check_integer(const Key& key, TomlNode& value, Problems& problems) {
+  const bool is_good =
+      value.kind == Kind::integer && (key.choices.empty() ? is_in_range(static_cast<double>(value.integer), key.range)
+                                                          : is_choice(std::to_string(value.integer), key.choices));
+  if (!is_good) refuse_type(key, value, problems);
+}
+
+// Entries of a vector. Expressions are compiled later, when their parameters are known.
+void check_vector(const Key& key, TomlNode& value, bool with_expressions, Problems& problems) {
+  const bool is_vector = value.kind == Kind::list && !value.is_list_of_tables();
+  if (!is_vector) {
+    refuse(value,
+           fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted_with_unit(key), describe(value),
+                       suggestion(value, key.choices)),
+           problems);
+    return;
+  }
+  if (value.children.size() != 2 && value.children.size() != 3) return refuse_type(key, value, problems);
+  for (std::size_t i = 0; i < value.children.size(); ++i) {
+    TomlNode& component = value.children[i];
+    if (make_finite_number(component) || (with_expressions && component.kind == Kind::text)) continue;
+    value.is_refused = true;
+    problems.add(component.location,
+                 fmt::format("entry {} of \"{}\" must be a finite number{}; found {}", i + 1, key.name,
+                             with_expressions ? " or an expression" : "", describe(component)));
+  }
+}
+
+void check_directions(const Key& key, TomlNode& value, Problems& problems) {
+  if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
+  std::vector<std::string> seen;
+  for (const TomlNode& name : value.children) {
+    std::string reason;
+    if (name.kind != Kind::text || !is_choice(name.text, key.choices)) {
+      reason = fmt::format("can only be {}; found {}", join_names(key.choices, " or "), describe(name));
+    } else if (is_choice(name.text, seen)) {
+      reason = fmt::format("has \"{}\" twice", name.text);
+    }
+    seen.push_back(name.text);
+    if (reason.empty()) continue;
+    value.is_refused = true;
+    problems.add(name.location, fmt::format("an entry of \"{}\" {}", key.name, reason));
+  }
+}
+
+void check_parameters(const Key& key, TomlNode& value, Problems& problems) {
+  if (!value.is_table()) return refuse_type(key, value, problems);
+  for (TomlNode& parameter : value.children) {
+    const std::string& name = parameter.key;
+    const bool is_identifier =
+        is_plain_name(name) && name.find('-') == std::string::npos && !(name[0] >= '0' && name[0] <= '9');
+    if (!is_identifier || is_choice(name, {"x", "y", "z", "t", "pi"})) {
+      value.is_refused = true;
+      problems.add(parameter.key_location,
+                   fmt::format("\"{}\" cannot be the name of a parameter: {}", name,
+                               is_identifier ? "x, y, z, t and pi have a meaning of their own"
+                                             : "it must be made of letters, digits and _, not beginning with a digit"));
+    } else if (!make_finite_number(parameter)) {
+      value.is_refused = true;
+      problems.add(parameter.location,
+                   fmt::format("the parameter \"{}\" must be a finite number; found {}", name, describe(parameter)));
+    }
+  }
+}
+
+}  // namespace
+
+void check_value(const Key& key, TomlNode& value, Problems& problems) {
+  switch (key.type) {
+    case KeyType::text:
+      if (value.kind != Kind::text || (key.required && value.text.empty())) refuse_type(key, value, problems);
+      return;
+    case KeyType::choice:
+      return check_choice(key, value, problems);
+    case KeyType::number:
+      return check_number(key, value, problems);
+    case KeyType::integer:
+      return check_integer(key, value, problems);
+    case KeyType::vector:
+      return check_vector(key, value, false, problems);
+    case KeyType::formula:
+      if (value.kind != Kind::text) check_number(key, value, problems);
+      return;
+    case KeyType::formulas:
+      if (value.kind == Kind::text && is_choice(value.text, key.choices)) return;
+      return check_vector(key, value, true, problems);
+    case KeyType::components:
+      return check_directions(key, value, problems);
+    case KeyType::parameters:
+      return check_parameters(key, value, problems);
+    case KeyType::conditions:
+    case KeyType::table:  // what they hold is checked by check_tree, which knows the whole document
+      if (!value.is_table()) refuse_type(key, value, problems);
+      return;
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,91 @@
+#include "ricochet/case/keys_override.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/case/keys_check.hpp"
+
+namespace ricochet {
+
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+TomlNode parse_value(const std::string& text, const SourceLocation& location) {
+  if (std::optional<TomlNode> value = parse_toml_value(text, location)) return *value;
+  TomlNode word;  // so that --set time.scheme=midpoint needs no quotes
+  word.kind = TomlNode::Kind::text;
+  word.text = text;
+  word.location = word.key_location = location;
+  return word;
+}
+
+// The table of that name, made when it is absent.
+TomlNode& enter_table(TomlNode& parent, const std::string& name, const SourceLocation& location) {
+  if (TomlNode* found = parent.find(name)) return *found;
+  TomlNode& made = parent.children.emplace_back();
+  made.key = name;
+  made.location = made.key_location = location;
+  return made;
+}
+
+// The table that holds the key, or nullptr when the document has something else in its place, which check_tree reports.
+TomlNode* enter_section(TomlNode& root, const KeyPath& path, const SourceLocation& location) {
+  TomlNode* table = &root;
+  if (path.section->kind == SectionKind::list) {
+    std::string problem;
+    static_cast<void>(find_entry(root, path, problem));
+    if (!problem.empty()) throw Error(ErrorKind::invalid_input, problem);
+    table = &root.find(path.section->name)->children[static_cast<std::size_t>(std::stol(path.entry))];
+  } else if (path.section->kind != SectionKind::top) {
+    table = &enter_table(root, path.section->name, location);
+    if (path.section->kind == SectionKind::named && table->is_table())
+      table = &enter_table(*table, path.entry, location);
+  }
+  if (table->is_table() && !path.sub_table.empty()) table = &enter_table(*table, path.sub_table, location);
+  return table->is_table() ? table : nullptr;
+}
+
+void apply(TomlNode& root, const std::string& path_text, const std::string& value_text,
+           const SourceLocation& location) {
+  const KeyPath path = parse_key_path(path_text);
+  TomlNode* table = enter_section(root, path, location);
+  if (table == nullptr) return;
+  TomlNode value = parse_value(value_text, location);
+  value.key = path.member.empty() ? path.key->name : path.member;
+  if (TomlNode* present = table->find(value.key)) {
+    *present = value;
+  } else {
+    table->children.push_back(value);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> apply_overrides(TomlNode& root, const std::vector<std::string>& overrides,
+                                         Problems& problems) {
+  std::vector<std::string> paths;
+  for (const std::string& text : overrides) {
+    const std::size_t equals = text.find('=');
+    const std::string path = trimmed(text.substr(0, equals));
+    if (equals == std::string::npos || path.empty()) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("--set {}: write --set key.path=value, as in --set time.step=1e-4", text));
+    }
+    const SourceLocation location{"--set " + text, 0, 0};
+    try {
+      apply(root, path, trimmed(text.substr(equals + 1)), location);
+    } catch (const Error& problem) {
+      problems.add(location, problem.what());
+    }
+    if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
+  }
+  return paths;
+}
+
+}  // namespace ricochet

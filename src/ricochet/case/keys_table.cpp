@@ -1,0 +1,379 @@
+#include "ricochet/case/keys.hpp"
+#include "ricochet/case/names.hpp"
+
+// The table itself. Nothing else in the program lists the keys of a case file.
+namespace ricochet {
+
+namespace {
+
+const Range positive{.above = 0.0};
+const Range nonnegative{.at_least = 0.0};
+
+constexpr const char* position = "x, y and z";
+constexpr const char* position_and_time = "x, y, z and t";
+
+Key parameters_key() {
+  return {.name = "parameters",
+          .type = KeyType::parameters,
+          .doc = "Numbers by name, for use in the expressions of this section."};
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const NewmarkPreset& preset : newmark_presets()) names.push_back(preset.name);
+  return names;
+}
+
+Section top_section() {
+  return {.name = "",
+          .kind = SectionKind::top,
+          .doc = "Before the first section.",
+          .keys = {{.name = "title", .standard = "", .doc = "A line about the case, repeated in its results."}}};
+}
+
+Section mesh_section() {
+  return {
+      .name = "mesh",
+      .required = true,
+      .doc = "The body and how it is discretized.",
+      .keys = {
+          {.name = "file",
+           .required = true,
+           .doc = "Mesh file (.msh), or geometry for the gmsh program (.geo, .step, …). A relative path is relative to "
+                  "the "
+                  "folder of the case file, also when given by --set."},
+          {.name = "size",
+           .type = KeyType::number,
+           .unit = "length",
+           .range = positive,
+           .doc = "Target size of the cells; only for geometry that is still to be meshed, in the unit of that file."},
+          {.name = "scale",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "1",
+           .range = positive,
+           .doc = "Multiplies all coordinates of the mesh."},
+          {.name = "degree",
+           .type = KeyType::integer,
+           .unit = "1",
+           .standard = "1",
+           .choices = {"1", "2"},
+           .doc = "Polynomial degree of the displacement."},
+          {.name = "plane",
+           .type = KeyType::choice,
+           .standard = "strain",
+           .choices = {"strain", "stress"},
+           .doc = "In two dimensions: plane strain or plane stress."},
+      }};
+}
+
+Key damping_key() {
+  return {.name = "damping",
+          .type = KeyType::table,
+          .keys = {{.name = "mass",
+                    .type = KeyType::number,
+                    .unit = "1/time",
+                    .standard = "0",
+                    .range = nonnegative,
+                    .doc = "Rayleigh damping proportional to the mass matrix."},
+                   {.name = "stiffness",
+                    .type = KeyType::number,
+                    .unit = "time",
+                    .standard = "0",
+                    .range = nonnegative,
+                    .doc = "Rayleigh damping proportional to the stiffness matrix."}},
+          .doc = "Rayleigh damping."};
+}
+
+Section material_section() {
+  return {
+      .name = "material",
+      .kind = SectionKind::list,
+      .required = true,
+      .alternatives = {{"lambda", "mu"}, {"young", "poisson"}},
+      .doc = "Isotropic linear elasticity of one physical group of cells.",
+      .keys = {
+          {.name = "group", .required = true, .doc = "Name of the physical group of cells in the mesh."},
+          {.name = "density",
+           .type = KeyType::number,
+           .unit = "density",
+           .required = true,
+           .range = positive,
+           .doc = "Mass per volume."},
+          {.name = "lambda",
+           .type = KeyType::number,
+           .unit = "stress",
+           .doc = "First Lamé parameter; 3 lambda + 2 mu must be positive."},
+          {.name = "mu",
+           .type = KeyType::number,
+           .unit = "stress",
+           .range = positive,
+           .doc = "Second Lamé parameter, the shear modulus."},
+          {.name = "young", .type = KeyType::number, .unit = "stress", .range = positive, .doc = "Young's modulus."},
+          {.name = "poisson",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = {.above = -1.0, .below = 0.5},
+           .doc = "Poisson's ratio."},
+          damping_key(),
+      }};
+}
+
+Section obstacle_section() {
+  return {.name = "obstacle",
+          .kind = SectionKind::named,
+          .doc = "A rigid obstacle, named so that [[contact]] can refer to it.",
+          .keys = {
+              {.name = "type",
+               .type = KeyType::choice,
+               .required = true,
+               .choices = {"plane"},
+               .doc = "Shape: a half-space bounded by a plane."},
+              {.name = "point",
+               .type = KeyType::vector,
+               .unit = "length",
+               .required = true,
+               .doc = "A point of the plane."},
+              {.name = "normal",
+               .type = KeyType::vector,
+               .unit = "1",
+               .required = true,
+               .doc = "Normal of the plane, out of the obstacle; of any length but zero."},
+          }};
+}
+
+Section contact_section() {
+  return {.name = "contact",
+          .kind = SectionKind::list,
+          .doc = "A part of the boundary that may touch an obstacle.",
+          .keys = {
+              {.name = "group", .required = true, .doc = "Name of the physical group of boundary facets in the mesh."},
+              {.name = "obstacle", .required = true, .doc = "Name of the obstacle, a section [obstacle.NAME]."},
+              {.name = "friction",
+               .type = KeyType::number,
+               .unit = "1",
+               .standard = "0",
+               .range = nonnegative,
+               .doc = "Coulomb's coefficient of friction. This version is frictionless: only 0 is accepted."},
+              {.name = "multipliers",
+               .type = KeyType::choice,
+               .standard = "nodal",
+               .choices = {"nodal"},
+               .doc = "Discretization of the contact pressure: one multiplier per contact node."},
+          }};
+}
+
+Section support_section() {
+  return {.name = "support",
+          .kind = SectionKind::list,
+          .doc = "Prescribed displacement components on a part of the boundary.",
+          .keys = {
+              {.name = "group", .required = true, .doc = "Name of the physical group of boundary facets in the mesh."},
+              {.name = "components",
+               .type = KeyType::components,
+               .required = true,
+               .choices = {"x", "y", "z"},
+               .doc = "The components that are prescribed."},
+              {.name = "value",
+               .type = KeyType::formula,
+               .unit = "length",
+               .standard = "0",
+               .variables = "t",
+               .doc = "The displacement of these components."},
+              parameters_key(),
+          }};
+}
+
+Section traction_section() {
+  return {.name = "traction",
+          .kind = SectionKind::list,
+          .doc = "Force on a part of the boundary.",
+          .keys = {
+              {.name = "group", .required = true, .doc = "Name of the physical group of boundary facets in the mesh."},
+              {.name = "value",
+               .type = KeyType::formulas,
+               .unit = "stress",
+               .required = true,
+               .variables = position_and_time,
+               .doc = "Force per area of the undeformed boundary."},
+              parameters_key(),
+          }};
+}
+
+Section load_section() {
+  return {.name = "load",
+          .doc = "Forces on the whole body.",
+          .keys = {
+              {.name = "gravity",
+               .type = KeyType::vector,
+               .unit = "acceleration",
+               .doc = "Acceleration of gravity; none if absent."},
+              {.name = "body_force",
+               .type = KeyType::formulas,
+               .unit = "force/volume",
+               .variables = position_and_time,
+               .doc = "Force per volume; none if absent."},
+              parameters_key(),
+          }};
+}
+
+Section initial_section() {
+  return {
+      .name = "initial",
+      .doc = "The state at t = 0.",
+      .keys = {
+          {.name = "displacement",
+           .type = KeyType::formulas,
+           .unit = "length",
+           .choices = {"static"},
+           .variables = position,
+           .doc =
+               "Displacement at t = 0; \"static\" is the equilibrium under the loads at t = 0, contact included. Zero "
+               "if absent."},
+          {.name = "velocity",
+           .type = KeyType::formulas,
+           .unit = "length/time",
+           .variables = position,
+           .doc = "Velocity at t = 0. Zero if absent."},
+          parameters_key(),
+      }};
+}
+
+Section mass_section() {
+  return {
+      .name = "mass",
+      .doc = "The mass matrix.",
+      .keys = {{.name = "type",
+                .type = KeyType::choice,
+                .standard = "equivalent",
+                .choices = {"consistent", "lumped", "equivalent", "equivalent-nearest"},
+                .doc = "The equivalent masses have no inertia on contact nodes, and keep total mass, centre of gravity "
+                       "and moments of inertia."}}};
+}
+
+Section time_section() {
+  return {
+      .name = "time",
+      .required = true,
+      .doc = "The time scheme and its steps.",
+      .keys = {
+          {.name = "scheme",
+           .type = KeyType::choice,
+           .required = true,
+           .choices = scheme_names(),
+           .doc = "The time scheme."},
+          {.name = "beta",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = positive,
+           .doc = "Newmark's beta, textbook definition; for the scheme \"newmark\" only."},
+          {.name = "gamma",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = nonnegative,
+           .doc = "Newmark's gamma, textbook definition; unstable below 1/2; for the scheme \"newmark\" only."},
+          {.name = "preset",
+           .type = KeyType::choice,
+           .choices = preset_names(),
+           .doc = "Instead of beta and gamma: \"trapezoidal\" is beta = 1/4, gamma = 1/2; \"textbook-half\" is beta = "
+                  "gamma = 1/2."},
+          {.name = "step",
+           .type = KeyType::number,
+           .unit = "time",
+           .required = true,
+           .range = positive,
+           .doc = "Length of a time step."},
+          {.name = "end",
+           .type = KeyType::number,
+           .unit = "time",
+           .required = true,
+           .range = positive,
+           .doc = "The run goes from t = 0 to here; at least one step and at most 1e9."},
+      }};
+}
+
+Section probe_section() {
+  return {.name = "probe",
+          .kind = SectionKind::list,
+          .doc = "A node whose motion is written to history.csv.",
+          .keys = {
+              {.name = "name",
+               .required = true,
+               .doc = "Prefix of its columns: letters, digits, _ and -; not the name of a standard column."},
+              {.name = "at",
+               .type = KeyType::vector,
+               .unit = "length",
+               .required = true,
+               .doc = "Where: the nearest node is taken, and its distance reported."},
+          }};
+}
+
+Section output_section() {
+  return {.name = "output",
+          .doc = "How often results are written.",
+          .keys = {
+              {.name = "fields_every",
+               .type = KeyType::integer,
+               .unit = "steps",
+               .range = nonnegative,
+               .doc = "Fields are written each so many steps; 0: never; absent: about a hundred times in the run."},
+              {.name = "history_every",
+               .type = KeyType::integer,
+               .unit = "steps",
+               .standard = "1",
+               .range = {.at_least = 1.0},
+               .doc = "A row of history.csv is written each so many steps."},
+          }};
+}
+
+Section expect_section() {
+  return {.name = "expect",
+          .kind = SectionKind::list,
+          .doc =
+              "Something that must hold at the end of a run, so that a case is its own regression test: either a value "
+              "with "
+              "a tolerance (relative, absolute or both: the larger one counts), or bounds.",
+          .keys = {
+              {.name = "quantity", .required = true, .doc = "A number of the results; see Quantities."},
+              {.name = "value", .type = KeyType::number, .unit = "of the quantity", .doc = "The value it must have."},
+              {.name = "relative",
+               .type = KeyType::number,
+               .unit = "1",
+               .range = nonnegative,
+               .doc = "Tolerance as a fraction of value."},
+              {.name = "absolute",
+               .type = KeyType::number,
+               .unit = "of the quantity",
+               .range = nonnegative,
+               .doc = "Tolerance as a difference from value."},
+              {.name = "minimum",
+               .type = KeyType::number,
+               .unit = "of the quantity",
+               .doc = "Instead of value: the least it may be."},
+              {.name = "maximum",
+               .type = KeyType::number,
+               .unit = "of the quantity",
+               .doc = "Instead of value: the most it may be."},
+              {.name = "when",
+               .type = KeyType::conditions,
+               .doc = "Key paths and values, as in { \"time.scheme\" = \"midpoint\" }: only runs where all of them "
+                      "hold are checked."},
+          }};
+}
+
+}  // namespace
+
+const std::vector<NewmarkPreset>& newmark_presets() {
+  static const std::vector<NewmarkPreset> presets{{"trapezoidal", 0.25, 0.5}, {"textbook-half", 0.5, 0.5}};
+  return presets;
+}
+
+const std::vector<Section>& case_sections() {
+  static const std::vector<Section> sections{
+      top_section(),     mesh_section(),     material_section(), obstacle_section(), contact_section(),
+      support_section(), traction_section(), load_section(),     initial_section(),  mass_section(),
+      time_section(),    probe_section(),    output_section(),   expect_section()};
+  return sections;
+}
+
+}  // namespace ricochet

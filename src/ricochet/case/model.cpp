@@ -1,0 +1,199 @@
+#include "ricochet/case/model.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/base/timer.hpp"
+#include "ricochet/case/model_parts.hpp"
+#include "ricochet/fem/exterior_facets.hpp"
+#include "ricochet/mesh/read_mesh.hpp"
+
+namespace ricochet {
+
+void refuse(const Case& input, const std::string& key_path, const std::string& message) {
+  throw Error(ErrorKind::invalid_input, fmt::format("{}: {}", input.where(key_path).text(), message));
+}
+
+namespace {
+
+void check_length(const Case& input, const std::string& key_path, std::size_t length, int dimension) {
+  if (length != 0 && static_cast<int>(length) != dimension) {
+    refuse(input, key_path,
+           fmt::format("{} has {} entries, but the mesh has dimension {}: give {}", key_path, length, dimension,
+                       dimension));
+  }
+}
+
+}  // namespace
+
+void check_dimensions(const Case& input, int dimension) {
+  for (const ObstacleSection& obstacle : input.obstacles) {
+    check_length(input, "obstacle." + obstacle.name + ".point", obstacle.point.size(), dimension);
+    check_length(input, "obstacle." + obstacle.name + ".normal", obstacle.normal.size(), dimension);
+  }
+  for (std::size_t i = 0; i < input.supports.size(); ++i) {
+    for (const int component : input.supports[i].components) {
+      if (component >= dimension)
+        refuse(input, fmt::format("support.{}.components", i),
+               "component \"z\" does not exist: the mesh has dimension 2");
+    }
+  }
+  for (std::size_t i = 0; i < input.tractions.size(); ++i) {
+    check_length(input, fmt::format("traction.{}.value", i), input.tractions[i].value.size(), dimension);
+  }
+  check_length(input, "load.gravity", input.load.gravity.size(), dimension);
+  check_length(input, "load.body_force", input.load.body_force.size(), dimension);
+  check_length(input, "initial.displacement", input.initial.displacement.size(), dimension);
+  check_length(input, "initial.velocity", input.initial.velocity.size(), dimension);
+  for (std::size_t i = 0; i < input.probes.size(); ++i) {
+    check_length(input, fmt::format("probe.{}.at", i), input.probes[i].at.size(), dimension);
+  }
+}
+
+const Group& group_at(const Case& input, const std::string& key_path, const Mesh& mesh, const std::string& name,
+                      int dimension) {
+  try {
+    return mesh.group(name, dimension);
+  } catch (const Error& problem) {
+    refuse(input, key_path, problem.what());
+  }
+}
+
+std::vector<Index> boundary_at(const Case& input, const std::string& key_path, const Mesh& mesh,
+                               const std::string& name) {
+  const Group& group = group_at(input, key_path, mesh, name, mesh.dimension - 1);
+  const std::vector<Index> interior = interior_facets(mesh, group.members);
+  if (!interior.empty()) {
+    refuse(input, key_path,
+           fmt::format("group \"{}\" is not on the surface of the body: its elements {} lie between two cells", name,
+                       facet_tags(mesh, interior)));
+  }
+  return group.members;
+}
+
+void assign_materials(const Case& input, Model& model) {
+  const Mesh& mesh = model.mesh;
+  model.body =
+      Body{&mesh, &model.space, input.mesh.plane == "stress" ? PlaneState::stress : PlaneState::strain, {}, {}};
+  model.body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), -1);
+  for (std::size_t i = 0; i < input.materials.size(); ++i) {
+    const MaterialSection& section = input.materials[i];
+    const std::string key = fmt::format("material.{}.group", i);
+    for (const Index cell : group_at(input, key, mesh, section.group, mesh.dimension).members) {
+      int& assigned = model.body.cell_material[static_cast<std::size_t>(cell)];
+      if (assigned >= 0) {
+        refuse(input, key,
+               fmt::format("groups \"{}\" and \"{}\" overlap: they share cells, which would have two materials",
+                           input.materials[static_cast<std::size_t>(assigned)].group, section.group));
+      }
+      assigned = static_cast<int>(i);
+    }
+    model.body.materials.push_back(
+        {section.group, section.density, section.lambda, section.mu, section.damping.mass, section.damping.stiffness});
+    const double poisson = model.body.materials.back().poisson();
+    const bool locks = input.mesh.degree == 1 && !(mesh.dimension == 2 && model.body.plane == PlaneState::stress);
+    if (locks && poisson > 0.45) {
+      log::warning(fmt::format(
+          "material \"{}\" is nearly incompressible (Poisson's ratio {:.4g}): elements of degree 1 lock and "
+          "are far too stiff; use mesh.degree = 2",
+          section.group, poisson));
+    }
+  }
+  Index without = 0;
+  for (const int material : model.body.cell_material) without += material < 0 ? 1 : 0;
+  if (without > 0) {
+    std::vector<std::string> names;
+    for (const Group& group : mesh.groups) {
+      if (group.dimension == mesh.dimension) names.push_back(group.name);
+    }
+    refuse(input, "material",
+           fmt::format("{} of {} cells of {} have no material: give a [[material]] for every group of cells "
+                       "(the mesh has {}), and put every cell into a group",
+                       without, mesh.cell_count(), mesh.source, names.empty() ? "none" : join_names(names)));
+  }
+}
+
+void add_supports(const Case& input, Model& model) {
+  constexpr std::array<const char*, 3> axes{"x", "y", "z"};
+  Supports& supports = model.problem.supports;
+  const int d = model.mesh.dimension;
+  for (std::size_t i = 0; i < input.supports.size(); ++i) {
+    const SupportSection& section = input.supports[i];
+    const std::string key = fmt::format("support.{}.group", i);
+    const Group& group = group_at(input, key, model.mesh, section.group, d - 1);
+    for (const int component : section.components) {
+      for (const Index node : facet_nodes(model.space, group.members)) {
+        const Index dof = node * d + component;
+        if (supports.add(dof, section.value) || supports.text(dof) == section.value.text()) continue;
+        refuse(input, key,
+               fmt::format("support of group \"{}\" prescribes {} of a node that another support prescribes as \"{}\"; "
+                           "a node can follow only one of them",
+                           section.group, axes[static_cast<std::size_t>(component)], supports.text(dof)));
+      }
+    }
+  }
+  supports.finish();
+}
+
+void add_initial_conditions(const Case& input, Model& model) {
+  const int d = model.mesh.dimension;
+  const auto evaluate = [&](const std::vector<Expression>& value, const std::string& key) {
+    Vector result = Vector::Zero(model.space.dof_count());
+    if (value.empty()) return result;
+    try {
+      for (Index node = 0; node < model.space.node_count(); ++node) {
+        const auto at = model.space.nodes.col(node);
+        for (int k = 0; k < d; ++k) {
+          result[node * d + k] = value[static_cast<std::size_t>(k)](at[0], at[1], d == 3 ? at[2] : 0.0, 0.0);
+        }
+      }
+    } catch (const Error& problem) {
+      refuse(input, key, problem.what());
+    }
+    return result;
+  };
+  model.initial.static_equilibrium = input.initial.static_equilibrium;
+  model.initial.displacement = evaluate(input.initial.displacement, "initial.displacement");
+  model.initial.velocity = evaluate(input.initial.velocity, "initial.velocity");
+}
+
+void add_probes(const Case& input, Model& model) {
+  for (const ProbeSection& section : input.probes) {
+    const NearestNode nearest =
+        nearest_node(model.space, Eigen::Map<const Vector>(section.at.data(), static_cast<Index>(section.at.size())));
+    Probe probe{section.name, nearest.node, nearest.distance, -1};
+    const auto& nodes = model.problem.contact.nodes;
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+      if (nodes[i] == nearest.node) probe.contact_point = static_cast<Index>(i);
+    }
+    log::info(fmt::format("probe \"{}\": nearest node is {:.3g} away", probe.name, probe.distance));
+    model.probes.push_back(probe);
+  }
+}
+
+std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
+  auto model = std::make_unique<Model>();
+  Timer timer;
+  model->mesh = read_mesh({input.mesh.file, input.mesh.size, input.mesh.scale, input.mesh.degree});
+  if (times != nullptr) times->read_mesh = timer.restart();
+  check_dimensions(input, model->mesh.dimension);
+  model->space = make_displacement_space(model->mesh, input.mesh.degree);
+  model->problem.dimension = model->mesh.dimension;
+  model->problem.nodes = model->space.nodes;
+  assign_materials(input, *model);
+  add_supports(input, *model);
+  add_contacts(input, *model);
+  assemble_operators(input, *model);
+  add_loads(input, *model);
+  add_initial_conditions(input, *model);
+  add_probes(input, *model);
+  model->rotation = std::make_unique<RotationGauge>(model->body);
+  if (times != nullptr) times->assembly = timer.restart();
+  return model;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/case/case.hpp"
+#include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/starting_state.hpp"
+
+/// @file A case together with its mesh: everything a run needs, built and checked.
+namespace ricochet {
+
+struct Model {
+  Mesh mesh;
+  DisplacementSpace space;
+  Body body;
+  std::vector<std::unique_ptr<Obstacle>> obstacles;
+  std::vector<ContactPair> contact_pairs;
+  SemidiscreteProblem problem;
+  InitialConditions initial;
+  std::vector<Probe> probes;
+  std::unique_ptr<RotationGauge> rotation;
+
+  Model() = default;
+  Model(const Model&) = delete;  // body points into this
+  Model& operator=(const Model&) = delete;
+};
+
+/// Seconds spent in the phases of building a model.
+struct BuildTimes {
+  double read_mesh = 0.0;
+  double assembly = 0.0;
+};
+
+/// Reads the mesh and builds the semi-discrete problem. Throws Error(invalid_input) with file:line:column of the entry
+/// of the case that does not fit the mesh, and what there is instead.
+[[nodiscard]] std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times = nullptr);
+
+}  // namespace ricochet

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "ricochet/case/model.hpp"
+
+/// @file The pieces of build_model, one file each. Not part of the public interface.
+namespace ricochet {
+
+/// Error(invalid_input) at the place of a key of the case.
+[[noreturn]] void refuse(const Case& input, const std::string& key_path, const std::string& message);
+
+/// Checks every vector and component of the case against the dimension of the mesh.
+void check_dimensions(const Case& input, int dimension);
+
+/// Group of cells or facets named at a key; refuses there when it does not exist or is empty.
+[[nodiscard]] const Group& group_at(const Case& input, const std::string& key_path, const Mesh& mesh,
+                                    const std::string& name, int dimension);
+
+/// Facets of a boundary group; refuses there when some lie inside the body.
+[[nodiscard]] std::vector<Index> boundary_at(const Case& input, const std::string& key_path, const Mesh& mesh,
+                                             const std::string& name);
+
+void assign_materials(const Case& input, Model& model);
+void add_supports(const Case& input, Model& model);
+void add_contacts(const Case& input, Model& model);
+void assemble_operators(const Case& input, Model& model);
+void add_loads(const Case& input, Model& model);
+void add_initial_conditions(const Case& input, Model& model);
+void add_probes(const Case& input, Model& model);
+
+}  // namespace ricochet

@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/case/model_parts.hpp"
+#include "ricochet/mass/mass.hpp"
+
+namespace ricochet {
+
+namespace {
+
+Vector to_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+}
+
+/// Facets may belong to one contact only: to be pressed by the same obstacle twice has no meaning.
+void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      std::vector<Index> common;
+      std::set_intersection(pairs[i].facets.begin(), pairs[i].facets.end(), pairs[k].facets.begin(),
+                            pairs[k].facets.end(), std::back_inserter(common));
+      if (common.empty() || pairs[i].obstacle != pairs[k].obstacle) continue;
+      refuse(
+          input, fmt::format("contact.{}.group", i),
+          fmt::format("contact groups \"{}\" and \"{}\" overlap: they share {} facets against the same obstacle \"{}\"",
+                      pairs[k].group, pairs[i].group, common.size(), pairs[i].obstacle_name));
+    }
+  }
+}
+
+}  // namespace
+
+void add_contacts(const Case& input, Model& model) {
+  std::map<std::string, const Obstacle*> by_name;
+  for (const ObstacleSection& section : input.obstacles) {
+    model.obstacles.push_back(make_obstacle({section.type, to_vector(section.point), to_vector(section.normal)}));
+    by_name[section.name] = model.obstacles.back().get();
+  }
+  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
+    const ContactSection& section = input.contacts[i];
+    model.contact_pairs.push_back({section.group,
+                                   boundary_at(input, fmt::format("contact.{}.group", i), model.mesh, section.group),
+                                   section.obstacle, by_name.at(section.obstacle), section.friction});
+  }
+  check_overlap(input, model.contact_pairs);
+  const int d = model.mesh.dimension;
+  Index held = 0;
+  const auto keep = [&](Index node, const Vector& normal) {
+    double free_part = 0.0;
+    for (int k = 0; k < d; ++k) {
+      if (!model.problem.supports.contains(node * d + k)) free_part = std::max(free_part, std::abs(normal[k]));
+    }
+    // A unit vector: the bound has no unit. Below it the remaining part of the normal is rounding.
+    const bool free = free_part > 1e-10;
+    held += free ? 0 : 1;
+    return free;
+  };
+  try {
+    model.problem.contact = make_contact_boundary(model.body, model.contact_pairs, keep);
+  } catch (const Error& problem) {
+    refuse(input, "contact", problem.what());
+  }
+  if (held > 0) {
+    log::warning(
+        fmt::format("{} nodes of contact boundaries are held by supports in the direction of the obstacle's normal: "
+                    "they are no contact points",
+                    held));
+  }
+}
+
+void assemble_operators(const Case& input, Model& model) {
+  const NodeGraph graph = node_graph(model.space);
+  const int d = model.mesh.dimension;
+  const SparseMatrix consistent = assemble_scalar_mass(model.body, graph);
+  const std::unique_ptr<MassConstruction> construction = make_mass(input.mass.type);
+  MassInput mass_input{&consistent, &model.space.nodes, model.problem.contact.unique_nodes()};
+  const auto build = [&](const SparseMatrix& from) {
+    mass_input.consistent = &from;
+    try {
+      return construction->build(mass_input);
+    } catch (const Error& problem) {
+      refuse(input, "mass.type", problem.what());
+    }
+  };
+  model.problem.mass = expand_to_components(build(consistent), d);
+  model.problem.internal_force = std::make_shared<LinearElasticity>(assemble_stiffness(model.body, graph));
+  std::vector<double> mass_damping, stiffness_damping;
+  for (const Material& material : model.body.materials) {
+    mass_damping.push_back(material.mass_damping);
+    stiffness_damping.push_back(material.stiffness_damping);
+  }
+  const auto any = [](const std::vector<double>& values) {
+    return std::any_of(values.begin(), values.end(), [](double v) { return v > 0.0; });
+  };
+  if (any(mass_damping))
+    model.problem.damping = expand_to_components(build(assemble_scalar_mass(model.body, graph, mass_damping)), d);
+  if (any(stiffness_damping)) {
+    const SparseMatrix part = assemble_stiffness(model.body, graph, stiffness_damping);
+    model.problem.damping = model.problem.has_damping() ? SparseMatrix(model.problem.damping + part) : part;
+  }
+  finish_problem(model.problem, construction->removes_contact_inertia());
+}
+
+namespace {
+
+/// A force per area or volume whose components depend on time alone: one pattern per component, times its amplitude.
+void add_uniform(const std::vector<Expression>& value,
+                 const std::function<void(const ForceDensity&, Vector&)>& integrate, Loads& loads, Index dofs) {
+  for (std::size_t k = 0; k < value.size(); ++k) {
+    if (value[k].is_constant() && value[k](0.0, 0.0, 0.0, 0.0) == 0.0) continue;
+    Vector pattern = Vector::Zero(dofs);
+    integrate([k](const Vector&, Vector& force) { force = Vector::Unit(force.size(), static_cast<Index>(k)); },
+              pattern);
+    if (value[k].is_constant()) {
+      loads.add_constant(value[k](0.0, 0.0, 0.0, 0.0) * pattern);
+    } else {
+      loads.add_separable(std::move(pattern), value[k]);
+    }
+  }
+}
+
+void add_force(const std::vector<Expression>& value, const std::function<void(const ForceDensity&, Vector&)>& integrate,
+               Loads& loads, Index dofs) {
+  const auto any = [&](auto property) { return std::any_of(value.begin(), value.end(), property); };
+  const bool varies_in_time = any([](const Expression& e) { return e.depends_on_time(); });
+  if (!any([](const Expression& e) { return e.depends_on_position(); }))
+    return add_uniform(value, integrate, loads, dofs);
+  const auto add = [value, integrate](double time, Vector& load) {
+    integrate(
+        [&](const Vector& x, Vector& force) {
+          for (Index k = 0; k < force.size(); ++k)
+            force[k] = value[static_cast<std::size_t>(k)](x[0], x[1], x.size() == 3 ? x[2] : 0.0, time);
+        },
+        load);
+  };
+  if (varies_in_time) {
+    loads.add_general(add);
+    return;
+  }
+  Vector load = Vector::Zero(dofs);
+  add(0.0, load);
+  loads.add_constant(load);
+}
+
+}  // namespace
+
+void add_loads(const Case& input, Model& model) {
+  const int d = model.mesh.dimension;
+  const Index dofs = model.space.dof_count();
+  Loads& loads = model.problem.loads = Loads(dofs);
+  if (!input.load.gravity.empty()) {
+    // Gravity acts on the mass as it is distributed: M₀ times the uniform acceleration. So a body in free fall stays
+    // undeformed with every mass, and weight and its moments are those of the body.
+    Vector acceleration(dofs);
+    for (Index i = 0; i < dofs; ++i) acceleration[i] = input.load.gravity[static_cast<std::size_t>(i % d)];
+    loads.add_constant(model.problem.mass * acceleration);
+  }
+  const Body& body = model.body;
+  try {
+    if (!input.load.body_force.empty()) {
+      add_force(
+          input.load.body_force, [&body](const ForceDensity& f, Vector& load) { add_body_load(body, f, load); }, loads,
+          dofs);
+    }
+  } catch (const Error& problem) {
+    refuse(input, "load.body_force", problem.what());
+  }
+  for (std::size_t i = 0; i < input.tractions.size(); ++i) {
+    const std::vector<Index> facets =
+        boundary_at(input, fmt::format("traction.{}.group", i), model.mesh, input.tractions[i].group);
+    try {
+      add_force(
+          input.tractions[i].value,
+          [&body, facets](const ForceDensity& f, Vector& load) { add_facet_load(body, facets, f, load); }, loads, dofs);
+    } catch (const Error& problem) {
+      refuse(input, fmt::format("traction.{}.value", i), problem.what());
+    }
+  }
+}
+
+}  // namespace ricochet

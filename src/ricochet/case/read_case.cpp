@@ -1,0 +1,76 @@
+#include "ricochet/case/read_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/case/keys_check.hpp"
+#include "ricochet/case/keys_override.hpp"
+#include "ricochet/case/read_sections.hpp"
+
+namespace ricochet {
+
+namespace {
+
+std::string read_text(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot be read: it is a directory, not a case file", path));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::string text;
+  if (stream) text.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  if (!stream) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+  return text;
+}
+
+// Locations and texts of everything below a node. Vectors and lists of names are one value, lists of tables are not.
+void list_values(const TomlNode& node, const std::string& path, Case& result) {
+  if (!path.empty() && !node.is_default) result.locations[path] = node.location;
+  if (!node.is_table() && !node.is_list_of_tables()) {
+    result.values[path] = value_text(node);
+    return;
+  }
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const TomlNode& child = node.children[i];
+    const std::string name = node.is_table() ? child.key : std::to_string(i);
+    list_values(child, path.empty() ? name : path + "." + name, result);
+  }
+}
+
+// `when` compares with what is in effect, wherever it comes from.
+void list_effective_values(const Remarks& remarks, Case& result) {
+  for (const std::string& path : remarks.ignored) result.values.erase(path);
+  if (result.time.scheme != "newmark") return;
+  result.values["time.beta"] = fmt::format("{}", result.time.beta);
+  result.values["time.gamma"] = fmt::format("{}", result.time.gamma);
+  if (result.time.preset.empty()) result.values.erase("time.preset");
+}
+
+}  // namespace
+
+Case read_case(const std::string& path, const std::vector<std::string>& overrides) {
+  Case result;
+  result.path = path;
+  TomlNode root = parse_toml(read_text(path), path);
+  Problems problems;
+  Remarks remarks;
+  result.overridden = apply_overrides(root, overrides, problems);
+  check_tree(root, problems);
+  read_sections(root, result, problems, remarks);
+  problems.raise();
+  list_values(root, "", result);
+  list_effective_values(remarks, result);
+  for (const std::string& message : remarks.warnings) log::warning(message);
+  for (const std::string& message : remarks.infos) log::info(message);
+  return result;
+}
+
+}  // namespace ricochet

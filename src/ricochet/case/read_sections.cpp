@@ -1,0 +1,256 @@
+#include "ricochet/case/read_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/case/names.hpp"
+#include "ricochet/case/quantity.hpp"
+#include "ricochet/case/section_reader.hpp"
+
+namespace ricochet {
+
+namespace {
+
+// Readers of all entries of a list of sections; one reader for a plain section; none for what was refused.
+class Sections {
+ public:
+  Sections(const TomlNode& root, Problems& problems) : root_(root), problems_(problems) {}
+
+  [[nodiscard]] SectionReader one(const std::string& name) const {
+    static const TomlNode absent;
+    const TomlNode* node = root_.find(name);
+    return {find_section(name)->keys, node != nullptr && node->is_table() ? *node : absent, problems_};
+  }
+  [[nodiscard]] std::vector<SectionReader> all(const std::string& name) const {
+    std::vector<SectionReader> readers;
+    const TomlNode* node = root_.find(name);
+    if (node == nullptr || node->is_refused) return readers;
+    for (const TomlNode& entry : node->children) {
+      if (!entry.is_refused) readers.emplace_back(find_section(name)->keys, entry, problems_);
+    }
+    return readers;
+  }
+
+ private:
+  const TomlNode& root_;
+  Problems& problems_;
+};
+
+MeshSection read_mesh(const SectionReader& reader, const std::string& case_path) {
+  MeshSection mesh;
+  const std::filesystem::path file = reader.text("file");
+  mesh.file = (std::filesystem::path(case_path).parent_path() / file).lexically_normal().string();
+  mesh.size = reader.optional_number("size");
+  mesh.scale = reader.number("scale");
+  mesh.degree = static_cast<int>(reader.integer("degree"));
+  mesh.plane = reader.text("plane");
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (mesh.size && extension == ".msh") {
+    reader.add_problem(
+        "size",
+        fmt::format("\"size\" is for geometry that is still to be meshed; \"{}\" is a mesh already", file.string()));
+  }
+  return mesh;
+}
+
+// Lamé's parameters from whichever pair is given. The element code condenses them for plane stress.
+void read_elasticity(const SectionReader& reader, MaterialSection& material) {
+  material.lambda = reader.number("lambda");
+  material.mu = reader.number("mu");
+  if (reader.is_usable("lambda") && reader.is_usable("mu") && !(3.0 * material.lambda + 2.0 * material.mu > 0.0)) {
+    reader.add_problem("lambda",
+                       fmt::format("3 lambda + 2 mu must be positive (the bulk modulus is a third of it); it is {}",
+                                   3.0 * material.lambda + 2.0 * material.mu));
+  }
+  if (!reader.is_usable("young") || !reader.is_usable("poisson")) return;
+  const double young = reader.number("young"), poisson = reader.number("poisson");
+  material.lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+  material.mu = young / (2.0 * (1.0 + poisson));
+  if (!std::isfinite(material.lambda) || !std::isfinite(material.mu)) {
+    reader.add_problem("poisson",
+                       fmt::format("young = {} and poisson = {} give infinite lambda or mu", young, poisson));
+  }
+}
+
+MaterialSection read_material(const SectionReader& reader) {
+  MaterialSection material;
+  material.group = reader.text("group");
+  material.density = reader.number("density");
+  read_elasticity(reader, material);
+  const SectionReader damping = reader.table("damping");
+  material.damping.mass = damping.number("mass");
+  material.damping.stiffness = damping.number("stiffness");
+  return material;
+}
+
+ObstacleSection read_obstacle(const SectionReader& reader) {
+  ObstacleSection obstacle;
+  obstacle.name = reader.name();
+  obstacle.type = reader.text("type");
+  obstacle.point = reader.vector("point");
+  obstacle.normal = reader.vector("normal");
+  const bool is_zero = std::all_of(obstacle.normal.begin(), obstacle.normal.end(), [](double n) { return n == 0.0; });
+  if (reader.is_usable("normal") && is_zero) {
+    reader.add_problem("normal", "\"normal\" must not be zero: it points out of the obstacle");
+  }
+  return obstacle;
+}
+
+ContactSection read_contact(const SectionReader& reader) {
+  ContactSection contact;
+  contact.group = reader.text("group");
+  contact.obstacle = reader.text("obstacle");
+  contact.friction = reader.number("friction");
+  contact.multipliers = reader.text("multipliers");
+  if (contact.friction > 0.0) {
+    reader.add_problem("friction",
+                       fmt::format("\"friction\" is {}, but this version is frictionless (Coulomb friction is not "
+                                   "available yet): set it to 0",
+                                   contact.friction));
+  }
+  return contact;
+}
+
+void check_obstacle_name(const SectionReader& reader, const std::vector<std::string>& obstacles) {
+  const std::string name = reader.text("obstacle");
+  if (!reader.is_usable("obstacle") || std::find(obstacles.begin(), obstacles.end(), name) != obstacles.end()) return;
+  const std::string near = nearest_name(name, obstacles);
+  reader.add_problem("obstacle",
+                     fmt::format("there is no [obstacle.{}]; {}", name,
+                                 !near.empty()       ? fmt::format("did you mean \"{}\"?", near)
+                                 : obstacles.empty() ? "the case has no obstacles"
+                                                     : fmt::format("the obstacles are {}", join_names(obstacles))));
+}
+
+// The same text under the same key in two entries of a list.
+void check_distinct(const std::vector<SectionReader>& readers, const std::string& section, const std::string& name) {
+  for (std::size_t i = 0; i < readers.size(); ++i) {
+    if (!readers[i].is_usable(name)) continue;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!readers[j].is_usable(name) || readers[j].text(name) != readers[i].text(name)) continue;
+      readers[i].add_problem(name, fmt::format("the {} \"{}\" is in another [[{}]] already, at {}", name,
+                                               readers[i].text(name), section, readers[j].where(name).text()));
+      break;
+    }
+  }
+}
+
+SupportSection read_support(const SectionReader& reader) {
+  SupportSection support;
+  support.group = reader.text("group");
+  support.components = reader.choice_numbers("components");
+  support.value = reader.formula("value");
+  return support;
+}
+
+InitialSection read_initial(const SectionReader& reader) {
+  InitialSection initial;
+  initial.static_equilibrium = reader.text("displacement") == "static";
+  initial.displacement = reader.formulas("displacement");
+  initial.velocity = reader.formulas("velocity");
+  return initial;
+}
+
+ProbeSection read_probe(const SectionReader& reader) {
+  ProbeSection probe;
+  probe.name = reader.text("name");
+  probe.at = reader.vector("at");
+  const std::vector<std::string> columns = history_column_names();
+  if (reader.is_usable("name") && !is_plain_name(probe.name)) {
+    reader.add_problem("name", fmt::format("the name \"{}\" can only have letters, digits, _ and -", probe.name));
+  } else if (std::find(columns.begin(), columns.end(), probe.name) != columns.end()) {
+    reader.add_problem("name", fmt::format("the name \"{}\" is that of a standard column of history.csv", probe.name));
+  }
+  return probe;
+}
+
+void check_expectation(const SectionReader& reader) {
+  const bool has_value = reader.is_given("value");
+  const bool has_tolerance = reader.is_given("relative") || reader.is_given("absolute");
+  const bool has_bounds = reader.is_given("minimum") || reader.is_given("maximum");
+  if (has_value && has_bounds) {
+    reader.add_problem("value", "[[expect]] has either \"value\" or bounds (\"minimum\", \"maximum\"), not both");
+  } else if (has_value && !has_tolerance) {
+    reader.add_problem("value", "\"value\" needs a tolerance: \"relative\", \"absolute\" or both");
+  } else if (!has_value && has_tolerance) {
+    const std::string name = reader.is_given("relative") ? "relative" : "absolute";
+    reader.add_problem(name, fmt::format("\"{}\" is a tolerance of \"value\", which is missing", name));
+  } else if (!has_value && !has_bounds) {
+    reader.add_problem("",
+                       "[[expect]] expects nothing: give \"value\" with \"relative\" or \"absolute\", or bounds "
+                       "(\"minimum\", \"maximum\")");
+  }
+  if (reader.is_usable("minimum") && reader.is_usable("maximum") &&
+      reader.number("minimum") > reader.number("maximum")) {
+    reader.add_problem("minimum", fmt::format("\"minimum\" is {}, above \"maximum\", which is {}",
+                                              reader.number("minimum"), reader.number("maximum")));
+  }
+  if (!reader.is_usable("quantity")) return;
+  try {
+    static_cast<void>(parse_quantity(reader.text("quantity")));
+  } catch (const Error& problem) {
+    reader.add_problem("quantity", problem.what());
+  }
+}
+
+ExpectSection read_expectation(const SectionReader& reader) {
+  ExpectSection expectation;
+  expectation.quantity = reader.text("quantity");
+  expectation.value = reader.number("value");
+  expectation.relative = reader.optional_number("relative");
+  expectation.absolute = reader.optional_number("absolute");
+  expectation.minimum = reader.optional_number("minimum");
+  expectation.maximum = reader.optional_number("maximum");
+  expectation.when = reader.conditions("when");
+  check_expectation(reader);
+  return expectation;
+}
+
+void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections, Case& result) {
+  const TomlNode* obstacles = root.find("obstacle");
+  std::vector<std::string> names;  // refused ones too: a contact that names one is no second problem
+  if (obstacles != nullptr) {
+    for (const TomlNode& obstacle : obstacles->children) names.push_back(obstacle.key);
+  }
+  for (const SectionReader& reader : sections.all("obstacle")) result.obstacles.push_back(read_obstacle(reader));
+  const std::vector<SectionReader> contacts = sections.all("contact");
+  for (const SectionReader& reader : contacts) {
+    result.contacts.push_back(read_contact(reader));
+    if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, names);
+  }
+  check_distinct(contacts, "contact", "group");
+}
+
+}  // namespace
+
+void read_sections(const TomlNode& root, Case& result, Problems& problems, Remarks& remarks) {
+  const Sections sections(root, problems);
+  result.title = SectionReader(case_sections().front().keys, root, problems).text("title");
+  result.mesh = read_mesh(sections.one("mesh"), result.path);
+  for (const SectionReader& reader : sections.all("material")) result.materials.push_back(read_material(reader));
+  check_distinct(sections.all("material"), "material", "group");
+  read_obstacles_and_contacts(root, sections, result);
+  for (const SectionReader& reader : sections.all("support")) result.supports.push_back(read_support(reader));
+  for (const SectionReader& reader : sections.all("traction")) {
+    result.tractions.push_back({reader.text("group"), reader.formulas("value")});
+  }
+  const SectionReader load = sections.one("load");
+  result.load = {load.vector("gravity"), load.formulas("body_force")};
+  result.initial = read_initial(sections.one("initial"));
+  result.mass.type = sections.one("mass").text("type");
+  result.time = read_time(sections.one("time"), remarks);
+  for (const SectionReader& reader : sections.all("probe")) result.probes.push_back(read_probe(reader));
+  check_distinct(sections.all("probe"), "probe", "name");
+  const SectionReader output = sections.one("output");
+  result.output = {output.optional_integer("fields_every"), output.integer("history_every")};
+  for (const SectionReader& reader : sections.all("expect")) result.expectations.push_back(read_expectation(reader));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,180 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/case/keys.hpp"
+#include "ricochet/case/read_case.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr const char* introduction = R"page(# The case file
+
+<!-- Generated from the table of keys in src/ricochet/case/keys_table.cpp. Change it there; a test compares. -->
+
+A case file is a [TOML](https://toml.io) document that says everything about a run. `ricochet validate CASE.toml` checks it,
+`ricochet schema` prints its JSON Schema, for editors that complete and check while one types.
+
+```toml
+title = "Elastic disc on a rigid foundation"
+
+[mesh]
+file = "disc.msh"
+
+[[material]]
+group = "body"
+density = 6000.0
+lambda = 1.0e4
+mu = 5.0e3
+damping = { mass = 0.0, stiffness = 0.0 }
+
+[obstacle.floor]
+type = "plane"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+
+[[contact]]
+group = "lower"
+obstacle = "floor"
+
+[[support]]
+group = "left"
+components = ["x"]
+value = "1e-3*sin(2*pi*t)"
+
+[[traction]]
+group = "top"
+value = ["0", "-p*min(t/0.1, 1)"]
+parameters = { p = 100.0 }
+
+[load]
+gravity = [0.0, -9.81]
+
+[initial]
+displacement = "static"
+velocity = [0.0, -0.1]
+
+[time]
+scheme = "newmark"
+beta = 0.5
+gamma = 0.5
+step = 1.0e-4
+end = 0.15
+
+[[probe]]
+name = "lowest"
+at = [0.0, 0.001]
+
+[[expect]]
+quantity = "history.total_energy[-1]"
+value = 0.0376
+relative = 1.0e-2
+when = { "time.scheme" = "newmark" }
+```
+
+## Rules
+
+- **Units** are your own and must be consistent: m, kg, s or mm, t, s or anything else. The column *unit* below says what
+  kind of quantity a number is; 1 is a pure number.
+- **Vectors** have 2 or 3 entries, all of them in a file the same number: that of the mesh's dimensions.
+- **Numbers** are finite; integers will do where numbers are wanted, but not the other way round.
+- **Expressions** are texts in [muParser's syntax](https://beltoforion.de/en/muparser/features.php): `+ - * / ^`,
+  comparisons, `a ? b : c`, `sin`, `cos`, `exp`, `sqrt`, `min`, `max` and so on, the constant `pi`, the names in the table
+  `parameters` of the same section, and those of x, y, z and t that the key allows. x, y, z are reference coordinates,
+  after `mesh.scale`.
+- **All problems** are reported together, with file, line and column; an unknown key is one of them. The exit status is
+  then 2, or 4 if the file cannot be read.
+- **On the command line**, `--set key.path=value` replaces or adds a value before anything is checked:
+  `--set time.step=1e-4`, `--set contact.0.friction=0` (entries of `[[…]]` are counted from 0),
+  `--set obstacle.floor.normal=[0,1]`, `--set material.0.damping.mass=0.1`, `--set traction.0.parameters.p=50`. The value
+  is TOML, or else a text that needs no quotes: `--set time.scheme=midpoint`. The keys beta, gamma and preset of a file
+  are ignored when `--set` replaces the scheme by one that has none; and of preset and beta or gamma, what `--set` gives
+  counts.
+
+)page";
+
+constexpr const char* quantities = R"page(## Quantities
+
+What `quantity` of `[[expect]]` can be:
+
+| form | meaning |
+|---|---|
+| `history.COLUMN[i]` | the value in row i of history.csv, the initial state being row 0; −1 is the last row, −2 the one before |
+| `max(history.COLUMN)`, `min(history.COLUMN)` | the largest, the smallest value of all rows |
+| `max_abs(history.COLUMN)` | the largest absolute value of all rows |
+| `total_variation(history.COLUMN)` | the sum of the absolute differences of consecutive rows |
+| `summary.PATH` | a number of summary.json by its dotted path |
+
+`COLUMN` is a column of history.csv, such as `total_energy` or `lowest.displacement_y` for a probe named lowest.
+
+`when` restricts an expectation to the runs for which it was made: `when = { "time.scheme" = "midpoint", "mass.type" =
+"lumped" }` holds when every key path has that value, given in the file, by `--set` or by default. A key that has
+neither a value nor a default never holds. A run changed by `--set` is only checked against expectations whose `when`
+names every changed key, but for `output.fields_every`. An expectation that does not hold ends the run with exit
+status 5, after all results are written.
+)page";
+
+std::string cell(std::string text) {
+  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2))
+    text.replace(at, 1, "\\|");
+  return text;
+}
+
+std::string default_text(const Key& key) {
+  if (key.required) return "**required**";
+  if (!key.standard) return "";
+  const bool is_text = key.type == KeyType::text || key.type == KeyType::choice;
+  return is_text ? fmt::format("`\"{}\"`", *key.standard) : fmt::format("`{}`", *key.standard);
+}
+
+std::string rows(const std::vector<Key>& keys, const std::string& prefix) {
+  std::string text;
+  for (const Key& key : keys) {
+    text += fmt::format("| `{}{}` | {} | {} | {} | {} |\n", prefix, key.name, cell(wanted(key)), cell(key.unit),
+                        default_text(key), cell(key.doc));
+    if (key.type == KeyType::table) text += rows(key.keys, prefix + key.name + ".");
+  }
+  return text;
+}
+
+std::string occurrence(const Section& section) {
+  switch (section.kind) {
+    case SectionKind::top:
+      return "";
+    case SectionKind::table:
+      return section.required ? " Required." : " Optional.";
+    case SectionKind::list:
+      return section.required ? " One or more of them." : " Any number of them.";
+    case SectionKind::named:
+      return " Any number of them, with names of letters, digits, _ and -.";
+  }
+  return "";
+}
+
+std::string alternatives_text(const Section& section) {
+  if (section.alternatives.empty()) return "";
+  std::string text;
+  for (const auto& names : section.alternatives) {
+    std::string set;
+    for (const std::string& name : names) set += (set.empty() ? "" : " and ") + fmt::format("`{}`", name);
+    text += (text.empty() ? "" : ", or ") + set;
+  }
+  return fmt::format("\n\nGive {}.", text);
+}
+
+}  // namespace
+
+std::string case_reference() {
+  std::string page = introduction;
+  for (const Section& section : case_sections()) {
+    const bool is_top = section.kind == SectionKind::top;
+    page +=
+        fmt::format("## {}\n\n{}{}{}\n\n", is_top ? "The top of the file" : fmt::format("`{}`", section_title(section)),
+                    section.doc, occurrence(section), alternatives_text(section));
+    page += "| key | value | unit | default | meaning |\n|---|---|---|---|---|\n" + rows(section.keys, "") + "\n";
+  }
+  return page + quantities;
+}
+
+}  // namespace ricochet

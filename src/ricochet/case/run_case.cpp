@@ -1,0 +1,203 @@
+#include "ricochet/case/run_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/timer.hpp"
+#include "ricochet/case/model.hpp"
+#include "ricochet/io/history_file.hpp"
+#include "ricochet/io/progress.hpp"
+#include "ricochet/io/results_file.hpp"
+#include "ricochet/simulation/simulation.hpp"
+#include "ricochet/version.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Above this rotation, in rad, small strain no longer holds.
+constexpr double rotation_limit = 0.1;
+
+void prepare_directory(const RunOptions& options) {
+  namespace fs = std::filesystem;
+  std::error_code problem;
+  fs::create_directories(options.output_directory, problem);
+  if (problem || !fs::is_directory(options.output_directory)) {
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", options.output_directory,
+                                                    problem ? problem.message() : "a file of that name is there"));
+  }
+  for (const char* name : {"history.csv", "summary.json", "results.h5"}) {
+    if (!options.force && fs::exists(fs::path(options.output_directory) / name)) {
+      throw Error(ErrorKind::file_access,
+                  fmt::format("{}: holds a run already ({}); choose another directory with -o, or "
+                              "overwrite it with --force",
+                              options.output_directory, name));
+    }
+  }
+  fs::remove(fs::path(options.output_directory) / "summary.json", problem);
+}
+
+RunSummary describe(const Case& input, const Model& model, const Scheme& scheme, const Simulation& simulation) {
+  RunSummary summary;
+  summary.case_file = input.path;
+  summary.title = input.title;
+  summary.version = version;
+  summary.scheme = input.time.scheme;
+  summary.mass = input.mass.type;
+  summary.overrides = input.overridden;
+  summary.dimension = model.mesh.dimension;
+  summary.degree = model.space.degree;
+  summary.nodes = model.space.node_count();
+  summary.cells = model.mesh.cell_count();
+  summary.dofs = model.space.dof_count();
+  summary.contact_points = model.problem.contact.size();
+  summary.supported_dofs = model.problem.supports.size();
+  summary.factor_entries = simulation.factor_entries();
+  summary.step = scheme.step();
+  summary.end_time = input.time.end;
+  summary.energy_instant = scheme.energy_instant();
+  summary.force_instant = scheme.force_instant();
+  summary.probes = model.probes;
+  for (const Probe& probe : model.probes) {
+    const Vector at = model.space.nodes.col(probe.node);
+    summary.probe_positions.emplace_back(at.data(), at.data() + at.size());
+  }
+  return summary;
+}
+
+/// Everything that is written while a run goes on.
+class Recording {
+ public:
+  Recording(const Case& input, const Model& model, const std::string& directory, long steps)
+      : recorder_(model.problem, *model.rotation, model.probes),
+        history_(directory + "/history.csv", recorder_.columns()),
+        history_every_(input.output.history_every),
+        fields_every_(input.output.fields_every.value_or(std::max(1L, (steps + 99) / 100))),
+        steps_(steps) {
+    if (fields_every_ > 0) results_.emplace(directory, model.space, model.problem);
+  }
+
+  void record(const State& state, EnergyAccount& account) {
+    Timer timer;
+    if (state.step % history_every_ == 0 || state.step == steps_) {
+      const std::vector<double>& row = recorder_.row(state, account);
+      history_.write(row);
+      digest_.add(row);
+      watch_rotation(row);
+    }
+    if (results_ && (state.step % fields_every_ == 0 || state.step == steps_)) results_->write(state);
+    if (since_flush_.seconds() > 1.0) {
+      history_.flush();
+      since_flush_.restart();
+    }
+    seconds_ += timer.seconds();
+  }
+
+  /// Completes the files and the summary.
+  void close(RunSummary& summary) {
+    history_.flush();
+    if (results_) {
+      results_->close();
+      summary.frames = results_->frames();
+    }
+    summary.columns = recorder_.columns();
+    summary.digests = digest_.columns();
+  }
+
+  [[nodiscard]] double seconds() const { return seconds_; }
+
+ private:
+  void watch_rotation(const std::vector<double>& row) {
+    if (rotation_warned_) return;
+    const auto column =
+        static_cast<std::size_t>(std::find(recorder_.columns().begin(), recorder_.columns().end(), "max_rotation") -
+                                 recorder_.columns().begin());
+    if (!(row[column] > rotation_limit)) return;
+    rotation_warned_ = true;
+    log::warning(
+        fmt::format("at t = {:.6g} a cell has rotated by {:.3g} rad: above {} rad small strain no longer holds "
+                    "(a turning body inflates); read what follows with care",
+                    row[1], row[column], rotation_limit));
+  }
+
+  HistoryRecorder recorder_;
+  HistoryWriter history_;
+  std::optional<ResultsWriter> results_;
+  HistoryDigest digest_;
+  long history_every_;
+  long fields_every_;
+  long steps_;
+  bool rotation_warned_ = false;
+  Timer since_flush_;
+  double seconds_ = 0.0;
+};
+
+}  // namespace
+
+long step_count(const TimeSection& time) {
+  // An end that is a whole number of steps to rounding is that number of steps.
+  return std::max(1L, static_cast<long>(std::ceil(time.end / time.step * (1.0 - 1e-12))));
+}
+
+RunSummary run_case(const Case& input, const RunOptions& options) {
+  log::clear_warnings();
+  Timer total, timer;
+  prepare_directory(options);
+  BuildTimes build;
+  const std::unique_ptr<Model> model = build_model(input, &build);
+  timer.restart();
+  const std::unique_ptr<Scheme> scheme =
+      make_scheme({input.time.scheme, input.time.step, input.time.beta, input.time.gamma});
+  Simulation simulation(model->problem, *scheme, model->initial);
+  const double start_seconds = timer.restart();
+  const long steps = step_count(input.time);
+  if (std::abs(static_cast<double>(steps) * input.time.step - input.time.end) > 1e-9 * input.time.end) {
+    log::info(fmt::format("time.end is not a whole number of steps: the run ends at t = {:.9g}",
+                          static_cast<double>(steps) * input.time.step));
+  }
+
+  RunSummary summary = describe(input, *model, *scheme, simulation);
+  Recording recording(input, *model, options.output_directory, steps);
+  recording.record(simulation.state(), simulation.account());
+  std::optional<Error> failure;
+  double step_seconds = 0.0;
+  {
+    Progress progress(steps, options.quiet);
+    const double recorded_before = recording.seconds();
+    timer.restart();
+    try {
+      while (simulation.state().step < steps) {
+        simulation.advance();
+        recording.record(simulation.state(), simulation.account());
+        progress.update(simulation.state().step, simulation.state().time);
+      }
+    } catch (const Error& problem) {
+      failure = problem;
+    }
+    step_seconds = timer.seconds() - (recording.seconds() - recorded_before);
+  }
+  recording.close(summary);
+  summary.steps = simulation.state().step;
+  summary.time_per_step = summary.steps > 0 ? step_seconds / static_cast<double>(summary.steps) : 0.0;
+  summary.timings = {
+      {"read_mesh", build.read_mesh}, {"assembly", build.assembly},    {"start_and_factorization", start_seconds},
+      {"steps", step_seconds},        {"output", recording.seconds()}, {"total", total.seconds()}};
+  summary.warnings = log::warnings();
+  if (failure) {
+    summary.status = "failed";
+    summary.message = failure->what();
+  } else {
+    summary.expectations = check_expectations(input, options.output_directory, to_json(summary));
+  }
+  write_summary(options.output_directory + "/summary.json", summary);
+  if (failure) throw Error(*failure);
+  return summary;
+}
+
+}  // namespace ricochet

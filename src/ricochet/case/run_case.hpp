@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "ricochet/case/case.hpp"
+#include "ricochet/io/summary.hpp"
+
+/// @file Running a case: everything between a case file and an output directory.
+namespace ricochet {
+
+struct RunOptions {
+  std::string output_directory;
+  bool force = false;  ///< overwrite a run that is there
+  bool quiet = false;  ///< no progress
+};
+
+/// Runs a case and writes history.csv, results.h5, results.xdmf and summary.json. Throws Error; when a step fails, what
+/// came before it is in the files and summary.json says what happened.
+RunSummary run_case(const Case& input, const RunOptions& options);
+
+/// Number of steps to the end time; the last step ends at or after it.
+[[nodiscard]] long step_count(const TimeSection& time);
+
+/// Evaluates the [[expect]] entries of a case on a finished run.
+[[nodiscard]] std::vector<ExpectationResult> check_expectations(const Case& input, const std::string& output_directory,
+                                                                const std::string& summary_json);
+
+}  // namespace ricochet

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "ricochet/case/keys.hpp"
+#include "ricochet/case/read_case.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Json = nlohmann::ordered_json;  // keys stay in the order of the table
+
+Json number_schema(const char* type, const Range& range) {
+  Json schema{{"type", type}};
+  // Bounds are written as integers where they are, as a reader expects of "minimum": 1.
+  const auto bound = [](double value) { return Json::parse(fmt::format("{}", value)); };
+  if (range.above) schema["exclusiveMinimum"] = bound(*range.above);
+  if (range.at_least) schema["minimum"] = bound(*range.at_least);
+  if (range.below) schema["exclusiveMaximum"] = bound(*range.below);
+  if (range.at_most) schema["maximum"] = bound(*range.at_most);
+  return schema;
+}
+
+Json vector_schema(const Json& items) {
+  return {{"type", "array"}, {"items", items}, {"minItems", 2}, {"maxItems", 3}};
+}
+
+Json integer_schema(const Key& key) {
+  if (key.choices.empty()) return number_schema("integer", key.range);
+  Json values = Json::array();
+  for (const std::string& choice : key.choices) values.push_back(Json::parse(choice));
+  return {{"type", "integer"}, {"enum", values}};
+}
+
+Json formulas_schema(const Key& key) {
+  const Json schema = vector_schema({{"type", {"number", "string"}}});
+  if (key.choices.empty()) return schema;
+  return {{"anyOf", Json::array({schema, Json{{"enum", key.choices}}})}};
+}
+
+Json keys_schema(const std::vector<Key>& keys);
+
+Json text_schema(const Key& key) {
+  Json schema{{"type", "string"}};
+  if (key.required) schema["minLength"] = 1;
+  return schema;
+}
+
+Json type_schema(const Key& key) {
+  switch (key.type) {
+    case KeyType::text:
+      return text_schema(key);
+    case KeyType::choice:
+      return {{"type", "string"}, {"enum", key.choices}};
+    case KeyType::number:
+      return number_schema("number", key.range);
+    case KeyType::integer:
+      return integer_schema(key);
+    case KeyType::vector:
+      return vector_schema({{"type", "number"}});
+    case KeyType::formula:
+      return {{"type", {"number", "string"}}};
+    case KeyType::formulas:
+      return formulas_schema(key);
+    case KeyType::components:
+      return {{"type", "array"}, {"items", {{"enum", key.choices}}}, {"minItems", 1}, {"uniqueItems", true}};
+    case KeyType::parameters:
+      return {
+          {"type", "object"},
+          {"propertyNames", {{"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}, {"not", {{"enum", {"x", "y", "z", "t", "pi"}}}}}},
+          {"additionalProperties", {{"type", "number"}}}};
+    case KeyType::conditions:
+      return {{"type", "object"}};
+    case KeyType::table:
+      return keys_schema(key.keys);
+  }
+  return {};
+}
+
+Json default_value(const Key& key) {
+  const bool is_number = key.type == KeyType::number || key.type == KeyType::integer || key.type == KeyType::formula;
+  return is_number ? Json::parse(*key.standard) : Json(*key.standard);
+}
+
+Json key_schema(const Key& key) {
+  Json schema = type_schema(key);
+  std::string description = key.doc;
+  if (!key.variables.empty()) description += fmt::format(" Expressions in {}.", key.variables);
+  if (!key.unit.empty()) description += fmt::format(" Unit: {}.", key.unit);
+  schema["description"] = description;
+  if (key.standard) schema["default"] = default_value(key);
+  return schema;
+}
+
+Json keys_schema(const std::vector<Key>& keys) {
+  Json schema{{"type", "object"}, {"properties", Json::object()}};
+  Json required = Json::array();
+  for (const Key& key : keys) {
+    schema["properties"][key.name] = key_schema(key);
+    if (key.required) required.push_back(key.name);
+  }
+  if (!required.empty()) schema["required"] = required;
+  schema["additionalProperties"] = false;
+  return schema;
+}
+
+// Exactly one set of keys, whole: each set comes with the refusal of every key of the others.
+void add_alternatives(const Section& section, Json& schema) {
+  if (section.alternatives.empty()) return;
+  Json options = Json::array();
+  for (const auto& chosen : section.alternatives) {
+    Json refused = Json::array();
+    for (const auto& other : section.alternatives) {
+      if (&other == &chosen) continue;
+      for (const std::string& name : other) refused.push_back({{"required", Json::array({name})}});
+    }
+    options.push_back({{"required", chosen}, {"not", {{"anyOf", refused}}}});
+  }
+  schema["oneOf"] = options;
+}
+
+Json section_schema(const Section& section) {
+  Json entry = keys_schema(section.keys);
+  add_alternatives(section, entry);
+  Json schema = entry;
+  if (section.kind == SectionKind::list) schema = {{"type", "array"}, {"items", entry}};
+  if (section.kind == SectionKind::list && section.required) schema["minItems"] = 1;
+  if (section.kind == SectionKind::named) {
+    schema = {
+        {"type", "object"}, {"propertyNames", {{"pattern", "^[A-Za-z0-9_-]+$"}}}, {"additionalProperties", entry}};
+  }
+  schema["description"] = section.doc;
+  return schema;
+}
+
+}  // namespace
+
+std::string case_schema() {
+  const std::vector<Section>& sections = case_sections();
+  Json root = keys_schema(sections.front().keys);
+  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"title", "Ricochet case file"},
+              {"description", "All units are the user's own and must be consistent."}};
+  for (const auto& [name, value] : root.items()) schema[name] = value;
+  Json required = Json::array();
+  for (const Section& section : sections) {
+    if (section.kind == SectionKind::top) continue;
+    schema["properties"][section.name] = section_schema(section);
+    if (section.required) required.push_back(section.name);
+  }
+  schema["required"] = required;
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace ricochet

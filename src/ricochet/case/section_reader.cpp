@@ -1,0 +1,135 @@
+#include "ricochet/case/section_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+bool SectionReader::is_given(const std::string& name) const {
+  const TomlNode* node = table_.find(name);
+  return node != nullptr && !node->is_default;
+}
+
+bool SectionReader::is_override(const std::string& name) const {
+  const TomlNode* node = table_.find(name);
+  return node != nullptr && node->is_override();
+}
+
+bool SectionReader::is_usable(const std::string& name) const {
+  return usable(name) != nullptr;
+}
+
+const TomlNode* SectionReader::usable(const std::string& name) const {
+  const TomlNode* node = table_.find(name);
+  return node != nullptr && !node->is_refused ? node : nullptr;
+}
+
+std::string SectionReader::text(const std::string& name) const {
+  const TomlNode* node = usable(name);
+  return node != nullptr ? node->text : "";
+}
+
+double SectionReader::number(const std::string& name) const {
+  return optional_number(name).value_or(0.0);
+}
+
+std::optional<double> SectionReader::optional_number(const std::string& name) const {
+  const TomlNode* node = usable(name);
+  return node != nullptr ? std::optional<double>(node->real) : std::nullopt;
+}
+
+long SectionReader::integer(const std::string& name) const {
+  return optional_integer(name).value_or(0);
+}
+
+std::optional<long> SectionReader::optional_integer(const std::string& name) const {
+  const TomlNode* node = usable(name);
+  return node != nullptr ? std::optional<long>(node->integer) : std::nullopt;
+}
+
+std::vector<double> SectionReader::vector(const std::string& name) const {
+  std::vector<double> values;
+  if (const TomlNode* node = usable(name)) {
+    for (const TomlNode& component : node->children) values.push_back(component.real);
+  }
+  return values;
+}
+
+std::vector<int> SectionReader::choice_numbers(const std::string& name) const {
+  const std::vector<std::string>& choices = find_key(keys_, name)->choices;
+  std::vector<int> numbers;
+  if (const TomlNode* node = usable(name)) {
+    for (const TomlNode& entry : node->children) {
+      numbers.push_back(static_cast<int>(std::find(choices.begin(), choices.end(), entry.text) - choices.begin()));
+    }
+  }
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+Expression SectionReader::expression(const Key& key, const TomlNode& node) const {
+  if (node.is_number()) return Expression(node.real);
+  const TomlNode* parameters = table_.find("parameters");
+  // Parameters that were refused make every expression with them fail: one message is enough.
+  if (parameters != nullptr && parameters->is_refused) return {};
+  std::map<std::string, double> values;
+  if (parameters != nullptr) {
+    for (const TomlNode& parameter : parameters->children) values[parameter.key] = parameter.real;
+  }
+  try {
+    Expression result(node.text, values);
+    const bool allows_time = key.variables.ends_with('t'), allows_position = key.variables.starts_with('x');
+    if ((result.depends_on_time() && !allows_time) || (result.depends_on_position() && !allows_position)) {
+      problems_.add(
+          node.location,
+          fmt::format("\"{}\": the expression \"{}\" depends on {}; only {} can be used here", key.name, node.text,
+                      result.depends_on_time() && !allows_time ? "the time t" : "the position", key.variables));
+      return {};
+    }
+    return result;
+  } catch (const Error& problem) {
+    problems_.add(node.location, fmt::format("\"{}\": {}", key.name, problem.what()));
+    return {};
+  }
+}
+
+Expression SectionReader::formula(const std::string& name) const {
+  const TomlNode* node = usable(name);
+  return node != nullptr ? expression(*find_key(keys_, name), *node) : Expression();
+}
+
+std::vector<Expression> SectionReader::formulas(const std::string& name) const {
+  std::vector<Expression> values;
+  if (const TomlNode* node = usable(name)) {
+    for (const TomlNode& component : node->children) values.push_back(expression(*find_key(keys_, name), component));
+  }
+  return values;
+}
+
+std::map<std::string, std::string> SectionReader::conditions(const std::string& name) const {
+  std::map<std::string, std::string> values;
+  if (const TomlNode* node = usable(name)) {
+    for (const TomlNode& condition : node->children) values[condition.key] = value_text(condition);
+  }
+  return values;
+}
+
+SectionReader SectionReader::table(const std::string& name) const {
+  static const TomlNode absent;
+  const TomlNode* node = usable(name);
+  return {find_key(keys_, name)->keys, node != nullptr ? *node : absent, problems_};
+}
+
+SourceLocation SectionReader::where(const std::string& name) const {
+  const TomlNode* node = table_.find(name);
+  return node != nullptr ? node->location : table_.location;
+}
+
+void SectionReader::add_problem(const std::string& name, const std::string& message) const {
+  problems_.add(where(name), message);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/expression.hpp"
+#include "ricochet/case/keys.hpp"
+#include "ricochet/case/problems.hpp"
+#include "ricochet/case/toml_tree.hpp"
+
+/// @file Values of one section, after check_tree. A value that is absent or was refused reads as zero, empty or
+/// nothing, so that reading goes on and finds the remaining problems.
+namespace ricochet {
+
+class SectionReader {
+ public:
+  /// `keys` and `table` must outlive the reader.
+  SectionReader(const std::vector<Key>& keys, const TomlNode& table, Problems& problems)
+      : keys_(keys), table_(table), problems_(problems) {}
+
+  /// Of a named section.
+  [[nodiscard]] const std::string& name() const { return table_.key; }
+
+  /// Written by the user, in the file or by --set; perhaps refused.
+  [[nodiscard]] bool is_given(const std::string& name) const;
+  [[nodiscard]] bool is_override(const std::string& name) const;
+  /// There is a value, default or not, and nothing is wrong with it.
+  [[nodiscard]] bool is_usable(const std::string& name) const;
+
+  [[nodiscard]] std::string text(const std::string& name) const;
+  [[nodiscard]] double number(const std::string& name) const;
+  [[nodiscard]] std::optional<double> optional_number(const std::string& name) const;
+  [[nodiscard]] long integer(const std::string& name) const;
+  [[nodiscard]] std::optional<long> optional_integer(const std::string& name) const;
+  [[nodiscard]] std::vector<double> vector(const std::string& name) const;
+  /// The entries' places among the key's choices: 0, 1, 2 for "x", "y", "z".
+  [[nodiscard]] std::vector<int> choice_numbers(const std::string& name) const;
+  /// Compile the expressions with the section's parameters; their errors are problems at the place of the expression.
+  [[nodiscard]] Expression formula(const std::string& name) const;
+  [[nodiscard]] std::vector<Expression> formulas(const std::string& name) const;
+  [[nodiscard]] std::map<std::string, std::string> conditions(const std::string& name) const;
+  [[nodiscard]] SectionReader table(const std::string& name) const;
+
+  /// Of the value, or of the section when the key is absent.
+  [[nodiscard]] SourceLocation where(const std::string& name) const;
+  void add_problem(const std::string& name, const std::string& message) const;
+
+ private:
+  [[nodiscard]] const TomlNode* usable(const std::string& name) const;
+  [[nodiscard]] Expression expression(const Key& key, const TomlNode& node) const;
+
+  const std::vector<Key>& keys_;
+  const TomlNode& table_;
+  Problems& problems_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,171 @@
+#include "ricochet/case/toml_tree.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+SourceLocation location_of(const toml::source_region& region, const std::string& file) {
+  return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+}
+
+bool stands_before(const TomlNode& a, const TomlNode& b) {
+  return std::tie(a.key_location.line, a.key_location.column) < std::tie(b.key_location.line, b.key_location.column);
+}
+
+TomlNode convert(const toml::node& source, const std::string& file);
+
+void convert_table(const toml::table& table, const std::string& file, TomlNode& node) {
+  node.kind = TomlNode::Kind::table;
+  for (const auto& [key, member] : table) {
+    TomlNode& child = node.children.emplace_back(convert(member, file));
+    child.key = std::string(key.str());
+    child.key_location = location_of(key.source(), file);
+  }
+  // toml++ sorts the members by name; the order of the file is what a reader of messages and results expects.
+  std::stable_sort(node.children.begin(), node.children.end(), stands_before);
+}
+
+void convert_list(const toml::array& list, const std::string& file, TomlNode& node) {
+  node.kind = TomlNode::Kind::list;
+  for (const toml::node& entry : list) {
+    TomlNode& child = node.children.emplace_back(convert(entry, file));
+    child.key_location = child.location;
+  }
+}
+
+TomlNode convert(const toml::node& source, const std::string& file) {
+  TomlNode node;
+  node.location = location_of(source.source(), file);
+  if (const auto* table = source.as_table()) {
+    convert_table(*table, file, node);
+  } else if (const auto* list = source.as_array()) {
+    convert_list(*list, file, node);
+  } else if (const auto* text = source.as_string()) {
+    node.kind = TomlNode::Kind::text;
+    node.text = text->get();
+  } else if (const auto* integer = source.as_integer()) {
+    node.kind = TomlNode::Kind::integer;
+    node.integer = integer->get();
+  } else if (const auto* real = source.as_floating_point()) {
+    node.kind = TomlNode::Kind::real;
+    node.real = real->get();
+  } else if (const auto* boolean = source.as_boolean()) {
+    node.kind = TomlNode::Kind::boolean;
+    node.boolean = boolean->get();
+  } else {
+    node.kind = TomlNode::Kind::date;
+  }
+  return node;
+}
+
+void set_location(TomlNode& node, const SourceLocation& location) {
+  node.location = location;
+  node.key_location = location;
+  for (TomlNode& child : node.children) set_location(child, location);
+}
+
+// With a point, so that 1.0 is not taken for the integer 1.
+std::string real_text(double value) {
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
+}
+
+std::string children_text(const TomlNode& node) {
+  std::string text;
+  for (const TomlNode& child : node.children) {
+    if (!text.empty()) text += ", ";
+    text += node.is_table() ? fmt::format("\"{}\" = {}", child.key, value_text(child)) : value_text(child);
+  }
+  return text;
+}
+
+}  // namespace
+
+bool TomlNode::is_list_of_tables() const {
+  return kind == Kind::list && !children.empty() &&
+         std::all_of(children.begin(), children.end(), [](const TomlNode& child) { return child.is_table(); });
+}
+
+const TomlNode* TomlNode::find(std::string_view name) const {
+  const auto named = [name](const TomlNode& child) { return child.key == name; };
+  const auto found = std::find_if(children.begin(), children.end(), named);
+  return kind == Kind::table && found != children.end() ? &*found : nullptr;
+}
+
+TomlNode* TomlNode::find(std::string_view name) {
+  return const_cast<TomlNode*>(static_cast<const TomlNode*>(this)->find(name));
+}
+
+TomlNode parse_toml(const std::string& document, const std::string& file) {
+  try {
+    return convert(toml::parse(document), file);
+  } catch (const toml::parse_error& problem) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: not TOML: {}", location_of(problem.source(), file).text(), problem.description()));
+  }
+}
+
+std::optional<TomlNode> parse_toml_value(const std::string& text, const SourceLocation& location) {
+  try {
+    TomlNode document = convert(toml::parse("value = " + text), location.file);
+    // A line break in the text could bring in more keys than the one that was meant.
+    if (document.children.size() != 1) return std::nullopt;
+    TomlNode value = document.children.front();
+    set_location(value, location);
+    return value;
+  } catch (const toml::parse_error&) {
+    return std::nullopt;
+  }
+}
+
+std::string value_text(const TomlNode& node) {
+  switch (node.kind) {
+    case TomlNode::Kind::text:
+      return node.text;
+    case TomlNode::Kind::integer:
+      return fmt::format("{}", node.integer);
+    case TomlNode::Kind::real:
+      return fmt::format("{}", node.real == 0.0 ? 0.0 : node.real);  // no "-0"
+    case TomlNode::Kind::boolean:
+      return node.boolean ? "true" : "false";
+    case TomlNode::Kind::date:
+      return "date";
+    case TomlNode::Kind::list:
+      return fmt::format("[{}]", children_text(node));
+    case TomlNode::Kind::table:
+      return fmt::format("{{{}}}", children_text(node));
+  }
+  return "";
+}
+
+std::string describe(const TomlNode& node) {
+  switch (node.kind) {
+    case TomlNode::Kind::text:
+      return fmt::format("the text \"{}\"", node.text);
+    case TomlNode::Kind::integer:
+      return fmt::format("the integer {}", node.integer);
+    case TomlNode::Kind::real:
+      return fmt::format("the number {}", real_text(node.real));
+    case TomlNode::Kind::boolean:
+      return node.boolean ? "the boolean true" : "the boolean false";
+    case TomlNode::Kind::date:
+      return "a date or time";
+    case TomlNode::Kind::table:
+      return "a table";
+    case TomlNode::Kind::list:
+      break;
+  }
+  if (node.is_list_of_tables()) return "a list of tables";
+  const std::size_t count = node.children.size();
+  return count == 0 ? "an empty list" : fmt::format("a list of {} value{}", count, count == 1 ? "" : "s");
+}
+
+}  // namespace ricochet

@@ -1,0 +1,150 @@
+#include "ricochet/fem/displacement_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "ricochet/fem/reference_element.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Copies the first nodes (the vertices) of every cell, renumbered.
+std::vector<CellBlock> restrict_to_vertices(const std::vector<CellBlock>& blocks, const std::vector<Index>& number) {
+  std::vector<CellBlock> result;
+  for (const CellBlock& block : blocks) {
+    CellBlock reduced{block.shape, vertex_count(block.shape), {}, block.tags};
+    for (Index i = 0; i < block.size(); ++i) {
+      for (int v = 0; v < reduced.nodes_per_cell; ++v) {
+        reduced.nodes.push_back(number[static_cast<std::size_t>(block.cell(i)[v])]);
+      }
+    }
+    result.push_back(std::move(reduced));
+  }
+  return result;
+}
+
+DisplacementSpace vertices_of(const Mesh& mesh) {
+  DisplacementSpace space{mesh.dimension, 1, {}, {}, {}, {}};
+  std::vector<char> is_vertex(static_cast<std::size_t>(mesh.node_count()), 0);
+  for (const CellBlock& block : mesh.cells) {
+    for (Index i = 0; i < block.size(); ++i) {
+      for (int v = 0; v < vertex_count(block.shape); ++v) is_vertex[static_cast<std::size_t>(block.cell(i)[v])] = 1;
+    }
+  }
+  std::vector<Index> number(is_vertex.size(), -1);
+  for (std::size_t node = 0; node < is_vertex.size(); ++node) {
+    if (is_vertex[node] == 0) continue;
+    number[node] = static_cast<Index>(space.mesh_node.size());
+    space.mesh_node.push_back(static_cast<Index>(node));
+  }
+  space.nodes.resize(mesh.dimension, static_cast<Index>(space.mesh_node.size()));
+  for (std::size_t i = 0; i < space.mesh_node.size(); ++i) {
+    space.nodes.col(static_cast<Index>(i)) = mesh.nodes.col(space.mesh_node[i]);
+  }
+  space.cells = restrict_to_vertices(mesh.cells, number);
+  space.facets = restrict_to_vertices(mesh.facets, number);
+  return space;
+}
+
+/// Adds the nodes of degree 2 to a straight mesh. A node on an edge, face or cell is known by that entity's vertices,
+/// and its position is their mean: the (multi)linear map sends the middle of the entity there.
+class SecondOrderNodes {
+ public:
+  explicit SecondOrderNodes(const Mesh& mesh) : mesh_(mesh), count_(mesh.node_count()) {}
+
+  std::vector<CellBlock> refine(const std::vector<CellBlock>& blocks) {
+    std::vector<CellBlock> result;
+    for (const CellBlock& block : blocks) {
+      const ReferenceElement& element = ReferenceElement::get(block.shape, 2);
+      CellBlock refined{block.shape, element.node_count(), {}, block.tags};
+      refined.nodes.reserve(static_cast<std::size_t>(block.size() * element.node_count()));
+      for (Index i = 0; i < block.size(); ++i) {
+        for (const std::vector<int>& support : element.supporting_vertices()) {
+          refined.nodes.push_back(node_on(block.cell(i), support));
+        }
+      }
+      result.push_back(std::move(refined));
+    }
+    return result;
+  }
+
+  [[nodiscard]] Points positions() const {
+    Points all(mesh_.dimension, count_);
+    all.leftCols(mesh_.node_count()) = mesh_.nodes;
+    for (const auto& [vertices, node] : numbers_) {
+      Vector mean = Vector::Zero(mesh_.dimension);
+      for (const Index vertex : vertices) mean += mesh_.nodes.col(vertex);
+      all.col(node) = mean / static_cast<double>(vertices.size());
+    }
+    return all;
+  }
+
+ private:
+  Index node_on(const Index* cell, const std::vector<int>& support) {
+    if (support.size() == 1) return cell[support.front()];
+    std::vector<Index> key;
+    key.reserve(support.size());
+    for (const int vertex : support) key.push_back(cell[vertex]);
+    std::sort(key.begin(), key.end());
+    const auto [entry, added] = numbers_.try_emplace(std::move(key), count_);
+    if (added) ++count_;
+    return entry->second;
+  }
+
+  const Mesh& mesh_;
+  Index count_;
+  std::map<std::vector<Index>, Index> numbers_;
+};
+
+}  // namespace
+
+DisplacementSpace make_displacement_space(const Mesh& mesh, int degree) {
+  if (degree == 1 && mesh.degree == 2) return vertices_of(mesh);
+  DisplacementSpace space{mesh.dimension, degree, mesh.nodes, mesh.cells, mesh.facets, {}};
+  if (degree == 2 && mesh.degree == 1) {
+    SecondOrderNodes nodes(mesh);
+    space.cells = nodes.refine(mesh.cells);
+    space.facets = nodes.refine(mesh.facets);
+    space.nodes = nodes.positions();
+  }
+  space.mesh_node.assign(static_cast<std::size_t>(space.node_count()), -1);
+  for (Index i = 0; i < mesh.node_count(); ++i) space.mesh_node[static_cast<std::size_t>(i)] = i;
+  return space;
+}
+
+std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
+  std::vector<Index> nodes;
+  for (const Index facet : facets) {
+    Index local = facet;
+    for (const CellBlock& block : space.facets) {
+      if (local < block.size()) {
+        nodes.insert(nodes.end(), block.cell(local), block.cell(local) + block.nodes_per_cell);
+        break;
+      }
+      local -= block.size();
+    }
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+NearestNode nearest_node(const DisplacementSpace& space, const Vector& point) {
+  NearestNode nearest;
+  double best = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < space.node_count(); ++i) {
+    const double distance = (space.nodes.col(i) - point).squaredNorm();
+    if (distance < best) {
+      best = distance;
+      nearest.node = i;
+    }
+  }
+  nearest.distance = std::sqrt(best);
+  return nearest;
+}
+
+}  // namespace ricochet

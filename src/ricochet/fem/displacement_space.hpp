@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/mesh/mesh.hpp"
+
+/// @file The finite element space of the displacement: Lagrange of degree 1 or 2, d components per node.
+namespace ricochet {
+
+/// Dof of component k at node i is i·dimension + k.
+struct DisplacementSpace {
+  int dimension = 2;
+  int degree = 1;
+  Points nodes;                   ///< dimension × count, positions in the reference configuration
+  std::vector<CellBlock> cells;   ///< blocks in the order of the mesh, with this space's nodes
+  std::vector<CellBlock> facets;  ///< likewise
+  std::vector<Index> mesh_node;   ///< for each node the mesh's node there, or −1
+
+  [[nodiscard]] Index node_count() const { return nodes.cols(); }
+  [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
+};
+
+/// Builds the space on a mesh whose geometry is of degree 1 or 2, independently of `degree`.
+[[nodiscard]] DisplacementSpace make_displacement_space(const Mesh& mesh, int degree);
+
+/// The nodes of the given facets (numbered through all blocks), ascending, each once.
+[[nodiscard]] std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets);
+
+/// Node nearest to a point (the lowest number on ties) and its distance.
+struct NearestNode {
+  Index node = 0;
+  double distance = 0.0;
+};
+[[nodiscard]] NearestNode nearest_node(const DisplacementSpace& space, const Vector& point);
+
+}  // namespace ricochet

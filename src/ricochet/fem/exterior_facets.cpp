@@ -1,0 +1,69 @@
+#include "ricochet/fem/exterior_facets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ricochet {
+
+namespace {
+
+/// The block and the number in it of a facet numbered through all blocks.
+struct FacetPlace {
+  const CellBlock* block = nullptr;
+  Index local = 0;
+};
+
+FacetPlace place_of(const Mesh& mesh, Index facet) {
+  for (const CellBlock& block : mesh.facets) {
+    if (facet < block.size()) return {&block, facet};
+    facet -= block.size();
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<Index> interior_facets(const Mesh& mesh, const std::vector<Index>& facets) {
+  // How many cells contain all vertices of a facet, from the cells around its first vertex.
+  std::vector<std::vector<Index>> cells_of_vertex(static_cast<std::size_t>(mesh.node_count()));
+  std::vector<char> wanted(static_cast<std::size_t>(mesh.node_count()), 0);
+  for (const Index facet : facets) {
+    const FacetPlace at = place_of(mesh, facet);
+    for (int v = 0; v < vertex_count(at.block->shape); ++v)
+      wanted[static_cast<std::size_t>(at.block->cell(at.local)[v])] = 1;
+  }
+  Index number = 0;
+  for (const CellBlock& block : mesh.cells) {
+    for (Index cell = 0; cell < block.size(); ++cell, ++number) {
+      for (int v = 0; v < vertex_count(block.shape); ++v) {
+        const auto node = static_cast<std::size_t>(block.cell(cell)[v]);
+        if (wanted[node] != 0) cells_of_vertex[node].push_back(number);
+      }
+    }
+  }
+  std::vector<Index> interior;
+  for (const Index facet : facets) {
+    const FacetPlace at = place_of(mesh, facet);
+    std::vector<Index> common = cells_of_vertex[static_cast<std::size_t>(at.block->cell(at.local)[0])];
+    for (int v = 1; v < vertex_count(at.block->shape); ++v) {
+      const std::vector<Index>& others = cells_of_vertex[static_cast<std::size_t>(at.block->cell(at.local)[v])];
+      std::erase_if(common, [&](Index cell) { return !std::binary_search(others.begin(), others.end(), cell); });
+    }
+    if (common.size() > 1) interior.push_back(facet);
+  }
+  return interior;
+}
+
+std::string facet_tags(const Mesh& mesh, const std::vector<Index>& facets) {
+  std::string text;
+  constexpr std::size_t shown = 5;
+  for (std::size_t i = 0; i < std::min(facets.size(), shown); ++i) {
+    const FacetPlace at = place_of(mesh, facets[i]);
+    text += fmt::format("{}{}", i == 0 ? "" : ", ", at.block->tags[static_cast<std::size_t>(at.local)]);
+  }
+  if (facets.size() > shown) text += fmt::format(", … ({} in all)", facets.size());
+  return text;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "ricochet/mesh/mesh.hpp"
+
+/// @file Which facets lie on the surface of the body.
+namespace ricochet {
+
+/// Those of the given facets (numbered through all blocks) that two cells share: not on the surface.
+[[nodiscard]] std::vector<Index> interior_facets(const Mesh& mesh, const std::vector<Index>& facets);
+
+/// The file's element numbers of the given facets, the first few of them, as text.
+[[nodiscard]] std::string facet_tags(const Mesh& mesh, const std::vector<Index>& facets);
+
+}  // namespace ricochet

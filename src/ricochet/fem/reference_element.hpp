@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+#include "ricochet/mesh/cell_type.hpp"
+
+/// @file Lagrange elements on reference cells and quadrature, from Basix (kept inside one source file).
+namespace ricochet {
+
+/// Shape functions and their gradients at a set of points.
+struct Tabulation {
+  Matrix values;                  ///< nodes × points
+  std::vector<Matrix> gradients;  ///< per point: nodes × dimension, in reference coordinates
+};
+
+struct QuadratureRule {
+  Points points;   ///< dimension × count, reference coordinates
+  Vector weights;  ///< sum: the reference cell's measure
+};
+
+/// The Lagrange element of degree 1 or 2 on a reference cell ([0,1]ⁿ or the unit simplex).
+class ReferenceElement {
+ public:
+  /// The one instance per shape and degree.
+  static const ReferenceElement& get(CellShape shape, int degree);
+
+  [[nodiscard]] CellShape shape() const { return shape_; }
+  [[nodiscard]] int degree() const { return degree_; }
+  [[nodiscard]] int node_count() const { return static_cast<int>(nodes_.cols()); }
+  /// Node positions, dimension × nodes.
+  [[nodiscard]] const Points& nodes() const { return nodes_; }
+  /// For each node the vertices of the entity it sits on (a vertex: itself; the middle of an edge: two; …).
+  [[nodiscard]] const std::vector<std::vector<int>>& supporting_vertices() const { return supporting_vertices_; }
+  [[nodiscard]] Tabulation tabulate(const Points& points) const;
+
+ private:
+  ReferenceElement(CellShape shape, int degree);
+
+  CellShape shape_;
+  int degree_;
+  Points nodes_;
+  std::vector<std::vector<int>> supporting_vertices_;
+};
+
+/// Exact for polynomials of the given degree (on tensor-product cells: of that degree in each variable).
+[[nodiscard]] QuadratureRule quadrature(CellShape shape, int degree);
+
+/// The centre of gravity of the reference cell.
+[[nodiscard]] Vector reference_centre(CellShape shape);
+
+}  // namespace ricochet

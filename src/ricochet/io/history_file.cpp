@@ -1,0 +1,74 @@
+#include "ricochet/io/history_file.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstring>
+#include <iterator>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+[[noreturn]] void cannot_write(const std::string& path) {
+  throw Error(ErrorKind::file_access, fmt::format("{}: cannot write: {}", path, std::strerror(errno)));
+}
+
+}  // namespace
+
+HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::string>& columns)
+    : path_(path), file_(path, std::ios::binary | std::ios::trunc) {
+  if (!file_) cannot_write(path_);
+  for (std::size_t i = 0; i < columns.size(); ++i) line_ += (i == 0 ? "" : ",") + columns[i];
+  line_ += '\n';
+  if (!file_.write(line_.data(), static_cast<std::streamsize>(line_.size()))) cannot_write(path_);
+}
+
+void HistoryWriter::write(const std::vector<double>& row) {
+  line_.clear();
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i > 0) line_ += ',';
+    fmt::format_to(std::back_inserter(line_), "{:.17g}", row[i]);
+  }
+  line_ += '\n';
+  if (!file_.write(line_.data(), static_cast<std::streamsize>(line_.size()))) cannot_write(path_);
+}
+
+void HistoryWriter::flush() {
+  if (!file_.flush()) cannot_write(path_);
+}
+
+HistoryTable read_history(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(ErrorKind::file_access, fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
+  HistoryTable table;
+  std::string line;
+  if (!std::getline(file, line)) throw Error(ErrorKind::invalid_input, fmt::format("{}:1: no header row", path));
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    table.names.push_back(line.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  std::vector<std::vector<double>*> columns;
+  for (const std::string& name : table.names) columns.push_back(&table.columns[name]);
+  for (long number = 2; std::getline(file, line); ++number) {
+    const char* at = line.data();
+    const char* const end = line.data() + line.size();
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      double value = 0.0;
+      const auto [next, problem] = std::from_chars(at, end, value);
+      const bool separated = i + 1 == columns.size() ? next == end : next != end && *next == ',';
+      if (problem != std::errc() || !separated) {
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("{}:{}: column {} (\"{}\") is not a number", path, number, i + 1, table.names[i]));
+      }
+      columns[i]->push_back(value);
+      at = next == end ? end : next + 1;
+    }
+  }
+  return table;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+/// @file history.csv: a header row, then one row per step, numbers as %.17g, never an empty field.
+namespace ricochet {
+
+class HistoryWriter {
+ public:
+  /// Throws Error(file_access) when the file cannot be opened or written (then or later).
+  HistoryWriter(const std::string& path, const std::vector<std::string>& columns);
+  void write(const std::vector<double>& row);
+  /// Hands everything to the operating system, so that others can read along.
+  void flush();
+
+ private:
+  std::string path_;
+  std::ofstream file_;
+  std::string line_;
+};
+
+/// A history read back, column by column.
+struct HistoryTable {
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<double>> columns;
+};
+
+/// Throws Error(file_access) or Error(invalid_input) with the line.
+[[nodiscard]] HistoryTable read_history(const std::string& path);
+
+}  // namespace ricochet

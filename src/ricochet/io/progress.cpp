@@ -1,0 +1,53 @@
+#include "ricochet/io/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace ricochet {
+
+std::string duration_text(double seconds) {
+  if (seconds < 60.0) return fmt::format("{:.1f} s", seconds);
+  const long whole = static_cast<long>(seconds);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+Progress::Progress(long steps, bool quiet) : steps_(steps), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (open_) std::fputc('\n', stderr);
+}
+
+void Progress::update(long step, double time) {
+  if (quiet_) return;
+  if (terminal_) {
+    const double now = timer_.seconds();
+    if (step < steps_ && now - last_drawn_ < 0.1) return;
+    last_drawn_ = now;
+    draw(step, time);
+  } else if (step * 10 >= next_tenth_ * steps_) {
+    next_tenth_ = step * 10 / steps_ + 1;
+    draw(step, time);
+  }
+}
+
+void Progress::draw(long step, double time) {
+  const double done = static_cast<double>(step) / static_cast<double>(steps_);
+  const double elapsed = timer_.seconds();
+  const double left = step > 0 ? elapsed / done - elapsed : 0.0;
+  const std::string numbers = fmt::format("step {}/{}  t = {:.6g}  {} gone, {} left", step, steps_, time,
+                                          duration_text(elapsed), duration_text(left));
+  if (!terminal_) {
+    fmt::print(stderr, "{:3.0f} %  {}\n", 100.0 * done, numbers);
+    return;
+  }
+  constexpr int width = 30;
+  const int filled = static_cast<int>(done * width);
+  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}\033[K", "", filled, "", width - filled, numbers);
+  std::fflush(stderr);
+  open_ = true;
+}
+
+}  // namespace ricochet

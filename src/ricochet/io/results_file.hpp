@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "ricochet/fem/displacement_space.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/state.hpp"
+
+/// @file Fields over time: results.h5 and its XDMF 3.0 side-file results.xdmf, one dataset per frame and field.
+///
+/// results.h5:  /mesh/nodes (nodes × 3), /mesh/cells_K (one per cell shape, nodes in VTK's order),
+///   /frames/NNNNNN/{displacement, velocity (nodes × 3), contact_pressure, gap, contact_status (nodes)}.
+/// Off the contact boundary contact_pressure is 0, gap is NaN and contact_status −1; on it 0 is open, 1 is closed.
+/// Where two obstacles meet at a node, the larger pressure, the smaller gap and the larger status are given.
+namespace ricochet {
+
+class ResultsWriter {
+ public:
+  /// Opens DIRECTORY/results.h5 and results.xdmf. Throws Error(file_access).
+  ResultsWriter(const std::string& directory, const DisplacementSpace& space, const SemidiscreteProblem& problem);
+  ~ResultsWriter();
+  ResultsWriter(const ResultsWriter&) = delete;
+  ResultsWriter& operator=(const ResultsWriter&) = delete;
+
+  void write(const State& state);
+  [[nodiscard]] long frames() const;
+  /// Closes both files; throws Error(file_access) where the destructor would have to be silent.
+  void close();
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,203 @@
+#include "ricochet/io/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// JSON has no infinities; a summary says them in words.
+Json number(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+}
+
+double to_number(const Json& value) {
+  if (value.is_number()) return value.get<double>();
+  const std::string text = value.is_string() ? value.get<std::string>() : "nan";
+  return text == "inf" ? INFINITY : text == "-inf" ? -INFINITY : NAN;
+}
+
+Json extrema_to_json(const RunSummary& summary) {
+  Json result = Json::object();
+  for (std::size_t i = 0; i < summary.digests.size() && i < summary.columns.size(); ++i) {
+    const ColumnDigest& digest = summary.digests[i];
+    result[summary.columns[i]] = {{"first", number(digest.first)},
+                                  {"last", number(digest.last)},
+                                  {"minimum", number(digest.minimum)},
+                                  {"maximum", number(digest.maximum)},
+                                  {"total_variation", number(digest.total_variation)}};
+  }
+  return result;
+}
+
+Json probes_to_json(const RunSummary& summary) {
+  Json result = Json::array();
+  for (std::size_t i = 0; i < summary.probes.size(); ++i) {
+    const Probe& probe = summary.probes[i];
+    result.push_back({{"name", probe.name},
+                      {"node", probe.node},
+                      {"position", summary.probe_positions[i]},
+                      {"distance", probe.distance},
+                      {"in_contact_boundary", probe.contact_point >= 0}});
+  }
+  return result;
+}
+
+Json expectations_to_json(const RunSummary& summary) {
+  Json result = Json::array();
+  for (const ExpectationResult& e : summary.expectations) {
+    result.push_back({{"quantity", e.quantity},
+                      {"value", number(e.value)},
+                      {"wanted", e.wanted},
+                      {"location", e.location},
+                      {"checked", e.checked},
+                      {"holds", e.holds},
+                      {"note", e.note}});
+  }
+  return result;
+}
+
+}  // namespace
+
+ColumnDigest RunSummary::digest(const std::string& column) const {
+  const auto at = std::find(columns.begin(), columns.end(), column);
+  const auto i = static_cast<std::size_t>(at - columns.begin());
+  return i < digests.size() ? digests[i] : ColumnDigest{};
+}
+
+double RunSummary::energy_scale() const {
+  double scale = 0.0;
+  for (const char* column : {"total_energy", "kinetic_energy", "elastic_energy"}) {
+    const ColumnDigest digested = digest(column);
+    scale = std::max({scale, std::abs(digested.minimum), std::abs(digested.maximum)});
+  }
+  return scale;
+}
+
+std::string to_json(const RunSummary& s) {
+  Json timings = Json::object();
+  for (const auto& [phase, seconds] : s.timings) timings[phase] = seconds;
+  const Json json = {{"status", s.status},
+                     {"message", s.message},
+                     {"title", s.title},
+                     {"case", s.case_file},
+                     {"overrides", s.overrides},
+                     {"ricochet_version", s.version},
+                     {"scheme", s.scheme},
+                     {"mass", s.mass},
+                     {"dimension", s.dimension},
+                     {"degree", s.degree},
+                     {"nodes", s.nodes},
+                     {"cells", s.cells},
+                     {"dofs", s.dofs},
+                     {"contact_points", s.contact_points},
+                     {"supported_dofs", s.supported_dofs},
+                     {"factor_entries", s.factor_entries},
+                     {"time_step", s.step},
+                     {"end_time", s.end_time},
+                     {"steps", s.steps},
+                     {"instants",
+                      {{"energy", fmt::format("t {:+g} time_step", s.energy_instant)},
+                       {"force", fmt::format("t {:+g} time_step", s.force_instant)}}},
+                     {"frames", s.frames},
+                     {"timings_seconds", timings},
+                     {"seconds_per_step", s.time_per_step},
+                     {"energy_scale", number(s.energy_scale())},
+                     {"probes", probes_to_json(s)},
+                     {"extrema", extrema_to_json(s)},
+                     {"warnings", s.warnings},
+                     {"expectations", expectations_to_json(s)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_summary(const std::string& path, const RunSummary& summary) {
+  const std::string temporary = path + ".new";
+  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+  file << to_json(summary);
+  file.close();
+  std::error_code problem;
+  if (file) std::filesystem::rename(temporary, path, problem);
+  if (!file || problem)
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot write: {}", path, std::strerror(errno)));
+}
+
+RunSummary read_summary(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error(ErrorKind::file_access, fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
+  RunSummary s;
+  try {
+    const Json json = Json::parse(file);
+    s.status = json.at("status");
+    s.message = json.at("message");
+    s.title = json.at("title");
+    s.case_file = json.at("case");
+    s.overrides = json.at("overrides").get<std::vector<std::string>>();
+    s.version = json.at("ricochet_version");
+    s.scheme = json.at("scheme");
+    s.mass = json.at("mass");
+    s.dimension = json.at("dimension");
+    s.degree = json.at("degree");
+    s.nodes = json.at("nodes");
+    s.cells = json.at("cells");
+    s.dofs = json.at("dofs");
+    s.contact_points = json.at("contact_points");
+    s.step = json.at("time_step");
+    s.end_time = json.at("end_time");
+    s.steps = json.at("steps");
+    s.frames = json.at("frames");
+    s.time_per_step = json.at("seconds_per_step");
+    s.warnings = json.at("warnings").get<std::vector<std::string>>();
+    for (const auto& [phase, seconds] : json.at("timings_seconds").items()) s.timings.emplace_back(phase, seconds);
+    for (const auto& probe : json.at("probes")) {
+      s.probes.push_back({probe.at("name"), probe.at("node"), probe.at("distance"),
+                          probe.at("in_contact_boundary").get<bool>() ? 0 : -1});
+      s.probe_positions.push_back(probe.at("position"));
+    }
+    for (const auto& [column, digest] : json.at("extrema").items()) {
+      s.columns.push_back(column);
+      s.digests.push_back({to_number(digest.at("first")), to_number(digest.at("last")), to_number(digest.at("minimum")),
+                           to_number(digest.at("maximum")), to_number(digest.at("total_variation"))});
+    }
+  } catch (const Json::exception& problem) {
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: not a summary of a run: {}", path, problem.what()));
+  }
+  return s;
+}
+
+double summary_value(const std::string& json_text, const std::string& path) {
+  Json json = Json::parse(json_text);
+  // Column names contain dots ("lowest.gap"), so the longest key that fits is taken at each level.
+  const Json* at = &json;
+  std::string rest = path;
+  while (!rest.empty()) {
+    std::string key = rest;
+    while (!(at->is_object() && at->contains(key))) {
+      const std::size_t dot = key.rfind('.');
+      if (dot == std::string::npos) {
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("summary.{}: there is nothing called \"{}\" in summary.json", path, rest));
+      }
+      key.resize(dot);
+    }
+    at = &at->at(key);
+    rest = rest.size() > key.size() ? rest.substr(key.size() + 1) : "";
+  }
+  if (!at->is_number()) throw Error(ErrorKind::invalid_input, fmt::format("summary.{} is not a number", path));
+  return at->get<double>();
+}
+
+}  // namespace ricochet

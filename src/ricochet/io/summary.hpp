@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/simulation/history.hpp"
+
+/// @file summary.json: what ran, sizes, timings, extrema, warnings.
+namespace ricochet {
+
+/// Outcome of one [[expect]] entry.
+struct ExpectationResult {
+  std::string quantity;
+  double value = 0.0;    ///< found
+  std::string wanted;    ///< in words
+  std::string location;  ///< in the case file
+  bool checked = true;   ///< false: does not apply to this run, see `note`
+  bool holds = true;
+  std::string note;
+};
+
+struct RunSummary {
+  std::string status = "done";  ///< "done" or "failed"
+  std::string message;          ///< of the failure
+  std::string case_file, title, version, scheme, mass;
+  std::vector<std::string> overrides;
+  int dimension = 2;
+  int degree = 1;
+  Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
+  std::size_t factor_entries = 0;
+  double step = 0.0, end_time = 0.0;
+  long steps = 0;
+  double energy_instant = 0.0, force_instant = 0.0;  ///< relative to a row's time, in steps
+  long frames = 0;
+  std::vector<Probe> probes;
+  std::vector<std::vector<double>> probe_positions;
+  std::vector<std::pair<std::string, double>> timings;  ///< seconds by phase
+  double time_per_step = 0.0;                           ///< seconds
+  std::vector<std::string> columns;
+  std::vector<ColumnDigest> digests;  ///< per column, over the rows written
+  std::vector<std::string> warnings;
+  std::vector<ExpectationResult> expectations;
+
+  /// Digest of a column; zeros when there is no such column.
+  [[nodiscard]] ColumnDigest digest(const std::string& column) const;
+  /// Largest |total_energy| + |algorithmic_energy| bound, the scale of the energy account: max of |first|, |min|, |max|
+  /// of total energy and of kinetic and elastic energy.
+  [[nodiscard]] double energy_scale() const;
+};
+
+[[nodiscard]] std::string to_json(const RunSummary& summary);
+/// Written to a temporary name and moved into place. Throws Error(file_access).
+void write_summary(const std::string& path, const RunSummary& summary);
+/// Throws Error(file_access) or Error(invalid_input).
+[[nodiscard]] RunSummary read_summary(const std::string& path);
+/// A number of a summary by its dotted path ("extrema.total_energy.maximum", "steps"). Throws Error(invalid_input).
+[[nodiscard]] double summary_value(const std::string& json_text, const std::string& path);
+
+}  // namespace ricochet

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+/// @file Mass matrices. All act on one scalar per node (M = m ⊗ I). To add one: a file with a class, and one line in
+/// mass.cpp's registrations.
+namespace ricochet {
+
+/// What a mass is built from.
+struct MassInput {
+  const SparseMatrix* consistent = nullptr;  ///< ∫ρ N_i N_j, nodes × nodes
+  const Points* nodes = nullptr;             ///< positions, d × nodes
+  std::vector<Index> contact_nodes;          ///< ascending, each once
+};
+
+/// A way to distribute the mass of a body over its nodes.
+class MassConstruction {
+ public:
+  virtual ~MassConstruction() = default;
+  /// The scalar mass matrix, nodes × nodes, exactly symmetric. With removes_contact_inertia() the rows and columns of
+  /// the contact nodes are zero (not stored). Throws Error(invalid_input) which says what stands in the way, where, and
+  /// what to use instead.
+  [[nodiscard]] virtual SparseMatrix build(const MassInput& input) const = 0;
+  /// True when contact nodes get no inertia: the equivalent masses of the source's section 5.
+  [[nodiscard]] virtual bool removes_contact_inertia() const { return false; }
+};
+
+/// By the name used in a case file; throws Error(invalid_input) that lists the names.
+[[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name);
+[[nodiscard]] std::vector<std::string> mass_names();
+
+/// One constructor per file.
+[[nodiscard]] std::unique_ptr<MassConstruction> make_consistent_mass();
+[[nodiscard]] std::unique_ptr<MassConstruction> make_lumped_mass();
+[[nodiscard]] std::unique_ptr<MassConstruction> make_equivalent_mass();
+[[nodiscard]] std::unique_ptr<MassConstruction> make_nearest_equivalent_mass();
+
+/// Total mass, first and second moments: PᵃᵀmPᵇ with P = (1, x, y[, z]), (d+1) × (d+1). The conditions of an equivalent
+/// mass.
+[[nodiscard]] Matrix mass_moments(const SparseMatrix& mass, const Points& nodes);
+
+/// Proof by factorization that the block of the given nodes (all when empty) is positive definite.
+[[nodiscard]] bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes);
+
+}  // namespace ricochet

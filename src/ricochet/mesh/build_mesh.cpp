@@ -1,0 +1,161 @@
+#include "ricochet/mesh/build_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/mesh/gmsh_elements.hpp"
+#include "ricochet/mesh/offenders.hpp"
+
+namespace ricochet::gmsh {
+
+namespace {
+
+void check_coordinates(const RawMesh& raw, const std::string& source) {
+  Offenders not_finite;
+  for (std::size_t i = 0; i < raw.node_tags.size(); ++i) {
+    const double* position = raw.coordinates.data() + 3 * i;
+    if (!std::isfinite(position[0]) || !std::isfinite(position[1]) || !std::isfinite(position[2])) {
+      not_finite.add(raw.node_tags[i]);
+    }
+  }
+  if (not_finite.any())
+    fail_mesh(source, fmt::format("{} with a coordinate that is not finite", not_finite.text("node")));
+}
+
+/// Groups for a CAD file, which has none: see BuildOptions.
+void name_entities(int dimension, const std::string& source, RawMesh& raw) {
+  std::size_t boundary_count = 0;
+  for (RawElements& elements : raw.elements) {
+    const int element_dimension = find_element_type(elements.type)->dimension;
+    if (element_dimension == dimension) elements.groups = {1};
+    if (element_dimension != dimension - 1) continue;
+    elements.groups = {elements.entity};
+    const std::string name = fmt::format("{} {}", dimension == 3 ? "surface" : "curve", elements.entity);
+    boundary_count += raw.physical_names.try_emplace({dimension - 1, elements.entity}, name).second ? 1 : 0;
+  }
+  raw.physical_names[{dimension, 1}] = "body";
+  log::info(
+      fmt::format("{}: no physical groups; all cells are in the group \"body\", and the facets in {} groups \"{} N\", "
+                  "where N is Gmsh's number of the {}",
+                  source, boundary_count, dimension == 3 ? "surface" : "curve", dimension == 3 ? "surface" : "curve"));
+}
+
+bool has_groups(const RawMesh& raw) {
+  return !raw.physical_names.empty() ||
+         std::any_of(raw.elements.begin(), raw.elements.end(), [](const RawElements& e) { return !e.groups.empty(); });
+}
+
+/// A mesh of dimension 2 lies in a plane z = constant.
+void check_plane(const RawMesh& raw, const std::vector<Index>& used, const std::string& source) {
+  Eigen::Map<const Eigen::Matrix3Xd> all(raw.coordinates.data(), 3, static_cast<Index>(raw.node_tags.size()));
+  const Eigen::Matrix3Xd positions = all(Eigen::all, used);
+  const double size = (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).maxCoeff();
+  const double first = positions(2, 0);
+  Offenders out_of_plane;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const bool in_plane = std::abs(positions(2, static_cast<Index>(i)) - first) <= 1e-12 * size;
+    if (!in_plane) out_of_plane.add(raw.node_tags[static_cast<std::size_t>(used[i])]);
+  }
+  if (out_of_plane.any()) {
+    fail_mesh(
+        source,
+        fmt::format("a mesh of surfaces must lie in a plane z = constant, but z differs from that of node {} at {} "
+                    "(shells are not supported; if this should be a solid, its volume is not meshed or not in a "
+                    "physical group)",
+                    raw.node_tags[static_cast<std::size_t>(used[0])], out_of_plane.text("node")));
+  }
+}
+
+}  // namespace
+
+NodeNumbering::NodeNumbering(std::span<const std::int64_t> tags, const std::string& source) {
+  std::int64_t largest = 0;
+  Offenders not_positive;
+  for (const std::int64_t tag : tags) {
+    if (tag <= 0) not_positive.add(tag);
+    largest = std::max(largest, tag);
+  }
+  if (not_positive.any())
+    fail_mesh(source, fmt::format("{} with a number that is not positive", not_positive.text("node")));
+  Offenders repeated;
+  if (largest / 4 <= static_cast<std::int64_t>(tags.size())) {
+    dense_.assign(static_cast<std::size_t>(largest) + 1, -1);
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      Index& place = dense_[static_cast<std::size_t>(tags[i])];
+      if (place >= 0) repeated.add(tags[i]);
+      place = static_cast<Index>(i);
+    }
+  } else {
+    sorted_.reserve(tags.size());
+    for (std::size_t i = 0; i < tags.size(); ++i) sorted_.emplace_back(tags[i], static_cast<Index>(i));
+    std::sort(sorted_.begin(), sorted_.end());
+    for (std::size_t i = 1; i < sorted_.size(); ++i) {
+      if (sorted_[i].first == sorted_[i - 1].first) repeated.add(sorted_[i].first);
+    }
+  }
+  if (repeated.any()) fail_mesh(source, fmt::format("in $Nodes more than once: {}", repeated.text("node")));
+}
+
+Index NodeNumbering::find_sorted(std::int64_t tag) const {
+  const auto found = std::lower_bound(sorted_.begin(), sorted_.end(), std::pair<std::int64_t, Index>{tag, 0});
+  return found != sorted_.end() && found->first == tag ? found->second : -1;
+}
+
+void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh) {
+  std::vector<Index> new_number(raw.node_tags.size(), -1);
+  for (const CellBlock& block : mesh.cells) {
+    for (const Index node : block.nodes) new_number[static_cast<std::size_t>(node)] = 0;
+  }
+  std::vector<Index> used;
+  for (std::size_t i = 0; i < new_number.size(); ++i) {
+    if (new_number[i] < 0) continue;
+    new_number[i] = static_cast<Index>(used.size());
+    used.push_back(static_cast<Index>(i));
+  }
+  if (mesh.dimension == 2) check_plane(raw, used, mesh.source);
+  if (const std::size_t dropped = raw.node_tags.size() - used.size(); dropped > 0) {
+    log::info(fmt::format("{}: {} node{} no cell uses left out", mesh.source, dropped, dropped == 1 ? "" : "s"));
+  }
+  for (auto* blocks : {&mesh.cells, &mesh.facets}) {
+    for (CellBlock& block : *blocks) {
+      for (Index& node : block.nodes) node = new_number[static_cast<std::size_t>(node)];
+    }
+  }
+  mesh.nodes.resize(mesh.dimension, static_cast<Index>(used.size()));
+  mesh.node_tags.resize(used.size());
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const auto old = static_cast<std::size_t>(used[i]);
+    mesh.node_tags[i] = raw.node_tags[old];
+    for (int axis = 0; axis < mesh.dimension; ++axis) {
+      mesh.nodes(axis, static_cast<Index>(i)) = scale * raw.coordinates[3 * old + static_cast<std::size_t>(axis)];
+    }
+  }
+  if (!mesh.nodes.allFinite())
+    fail_mesh(mesh.source, fmt::format("coordinates overflow when multiplied by the scale {}", scale));
+}
+
+Mesh build_mesh(RawMesh raw, const BuildOptions& options) {
+  Mesh mesh;
+  mesh.source = options.source;
+  check_coordinates(raw, mesh.source);
+  if (options.name_entities && !has_groups(raw)) {
+    name_entities(select_elements(raw, mesh.source).dimension, mesh.source, raw);
+  }
+  const Selection selection = select_elements(raw, mesh.source);
+  mesh.dimension = selection.dimension;
+  mesh.degree = selection.degree;
+  add_groups(raw, mesh.source, mesh);
+  const NodeNumbering numbering(raw.node_tags, mesh.source);
+  mesh.cells = collect_cells(selection.cells, numbering, mesh);
+  mesh.facets = collect_cells(selection.facets, numbering, mesh);
+  check_facets(mesh);
+  keep_used_nodes(raw, options.scale, mesh);
+  check_cells(mesh);
+  if (!options.allow_coincident_nodes) check_coincident_nodes(mesh);
+  return mesh;
+}
+
+}  // namespace ricochet::gmsh

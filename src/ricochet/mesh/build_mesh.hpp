@@ -1,0 +1,74 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ricochet/mesh/mesh.hpp"
+#include "ricochet/mesh/raw_mesh.hpp"
+
+/// @file From what a file says to a checked mesh. Private to mesh/. Every step throws Error(invalid_input) with a
+/// message that names the entities concerned.
+namespace ricochet::gmsh {
+
+struct BuildOptions {
+  std::string source;  ///< the file, for messages
+  double scale = 1.0;
+  bool allow_coincident_nodes = false;
+  /// Without any physical group, make the group "body" of all cells and a group "surface N" or "curve N" of the facets
+  /// on each entity of the geometry: a CAD file cannot name its parts.
+  bool name_entities = false;
+};
+
+[[nodiscard]] Mesh build_mesh(RawMesh raw, const BuildOptions& options);
+
+/// The elements that become cells and facets; the others only name groups.
+struct Selection {
+  int dimension = 0;
+  int degree = 0;
+  std::vector<const RawElements*> cells;
+  std::vector<const RawElements*> facets;
+};
+
+/// Finds the dimension and degree; refuses element types that are not supported and tags that are not unique.
+[[nodiscard]] Selection select_elements(const RawMesh& raw, const std::string& source);
+
+/// Puts all physical groups, still without members, into the mesh.
+void add_groups(const RawMesh& raw, const std::string& source, Mesh& mesh);
+
+/// Index of a node by its tag in the file.
+class NodeNumbering {
+ public:
+  NodeNumbering(std::span<const std::int64_t> tags, const std::string& source);
+  /// −1 when there is no such node.
+  [[nodiscard]] Index find(std::int64_t tag) const {
+    if (!dense_.empty())
+      return tag >= 0 && tag < static_cast<Index>(dense_.size()) ? dense_[static_cast<std::size_t>(tag)] : -1;
+    return find_sorted(tag);
+  }
+
+ private:
+  [[nodiscard]] Index find_sorted(std::int64_t tag) const;
+
+  std::vector<Index> dense_;  ///< by tag, used when tags are nearly consecutive; else the pairs below
+  std::vector<std::pair<std::int64_t, Index>> sorted_;
+};
+
+/// Makes blocks of the elements (one per shape, nodes in Basix's order as indices into the file's nodes), merges
+/// elements that are in the file once per group, and fills in the members of the groups.
+[[nodiscard]] std::vector<CellBlock> collect_cells(std::span<const RawElements* const> elements,
+                                                   const NodeNumbering& numbering, Mesh& mesh);
+
+/// Every facet must be a facet of a cell.
+void check_facets(const Mesh& mesh);
+
+/// Keeps the nodes that belong to a cell, numbered in the file's order, and sets their coordinates.
+void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh);
+
+/// No cell may be inverted or degenerate.
+void check_cells(const Mesh& mesh);
+
+/// No two nodes may be at the same place.
+void check_coincident_nodes(const Mesh& mesh);
+
+}  // namespace ricochet::gmsh

@@ -1,0 +1,233 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <bit>
+#include <cmath>
+
+#include "ricochet/mesh/build_mesh.hpp"
+#include "ricochet/mesh/offenders.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+
+namespace ricochet::gmsh {
+
+namespace {
+
+// Relative: to the lengths of the Jacobian's columns, and to the size of the mesh.
+constexpr double flatness_tolerance = 1e-12;
+constexpr double coincidence_tolerance = 1e-10;  // Gmsh places nodes on curves to about 1e-12
+
+/// Gradients of the shape functions of the geometry at a point of the reference simplex, one column per node.
+Matrix simplex_gradients(CellShape shape, int degree, const Vector& point) {
+  const int dimensions = dimension(shape);
+  Vector barycentric(dimensions + 1);
+  barycentric << 1.0 - point.sum(), point;
+  Matrix of_barycentric(dimensions, dimensions + 1);
+  of_barycentric << Vector::Constant(dimensions, -1.0), Matrix::Identity(dimensions, dimensions);
+  const auto& nodes = node_vertices(shape, degree);
+  Matrix gradients(dimensions, static_cast<Index>(nodes.size()));
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    const int i = nodes[node].front();
+    const int j = nodes[node].back();
+    Vector gradient = of_barycentric.col(i);
+    if (degree == 2 && i == j) gradient *= 4.0 * barycentric(i) - 1.0;
+    if (degree == 2 && i != j) gradient = 4.0 * (barycentric(j) * gradient + barycentric(i) * of_barycentric.col(j));
+    gradients.col(static_cast<Index>(node)) = gradient;
+  }
+  return gradients;
+}
+
+double node_coordinate(CellShape shape, const std::vector<int>& vertices, int axis) {
+  double sum = 0.0;
+  for (const int vertex : vertices) sum += vertex_coordinate(shape, vertex, axis);
+  return sum / static_cast<double>(vertices.size());
+}
+
+/// Value and derivative at x of the Lagrange polynomial on [0, 1] that is one at `node` (0, ½ or 1).
+std::pair<double, double> lagrange(int degree, double node, double x) {
+  if (degree == 1) return node == 0.0 ? std::pair{1.0 - x, -1.0} : std::pair{x, 1.0};
+  if (node == 0.0) return {(2.0 * x - 1.0) * (x - 1.0), 4.0 * x - 3.0};
+  if (node == 1.0) return {x * (2.0 * x - 1.0), 4.0 * x - 1.0};
+  return {4.0 * x * (1.0 - x), 4.0 - 8.0 * x};
+}
+
+Matrix tensor_gradients(CellShape shape, int degree, const Vector& point) {
+  const int dimensions = dimension(shape);
+  const auto& nodes = node_vertices(shape, degree);
+  Matrix gradients = Matrix::Ones(dimensions, static_cast<Index>(nodes.size()));
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    for (int axis = 0; axis < dimensions; ++axis) {
+      const auto [value, derivative] = lagrange(degree, node_coordinate(shape, nodes[node], axis), point(axis));
+      for (int component = 0; component < dimensions; ++component) {
+        gradients(component, static_cast<Index>(node)) *= component == axis ? derivative : value;
+      }
+    }
+  }
+  return gradients;
+}
+
+/// Gradients at each point where the Jacobian is looked at: all nodes, of which one will do on a straight simplex.
+std::vector<Matrix> gradients_at_nodes(CellShape shape, int degree) {
+  const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;
+  std::vector<Matrix> result;
+  for (const std::vector<int>& vertices : node_vertices(shape, degree)) {
+    Vector point(dimension(shape));
+    for (int axis = 0; axis < dimension(shape); ++axis) point(axis) = node_coordinate(shape, vertices, axis);
+    result.push_back(simplex ? simplex_gradients(shape, degree, point) : tensor_gradients(shape, degree, point));
+    if (simplex && degree == 1) break;
+  }
+  return result;
+}
+
+struct Orientation {
+  bool positive = false;  ///< somewhere in the cell
+  bool negative = false;
+  bool flat = false;
+};
+
+/// Signs of the Jacobian determinant, scaled by the lengths of its columns so that a thin cell is not taken for a flat
+/// one.
+template <int Dimension>
+Orientation orientation(const Points& points, const Index* cell, const std::vector<Matrix>& gradients) {
+  Orientation result;
+  for (const Matrix& gradient : gradients) {
+    Eigen::Matrix<double, Dimension, Dimension> jacobian = Eigen::Matrix<double, Dimension, Dimension>::Zero();
+    for (Index node = 0; node < gradient.cols(); ++node) {
+      // Relative to the first node, so that the distance to the origin does not eat digits.
+      const Eigen::Matrix<double, Dimension, 1> position =
+          points.col(cell[node]).template head<Dimension>() - points.col(cell[0]).template head<Dimension>();
+      jacobian += position * gradient.col(node).template head<Dimension>().transpose();
+    }
+    const double lengths = jacobian.colwise().norm().prod();
+    const double determinant = jacobian.determinant();
+    if (determinant > flatness_tolerance * lengths) {
+      result.positive = true;
+    } else if (determinant < -flatness_tolerance * lengths) {
+      result.negative = true;
+    } else {
+      result.flat = true;
+    }
+  }
+  return result;
+}
+
+template <int Dimension>
+void check_cells_of_dimension(const Mesh& mesh) {
+  Offenders inverted;
+  Offenders folded;
+  Offenders flat;
+  for (const CellBlock& block : mesh.cells) {
+    const std::vector<Matrix> gradients = gradients_at_nodes(block.shape, mesh.degree);
+    for (Index i = 0; i < block.size(); ++i) {
+      const Orientation found = orientation<Dimension>(mesh.nodes, block.cell(i), gradients);
+      const std::int64_t tag = block.tags[static_cast<std::size_t>(i)];
+      if (found.flat) {
+        flat.add(tag);
+      } else if (found.negative) {
+        (found.positive ? folded : inverted).add(tag);
+      }
+    }
+  }
+  if (flat.any())
+    fail_mesh(mesh.source, fmt::format("degenerate cells, whose Jacobian vanishes: {}", flat.text("element")));
+  if (folded.any()) {
+    fail_mesh(mesh.source, fmt::format("folded cells, whose Jacobian changes sign: {}", folded.text("element")));
+  }
+  if (inverted.any() && Dimension == 2 && inverted.count() == mesh.cell_count()) {
+    fail_mesh(mesh.source,
+              fmt::format("all {} cells are inverted (clockwise): reverse the orientation of the surface in Gmsh, "
+                          "with ReverseMesh Surface{{:}}; in the .geo file, or by the sign of its curve loop",
+                          inverted.count()));
+  }
+  if (inverted.any()) {
+    fail_mesh(mesh.source, fmt::format("inverted cells, whose Jacobian is negative: {}", inverted.text("element")));
+  }
+}
+
+/// A hash of boxes a few tolerances wide. Only distances decide, so boxes that share a bucket cost time and nothing
+/// else.
+class NodeGrid {
+ public:
+  explicit NodeGrid(const Points& nodes)
+      : nodes_(nodes),
+        origin_(nodes.rowwise().minCoeff()),
+        tolerance_(coincidence_tolerance * (nodes.rowwise().maxCoeff() - origin_).maxCoeff()),
+        heads_(std::bit_ceil(static_cast<std::size_t>(nodes.cols()) + 1), -1),
+        next_(static_cast<std::size_t>(nodes.cols()), -1) {}
+
+  /// A node entered before that is at the same place, or −1; then enters the node.
+  Index find_and_enter(Index node) {
+    Box low{};
+    Box high{};
+    Box own{};
+    for (Index axis = 0; axis < nodes_.rows(); ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      const double distance = nodes_(axis, node) - origin_(axis);
+      low[k] = box(distance - tolerance_);
+      high[k] = box(distance + tolerance_);
+      own[k] = box(distance);
+    }
+    Index found = -1;
+    Box at{};
+    for (at[0] = low[0]; at[0] <= high[0]; ++at[0]) {
+      for (at[1] = low[1]; at[1] <= high[1]; ++at[1]) {
+        for (at[2] = low[2]; at[2] <= high[2]; ++at[2]) found = std::max(found, search(node, at));
+      }
+    }
+    Index& head = heads_[bucket(own)];
+    next_[static_cast<std::size_t>(node)] = head;
+    head = node;
+    return found;
+  }
+
+ private:
+  using Box = std::array<std::int64_t, 3>;
+  static constexpr double tolerances_per_box = 16.0;
+
+  std::int64_t box(double distance) const {
+    return static_cast<std::int64_t>(std::floor(distance / (tolerances_per_box * tolerance_) + 0.381966));
+  }
+  std::size_t bucket(const Box& box) const {
+    std::uint64_t hash = 0;
+    for (const std::int64_t k : box) hash = (std::rotl(hash, 29) ^ static_cast<std::uint64_t>(k)) * 0x9e3779b97f4a7c15u;
+    return static_cast<std::size_t>(hash ^ (hash >> 32)) & (heads_.size() - 1);
+  }
+  Index search(Index node, const Box& box) const {
+    for (Index other = heads_[bucket(box)]; other >= 0; other = next_[static_cast<std::size_t>(other)]) {
+      if ((nodes_.col(node) - nodes_.col(other)).norm() <= tolerance_) return other;
+    }
+    return -1;
+  }
+
+  const Points& nodes_;
+  Vector origin_;
+  double tolerance_;
+  std::vector<Index> heads_;
+  std::vector<Index> next_;
+};
+
+}  // namespace
+
+void check_cells(const Mesh& mesh) {
+  mesh.dimension == 2 ? check_cells_of_dimension<2>(mesh) : check_cells_of_dimension<3>(mesh);
+}
+
+void check_coincident_nodes(const Mesh& mesh) {
+  NodeGrid grid(mesh.nodes);
+  Index count = 0;
+  std::string pairs;
+  for (Index node = 0; node < mesh.node_count(); ++node) {
+    const Index other = grid.find_and_enter(node);
+    if (other < 0) continue;
+    if (++count > 5) continue;
+    pairs += fmt::format("{}{} and {}", count == 1 ? "" : ", ", mesh.node_tags[static_cast<std::size_t>(other)],
+                         mesh.node_tags[static_cast<std::size_t>(node)]);
+  }
+  if (count == 0) return;
+  fail_mesh(mesh.source,
+            fmt::format("{} pair{} of nodes at the same place: {}{}; cells that should be joined are not (in Gmsh: "
+                        "Mesh > Remove duplicate nodes, or BooleanFragments on the geometry)",
+                        count, count == 1 ? "" : "s", pairs, count > 5 ? ", …" : ""));
+}
+
+}  // namespace ricochet::gmsh

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// @file Running the gmsh program. Private to mesh/.
+namespace ricochet::gmsh {
+
+/// The version of the gmsh program. Throws Error(invalid_input) that says what to do when it is not installed; `source`
+/// is the file that needs it.
+[[nodiscard]] std::string program_version(const std::string& source);
+
+/// Meshes a .geo or CAD file into `output`, in the directory `workspace` which is there and empty. Throws
+/// Error(invalid_input) with the end of what gmsh said when it fails.
+void run_program(const std::string& input, const std::string& options, const std::filesystem::path& workspace,
+                 const std::filesystem::path& output);
+
+}  // namespace ricochet::gmsh

@@ -1,0 +1,71 @@
+#include "ricochet/mesh/mesh.hpp"
+
+#include <fmt/format.h>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+namespace {
+
+Index total_size(const std::vector<CellBlock>& blocks) {
+  Index total = 0;
+  for (const CellBlock& block : blocks) total += block.size();
+  return total;
+}
+
+std::string entity_name(int dimension, int mesh_dimension) {
+  if (dimension == mesh_dimension) return "cells";
+  if (dimension == mesh_dimension - 1) return "boundary facets";
+  return dimension == 0 ? "points" : "curves";
+}
+
+[[noreturn]] void fail_missing(const Mesh& mesh, const std::string& name, int dimension) {
+  std::vector<std::string> names;
+  for (const Group& group : mesh.groups) {
+    if (group.dimension == dimension) names.push_back(group.name);
+  }
+  const std::string entities = entity_name(dimension, mesh.dimension);
+  std::string message = fmt::format("{}: there is no group \"{}\" of {}; ", mesh.source, name, entities);
+  message += names.empty() ? fmt::format("the mesh has no groups of {}", entities)
+                           : fmt::format("the groups of {} are {}", entities, join_names(names));
+  if (const std::string nearest = nearest_name(name, names); !nearest.empty()) {
+    message += fmt::format("; did you mean \"{}\"?", nearest);
+  }
+  for (const Group& group : mesh.groups) {
+    if (group.name != name) continue;
+    message += fmt::format("; \"{}\" is a group of {}", name, entity_name(group.dimension, mesh.dimension));
+  }
+  throw Error(ErrorKind::invalid_input, message);
+}
+
+}  // namespace
+
+Index Mesh::cell_count() const {
+  return total_size(cells);
+}
+Index Mesh::facet_count() const {
+  return total_size(facets);
+}
+
+const Group* Mesh::find_group(const std::string& name, int dimension) const {
+  for (const Group& group : groups) {
+    if (group.dimension == dimension && group.name == name) return &group;
+  }
+  return nullptr;
+}
+
+const Group& Mesh::group(const std::string& name, int dimension) const {
+  const Group* found = find_group(name, dimension);
+  if (found == nullptr) fail_missing(*this, name, dimension);
+  const bool has_members = dimension == this->dimension || dimension == this->dimension - 1;
+  if (has_members && found->members.empty()) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: the group \"{}\" of {} is empty: the file names it, but no element is in it", source,
+                            name, entity_name(dimension, this->dimension)));
+  }
+  return *found;
+}
+
+}  // namespace ricochet

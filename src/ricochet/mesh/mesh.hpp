@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+#include "ricochet/mesh/cell_type.hpp"
+
+/// @file The mesh: nodes, cells, boundary facets, named groups. It is complete and checked once read_mesh has returned
+/// it.
+namespace ricochet {
+
+/// Cells (or facets) of one shape. All blocks of a mesh have the same geometric degree.
+struct CellBlock {
+  CellShape shape = CellShape::triangle;
+  int nodes_per_cell = 0;
+  std::vector<Index> nodes;        ///< count × nodes_per_cell, row by row, in Basix's order
+  std::vector<std::int64_t> tags;  ///< the element's number in the file, for messages
+
+  [[nodiscard]] Index size() const { return static_cast<Index>(tags.size()); }
+  [[nodiscard]] const Index* cell(Index i) const { return nodes.data() + i * nodes_per_cell; }
+};
+
+/// A named physical group. An unnamed physical group is called by its number.
+struct Group {
+  std::string name;
+  int tag = 0;
+  int dimension = 0;
+  /// Cells (dimension of the mesh) or facets (one less), numbered through all blocks in their order, ascending; empty
+  /// for groups of lower dimension, which are kept only so that messages can name them.
+  std::vector<Index> members;
+};
+
+struct Mesh {
+  std::string source;                   ///< the file, for messages
+  int dimension = 2;                    ///< 2 or 3: of the cells and of the space
+  int degree = 1;                       ///< of the geometry: 1 straight, 2 second-order
+  Points nodes;                         ///< dimension × count; every node belongs to a cell
+  std::vector<std::int64_t> node_tags;  ///< the node's number in the file, for messages
+  std::vector<CellBlock> cells;         ///< one block per shape present
+  std::vector<CellBlock> facets;  ///< facets that belong to a group, one block per shape; each is a facet of a cell
+  std::vector<Group> groups;      ///< of every dimension
+
+  [[nodiscard]] Index node_count() const { return nodes.cols(); }
+  [[nodiscard]] Index cell_count() const;
+  [[nodiscard]] Index facet_count() const;
+  /// Group of the dimension asked for, or nullptr.
+  [[nodiscard]] const Group* find_group(const std::string& name, int dimension) const;
+  /// As find_group, but throws Error(invalid_input) which says what was asked for, lists the groups of that dimension,
+  /// suggests the nearest name, and says so when the name exists in another dimension.
+  [[nodiscard]] const Group& group(const std::string& name, int dimension) const;
+};
+
+}  // namespace ricochet

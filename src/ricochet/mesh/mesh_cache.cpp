@@ -1,0 +1,160 @@
+#include "ricochet/mesh/mesh_cache.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <set>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/mesh/gmsh_process.hpp"
+
+namespace ricochet::gmsh {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+__extension__ using Unsigned128 = unsigned __int128;  // not ISO C++, but GCC and Clang have it on 64-bit machines
+
+std::string extension(const std::string& path) {
+  std::string text = fs::path(path).extension().string();
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Appends the contents the mesh depends on: the file, the options Gmsh reads beside it, and every file whose name a
+/// .geo file has in quotes, as those it merges are. A name that a .geo file computes escapes this, as does what its
+/// SystemCall does.
+void append_sources(const fs::path& path, std::set<fs::path>& seen, std::string& key) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(path, error);
+  if (error || !fs::is_regular_file(canonical, error) || !seen.insert(canonical).second) return;
+  const std::string content = read_whole_file(canonical);
+  key += fmt::format("{} {}\n", path.filename().string(), content.size()) + content;
+  append_sources(fs::path(path.string() + ".opt"), seen, key);
+  if (extension(path.string()) != ".geo") return;
+  constexpr const char* quotes = "\"'";
+  std::size_t quote = content.find_first_of(quotes);
+  while (quote != std::string::npos) {
+    const std::size_t next = content.find_first_of(quotes, quote + 1);
+    if (next == std::string::npos) break;
+    const std::string name = content.substr(quote + 1, next - quote - 1);
+    if (!name.empty() && name.find('\n') == std::string::npos) {
+      append_sources(path.parent_path() / name, seen, key);
+    }
+    quote = next;  // also the text between two strings is tried: so a stray quote in a comment does no harm
+  }
+}
+
+/// The directory of the cache, made if need be; the first of the candidates that can be written to.
+fs::path cache_directory() {
+  std::vector<fs::path> candidates;
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return value == nullptr ? std::string() : std::string(value);
+  };
+  if (const std::string own = variable("RICOCHET_CACHE"); !own.empty()) {
+    candidates.emplace_back(own);
+  } else if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) {
+    candidates.emplace_back(fs::path(xdg) / "ricochet");
+  } else if (const std::string home = variable("HOME"); !home.empty()) {
+    candidates.emplace_back(fs::path(home) / ".cache" / "ricochet");
+  }
+  candidates.emplace_back(fs::temp_directory_path() / fmt::format("ricochet-cache-{}", getuid()));
+  for (const fs::path& candidate : candidates) {
+    std::error_code error;
+    fs::create_directories(candidate, error);
+    if (!error && access(candidate.c_str(), W_OK | X_OK) == 0) return candidate;
+  }
+  throw Error(ErrorKind::file_access,
+              fmt::format("no place to keep meshes made by gmsh: cannot write to {}; set RICOCHET_CACHE "
+                          "to a directory that can be written to",
+                          candidates.front().string()));
+}
+
+/// A directory of its own for each run of gmsh, gone afterwards.
+class Workspace {
+ public:
+  explicit Workspace(const fs::path& parent) {
+    std::string pattern = (parent / "meshing-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) {
+      throw Error(ErrorKind::file_access,
+                  fmt::format("cannot make a directory in {}: {}", parent.string(), std::strerror(errno)));
+    }
+    path_ = pattern;
+  }
+  ~Workspace() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string gmsh_options(const MeshFile& file) {
+  std::string options = fmt::format(
+      "Mesh.MshFileVersion = 4.1;\nMesh.Binary = 1;\nMesh.ElementOrder = {};\nMesh.SecondOrderIncomplete = 0;\n"
+      "Mesh.SaveParametric = 0;\nMesh.SaveTopology = 0;\nMesh.ScalingFactor = 1;\n",
+      file.geometry_degree);
+  // Both bounds: whatever the file says about sizes is clamped to the one asked for.
+  if (file.size) {
+    options += fmt::format("Mesh.MeshSizeFactor = 1;\nMesh.MeshSizeMin = {0:.17g};\nMesh.MeshSizeMax = {0:.17g};\n",
+                           *file.size);
+  }
+  return options;
+}
+
+}  // namespace
+
+std::string fnv1a_128(std::string_view content) {
+  const Unsigned128 prime = (static_cast<Unsigned128>(1) << 88) + 0x13b;
+  Unsigned128 hash = (static_cast<Unsigned128>(0x6c62272e07bb0142u) << 64) + 0x62b821756295c58du;
+  for (const char c : content) hash = (hash ^ static_cast<unsigned char>(c)) * prime;
+  return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(hash >> 64), static_cast<std::uint64_t>(hash));
+}
+
+bool is_cad_file(const std::string& path) {
+  static const std::set<std::string> extensions{".step", ".stp", ".iges", ".igs", ".brep"};
+  return extensions.contains(extension(path));
+}
+
+fs::path meshed_file(const MeshFile& file) {
+  const std::string options = gmsh_options(file);
+  std::string key = "gmsh " + program_version(file.path) + "\n" + options;
+  std::set<fs::path> seen;
+  append_sources(file.path, seen, key);
+  const fs::path directory = cache_directory();
+  const fs::path result = directory / fmt::format("{}-{}.msh", fs::path(file.path).stem().string(), fnv1a_128(key));
+  if (fs::exists(result)) {
+    log::debug(fmt::format("{}: meshed before, {}", file.path, result.string()));
+    return result;
+  }
+  log::info(fmt::format("{}: meshing with the gmsh program", file.path));
+  const Workspace workspace(directory);
+  const fs::path output = workspace.path() / "mesh.msh";
+  run_program(file.path, options, workspace.path(), output);
+  std::error_code error;
+  fs::rename(output, result, error);  // in one step, so that a cached mesh is always a whole one
+  if (error) throw Error(ErrorKind::file_access, fmt::format("cannot write {}: {}", result.string(), error.message()));
+  return result;
+}
+
+}  // namespace ricochet::gmsh
+
+namespace ricochet {
+
+bool needs_gmsh_program(const std::string& path) {
+  return gmsh::is_cad_file(path) || gmsh::extension(path) == ".geo";
+}
+
+}  // namespace ricochet

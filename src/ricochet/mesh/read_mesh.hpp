@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "ricochet/mesh/mesh.hpp"
+
+/// @file Reading meshes: Gmsh .msh (2.2 and 4.1, ASCII and binary) by ourselves; .geo and CAD through the gmsh program.
+namespace ricochet {
+
+struct MeshFile {
+  std::string path;
+  std::optional<double> size;  ///< target element size, for .geo and CAD files only, in the file's units
+  double scale = 1.0;          ///< multiplies coordinates
+  int geometry_degree = 1;     ///< order asked of the gmsh program for .geo and CAD files
+  /// Two nodes at one place are nearly always a mesh whose parts should have been joined; bodies that only touch are
+  /// not.
+  bool allow_coincident_nodes = false;
+};
+
+/// True for files that need the gmsh program (.geo, .step, .stp, .iges, .igs, .brep).
+[[nodiscard]] bool needs_gmsh_program(const std::string& path);
+
+/// Reads and checks a mesh. Throws Error(file_access) when the file cannot be read, Error(invalid_input) when it is not
+/// a valid mesh; messages name the file, the line (ASCII) or the byte (binary), and the entities concerned.
+[[nodiscard]] Mesh read_mesh(const MeshFile& file);
+
+}  // namespace ricochet

@@ -1,0 +1,120 @@
+#include "ricochet/mesh/reference_cell.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace ricochet {
+
+namespace {
+
+using VertexSets = std::vector<std::vector<int>>;
+
+constexpr std::size_t shape_count = 5;
+
+// Basix numbers the edges of simplices by the vertex they are opposite to, and those of tensor cells lexicographically.
+VertexSets edges(CellShape shape) {
+  switch (shape) {
+    case CellShape::interval:
+      return {{0, 1}};
+    case CellShape::triangle:
+      return {{1, 2}, {0, 2}, {0, 1}};
+    case CellShape::quadrilateral:
+      return {{0, 1}, {0, 2}, {1, 3}, {2, 3}};
+    case CellShape::tetrahedron:
+      return {{2, 3}, {1, 3}, {1, 2}, {0, 3}, {0, 2}, {0, 1}};
+    case CellShape::hexahedron:
+      return {{0, 1}, {0, 2}, {0, 4}, {1, 3}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 6}, {5, 7}, {6, 7}};
+  }
+  return {};
+}
+
+VertexSets facets(CellShape shape) {
+  switch (shape) {
+    case CellShape::interval:
+      return {};
+    case CellShape::triangle:
+    case CellShape::quadrilateral:
+      return edges(shape);
+    case CellShape::tetrahedron:
+      return {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+    case CellShape::hexahedron:
+      return {{0, 1, 2, 3}, {0, 1, 4, 5}, {0, 2, 4, 6}, {1, 3, 5, 7}, {2, 3, 6, 7}, {4, 5, 6, 7}};
+  }
+  return {};
+}
+
+VertexSets make_node_vertices(CellShape shape, int degree) {
+  VertexSets nodes;
+  for (int vertex = 0; vertex < vertex_count(shape); ++vertex) nodes.push_back({vertex});
+  if (degree == 1) return nodes;
+  for (const std::vector<int>& edge : edges(shape)) nodes.push_back(edge);
+  if (shape == CellShape::quadrilateral) nodes.push_back({0, 1, 2, 3});
+  if (shape == CellShape::hexahedron) {
+    for (const std::vector<int>& face : facets(shape)) nodes.push_back(face);
+    nodes.push_back({0, 1, 2, 3, 4, 5, 6, 7});
+  }
+  return nodes;
+}
+
+VertexSets make_facet_nodes(CellShape shape, int degree) {
+  VertexSets result;
+  if (shape == CellShape::interval) return result;
+  const VertexSets& cell_nodes = node_vertices(shape, degree);
+  for (const std::vector<int>& facet : facets(shape)) {
+    std::vector<int> nodes;
+    for (const std::vector<int>& local : node_vertices(facet_shape(shape), degree)) {
+      std::vector<int> vertices;
+      for (const int vertex : local) vertices.push_back(facet[static_cast<std::size_t>(vertex)]);
+      std::sort(vertices.begin(), vertices.end());
+      const auto found = std::find(cell_nodes.begin(), cell_nodes.end(), vertices);
+      nodes.push_back(static_cast<int>(found - cell_nodes.begin()));
+    }
+    result.push_back(nodes);
+  }
+  return result;
+}
+
+/// One entry for each shape and degree, made at first use: these are looked up once per block of cells.
+template <class Make>
+std::array<VertexSets, 2 * shape_count> make_table(Make make) {
+  std::array<VertexSets, 2 * shape_count> table;
+  for (std::size_t i = 0; i < table.size(); ++i)
+    table[i] = make(static_cast<CellShape>(i / 2), static_cast<int>(i % 2) + 1);
+  return table;
+}
+
+std::size_t table_index(CellShape shape, int degree) {
+  return 2 * static_cast<std::size_t>(shape) + (degree == 1 ? 0 : 1);
+}
+
+}  // namespace
+
+const VertexSets& node_vertices(CellShape shape, int degree) {
+  static const auto table = make_table(make_node_vertices);
+  return table[table_index(shape, degree)];
+}
+
+CellShape facet_shape(CellShape shape) {
+  switch (shape) {
+    case CellShape::tetrahedron:
+      return CellShape::triangle;
+    case CellShape::hexahedron:
+      return CellShape::quadrilateral;
+    default:
+      return CellShape::interval;
+  }
+}
+
+const VertexSets& facet_nodes(CellShape shape, int degree) {
+  static const auto table = make_table(make_facet_nodes);
+  return table[table_index(shape, degree)];
+}
+
+double vertex_coordinate(CellShape shape, int vertex, int axis) {
+  const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;
+  const bool one = simplex ? vertex == axis + 1 : ((vertex >> axis) & 1) != 0;
+  return one ? 1.0 : 0.0;
+}
+
+}  // namespace ricochet

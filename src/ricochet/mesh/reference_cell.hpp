@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/mesh/cell_type.hpp"
+
+/// @file The reference cells' nodes and facets, in Basix's numbering, described by vertices only.
+namespace ricochet {
+
+/// For each node of the Lagrange element of degree 1 or 2, the vertices (ascending) at whose mean it lies on a straight
+/// cell: a vertex, the ends of an edge, the vertices of a quadrilateral face or of the whole quadrilateral or
+/// hexahedron.
+[[nodiscard]] const std::vector<std::vector<int>>& node_vertices(CellShape shape, int degree);
+
+/// Shape of the facets; the shapes supported have facets of one shape only. Not for intervals.
+[[nodiscard]] CellShape facet_shape(CellShape shape);
+
+/// For each facet of the cell, in Basix's order, the cell's nodes on it, in the order the facet itself numbers its
+/// nodes.
+[[nodiscard]] const std::vector<std::vector<int>>& facet_nodes(CellShape shape, int degree);
+
+/// Reference coordinates of a vertex, each 0 or 1.
+[[nodiscard]] double vertex_coordinate(CellShape shape, int vertex, int axis);
+
+}  // namespace ricochet

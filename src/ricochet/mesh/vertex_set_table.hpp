@@ -1,0 +1,81 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+/// @file Finding cells and facets by their vertices. Private to mesh/.
+namespace ricochet {
+
+/// An open hash table of cells of one shape, equal when they have the same vertices in whatever order.
+class VertexSetTable {
+ public:
+  VertexSetTable(int vertex_count, std::size_t capacity)
+      : vertex_count_(static_cast<std::size_t>(vertex_count)), slots_(std::bit_ceil(2 * capacity + 2)) {
+    keys_.reserve(capacity * vertex_count_);
+  }
+
+  /// The number of the equal cell, or −1.
+  [[nodiscard]] Index find(const Index* vertices) const {
+    const Key key = sorted(vertices);
+    return slots_[slot_of(key)].number;
+  }
+  /// The number of the equal cell, or −1 and the cell is added with the next number from 0 on. At most `capacity`
+  /// cells.
+  Index find_or_add(const Index* vertices) {
+    const Key key = sorted(vertices);
+    Slot& slot = slots_[slot_of(key)];
+    if (slot.number >= 0) return slot.number;
+    slot = {hash(key), size_++};
+    keys_.insert(keys_.end(), key.begin(), key.begin() + static_cast<std::ptrdiff_t>(vertex_count_));
+    return -1;
+  }
+
+ private:
+  using Key = std::array<Index, 8>;
+  struct Slot {
+    std::uint64_t hash = 0;
+    Index number = -1;
+  };
+
+  Key sorted(const Index* vertices) const {
+    Key key{};
+    for (std::size_t i = 0; i < vertex_count_; ++i) {  // insertion: there are at most eight
+      std::size_t place = i;
+      for (; place > 0 && key[place - 1] > vertices[i]; --place) key[place] = key[place - 1];
+      key[place] = vertices[i];
+    }
+    return key;
+  }
+
+  std::uint64_t hash(const Key& key) const {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < vertex_count_; ++i) {
+      value = (std::rotl(value, 23) ^ static_cast<std::uint64_t>(key[i])) * 0x9e3779b97f4a7c15u;
+    }
+    return value ^ (value >> 32);
+  }
+
+  std::size_t slot_of(const Key& key) const {
+    const std::uint64_t key_hash = hash(key);
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t slot = static_cast<std::size_t>(key_hash) & mask;; slot = (slot + 1) & mask) {
+      if (slots_[slot].number < 0) return slot;
+      if (slots_[slot].hash != key_hash) continue;
+      const Index* stored = keys_.data() + static_cast<std::size_t>(slots_[slot].number) * vertex_count_;
+      if (std::equal(stored, stored + vertex_count_, key.begin())) return slot;
+    }
+  }
+
+  std::size_t vertex_count_;
+  std::vector<Slot> slots_;
+  std::vector<Index> keys_;
+  Index size_ = 0;
+};
+
+}  // namespace ricochet

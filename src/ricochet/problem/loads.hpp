@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "ricochet/base/expression.hpp"
+#include "ricochet/base/types.hpp"
+
+/// @file External loads and prescribed displacements as functions of time.
+namespace ricochet {
+
+/// L(t) = constant part + varying part. The constant part has a potential −LᵀU; the varying part does work.
+class Loads {
+ public:
+  explicit Loads(Index dofs = 0) : constant_(Vector::Zero(dofs)) {}
+
+  [[nodiscard]] const Vector& constant() const { return constant_; }
+  void add_constant(const Vector& load) { constant_ += load; }
+  /// Adds amplitude(t) · pattern.
+  void add_separable(Vector pattern, Expression amplitude);
+  /// Adds a load that must be integrated anew at every instant: `add` adds it to its argument.
+  void add_general(std::function<void(double time, Vector& load)> add);
+
+  [[nodiscard]] bool varies() const { return !separable_.empty() || !general_.empty(); }
+  /// The varying part at an instant (zero where none is given).
+  void varying(double time, Vector& load) const;
+  /// Constant and varying part together.
+  void total(double time, Vector& load) const;
+
+ private:
+  struct Separable {
+    Vector pattern;
+    Expression amplitude;
+  };
+  Vector constant_;
+  std::vector<Separable> separable_;
+  std::vector<std::function<void(double, Vector&)>> general_;
+};
+
+/// Dofs whose displacement is prescribed.
+class Supports {
+ public:
+  /// Prescribes one dof. Returns false, and changes nothing, when it is prescribed already.
+  bool add(Index dof, const Expression& value);
+  /// Sorts; call once after the last add.
+  void finish();
+
+  [[nodiscard]] Index size() const { return static_cast<Index>(dofs_.size()); }
+  [[nodiscard]] const std::vector<Index>& dofs() const { return dofs_; }
+  [[nodiscard]] bool contains(Index dof) const;
+  /// The expression of a prescribed dof, as text, for messages.
+  [[nodiscard]] const std::string& text(Index dof) const;
+  /// Prescribed displacements at an instant, in the order of dofs().
+  void values(double time, Vector& values) const;
+  /// Velocity and acceleration at an instant t ≥ 0 by second-order one-sided differences with spacing h (only times ≥ t
+  /// are asked for, so that formulas may start at t = 0).
+  void derivatives(double time, double spacing, Vector& velocity, Vector& acceleration) const;
+
+ private:
+  std::vector<Index> dofs_;
+  std::vector<std::size_t> expression_;  ///< per dof
+  std::unordered_map<Index, std::size_t> expression_of_dof_;
+  std::vector<Expression> expressions_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+/// @file What a time scheme and a step solver say to each other: a step is one or more contact problems.
+///
+/// A stage asks for an increment δ (the unknown is x = base + δ) and reactions such that
+///   A δ = b + Gᵀ r_N − B_Tᵀ r_T + support reactions,   A = αM + κK + ηC,   δ given on supported dofs,
+///   for each eligible contact point:  0 ≤ r_N,i ⟂ y_i = q_i + s (G δ)_i + c_i r_N,i ≥ 0.
+/// b is the residual force at the base and q the gap (or gap rate) there: written in increments, no digits are lost
+/// between large inertia terms that cancel, and the energy account closes to rounding.
+/// A scheme knows nothing of how a stage is solved; a step solver knows nothing of time.
+namespace ricochet {
+
+/// Which dofs a stage solves for; δ is zero on the others that no support prescribes.
+enum class StageDofs {
+  all,
+  contact,  ///< those of contact nodes
+  massive,  ///< those with inertia
+};
+
+/// A = mass·M + stiffness·K + damping·C, constant over a run.
+struct OperatorCoefficients {
+  double mass = 0.0;       ///< α
+  double stiffness = 0.0;  ///< κ
+  double damping = 0.0;    ///< η
+  StageDofs dofs = StageDofs::all;
+};
+
+struct Stage {
+  Vector right_hand_side;      ///< b, per dof
+  Vector prescribed;           ///< δ on supported dofs, in the order of Supports::dofs()
+  std::vector<char> eligible;  ///< per contact point
+  Vector gap_offset;           ///< q, per contact point
+  Vector gap_offset_rounding;  ///< size of the rounding error of q: a y above −(this + the solver's own) is zero
+  double gap_factor = 1.0;     ///< s
+  Vector compliance;           ///< c; empty: zero
+  // For friction (not used yet): slip rate w_i = slip_factor (B_T δ)_i + slip_offset_i.
+  double slip_factor = 1.0;  ///< σ
+  Vector slip_offset;        ///< p; empty: no friction in this stage
+};
+
+struct StageSolution {
+  Vector increment;            ///< δ
+  Vector normal_reaction;      ///< r_N, per contact point; zero where not eligible
+  Vector tangential_reaction;  ///< r_T, (d−1) per contact point; empty without friction
+  Vector support_reaction;     ///< on supported dofs
+  int iterations = 0;          ///< of the contact solver
+};
+
+}  // namespace ricochet

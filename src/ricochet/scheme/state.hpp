@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "ricochet/base/types.hpp"
+
+/// @file The state of a run between two steps: all that the next step depends on.
+namespace ricochet {
+
+/// Forces at the scheme's instant of a step, as its momentum equation contains them.
+struct StepForces {
+  Vector normal_reaction;      ///< r_N per contact point
+  Vector tangential_reaction;  ///< r_T, (d−1) per contact point; empty without friction
+  Vector support_reaction;     ///< on supported dofs
+  Vector varying_load;         ///< varying part of L, per dof; empty without one
+  Vector damping_force;        ///< C times the scheme's velocity, per dof; empty without damping
+};
+
+struct State {
+  long step = 0;
+  double time = 0.0;
+  Vector displacement;  ///< U at `time`
+  Vector velocity;      ///< V; on massless dofs the mean velocity of the last step
+  Vector acceleration;  ///< A; 0 on massless dofs
+  StepForces forces;
+  int iterations = 0;  ///< of the contact solver in the last step
+  /// What a scheme remembers besides, by name, so that a checkpoint can write it.
+  std::map<std::string, Vector> memory;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,53 @@
+#include "ricochet/simulation/energy_account.hpp"
+
+namespace ricochet {
+
+EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state)
+    : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
+  const Energies start = energies(state);
+  initial_ = start.total() + start.algorithmic;
+}
+
+EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const Vector& increment) {
+  StepWorks result;
+  result.contact = forces.normal_reaction.dot(gap_increment_);
+  for (Index i = 0; i < forces.support_reaction.size(); ++i) {
+    result.support += forces.support_reaction[i] * increment[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+  }
+  if (forces.varying_load.size() > 0) result.load = forces.varying_load.dot(increment);
+  if (forces.damping_force.size() > 0) result.damping = -forces.damping_force.dot(increment);
+  return result;
+}
+
+void EnergyAccount::enter_step(const Vector& increment, const State& state) {
+  gap_increment_.noalias() = problem_.contact.gap_operator * increment;
+  const auto enter = [&](const StepForces& forces, double weight) {
+    if (weight == 0.0) return;
+    const StepWorks step = works_of(forces, increment);
+    works_.contact += weight * step.contact;
+    works_.support += weight * step.support;
+    works_.load += weight * step.load;
+    works_.damping += weight * step.damping;
+  };
+  enter(previous_, rule_.previous_weight);
+  enter(state.forces, rule_.current_weight);
+  works_.numerical_dissipation += scheme_.numerical_dissipation(problem_);
+  previous_ = state.forces;
+}
+
+Energies EnergyAccount::energies(const State& state) {
+  scheme_.energy_state(state, displacement_, velocity_);
+  momentum_.noalias() = problem_.mass * velocity_;
+  Energies result;
+  result.kinetic = 0.5 * velocity_.dot(momentum_);
+  result.elastic = problem_.internal_force->energy(displacement_);
+  result.load_potential = -problem_.loads.constant().dot(displacement_);
+  result.algorithmic = scheme_.algorithmic_energy(problem_, state);
+  return result;
+}
+
+double EnergyAccount::residual(const Energies& now) const {
+  return now.total() + now.algorithmic - initial_ - works_.sum() + works_.numerical_dissipation;
+}
+
+}  // namespace ricochet

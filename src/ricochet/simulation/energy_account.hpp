@@ -1,0 +1,62 @@
+#pragma once
+
+#include "ricochet/scheme/scheme.hpp"
+
+/// @file The account of energy: each part computed from forces and increments, never as a remainder.
+namespace ricochet {
+
+/// Cumulative works since the start.
+struct Works {
+  double load = 0.0;     ///< of the time-dependent loads
+  double contact = 0.0;  ///< of normal reactions
+  double friction = 0.0;
+  double support = 0.0;
+  double obstacle = 0.0;  ///< done by moving obstacles
+  double damping = 0.0;
+  double numerical_dissipation = 0.0;  ///< taken away by the scheme, positive when energy is lost
+
+  [[nodiscard]] double sum() const { return load + contact + friction + support + obstacle + damping; }
+};
+
+struct Energies {
+  double kinetic = 0.0;
+  double elastic = 0.0;
+  double load_potential = 0.0;  ///< −LᵀU of the constant loads
+  double algorithmic = 0.0;
+
+  [[nodiscard]] double total() const { return kinetic + elastic + load_potential; }
+};
+
+class EnergyAccount {
+ public:
+  /// Opens the account on a starting state.
+  EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state);
+
+  /// Enters a step: its displacement increment and the forces at its end (in the state).
+  void enter_step(const Vector& increment, const State& state);
+  /// Energies at the scheme's own instant.
+  [[nodiscard]] Energies energies(const State& state);
+  [[nodiscard]] const Works& works() const { return works_; }
+  /// total + algorithmic − initial values − Σ works + numerical dissipation: zero to rounding.
+  [[nodiscard]] double residual(const Energies& now) const;
+  /// Displacement and velocity that `energies` was last computed from.
+  [[nodiscard]] const Vector& velocity() const { return velocity_; }
+  /// M times that velocity.
+  [[nodiscard]] const Vector& momentum() const { return momentum_; }
+
+ private:
+  struct StepWorks {
+    double load = 0.0, contact = 0.0, support = 0.0, damping = 0.0;
+  };
+  [[nodiscard]] StepWorks works_of(const StepForces& forces, const Vector& increment);
+
+  const SemidiscreteProblem& problem_;
+  const Scheme& scheme_;
+  WorkRule rule_;
+  Works works_;
+  StepForces previous_;
+  double initial_ = 0.0;
+  Vector displacement_, velocity_, momentum_, gap_increment_;
+};
+
+}  // namespace ricochet

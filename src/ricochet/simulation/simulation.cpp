@@ -1,0 +1,47 @@
+#include "ricochet/simulation/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial)
+    : problem_(problem), scheme_(scheme), state_(make_starting_state(problem, initial, scheme.step())) {
+  scheme_.start(problem_, state_);
+  const std::vector<OperatorCoefficients> operators = scheme_.operators(problem_);
+  solver_ = make_direct_step_solver(problem_, operators);
+  solutions_.resize(operators.size());
+  account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
+}
+
+void Simulation::advance() {
+  int iterations = 0;
+  for (std::size_t number = 0; number < solutions_.size(); ++number) {
+    scheme_.prepare(problem_, state_, static_cast<int>(number), stage_);
+    try {
+      solver_->solve(number, stage_, solutions_[number]);
+    } catch (const Error& problem) {
+      throw Error(problem.kind(),
+                  fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}; try a smaller "
+                              "time.step, or a finer mesh where contact begins",
+                              state_.step + 1, state_.time + scheme_.step(), scheme_.step(), problem_.contact.size(),
+                              problem.what()));
+    }
+    if (!solutions_[number].increment.allFinite()) {
+      throw Error(
+          ErrorKind::not_converged,
+          fmt::format("step {} (t = {:.9g}): the displacement is no longer finite, so the motion has grown beyond all "
+                      "bounds; use a stable scheme or mass (newmark with mass \"equivalent\"), or a smaller time.step",
+                      state_.step + 1, state_.time + scheme_.step()));
+    }
+    iterations += solutions_[number].iterations;
+  }
+  scheme_.finish(problem_, solutions_, state_, increment_);
+  state_.iterations = iterations;
+  state_.step += 1;
+  state_.time = static_cast<double>(state_.step) * scheme_.step();
+  account_->enter_step(increment_, state_);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/scheme/scheme.hpp"
+#include "ricochet/simulation/energy_account.hpp"
+#include "ricochet/simulation/starting_state.hpp"
+#include "ricochet/solver/step_solver.hpp"
+
+/// @file A problem, a scheme and a state, step by step.
+namespace ricochet {
+
+class Simulation {
+ public:
+  /// Finds the starting state and factorizes the scheme's operators. Keeps references to both arguments.
+  Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial);
+
+  /// One step. Throws Error(not_converged) with the step, its time and what to try; the state is then that before the
+  /// step.
+  void advance();
+
+  [[nodiscard]] const State& state() const { return state_; }
+  [[nodiscard]] EnergyAccount& account() { return *account_; }
+  [[nodiscard]] const Vector& increment() const { return increment_; }
+  [[nodiscard]] std::size_t factor_entries() const { return solver_->factor_entries(); }
+
+ private:
+  const SemidiscreteProblem& problem_;
+  Scheme& scheme_;
+  State state_;
+  std::unique_ptr<StepSolver> solver_;
+  std::unique_ptr<EnergyAccount> account_;
+  Stage stage_;
+  std::vector<StageSolution> solutions_;
+  Vector increment_;
+};
+
+}  // namespace ricochet

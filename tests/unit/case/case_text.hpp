@@ -1,0 +1,86 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/case/read_case.hpp"
+
+/// @file Case files made for one test.
+namespace ricochet::case_test {
+
+/// The shortest valid case. Tests of malformed files replace one of its 11 lines or append to it.
+inline const std::vector<std::string> shortest_case{
+    "[mesh]",   "file = \"a.msh\"", "[[material]]",          "group = \"body\"", "density = 1.0", "lambda = 1.0",
+    "mu = 1.0", "[time]",           "scheme = \"midpoint\"", "step = 0.1",       "end = 1.0"};
+
+/// The shortest case with line `line` replaced by `text`, or with `text` appended for line 0.
+inline std::string edited_case(std::size_t line, const std::string& text) {
+  std::vector<std::string> lines = shortest_case;
+  if (line == 0) {
+    lines.push_back(text);
+  } else {
+    lines.at(line - 1) = text;
+  }
+  std::string document;
+  for (const std::string& each : lines) document += each + "\n";
+  return document;
+}
+
+/// A file that lives as long as the object.
+class CaseFile {
+ public:
+  explicit CaseFile(const std::string& document) {
+    static int count = 0;
+    const std::string name = "ricochet_case_" + std::to_string(::getpid()) + "_" + std::to_string(++count) + ".toml";
+    path_ = (std::filesystem::temp_directory_path() / name).string();
+    std::ofstream(path_, std::ios::binary) << document;
+  }
+  ~CaseFile() { std::filesystem::remove(path_); }
+  CaseFile(const CaseFile&) = delete;
+  CaseFile& operator=(const CaseFile&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+inline Case read_text(const std::string& document, const std::vector<std::string>& overrides = {}) {
+  return read_case(CaseFile(document).path(), overrides);
+}
+
+/// The message of the Error(invalid_input) that reading throws, without the name of the file; "" when it throws none.
+inline std::string problems_of(const std::string& document, const std::vector<std::string>& overrides = {}) {
+  const CaseFile file(document);
+  try {
+    static_cast<void>(read_case(file.path(), overrides));
+  } catch (const Error& problem) {
+    EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+    std::string message = problem.what();
+    const std::string name = file.path() + ":";
+    for (std::size_t at = message.find(name); at != std::string::npos; at = message.find(name))
+      message.erase(at, name.size());
+    return message;
+  }
+  return "";
+}
+
+/// An edit of the shortest case that makes it invalid, and everything that is then said about it.
+struct MalformedCase {
+  std::size_t line;
+  std::string text;
+  std::string problems;
+};
+
+inline void expect_problems(const MalformedCase& malformed) {
+  SCOPED_TRACE(edited_case(malformed.line, malformed.text));
+  EXPECT_EQ(problems_of(edited_case(malformed.line, malformed.text)), malformed.problems);
+}
+
+}  // namespace ricochet::case_test

@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include "case_text.hpp"
+#include "ricochet/base/log.hpp"
+
+// Newmark's parameters: from the file, from presets, from --set, and how these go together.
+namespace ricochet::case_test {
+
+namespace {
+
+std::string with_scheme(const std::string& keys) {
+  return edited_case(9, keys);
+}
+
+const std::string newmark = "scheme = \"newmark\"\n";
+const std::string preset_file = with_scheme(newmark + "preset = \"textbook-half\"");
+const std::string parameter_file = with_scheme(newmark + "beta = 0.3\ngamma = 0.6");
+
+}  // namespace
+
+TEST(ReadTime, PresetsStandForBetaAndGamma) {
+  const Case half = read_text(preset_file);
+  EXPECT_EQ(half.time.preset, "textbook-half");
+  EXPECT_EQ(half.time.beta, 0.5);
+  EXPECT_EQ(half.time.gamma, 0.5);
+  EXPECT_EQ(half.values.at("time.beta"), "0.5");  // in effect, so that `when` can ask for it
+  EXPECT_EQ(half.values.at("time.preset"), "textbook-half");
+  const Case trapezoidal = read_text(preset_file, {"time.preset=trapezoidal"});
+  EXPECT_EQ(trapezoidal.time.beta, 0.25);
+  EXPECT_EQ(trapezoidal.time.gamma, 0.5);
+}
+
+TEST(ReadTime, NewmarkKeysOfTheFileAreIgnoredWhenTheSchemeIsReplaced) {
+  const Case read = read_text(parameter_file, {"time.scheme=midpoint"});
+  EXPECT_EQ(read.time.scheme, "midpoint");
+  EXPECT_EQ(read.values.count("time.beta"), 0U);
+  EXPECT_EQ(read.values.count("time.gamma"), 0U);
+  EXPECT_EQ(read_text(preset_file, {"time.scheme=klr-conserving"}).time.preset, "");
+  EXPECT_EQ(problems_of(parameter_file, {"time.scheme=midpoint", "time.beta=0.25"}),
+            "--set time.beta=0.25: \"beta\" is for the scheme \"newmark\" only; the scheme is \"midpoint\"");
+}
+
+TEST(ReadTime, OfPresetAndParametersWhatSetGivesCounts) {
+  const Case preset = read_text(parameter_file, {"time.preset=trapezoidal"});
+  EXPECT_EQ(preset.time.preset, "trapezoidal");
+  EXPECT_EQ(preset.time.beta, 0.25);
+  EXPECT_EQ(preset.time.gamma, 0.5);
+  const Case beta = read_text(preset_file, {"time.beta=0.3"});
+  EXPECT_EQ(beta.time.preset, "");
+  EXPECT_EQ(beta.time.beta, 0.3);
+  EXPECT_EQ(beta.time.gamma, 0.5);
+  EXPECT_EQ(beta.values.count("time.preset"), 0U);
+  EXPECT_NE(problems_of(parameter_file, {"time.preset=trapezoidal", "time.beta=0.3"}), "");
+}
+
+TEST(ReadTime, AFileForAnotherSchemeNeedsParametersForNewmark) {
+  const std::string midpoint = with_scheme("scheme = \"midpoint\"");
+  EXPECT_EQ(problems_of(midpoint, {"time.scheme=newmark"}),
+            "--set time.scheme=newmark: the scheme \"newmark\" needs \"beta\" and \"gamma\", or a \"preset\": "
+            "\"trapezoidal\" "
+            "(beta = 0.25, gamma = 0.5) or \"textbook-half\" (beta = 0.5, gamma = 0.5); \"beta\" is missing");
+  EXPECT_EQ(read_text(midpoint, {"time.scheme=newmark", "time.preset=trapezoidal"}).time.beta, 0.25);
+}
+
+TEST(ReadTime, WarnsOfInstability) {
+  const auto warnings_of = [](const std::string& keys) {
+    log::clear_warnings();
+    static_cast<void>(read_text(with_scheme(newmark + keys)));
+    std::vector<std::string> warnings = log::warnings();
+    log::clear_warnings();
+    return warnings;
+  };
+  EXPECT_TRUE(warnings_of("preset = \"trapezoidal\"").empty());
+  EXPECT_TRUE(warnings_of("beta = 0.3025\ngamma = 0.6").empty());
+  ASSERT_EQ(warnings_of("beta = 0.25\ngamma = 0.4").size(), 1U);
+  EXPECT_NE(warnings_of("beta = 0.25\ngamma = 0.4")[0].find("unstable with gamma = 0.4"), std::string::npos);
+  ASSERT_EQ(warnings_of("beta = 0.1\ngamma = 0.5").size(), 1U);
+  EXPECT_NE(warnings_of("beta = 0.1\ngamma = 0.5")[0].find("only conditionally stable"), std::string::npos);
+}
+
+TEST(ReadTime, OneStepIsEnough) {
+  EXPECT_EQ(read_text(edited_case(10, "step = 1.0")).time.step, 1.0);
+}
+
+}  // namespace ricochet::case_test

@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "case_text.hpp"
+#include "ricochet/case/keys.hpp"
+#include "ricochet/case/names.hpp"
+
+namespace ricochet::case_test {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// The object that holds a section's keys, below lists and names.
+const Json& entry_schema(const Json& schema, const Section& section) {
+  if (section.kind == SectionKind::top) return schema;
+  const Json& found = schema.at("properties").at(section.name);
+  if (section.kind == SectionKind::list) return found.at("items");
+  return section.kind == SectionKind::named ? found.at("additionalProperties") : found;
+}
+
+void expect_keys(const Json& schema, const std::vector<Key>& keys) {
+  EXPECT_EQ(schema.at("additionalProperties"), false);
+  for (const Key& key : keys) {
+    SCOPED_TRACE(key.name);
+    const Json& found = schema.at("properties").at(key.name);
+    EXPECT_NE(found.at("description").get<std::string>().find(key.doc), std::string::npos);
+    EXPECT_EQ(found.contains("default"), key.standard.has_value());
+    const Json required = schema.value("required", Json::array());
+    EXPECT_EQ(std::find(required.begin(), required.end(), key.name) != required.end(), key.required);
+    if (key.type == KeyType::table) expect_keys(found, key.keys);
+  }
+}
+
+std::string file_text(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+TEST(CaseSchema, HasEveryKeyAndNoOther) {
+  const Json schema = Json::parse(case_schema());
+  EXPECT_EQ(schema.at("$schema"), "https://json-schema.org/draft/2020-12/schema");
+  EXPECT_EQ(schema.at("required"), (Json{"mesh", "material", "time"}));
+  for (const Section& section : case_sections()) {
+    SCOPED_TRACE(section.name);
+    const Json& entry = entry_schema(schema, section);
+    expect_keys(entry, section.keys);
+    const std::size_t sections = section.kind == SectionKind::top ? case_sections().size() - 1 : 0;
+    EXPECT_EQ(entry.at("properties").size(), section.keys.size() + sections);
+  }
+}
+
+TEST(CaseSchema, CarriesBoundsChoicesAndUnits) {
+  const Json properties = Json::parse(case_schema()).at("properties");
+  const Json& time = properties.at("time").at("properties");
+  EXPECT_EQ(time.at("scheme").at("enum"), Json(scheme_names()));
+  EXPECT_EQ(time.at("step").at("exclusiveMinimum"), 0);
+  EXPECT_NE(time.at("step").at("description").get<std::string>().find("Unit: time."), std::string::npos);
+  EXPECT_EQ(properties.at("mesh").at("properties").at("degree").at("enum"), (Json{1, 2}));
+  EXPECT_EQ(properties.at("mesh").at("properties").at("scale").at("default"), 1);
+  const Json& poisson = properties.at("material").at("items").at("properties").at("poisson");
+  EXPECT_EQ(poisson.at("exclusiveMinimum"), -1);
+  EXPECT_EQ(poisson.at("exclusiveMaximum"), 0.5);
+  EXPECT_EQ(properties.at("material").at("items").at("oneOf").size(), 2U);
+  EXPECT_TRUE(properties.at("expect").at("items").at("properties").contains("when"));
+}
+
+TEST(CaseKeys, AreDocumentedAndHaveUnits) {
+  for (const Section& section : case_sections()) {
+    EXPECT_FALSE(section.doc.empty()) << section.name;
+    for (const Key& key : section.keys) {
+      EXPECT_FALSE(key.doc.empty()) << section.name << '.' << key.name;
+      const bool is_number = key.type == KeyType::number || key.type == KeyType::integer ||
+                             key.type == KeyType::vector || key.type == KeyType::formula ||
+                             key.type == KeyType::formulas;
+      EXPECT_EQ(!key.unit.empty(), is_number) << section.name << '.' << key.name;
+      EXPECT_FALSE(key.required && key.standard.has_value()) << section.name << '.' << key.name;
+    }
+  }
+}
+
+TEST(CaseReference, IsTheDocumentationPage) {
+  EXPECT_EQ(file_text(std::string(RICOCHET_SOURCE_DIR) + "/docs/case-file.md"), case_reference())
+      << "docs/case-file.md is generated: write case_reference() into it";
+}
+
+TEST(CaseReference, ShowsAValidCase) {
+  const std::string page = case_reference();
+  const std::string opening = "```toml\n";
+  const std::size_t first = page.find(opening) + opening.size();
+  EXPECT_EQ(read_text(page.substr(first, page.find("```", first) - first)).title, "Elastic disc on a rigid foundation");
+}
+
+}  // namespace ricochet::case_test
