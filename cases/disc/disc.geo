@@ -3,7 +3,7 @@
 SetFactory("OpenCASCADE");
 radius = 0.02;
 gap = 0.001;
-size = 0.0021;
+size = 0.0020;
 Mesh.MeshSizeMin = size;
 Mesh.MeshSizeMax = size;
 centre = newp; Point(centre) = {0, radius + gap, 0};

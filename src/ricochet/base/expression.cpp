@@ -12,6 +12,23 @@
 
 namespace ricochet {
 
+namespace {
+
+/// muParser would take "t=3" as an assignment.
+void refuse_assignment(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    if (i + 1 < text.size() && text[i + 1] == '=') {
+      ++i;
+    } else if (i == 0 || (text[i - 1] != '<' && text[i - 1] != '>' && text[i - 1] != '!')) {
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("in the expression \"{}\": \"=\" is no comparison; write \"==\"", text));
+    }
+  }
+}
+
+}  // namespace
+
 // The variables live beside the parser, which holds their addresses: so the parser is rebuilt on every copy.
 struct Expression::Implementation {
   std::string text;
@@ -38,6 +55,7 @@ void Expression::Implementation::compile() {
       }
       parser.DefineConst(name, value);
     }
+    refuse_assignment(text);
     parser.SetExpr(text);
     for (const auto& [name, address] : parser.GetUsedVar()) {
       uses_time = uses_time || name == "t";
@@ -52,7 +70,12 @@ void Expression::Implementation::compile() {
       }
     }
     number = !uses_time && !uses_position;
-    parser.Eval();  // muParser checks the syntax on the first evaluation
+    int results = 0;
+    parser.Eval(results);  // muParser checks the syntax on the first evaluation
+    if (results != 1) {
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("the expression \"{}\" gives {} values; write one, with a point as decimal sign", text, results));
+    }
     if (number) {
       constant = parser.Eval();
       if (!std::isfinite(constant)) {

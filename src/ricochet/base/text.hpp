@@ -9,7 +9,7 @@
 namespace ricochet {
 
 /// The candidate nearest to `word` by edit distance (transpositions count one), or "" when none is near enough to be
-/// what was meant (more than max(2, length/3) edits away).
+/// what was meant (more than max(2, length/3) edits away, or as many as the word has letters).
 std::string nearest_name(std::string_view word, std::span<const std::string> candidates);
 
 /// "a", "a or b", "a, b or c"; with quotes around each when `quoted`.

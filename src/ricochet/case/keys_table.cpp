@@ -127,7 +127,7 @@ Section obstacle_section() {
               {.name = "type",
                .type = KeyType::choice,
                .required = true,
-               .choices = {"plane"},
+               .choices = obstacle_types(),
                .doc = "Shape: a half-space bounded by a plane."},
               {.name = "point",
                .type = KeyType::vector,
@@ -246,7 +246,7 @@ Section mass_section() {
       .keys = {{.name = "type",
                 .type = KeyType::choice,
                 .standard = "equivalent",
-                .choices = {"consistent", "lumped", "equivalent", "equivalent-nearest"},
+                .choices = mass_names(),
                 .doc = "The equivalent masses have no inertia on contact nodes, and keep total mass, centre of gravity "
                        "and moments of inertia."}}};
 }

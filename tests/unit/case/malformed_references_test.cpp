@@ -71,7 +71,7 @@ TEST(MalformedCase, References) {
       {0, "[[support]]\ngroup = \"a\"\ncomponents = [\"x\"]\nvalue = \"p*t\"\nparameters = { p = \"a\" }",
        "16:20: the parameter \"p\" must be a finite number; found the text \"a\""},
       {0, "[[traction]]\ngroup = \"a\"\nvalue = [\"0\", \"q*t\"]\nparameters = { p = 1.0 }",
-       "14:15: \"value\": in the expression \"q*t\": unknown name \"q\" (did you mean \"x\"?); known are \"x\", \"y\", "
+       "14:15: \"value\": in the expression \"q*t\": unknown name \"q\"; known are \"x\", \"y\", "
        "\"z\", \"t\", \"pi\" and \"p\""},
       {0, "[[traction]]\ngroup = \"a\"\nvalue = 3.0",
        "14:9: \"value\" must be a vector of 2 or 3 numbers or expressions in x, y, z and t (unit: stress); found the "
