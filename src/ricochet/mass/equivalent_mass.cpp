@@ -61,7 +61,7 @@ class EquivalentMass final : public MassConstruction {
   static Extrapolation extrapolate(const MassInput& input, const std::vector<char>& is_contact, const Vector& diagonal,
                                    Index node, std::vector<Index>& seen_from) {
     const Index dimension = input.nodes->rows();
-    const std::size_t wanted_neighbours = dimension == 2 ? 12 : 40;
+    const std::size_t wanted_neighbours = dimension == 2 ? 20 : 40;
     std::vector<Index> front{node}, next, free;
     seen_from[static_cast<std::size_t>(node)] = node;
     Extrapolation result;

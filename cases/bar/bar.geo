@@ -1,0 +1,22 @@
+// A bar as an upright strip, 10 long and 0.5 wide, 5 above the floor y = 0; unstructured triangles.
+// gmsh bar.geo -2 -format msh41 -o bar.msh        (about 750 nodes)
+length = 10;
+width = 0.5;
+gap = 5;
+DefineConstant[ size = 0.1 ];
+Mesh.MeshSizeMin = size;
+Mesh.MeshSizeMax = size;
+Point(1) = {0, gap, 0};
+Point(2) = {width, gap, 0};
+Point(3) = {width, gap + length, 0};
+Point(4) = {0, gap + length, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Physical Surface("bar") = {1};
+Physical Curve("bottom") = {1};
+Physical Curve("top") = {3};
+Physical Curve("sides") = {2, 4};
