@@ -132,8 +132,9 @@ void DirectStage::condense() {
   }
   gap_supported_.resize(problem_.contact.size(), problem_.supports.size());
   gap_supported_.setFromTriplets(supported.begin(), supported.end());
-  if (contact_columns_.size() > 0) trailing.triangularView<Eigen::Lower>().solveInPlace(contact_columns_);
   contact_operator_.setZero(problem_.contact.size(), problem_.contact.size());
+  if (contact_columns_.size() == 0) return;  // no contact, or none of its dofs in this stage
+  trailing.triangularView<Eigen::Lower>().solveInPlace(contact_columns_);
   contact_operator_.selfadjointView<Eigen::Lower>().rankUpdate(contact_columns_.transpose());
   contact_operator_.triangularView<Eigen::StrictlyUpper>() = contact_operator_.transpose();
 }

@@ -9,13 +9,14 @@
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 
-// The equivalent masses on meshes of every kind: thin strips and plates, coarse balls, contact all around, quadrilaterals and
-// hexahedra, curved second-order cells. Meshed by the gmsh program from the descriptions below.
+// The equivalent masses on meshes of every kind: thin strips and plates, coarse balls, contact all around,
+// quadrilaterals and hexahedra, curved second-order cells. Meshed by the gmsh program from the descriptions below.
 
 namespace ricochet {
 namespace {
 
-constexpr const char* strip = "Rectangle(1)={0,0,0,10,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
+constexpr const char* strip =
+    "Rectangle(1)={0,0,0,10,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
 constexpr const char* strip_around =
     "Rectangle(1)={0,0,0,10,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1,2,3,4};";
 constexpr const char* disc = "Disk(1)={0,0,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
@@ -23,7 +24,8 @@ constexpr const char* ring =
     "Disk(1)={0,0,0,1}; Disk(2)={0,0,0,0.6}; BooleanDifference(3)={Surface{1};Delete;}{Surface{2};Delete;}; "
     "Physical Surface(\"body\")={3}; Physical Curve(\"contact\")={Boundary{Surface{3};}};";
 constexpr const char* ball = "Sphere(1)={0,0,0,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1};";
-constexpr const char* plate = "Box(1)={0,0,0,10,10,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={5};";
+constexpr const char* plate =
+    "Box(1)={0,0,0,10,10,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={5};";
 constexpr const char* plate_around =
     "Box(1)={0,0,0,10,10,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1,2,3,4,5,6};";
 constexpr const char* cylinder =
@@ -155,7 +157,8 @@ TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKi
     std::printf("%-38s %6td %8zu %12.2f %12.2f %12s\n", description.name.c_str(), body.consistent.cols(),
                 body.input.contact_nodes.size(), top_eigenvalue(body.consistent, scale), top, nearest_text.c_str());
   }
-  // Those on which the nearest matrix is indefinite are among the meshes, or the first construction would not be needed.
+  // Those on which the nearest matrix is indefinite are among the meshes, or the first construction would not be
+  // needed.
   EXPECT_GE(refused, 15);
 }
 
@@ -175,8 +178,9 @@ TEST(EquivalentMass, DegreeOneSpaceOnSecondOrderCells) {
 
 TEST(EquivalentMass, SaysWhereTheInertiaHasNowhereToGo) {
   // Two triangles: every node is on the boundary.
-  const Assembled body({"", 1, 1.0, "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Transfinite Curve{:}=2; "
-                                    "Transfinite Surface{1}; Physical Curve(\"contact\")={1,2,3,4};"});
+  const Assembled body({"", 1, 1.0,
+                        "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Transfinite Curve{:}=2; "
+                        "Transfinite Surface{1}; Physical Curve(\"contact\")={1,2,3,4};"});
   try {
     (void)make_equivalent_mass()->build(body.input);
     FAIL() << "no error";

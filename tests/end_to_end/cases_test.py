@@ -1,0 +1,73 @@
+"""A case of cases/ holds: it is valid, its run succeeds with all its [[expect]] entries, its energy account closes, and
+its history has exactly the documented columns. The case file is the first argument."""
+
+import json
+import pathlib
+import sys
+import tomllib
+import unittest
+
+from harness import History, TestCase, run
+
+CASE = pathlib.Path(sys.argv.pop(1))
+
+AXES = "xyz"
+
+
+def vector_columns(name, dimension):
+    return [f"{name}_{axis}" for axis in AXES[:dimension]]
+
+
+def documented_columns(dimension, probes):
+    columns = ["step", "time", "kinetic_energy", "elastic_energy", "load_potential", "algorithmic_energy",
+               "total_energy", "load_work", "contact_work", "friction_work", "support_work", "obstacle_work",
+               "damping_work", "numerical_dissipation", "energy_residual"]
+    columns += vector_columns("contact_force", dimension) + vector_columns("momentum", dimension)
+    columns += ["angular_momentum_z"] if dimension == 2 else vector_columns("angular_momentum", 3)
+    columns += ["max_rotation", "active_contacts", "sticking", "slipping", "max_penetration", "iterations"]
+    for probe in probes:
+        columns += vector_columns(probe["name"] + ".displacement", dimension)
+        columns += vector_columns(probe["name"] + ".velocity", dimension)
+        if probe["in_contact_boundary"]:
+            columns += [f"{probe['name']}.{name}" for name in ("gap", "pressure", "reaction_normal")]
+            columns += vector_columns(probe["name"] + ".reaction_tangential", dimension)
+    return columns
+
+
+class CaseTest(TestCase):
+    def test_is_valid_and_keeps_its_promises(self):
+        self.expect_status(0, run("validate", CASE))
+        results = self.simulate(CASE)
+        history = History(results / "history.csv")
+        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["status"], "done")
+        self.check_columns(history, summary)
+        self.check_rows(history, summary)
+        scale = history.largest_energy()
+        self.assertGreater(scale, 0.0, "a case in which nothing moves shows nothing")
+        for step, residual in zip(history["step"], history["energy_residual"]):
+            self.assertLessEqual(abs(residual), 1e-10 * scale, f"energy_residual in step {step:g}")
+        for expectation in summary["expectations"]:
+            self.assertTrue(expectation["holds"], expectation)
+
+    def check_columns(self, history, summary):
+        with open(CASE, "rb") as file:
+            asked_for = [probe["name"] for probe in tomllib.load(file).get("probe", [])]
+        self.assertEqual([probe["name"] for probe in summary["probes"]], asked_for)
+        self.assertEqual(history.names, documented_columns(summary["dimension"], summary["probes"]))
+
+    def check_rows(self, history, summary):
+        with open(CASE, "rb") as file:
+            every = tomllib.load(file).get("output", {}).get("history_every", 1)
+        steps = summary["steps"]
+        wanted = list(range(0, steps + 1, every)) + ([steps] if steps % every else [])
+        self.assertEqual(history["step"], wanted)
+        for step, time in zip(history["step"], history["time"]):
+            self.assertAlmostEqual(time, step * summary["time_step"], delta=1e-12 * summary["end_time"])
+        for total, *parts in zip(history["total_energy"], history["kinetic_energy"], history["elastic_energy"],
+                                 history["load_potential"]):
+            self.assertAlmostEqual(total, sum(parts), delta=1e-14 * sum(map(abs, parts)))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,59 @@
+"""The disc of the source's section 6 shows its claims: what each of its three schemes does to energy, to the contact
+force and to interpenetration, at a time step of 1e-4 over 0.15 s."""
+
+import unittest
+
+from harness import DISC, History, SCHEMES, TestCase, total_variation
+
+RADIUS = 0.02
+STEPS = 1500
+CLOSED_FORM_ENERGY = 0.5 * 6000.0 * 3.141592653589793 * RADIUS**2 * 0.1**2
+
+
+class DiscClaims(TestCase):
+    def histories(self):
+        found = {}
+        for scheme, mass in SCHEMES.items():
+            values = {"time.scheme": scheme, "mass.type": mass, "time.step": "1e-4", "time.end": "0.15",
+                      "output.fields_every": 0}
+            if scheme == "newmark":
+                values.update({"time.beta": 0.5, "time.gamma": 0.5})
+            found[scheme] = History(self.simulate(DISC, scheme, values) / "history.csv")
+            self.assertEqual(found[scheme]["step"][-1], STEPS)
+        return found
+
+    def test_the_claims_of_the_source(self):
+        histories = self.histories()
+        energy = {scheme: history["total_energy"] for scheme, history in histories.items()}
+        variation = {scheme: total_variation(history["lowest.reaction_normal"])
+                     for scheme, history in histories.items()}
+        for scheme, history in histories.items():
+            # The polygon of the mesh has a little less area than the disc.
+            self.assertAlmostEqual(energy[scheme][0] / CLOSED_FORM_ENERGY, 1.0, delta=0.01, msg=scheme)
+            self.assertGreater(max(history["lowest.reaction_normal"]), 0.0, f"{scheme}: the disc never touched")
+            # It touches at 7.35 ms and not before.
+            touching = [t for t, force in zip(history["time"], history["contact_force_y"]) if force > 0.0]
+            self.assertAlmostEqual(touching[0], 7.35e-3, delta=2e-4, msg=scheme)
+            rise = abs(energy[scheme][0]) if scheme != "midpoint" else history.largest_energy()
+            self.assertLessEqual(max(map(abs, history["energy_residual"])), 1e-10 * rise, scheme)
+
+        conserving = energy["klr-conserving"]
+        drift = max(abs(value - conserving[0]) for value in conserving) / conserving[0]
+        self.assertLessEqual(drift, 1e-10, "klr-conserving keeps its half-step energy")
+
+        loss = abs(energy["newmark"][-1] / energy["newmark"][0] - 1.0)
+        self.assertLessEqual(loss, 2e-3, "equivalent mass: energy at the end")
+        self.assertLessEqual(max(histories["newmark"]["max_penetration"]), 1e-12 * RADIUS)
+        self.assertLessEqual(100.0 * variation["newmark"], variation["klr-conserving"],
+                             "equivalent mass: a smooth contact force")
+        self.assertGreater(max(histories["klr-conserving"]["max_penetration"]), 1e-4 * RADIUS,
+                           "klr-conserving sinks in a little")
+
+        growth = max(energy["midpoint"]) / energy["midpoint"][0]
+        self.assertGreater(growth, 50.0, "midpoint creates energy")
+        print(f"klr-conserving: drift {drift:.1e}, variation {variation['klr-conserving']:.4g}; "
+              f"newmark: loss {loss:.2e}, variation {variation['newmark']:.4g}; midpoint: energy x {growth:.4g}")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,124 @@
+"""What the end-to-end tests share: running the program, reading a history, a small case to start from.
+
+The program and the source tree come from the environment (CTest sets both): RICOCHET_PROGRAM and RICOCHET_SOURCE_DIR.
+"""
+
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = pathlib.Path(os.environ["RICOCHET_PROGRAM"])
+SOURCE = pathlib.Path(os.environ["RICOCHET_SOURCE_DIR"])
+MESHES = SOURCE / "tests" / "data" / "meshes"
+DISC = SOURCE / "cases" / "disc" / "disc.toml"
+
+# Each scheme of the source with the mass that it is shown with.
+SCHEMES = {"midpoint": "consistent", "klr-conserving": "consistent", "newmark": "equivalent"}
+
+# A block of quadrilaterals (the parallelogram of quadrilateral.geo) that falls on a floor.
+BLOCK_CASE = """title = "A block falls"
+[mesh]
+file = "{mesh}"
+[[material]]
+group = "body"
+density = 1.0
+lambda = 100.0
+mu = 50.0
+[obstacle.floor]
+type = "plane"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+[[contact]]
+group = "bottom"
+obstacle = "floor"
+[load]
+gravity = [0.0, -10.0]
+[mass]
+type = "consistent"
+[time]
+scheme = "newmark"
+preset = "trapezoidal"
+step = 0.01
+end = 0.3
+[[probe]]
+name = "foot"
+at = [1.3, 0.1]
+"""
+
+
+def block_case(mesh="quadrilateral_o1_msh41_ascii.msh"):
+    return BLOCK_CASE.format(mesh=MESHES / mesh)
+
+
+def run(*arguments, directory=None, environment=None):
+    """The finished process of the program, its output as text."""
+    return subprocess.run([str(PROGRAM), *map(str, arguments)], cwd=directory, env=environment, text=True,
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=500)
+
+
+def settings(values):
+    """The command-line arguments of `--set` for a dictionary of key paths."""
+    return [argument for key, value in values.items() for argument in ("--set", f"{key}={value}")]
+
+
+class History:
+    """history.csv, read strictly: the same number of fields in every row, none empty, every one a finite number."""
+
+    def __init__(self, path):
+        text = pathlib.Path(path).read_text(encoding="ascii")
+        if not text.endswith("\n"):
+            raise ValueError(f"{path}: the last line is not complete")
+        header, *lines = text[:-1].split("\n")
+        self.names = header.split(",")
+        if len(set(self.names)) != len(self.names):
+            raise ValueError(f"{path}: a column is there twice")
+        self.rows = []
+        for number, line in enumerate(lines, start=2):
+            fields = line.split(",")
+            if len(fields) != len(self.names):
+                raise ValueError(f"{path}:{number}: {len(fields)} fields under {len(self.names)} columns")
+            row = [float(field) for field in fields]  # an empty field is no number
+            if not all(map(math.isfinite, row)):
+                raise ValueError(f"{path}:{number}: a number is not finite")
+            self.rows.append(row)
+
+    def __getitem__(self, name):
+        column = self.names.index(name)
+        return [row[column] for row in self.rows]
+
+    def largest_energy(self):
+        return max(abs(value) for name in ("total_energy", "kinetic_energy", "elastic_energy") for value in self[name])
+
+
+def total_variation(values):
+    return sum(abs(after - before) for before, after in zip(values, values[1:]))
+
+
+class TestCase(unittest.TestCase):
+    """A test with a folder of its own, that is removed afterwards."""
+
+    maxDiff = None
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="ricochet-test-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def expect_status(self, status, process):
+        self.assertEqual(process.returncode, status,
+                         f"{' '.join(process.args)}\nstdout:\n{process.stdout}\nstderr:\n{process.stderr}")
+        return process
+
+    def simulate(self, case, name="out", values=None, options=("--quiet",)):
+        """Runs a case that must succeed; the folder of its results."""
+        output = self.folder / name
+        self.expect_status(0, run("run", case, "-o", output, *options, *settings(values or {})))
+        return output

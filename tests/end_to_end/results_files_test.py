@@ -1,0 +1,237 @@
+"""results.xdmf and results.h5, read by meshio and h5py, say the same as history.csv, on every kind of cell."""
+
+import json
+import os
+import signal
+import subprocess
+import time
+import unittest
+import xml.etree.ElementTree
+
+import h5py
+import meshio
+import numpy
+
+from harness import DISC, MESHES, PROGRAM, History, TestCase, block_case
+from vtk_cells import middles, volumes
+
+CASE = """
+[mesh]
+file = "{mesh}"
+degree = {degree}
+[[material]]
+group = "{group}"
+density = 1.0
+lambda = 100.0
+mu = 50.0
+[obstacle.floor]
+type = "plane"
+point = {point}
+normal = {up}
+[[contact]]
+group = "{bottom}"
+obstacle = "floor"
+[initial]
+velocity = {down}
+[mass]
+type = "consistent"
+[time]
+scheme = "{scheme}"
+step = 0.002
+end = 0.06
+[[probe]]
+name = "lowest"
+at = {lowest}
+[[probe]]
+name = "highest"
+at = {highest}
+[output]
+fields_every = 1
+"""
+
+# Bodies of tests/data/meshes: their volume from the corners written in the .geo files, two points to watch.
+SHAPES = {
+    "triangle": dict(volume=0.5 * ((1.5 - 0.1) * (0.9 - 0.1) - (-0.1 - 1.3) * (1.2 - 0.2)), lowest=[1.3, 0.1],
+                     highest=[1.5, 1.2]),
+    "quadrilateral": dict(volume=1.2 * 1.1 - (-0.1) * 0.2, lowest=[1.3, 0.1], highest=[0.3, 1.3]),
+    "mixed": dict(volume=2.0, lowest=[1.5, 0.0], highest=[2.0, 1.0], group="all"),
+    "tetrahedron": dict(volume=0.5 * numpy.linalg.det([[1.2, -0.1, -0.05], [0.1, 1.0, 0.05], [0.1, 0.2, 1.1]]),
+                        lowest=[1.3, 0.1, 0.0], highest=[0.3, 1.4, 1.2]),
+    "hexahedron": dict(volume=numpy.linalg.det([[1.2, 0.1, 0.05], [0.1, 1.1, 0.02], [0.05, 0.1, 0.9]]),
+                       lowest=[0.1, 0.2, 0.05], highest=[1.45, 1.5, 1.02]),
+    "disc": dict(volume=None, lowest=[0.0, -1.0], highest=[0.0, 1.0], bottom="boundary"),
+}
+
+
+def frames(results):
+    """(points, cell blocks, [(time, fields)]) as meshio reads them."""
+    with meshio.xdmf.TimeSeriesReader(results / "results.xdmf") as reader:
+        points, cells = reader.read_points_cells()
+        read = [reader.read_data(k) for k in range(reader.num_steps)]
+    return points, [(block.type, block.data) for block in cells], [(t, fields) for t, fields, _ in read]
+
+
+class ResultsFiles(TestCase):
+    def simulate_shape(self, shape, order, degree, scheme="klr-conserving"):
+        about = SHAPES[shape]
+        dimension = len(about["lowest"])
+        up = [0] * (dimension - 1) + [1]
+        point = [0.0] * (dimension - 1) + [about["lowest"][-1] - 0.01]
+        text = CASE.format(mesh=MESHES / f"{shape}_o{order}_msh41_binary.msh", degree=degree, scheme=scheme, up=up,
+                           down=[-x for x in up], point=point, group=about.get("group", "body"),
+                           bottom=about.get("bottom", "bottom"), lowest=about["lowest"], highest=about["highest"])
+        return self.simulate(self.write("case.toml", text))
+
+    def check_probes(self, results, points, read):
+        """Every frame equals the row of the history at its time, bit for bit; returns how many saw contact."""
+        history = History(results / "history.csv")
+        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        dimension = summary["dimension"]
+        self.assertEqual(len(read), summary["frames"])
+        in_contact = 0
+        rows = {row[history.names.index("time")]: i for i, row in enumerate(history.rows)}
+        for probe in summary["probes"]:
+            node, name = probe["node"], probe["name"]
+            self.assertEqual(list(points[node][:dimension]), probe["position"])
+            for at, fields in read:
+                row = rows[at]  # the same double, or there is no such key
+                for field in ("displacement", "velocity"):
+                    wanted = [history[f"{name}.{field}_{axis}"][row] for axis in "xyz"[:dimension]]
+                    self.assertEqual(list(fields[field][node]), wanted + [0.0] * (3 - dimension))
+                if probe["in_contact_boundary"]:
+                    self.assertEqual(fields["contact_pressure"][node], history[f"{name}.pressure"][row])
+                    self.assertEqual(fields["gap"][node], history[f"{name}.gap"][row])
+                    touching = history[f"{name}.reaction_normal"][row] > 0.0
+                    self.assertEqual(fields["contact_status"][node], 1 if touching else 0)
+                    in_contact += touching
+                else:
+                    self.assertEqual(fields["contact_status"][node], -1)
+                    self.assertTrue(numpy.isnan(fields["gap"][node]))
+                    self.assertEqual(fields["contact_pressure"][node], 0.0)
+        return in_contact
+
+    def check_cells(self, points, cells, volume, straight):
+        # gmsh places second-order nodes by their parameter on a curve: good to 1e-12 of the body, no better.
+        tolerance = 1e-11 if any(middles(kind) for kind, _ in cells) else 1e-14
+        total = 0.0
+        for kind, nodes in cells:
+            each, smallest = volumes(kind, points, nodes)
+            self.assertGreater(smallest.min(), 0.0, f"a {kind} is turned inside out: its nodes are in another order")
+            total += each.sum()
+            if straight:
+                for i, between in enumerate(middles(kind), start=nodes.shape[1] - len(middles(kind))):
+                    numpy.testing.assert_allclose(points[nodes[:, i]], points[nodes[:, list(between)]].mean(axis=1),
+                                                  rtol=0, atol=tolerance)
+        self.assertAlmostEqual(total, volume, delta=10 * tolerance * volume)
+        self.assertEqual(sorted(set(numpy.concatenate([nodes.ravel() for _, nodes in cells]))),
+                         list(range(len(points))), "every node belongs to a cell")
+
+    def check_shape(self, shape, order, degree, kinds):
+        results = self.simulate_shape(shape, order, degree)
+        points, cells, read = frames(results)
+        self.assertEqual(sorted({kind for kind, _ in cells}), sorted(kinds))
+        self.check_cells(points, cells, SHAPES[shape]["volume"], straight=True)
+        self.assertGreater(self.check_probes(results, points, read), 0, "the lowest node never touched in a frame")
+
+    def test_triangles(self):
+        self.check_shape("triangle", 1, 1, ["triangle"])
+
+    def test_triangles_of_degree_2(self):
+        self.check_shape("triangle", 2, 2, ["triangle6"])
+
+    def test_degree_2_on_a_mesh_of_order_1(self):
+        self.check_shape("triangle", 1, 2, ["triangle6"])
+
+    def test_quadrilaterals(self):
+        self.check_shape("quadrilateral", 1, 1, ["quad"])
+
+    def test_quadrilaterals_of_degree_2(self):
+        self.check_shape("quadrilateral", 2, 2, ["quad9"])
+
+    def test_triangles_and_quadrilaterals(self):
+        self.check_shape("mixed", 1, 1, ["triangle", "quad"])
+
+    def test_tetrahedra(self):
+        self.check_shape("tetrahedron", 1, 1, ["tetra"])
+
+    def test_tetrahedra_of_degree_2(self):
+        self.check_shape("tetrahedron", 2, 2, ["tetra10"])
+
+    def test_hexahedra(self):
+        self.check_shape("hexahedron", 1, 1, ["hexahedron"])
+
+    def test_hexahedra_of_degree_2(self):
+        self.check_shape("hexahedron", 2, 2, ["hexahedron27"])
+
+    def test_triangles_and_quadrilaterals_of_degree_2(self):
+        """meshio 5.0 knows no second-order cells in mixed topologies: read by h5py, the numbers taken from XDMF."""
+        results = self.simulate_shape("mixed", 2, 2)
+        kinds = {36: ("triangle6", 6), 35: ("quad9", 9)}
+        with h5py.File(results / "results.h5", "r") as file:
+            points, numbers = file["/mesh/nodes"][()], list(file["/mesh/cells"][()])
+            read = [{name: field[()] for name, field in file[f"/frames/{name}"].items()} for name in file["/frames"]]
+        found = {}
+        while numbers:
+            kind, count = kinds[numbers[0]]
+            found.setdefault(kind, []).append(numbers[1:1 + count])
+            numbers = numbers[1 + count:]
+        self.check_cells(points, [(kind, numpy.array(nodes)) for kind, nodes in found.items()], 2.0, straight=True)
+        tree = xml.etree.ElementTree.parse(results / "results.xdmf")
+        times = [float(element.get("Value")) for element in tree.iter("Time")]
+        self.assertEqual(len(times), len(read))
+        self.check_probes(results, points, list(zip(times, read)))
+
+    def test_curved_triangles(self):
+        """The body as meshio reads it from the mesh file."""
+        results = self.simulate_shape("disc", 2, 2)
+        points, cells, read = frames(results)
+        mesh = meshio.read(MESHES / "disc_o2_msh41_ascii.msh")
+        area = volumes("triangle6", mesh.points, mesh.cells_dict["triangle6"])[0].sum()
+        self.assertAlmostEqual(area, numpy.pi, delta=0.01 * numpy.pi)
+        self.check_cells(points, cells, area, straight=False)
+        self.assertGreater(self.check_probes(results, points, read), 0)
+
+    def test_schemes_on_the_disc(self):
+        for scheme, mass in (("newmark", "equivalent"), ("klr-conserving", "consistent"), ("midpoint", "consistent")):
+            with self.subTest(scheme):
+                values = {"time.scheme": scheme, "mass.type": mass, "time.end": 0.01, "output.fields_every": 3}
+                results = self.simulate(DISC, scheme, values)
+                points, _, read = frames(results)
+                self.assertEqual([t for t, _ in read][:2], [0.0, 3 * 1e-4])
+                self.assertAlmostEqual(read[-1][0], 0.01, delta=1e-15, msg="the last step has its frame")
+                self.assertGreater(self.check_probes(results, points, read), 0)
+                with h5py.File(results / "results.h5", "r") as file:
+                    self.assertEqual(len(file["/frames"]), len(read))
+                    last = file["/frames"][f"{len(read) - 1:06d}"]
+                    for name, field in read[-1][1].items():
+                        self.assertEqual(last[name][()].tobytes(), field.tobytes(), name)
+
+    def test_no_fields(self):
+        results = self.simulate(DISC, values={"time.end": 0.001, "output.fields_every": 0})
+        self.assertEqual(sorted(path.name for path in results.iterdir()), ["history.csv", "summary.json"])
+
+    def test_well_formed_after_every_frame(self):
+        """The run is stopped again and again: whatever it has written by then is a complete document."""
+        case = self.write("case.toml", block_case() + "[output]\nfields_every = 1\n")
+        process = subprocess.Popen([PROGRAM, "run", case, "-o", self.folder / "out", "--quiet", "--set",
+                                    "time.end=1000"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        counts = set()
+        deadline = time.monotonic() + 60
+        while len(counts) < 20 and time.monotonic() < deadline:
+            time.sleep(0.005)
+            os.kill(process.pid, signal.SIGSTOP)
+            _, status = os.waitpid(process.pid, os.WUNTRACED)
+            self.assertTrue(os.WIFSTOPPED(status), "the run ended early")
+            side = self.folder / "out" / "results.xdmf"
+            # Made empty first: that is before its first frame.
+            if side.exists() and side.stat().st_size > 0:
+                tree = xml.etree.ElementTree.parse(side)
+                counts.add(sum(1 for _ in tree.iter("Time")))
+            os.kill(process.pid, signal.SIGCONT)
+        self.assertGreaterEqual(len(counts), 20)
+
+
+if __name__ == "__main__":
+    unittest.main()

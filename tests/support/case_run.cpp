@@ -1,0 +1,62 @@
+#include "support/case_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/case/run_case.hpp"
+
+namespace ricochet::test_support {
+
+std::string write_temporary(const std::string& name, const std::string& text) {
+  // One directory per test: tests run at the same time.
+  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+  std::string folder = "ricochet";
+  if (test != nullptr) folder += std::string("_") + test->test_suite_name() + "_" + test->name();
+  for (char& c : folder) c = c == '/' ? '_' : c;
+  const std::filesystem::path directory = std::filesystem::path(::testing::TempDir()) / folder;
+  std::filesystem::create_directories(directory);
+  std::ofstream(directory / name) << text;
+  return (directory / name).string();
+}
+
+std::string mesh_geometry(const std::string& name, const std::string& geometry, double size, int order) {
+  const std::string source =
+      write_temporary(name + ".geo", "SetFactory(\"OpenCASCADE\");\nMesh.MeshSizeMin = " + std::to_string(size) +
+                                         ";\nMesh.MeshSizeMax = " + std::to_string(size) + ";\n" + geometry + "\n");
+  const std::string result = std::filesystem::path(source).replace_extension(".msh").string();
+  const std::string command =
+      "gmsh '" + source + "' -3 -nt 1 -v 1 -format msh41 -order " + std::to_string(order) + " -o '" + result + "'";
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("gmsh failed: " + command);
+  return result;
+}
+
+CaseRun::CaseRun(const std::string& toml, const std::vector<std::string>& overrides) {
+  log::set_level(log::Level::error);
+  input_ = read_case(write_temporary("case.toml", toml), overrides);
+  model_ = build_model(input_);
+  scheme_ = make_scheme({input_.time.scheme, input_.time.step, input_.time.beta, input_.time.gamma});
+  simulation_ = std::make_unique<Simulation>(model_->problem, *scheme_, model_->initial);
+  steps_ = step_count(input_.time);
+}
+
+void CaseRun::run(const std::function<void()>& each, bool with_start) {
+  if (with_start) each();
+  while (simulation_->state().step < steps_) {
+    simulation_->advance();
+    each();
+  }
+}
+
+double total_energy(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {
+  Vector internal;
+  problem.internal_force->evaluate(displacement, internal);
+  return 0.5 * velocity.dot(problem.mass * velocity) + 0.5 * displacement.dot(internal) -
+         problem.loads.constant().dot(displacement);
+}
+
+}  // namespace ricochet::test_support

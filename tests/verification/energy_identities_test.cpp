@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/case_run.hpp"
+
+// The discrete energy identities of each scheme: exact, for one step, on any mesh, frictionless. Energies and gaps are
+// computed here from the state, not taken from the energy account. λ are nodal forces, g₀ and g₁ the gaps at the two
+// ends.
+
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+
+struct Body {
+  std::string name;
+  int dimension;
+  int degree;
+  std::string mesh;
+};
+
+/// Unstructured discs and balls of radius 1 that touch the obstacle soon; the lower half is the contact boundary.
+std::vector<Body> bodies() {
+  const std::string disc = "Disk(1)={0,1.02,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
+  const std::string ball = "Sphere(1)={0,0,1.02,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1};";
+  using test_support::mesh_geometry;
+  return {{"disc of triangles", 2, 1, mesh_geometry("disc", disc, 0.3, 1)},
+          {"disc of quadrilaterals", 2, 1, mesh_geometry("quads", disc + " Recombine Surface{1};", 0.3, 1)},
+          {"curved disc of degree 2", 2, 2, mesh_geometry("disc2", disc, 0.5, 2)},
+          {"ball of tetrahedra", 3, 1, mesh_geometry("ball", ball, 0.45, 1)},
+          {"curved ball of degree 2", 3, 2, mesh_geometry("ball2", ball, 0.7, 2)}};
+}
+
+/// A body thrown at an oblique plane in oblique gravity, so that no component is special.
+std::string case_text(const Body& body, const std::string& mass, const std::string& time) {
+  const bool flat = body.dimension == 2;
+  return "[mesh]\nfile = \"" + body.mesh + "\"\ndegree = " + std::to_string(body.degree) +
+         "\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 30.0\nmu = 20.0\n"
+         "[obstacle.plane]\ntype = \"plane\"\n" +
+         (flat ? "point = [0.0, 0.0]\nnormal = [0.1, 1.0]\n"
+               : "point = [0.0, 0.0, 0.0]\nnormal = [0.1, -0.05, 1.0]\n") +
+         "[[contact]]\ngroup = \"contact\"\nobstacle = \"plane\"\n[load]\n" +
+         (flat ? "gravity = [0.3, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*y\", \"-0.5+0.2*x\"]\n"
+               : "gravity = [0.3, 0.1, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*z\", \"0.1\", \"-0.5+0.2*x\"]\n") +
+         "[mass]\ntype = \"" + mass + "\"\n[time]\n" + time + "step = 0.01\nend = 1.5\n";
+}
+
+/// Everything an identity needs of one end of a step.
+struct End {
+  Vector displacement, velocity, acceleration, gap, force;
+  double energy = 0.0;
+
+  explicit End(CaseRun& run) {
+    const State& state = run.state();
+    displacement = state.displacement;
+    velocity = state.velocity;
+    acceleration = state.acceleration;
+    force = state.forces.normal_reaction;
+    run.problem().gaps(displacement, gap);
+    energy = test_support::total_energy(run.problem(), displacement, velocity);
+  }
+};
+
+/// Size of the terms whose sum is the energy: what rounding is relative to. A body that has moved by u as a whole has
+/// the elastic energy of its strain alone, but ½uᵀKu sums terms of the size of |u|ᵀ|K||u|.
+double size_of_terms(const SemidiscreteProblem& problem, const End& end) {
+  const Vector u = end.displacement.cwiseAbs();
+  const Vector v = end.velocity.cwiseAbs();
+  return u.dot(problem.internal_force->tangent().cwiseAbs() * u) + v.dot(problem.mass.cwiseAbs() * v) +
+         u.dot(problem.loads.constant().cwiseAbs());
+}
+
+/// Runs a case and compares the energy change of every step with `identity(before, after)`.
+void expect_identity(CaseRun& run, const std::string& name,
+                     const std::function<double(const End&, const End&)>& identity) {
+  End before(run);
+  double worst = 0.0;
+  double touched = 0.0;
+  run.run(
+      [&] {
+        const End after(run);
+        const double size = std::max(size_of_terms(run.problem(), before), size_of_terms(run.problem(), after));
+        worst = std::max(worst, std::abs(after.energy - before.energy - identity(before, after)) / size);
+        touched = std::max(touched, after.force.maxCoeff());
+        before = after;
+      },
+      false);
+  EXPECT_LT(worst, 20.0 * std::numeric_limits<double>::epsilon()) << name;
+  EXPECT_GT(touched, 0.0) << name << ": the body never touched the obstacle";
+}
+
+TEST(EnergyIdentity, MidpointChangesByMinusTwiceForceTimesFirstGap) {
+  for (const Body& body : bodies()) {
+    for (const char* mass : {"consistent", "lumped"}) {
+      CaseRun run(case_text(body, mass, "scheme = \"midpoint\"\n"));
+      expect_identity(run, body.name + ", " + mass,
+                      [](const End& a, const End& b) { return -2.0 * b.force.dot(a.gap); });
+    }
+  }
+}
+
+TEST(EnergyIdentity, TrapezoidalNewmarkWithAnyMass) {
+  for (const Body& body : bodies()) {
+    for (const char* mass : {"consistent", "lumped", "equivalent"}) {
+      CaseRun run(case_text(body, mass, "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
+      expect_identity(run, body.name + ", " + mass,
+                      [](const End& a, const End& b) { return 0.5 * (a.force.dot(b.gap) - b.force.dot(a.gap)); });
+    }
+  }
+}
+
+TEST(EnergyIdentity, NewmarkWithAnyParametersAndMass) {
+  const double h = 0.01;
+  for (const Body& body : bodies()) {
+    for (const auto& [beta, gamma] : {std::pair{0.5, 0.5}, {0.3025, 0.6}, {0.25, 0.5}, {0.5, 1.0}}) {
+      for (const char* mass : {"consistent", "equivalent"}) {
+        CaseRun run(case_text(
+            body, mass,
+            "scheme = \"newmark\"\nbeta = " + std::to_string(beta) + "\ngamma = " + std::to_string(gamma) + "\n"));
+        const SparseMatrix& m = run.problem().mass;
+        const SparseMatrix& k = run.problem().internal_force->tangent();
+        expect_identity(
+            run, body.name + ", " + mass + ", beta " + std::to_string(beta),
+            [&, beta, gamma](const End& a, const End& b) {
+              const Vector du = b.displacement - a.displacement;
+              const Vector da = b.acceleration - a.acceleration;
+              const double algorithmic =
+                  b.acceleration.dot(m * b.acceleration) - a.acceleration.dot(m * a.acceleration);
+              return (1.0 - gamma) * a.force.dot(b.gap) - gamma * b.force.dot(a.gap) - (gamma - 0.5) * du.dot(k * du) -
+                     0.5 * h * h * (beta - 0.5 * gamma) * (algorithmic + (2.0 * gamma - 1.0) * da.dot(m * da));
+            });
+      }
+    }
+  }
+}
+
+TEST(EnergyIdentity, KlrConservesTheHalfStepEnergy) {
+  for (const Body& body : bodies()) {
+    for (const char* mass : {"consistent", "lumped", "equivalent"}) {
+      CaseRun run(case_text(body, mass, "scheme = \"klr-conserving\"\n"));
+      Vector displacement, velocity;
+      double first = 0.0, worst = 0.0, touched = 0.0, penetration = 0.0;
+      run.run([&] {
+        run.scheme().energy_state(run.state(), displacement, velocity);
+        const double energy = test_support::total_energy(run.problem(), displacement, velocity);
+        if (run.state().step == 0) first = energy;
+        worst = std::max(worst, std::abs(energy / first - 1.0));
+        const End end(run);
+        touched = std::max(touched, end.force.maxCoeff());
+        penetration = std::max(penetration, -end.gap.minCoeff());
+      });
+      EXPECT_LT(worst, 1e-11) << body.name << ", " << mass;
+      EXPECT_GT(touched, 0.0) << body.name;
+      EXPECT_GT(penetration, 0.0) << body.name << ": the scheme is known to let nodes in a little";
+    }
+  }
+}
+
+TEST(EnergyIdentity, AccountClosesWithSupportsDampingAndLoadsThatVary) {
+  const std::string block =
+      "Rectangle(1)={0,0.01,0,2,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1}; "
+      "Physical Curve(\"left\")={4}; Physical Curve(\"top\")={3};";
+  const std::string mesh = test_support::mesh_geometry("block", block, 0.3, 1);
+  for (const char* scheme :
+       {"scheme = \"midpoint\"\n", "scheme = \"klr-conserving\"\n", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
+        "scheme = \"newmark\"\nbeta = 0.3025\ngamma = 0.6\n"}) {
+    for (const char* mass : {"consistent", "lumped", "equivalent"}) {
+      CaseRun run(
+          "[mesh]\nfile = \"" + mesh +
+          "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 50.0\npoisson = 0.3\ndamping = { mass = 0.1, "
+          "stiffness = 0.002 }\n"
+          "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
+          "[[contact]]\ngroup = \"contact\"\nobstacle = \"floor\"\n"
+          "[[support]]\ngroup = \"left\"\ncomponents = [\"x\"]\nvalue = \"0.05*sin(3*t)\"\n"
+          "[[traction]]\ngroup = \"top\"\nvalue = [\"0.3*x*cos(t)\", \"-p*min(t/0.2, 1)\"]\nparameters = { p = 1.0 }\n"
+          "[load]\ngravity = [0.0, -1.0]\nbody_force = [\"0.1*t\", \"0.1*y\"]\n"
+          "[mass]\ntype = \"" +
+          std::string(mass) + "\"\n[time]\n" + scheme + "step = 0.01\nend = 2.0\n");
+      double worst = 0.0, largest = 0.0;
+      run.run([&] {
+        const Energies now = run.simulation().account().energies(run.state());
+        largest = std::max({largest, std::abs(now.kinetic), std::abs(now.elastic), std::abs(now.total())});
+        worst = std::max(worst, std::abs(run.simulation().account().residual(now)));
+      });
+      EXPECT_LT(worst, 1e-12 * largest) << scheme << mass;
+      const Works& works = run.simulation().account().works();
+      EXPECT_NE(works.load, 0.0);
+      EXPECT_NE(works.support, 0.0);
+      EXPECT_LT(works.damping, 0.0) << "damping takes energy away";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ricochet

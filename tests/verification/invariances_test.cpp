@@ -1,0 +1,302 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+#include "support/case_run.hpp"
+
+// A result must not depend on the units, the orientation, the numbering or the observer.
+
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+
+/// A case of a body above an oblique plane, whose every number can be transformed.
+struct Setting {
+  int dimension = 2;
+  std::string mesh;
+  double scale = 1.0;  ///< of the mesh
+  Eigen::Vector3d point{0.0, 0.0, 0.0}, normal{0.1, 1.0, 0.0}, gravity{0.3, -2.0, 0.0}, velocity{0.1, -0.8, 0.0};
+  double density = 1.3, lambda = 30.0, mu = 20.0, step = 0.01, end = 1.0;
+};
+
+std::string vector_text(const Eigen::Vector3d& v, int dimension) {
+  std::string text = fmt::format("{:.17e}, {:.17e}", v[0], v[1]);
+  return "[" + text + (dimension == 3 ? fmt::format(", {:.17e}]", v[2]) : "]");
+}
+
+std::string case_text(const Setting& s, const std::string& time, const std::string& mass) {
+  const int d = s.dimension;
+  return fmt::format(
+      "[mesh]\nfile = \"{}\"\nscale = {:.17e}\n[[material]]\ngroup = \"body\"\ndensity = {:.17e}\nlambda = {:.17e}\nmu "
+      "= {:.17e}\n"
+      "[obstacle.plane]\ntype = \"plane\"\npoint = {}\nnormal = {}\n[[contact]]\ngroup = \"contact\"\nobstacle = "
+      "\"plane\"\n"
+      "[load]\ngravity = {}\n[initial]\nvelocity = {}\n[mass]\ntype = \"{}\"\n[time]\n{}step = {:.17e}\nend = "
+      "{:.17e}\n",
+      s.mesh, s.scale, s.density, s.lambda, s.mu, vector_text(s.point, d), vector_text(s.normal, d),
+      vector_text(s.gravity, d), vector_text(s.velocity, d), mass, time, s.step, s.end);
+}
+
+Setting setting(int dimension) {
+  Setting s;
+  s.dimension = dimension;
+  if (dimension == 2) {
+    s.mesh = test_support::mesh_geometry(
+        "disc", "Disk(1)={0,1.02,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};", 0.3, 1);
+  } else {
+    s.mesh = test_support::mesh_geometry(
+        "ball", "Sphere(1)={0,1.02,0,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1};", 0.5, 1);
+    s.normal = {0.1, 1.0, -0.05};
+    s.velocity[2] = 0.07;
+  }
+  return s;
+}
+
+struct SchemeChoice {
+  std::string time, mass;
+  bool smooth;  ///< does not rattle: agrees over the whole run, not only up to the first release
+};
+
+const std::vector<SchemeChoice>& scheme_choices() {
+  static const std::vector<SchemeChoice> all{
+      {"scheme = \"midpoint\"\n", "consistent", false},
+      {"scheme = \"klr-conserving\"\n", "consistent", false},
+      {"scheme = \"newmark\"\npreset = \"textbook-half\"\n", "equivalent", true},
+      {"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "equivalent", true},
+  };
+  return all;
+}
+
+struct Frame {
+  Vector displacement, reaction;
+};
+
+/// All frames of a run.
+std::vector<Frame> frames(const Setting& s, const SchemeChoice& choice) {
+  CaseRun run(case_text(s, choice.time, choice.mass));
+  std::vector<Frame> result;
+  run.run([&] { result.push_back({run.state().displacement, run.state().forces.normal_reaction}); });
+  return result;
+}
+
+/// Frames up to the first step in which a contact opens again; all of them for smooth schemes.
+std::size_t comparable(const std::vector<Frame>& all, bool smooth) {
+  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Frame& f) { return f.reaction.maxCoeff() > 0.0; }))
+      << "no contact";
+  if (smooth) return all.size();
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    if (((all[k - 1].reaction.array() > 0.0) && !(all[k].reaction.array() > 0.0)).any()) return k;
+  }
+  return all.size();
+}
+
+/// Largest difference of displacement and reaction, relative to the largest of each in the run, after `map` of the
+/// second.
+double difference(const std::vector<Frame>& a, const std::vector<Frame>& b, std::size_t count,
+                  const std::function<Frame(const Frame&)>& map) {
+  double u = 0.0, r = 0.0, u_size = 0.0, r_size = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    u_size = std::max(u_size, a[k].displacement.lpNorm<Eigen::Infinity>());
+    r_size = std::max(r_size, a[k].reaction.lpNorm<Eigen::Infinity>());
+    if (k >= count) continue;
+    const Frame mapped = map(b[k]);
+    u = std::max(u, (a[k].displacement - mapped.displacement).lpNorm<Eigen::Infinity>());
+    r = std::max(r, (a[k].reaction - mapped.reaction).lpNorm<Eigen::Infinity>());
+  }
+  return std::max(u / u_size, r / r_size);
+}
+
+TEST(Invariance, UnitsByPowersOfTwoGiveTheSameBits) {
+  for (const int dimension : {2, 3}) {
+    const Setting s = setting(dimension);
+    for (const auto& [length, time, mass] : {std::tuple{3, 0, 0}, {0, 5, 0}, {0, 0, 7}, {-9, 4, -3}, {1, 1, 1}}) {
+      Setting t = s;
+      const auto unit = [](int exponent) { return std::ldexp(1.0, exponent); };
+      t.scale *= unit(length);
+      t.point *= unit(length);
+      t.velocity *= unit(length - time);
+      t.gravity *= unit(length - 2 * time);
+      t.density *= unit(mass - 3 * length);
+      t.lambda *= unit(mass - length - 2 * time);
+      t.mu *= unit(mass - length - 2 * time);
+      t.step *= unit(time);
+      t.end *= unit(time);
+      const double force = unit(mass - 2 * time + (dimension == 3 ? length : 0));
+      for (const SchemeChoice& choice : scheme_choices()) {
+        const std::vector<Frame> a = frames(s, choice), b = frames(t, choice);
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t k = 0; k < a.size(); ++k) {
+          ASSERT_TRUE((a[k].displacement * unit(length) == b[k].displacement) &&
+                      (a[k].reaction * force == b[k].reaction))
+              << choice.time << "step " << k << " dimension " << dimension << " units " << length << " " << time << " "
+              << mass;
+        }
+      }
+    }
+  }
+}
+
+TEST(Invariance, MetreKilogramAgainstMillimetreTonne) {
+  for (const int dimension : {2, 3}) {
+    const Setting s = setting(dimension);
+    Setting t = s;
+    t.scale *= 1e3;
+    t.velocity *= 1e3;
+    t.gravity *= 1e3;
+    t.density *= 1e-12;  // kg/m³ → t/mm³
+    t.lambda *= 1e-6;    // Pa → MPa
+    t.mu *= 1e-6;
+    const double force = dimension == 3 ? 1.0 : 1e3;  // N; in 2D N/m → N/mm is 1e-3
+    for (const SchemeChoice& choice : scheme_choices()) {
+      const std::vector<Frame> a = frames(s, choice), b = frames(t, choice);
+      const double found = difference(a, b, comparable(a, choice.smooth), [&](const Frame& f) {
+        return Frame{f.displacement * 1e-3, f.reaction * force};
+      });
+      EXPECT_LT(found, 1e-9) << choice.time << dimension;
+    }
+  }
+}
+
+/// A copy of an ASCII .msh 2.2 file with moved nodes, numbered in reverse when asked.
+std::string transformed_mesh(const std::string& path, const std::string& name, const Eigen::Matrix3d& map,
+                             bool renumber, bool flip) {
+  const std::string plain = path + ".msh22.msh";
+  if (std::system(("gmsh '" + path + "' -v 1 -save -format msh22 -o '" + plain + "'").c_str()) != 0)
+    throw std::runtime_error("gmsh failed");
+  std::ifstream in(plain);
+  std::string text, line;
+  long nodes = 0;
+  const auto number = [&](long tag) { return renumber ? nodes + 1 - tag : tag; };
+  while (std::getline(in, line)) {
+    text += line + "\n";
+    if (line == "$Nodes") {
+      std::getline(in, line);
+      nodes = std::stol(line);
+      std::vector<std::string> lines(static_cast<std::size_t>(nodes));
+      for (long i = 0; i < nodes; ++i) {
+        long tag = 0;
+        Eigen::Vector3d x;
+        in >> tag >> x[0] >> x[1] >> x[2];
+        const Eigen::Vector3d y = map * x;
+        lines[static_cast<std::size_t>(number(tag) - 1)] =
+            fmt::format("{} {:.17g} {:.17g} {:.17g}\n", number(tag), y[0], y[1], y[2]);
+      }
+      std::getline(in, line);
+      text += fmt::format("{}\n", nodes);
+      for (const std::string& l : lines) text += l;
+    } else if (line == "$Elements") {
+      std::getline(in, line);
+      text += line + "\n";
+      for (long i = std::stol(line); i > 0; --i) {
+        std::getline(in, line);
+        std::istringstream words(line);
+        long tag = 0, type = 0, tags = 0, physical = 0, entity = 0;
+        words >> tag >> type >> tags >> physical >> entity;
+        std::vector<long> cell;
+        for (long node = 0; words >> node;) cell.push_back(number(node));
+        if (flip && cell.size() > 2) std::swap(cell[1], cell[2]);  // a reflection turns cells inside out
+        text += fmt::format("{} {} {} {} {}", tag, type, tags, physical, entity);
+        for (const long node : cell) text += fmt::format(" {}", node);
+        text += "\n";
+      }
+    }
+  }
+  return test_support::write_temporary(name, text);
+}
+
+/// Compares a case with itself under a linear map of space that keeps lengths.
+void expect_same_under(const Setting& s, const Eigen::Matrix3d& map, bool renumber, const std::string& name) {
+  Setting t = s;
+  t.mesh = transformed_mesh(s.mesh, name + ".msh", map, renumber, map.determinant() < 0.0);
+  Setting plain = s;
+  plain.mesh = transformed_mesh(s.mesh, name + "_plain.msh", Eigen::Matrix3d::Identity(), false, false);
+  for (Eigen::Vector3d* v : {&t.point, &t.normal, &t.gravity, &t.velocity}) *v = map * *v;
+  const int d = s.dimension;
+  for (const SchemeChoice& choice : scheme_choices()) {
+    const std::vector<Frame> a = frames(plain, choice), b = frames(t, choice);
+    // Nodes keep their number from the file in both, but for the ones that belong to no cell: match them by position.
+    CaseRun first(case_text(plain, choice.time, choice.mass)), second(case_text(t, choice.time, choice.mass));
+    const Points& x = first.problem().nodes;
+    const Points& y = second.problem().nodes;
+    std::vector<Index> partner(static_cast<std::size_t>(x.cols()));
+    for (Index i = 0; i < x.cols(); ++i) {
+      Eigen::Vector3d position = Eigen::Vector3d::Zero();
+      position.head(d) = x.col(i);
+      const Vector image = (map * position).head(d);
+      Index at = 0;
+      (y.colwise() - image).colwise().squaredNorm().minCoeff(&at);
+      partner[static_cast<std::size_t>(i)] = at;
+    }
+    const auto& p = first.problem().contact.nodes;
+    const auto& q = second.problem().contact.nodes;
+    const double found = difference(a, b, comparable(a, choice.smooth), [&](const Frame& f) {
+      Frame mapped{Vector(f.displacement.size()), Vector(f.reaction.size())};
+      for (Index i = 0; i < x.cols(); ++i) {
+        Eigen::Vector3d u = Eigen::Vector3d::Zero();
+        u.head(d) = f.displacement.segment(partner[static_cast<std::size_t>(i)] * d, d);
+        mapped.displacement.segment(i * d, d) = (map.transpose() * u).head(d);
+      }
+      for (std::size_t i = 0; i < p.size(); ++i) {
+        const auto at = std::find(q.begin(), q.end(), partner[static_cast<std::size_t>(p[i])]) - q.begin();
+        mapped.reaction[static_cast<Index>(i)] = f.reaction[at];
+      }
+      return mapped;
+    });
+    EXPECT_LT(found, 1e-9) << name << " " << choice.time << "dimension " << d;
+  }
+}
+
+TEST(Invariance, RotationOfTheWholeCase) {
+  expect_same_under(setting(2), Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()).toRotationMatrix(), false, "rotated2");
+  expect_same_under(setting(3), Eigen::AngleAxisd(1.1, Eigen::Vector3d(1.0, 2.0, -0.5).normalized()).toRotationMatrix(),
+                    false, "rotated3");
+}
+
+TEST(Invariance, Reflection) {
+  const Eigen::Matrix3d mirror = Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal();
+  expect_same_under(setting(2), mirror, false, "mirrored2");
+  expect_same_under(setting(3), mirror, false, "mirrored3");
+}
+
+TEST(Invariance, RenumberingOfNodes) {
+  expect_same_under(setting(2), Eigen::Matrix3d::Identity(), true, "renumbered2");
+  expect_same_under(setting(3), Eigen::Matrix3d::Identity(), true, "renumbered3");
+}
+
+TEST(Invariance, ObserverMovingAlongThePlane) {
+  // Without friction a uniform velocity along the plane changes nothing but the position.
+  for (const int dimension : {2, 3}) {
+    const Setting s = setting(dimension);
+    Setting t = s;
+    const Eigen::Vector3d along = Eigen::Vector3d(1.0, -0.1, 0.0);  // in the plane: its normal is (0.1, 1, ·)
+    ASSERT_NEAR(along.dot(s.normal), 0.0, 1e-15);
+    t.velocity += along;
+    for (const SchemeChoice& choice : scheme_choices()) {
+      const std::vector<Frame> a = frames(s, choice);
+      std::vector<Frame> b = frames(t, choice);
+      for (std::size_t k = 0; k < b.size(); ++k) {
+        for (Index i = 0; i < b[k].displacement.size(); ++i)
+          b[k].displacement[i] -= along[i % dimension] * s.step * static_cast<double>(k);
+      }
+      EXPECT_LT(difference(a, b, comparable(a, choice.smooth), [](const Frame& f) { return f; }), 1e-9)
+          << choice.time << dimension;
+    }
+  }
+}
+
+TEST(Invariance, SameBitsTwice) {
+  for (const SchemeChoice& choice : scheme_choices()) {
+    const std::vector<Frame> a = frames(setting(2), choice), b = frames(setting(2), choice);
+    for (std::size_t k = 0; k < a.size(); ++k)
+      ASSERT_TRUE(a[k].displacement == b[k].displacement && a[k].reaction == b[k].reaction) << k;
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
