@@ -73,8 +73,9 @@ void Expression::Implementation::compile() {
     int results = 0;
     parser.Eval(results);  // muParser checks the syntax on the first evaluation
     if (results != 1) {
-      throw Error(ErrorKind::invalid_input,
-                  fmt::format("the expression \"{}\" gives {} values; write one, with a point as decimal sign", text, results));
+      throw Error(
+          ErrorKind::invalid_input,
+          fmt::format("the expression \"{}\" gives {} values; write one, with a point as decimal sign", text, results));
     }
     if (number) {
       constant = parser.Eval();
@@ -144,6 +145,12 @@ bool Expression::depends_on_position() const {
 }
 const std::string& Expression::text() const {
   return implementation_->text;
+}
+bool Expression::operator==(const Expression& other) const {
+  const Implementation& own = *implementation_;
+  const Implementation& its = *other.implementation_;
+  if (own.number || its.number) return own.number && its.number && own.constant == its.constant;
+  return own.text == its.text && own.parameters == its.parameters;
 }
 
 }  // namespace ricochet

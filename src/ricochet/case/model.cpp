@@ -128,11 +128,11 @@ void add_supports(const Case& input, Model& model) {
     for (const int component : section.components) {
       for (const Index node : facet_nodes(model.space, group.members)) {
         const Index dof = node * d + component;
-        if (supports.add(dof, section.value) || supports.text(dof) == section.value.text()) continue;
+        if (supports.add(dof, section.value) || supports.expression(dof) == section.value) continue;
         refuse(input, key,
                fmt::format("support of group \"{}\" prescribes {} of a node that another support prescribes as \"{}\"; "
                            "a node can follow only one of them",
-                           section.group, axes[static_cast<std::size_t>(component)], supports.text(dof)));
+                           section.group, axes[static_cast<std::size_t>(component)], supports.expression(dof).text()));
       }
     }
   }

@@ -24,6 +24,9 @@ namespace {
 /// Above this rotation, in rad, small strain no longer holds.
 constexpr double rotation_limit = 0.1;
 
+/// What a run leaves in its directory.
+constexpr const char* result_files[] = {"history.csv", "summary.json", "results.h5", "results.xdmf"};
+
 void prepare_directory(const RunOptions& options) {
   namespace fs = std::filesystem;
   std::error_code problem;
@@ -32,7 +35,7 @@ void prepare_directory(const RunOptions& options) {
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", options.output_directory,
                                                     problem ? problem.message() : "a file of that name is there"));
   }
-  for (const char* name : {"history.csv", "summary.json", "results.h5"}) {
+  for (const char* name : result_files) {
     if (!options.force && fs::exists(fs::path(options.output_directory) / name)) {
       throw Error(ErrorKind::file_access,
                   fmt::format("{}: holds a run already ({}); choose another directory with -o, or "
@@ -40,7 +43,13 @@ void prepare_directory(const RunOptions& options) {
                               options.output_directory, name));
     }
   }
-  fs::remove(fs::path(options.output_directory) / "summary.json", problem);
+  // Nothing of an earlier run stays: this one may write no fields.
+  for (const char* name : result_files) {
+    const fs::path file = fs::path(options.output_directory) / name;
+    fs::remove(file, problem);
+    if (problem)
+      throw Error(ErrorKind::file_access, fmt::format("{}: cannot be removed: {}", file.string(), problem.message()));
+  }
 }
 
 RunSummary describe(const Case& input, const Model& model, const Scheme& scheme, const Simulation& simulation) {
@@ -87,6 +96,7 @@ class Recording {
     Timer timer;
     if (state.step % history_every_ == 0 || state.step == steps_) {
       const std::vector<double>& row = recorder_.row(state, account);
+      check_finite(row);
       history_.write(row);
       digest_.add(row);
       watch_rotation(row);
@@ -113,6 +123,18 @@ class Recording {
   [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
+  /// Energies are squares: they leave the range of numbers long before the displacement does.
+  void check_finite(const std::vector<double>& row) const {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (std::isfinite(row[i])) continue;
+      throw Error(ErrorKind::not_converged,
+                  fmt::format("step {:.0f} (t = {:.9g}): {} is no longer finite, so the motion has grown beyond all "
+                              "bounds; use a stable scheme or mass (newmark with mass \"equivalent\"), or a smaller "
+                              "time.step",
+                              row[0], row[1], recorder_.columns()[i]));
+    }
+  }
+
   void watch_rotation(const std::vector<double>& row) {
     if (rotation_warned_) return;
     const auto column =

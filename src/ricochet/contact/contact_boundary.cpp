@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -213,6 +214,9 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
   boundary.gap_rounding.resize(count);
   boundary.weights.resize(count);
   boundary.friction_coefficient.resize(count);
+  // Displacements come from solves over the whole body, so their rounding is relative to its size, wherever a node is.
+  const double body_size = (body.space->nodes.rowwise().maxCoeff() - body.space->nodes.rowwise().minCoeff()).norm();
+  const double body_rounding = 8.0 * std::numeric_limits<double>::epsilon() * body_size;
   for (Index i = 0; i < count; ++i) {
     const Point& point = points[static_cast<std::size_t>(i)];
     const ContactPair& pair = pairs[static_cast<std::size_t>(point.pair)];
@@ -222,7 +226,7 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
     boundary.normals.col(i) = pair.obstacle->normal(position);
     boundary.tangents.push_back(tangents_of(boundary.normals.col(i)));
     boundary.initial_gap[i] = pair.obstacle->gap(position);
-    boundary.gap_rounding[i] = pair.obstacle->gap_rounding(position);
+    boundary.gap_rounding[i] = pair.obstacle->gap_rounding(position) + body_rounding;
     boundary.weights[i] = point.weight;
     boundary.friction_coefficient[i] = pair.friction_coefficient;
   }

@@ -155,6 +155,8 @@ ResultsWriter::ResultsWriter(const std::string& directory, const DisplacementSpa
   own.problem = &problem;
   own.path = directory + "/results.h5";
   own.side_path = directory + "/results.xdmf";
+  // After a disk has run full, HDF5 crashes when it tidies up at the program's end: our files are closed by then.
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported by us, not printed by HDF5
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);

@@ -36,7 +36,7 @@ bool Supports::add(Index dof, const Expression& value) {
   if (contains(dof)) return false;
   dofs_.push_back(dof);
   // Consecutive dofs of one support share their expression.
-  if (expressions_.empty() || expressions_.back().text() != value.text()) expressions_.push_back(value);
+  if (expressions_.empty() || !(expressions_.back() == value)) expressions_.push_back(value);
   expression_.push_back(expressions_.size() - 1);
   expression_of_dof_[dof] = expressions_.size() - 1;
   return true;
@@ -60,8 +60,8 @@ bool Supports::contains(Index dof) const {
   return expression_of_dof_.contains(dof);
 }
 
-const std::string& Supports::text(Index dof) const {
-  return expressions_[expression_of_dof_.at(dof)].text();
+const Expression& Supports::expression(Index dof) const {
+  return expressions_[expression_of_dof_.at(dof)];
 }
 
 void Supports::values(double time, Vector& values) const {

@@ -50,8 +50,8 @@ class Supports {
   [[nodiscard]] Index size() const { return static_cast<Index>(dofs_.size()); }
   [[nodiscard]] const std::vector<Index>& dofs() const { return dofs_; }
   [[nodiscard]] bool contains(Index dof) const;
-  /// The expression of a prescribed dof, as text, for messages.
-  [[nodiscard]] const std::string& text(Index dof) const;
+  /// The expression of a prescribed dof.
+  [[nodiscard]] const Expression& expression(Index dof) const;
   /// Prescribed displacements at an instant, in the order of dofs().
   void values(double time, Vector& values) const;
   /// Velocity and acceleration at an instant t ≥ 0 by second-order one-sided differences with spacing h (only times ≥ t

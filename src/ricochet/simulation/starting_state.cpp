@@ -72,8 +72,10 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, State& state) {
   }
 }
 
-/// Points that rest on their obstacle at t = 0: no gap, no normal velocity.
-std::vector<char> resting_points(const SemidiscreteProblem& problem, const State& state) {
+/// Points that rest on their obstacle at t = 0: no gap, no normal velocity. Those that carry a force in a static
+/// equilibrium (`pressed`, empty without one) have no gap by construction, though their gap may be rounding of the
+/// solve.
+std::vector<char> resting_points(const SemidiscreteProblem& problem, const State& state, const Vector& pressed) {
   Vector gap;
   problem.gaps(state.displacement, gap);
   const Vector rate = problem.contact.gap_operator * state.velocity;
@@ -83,17 +85,18 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
     const double rate_rounding =
         8.0 * std::numeric_limits<double>::epsilon() * state.velocity.segment(first, problem.dimension).lpNorm<1>();
     if (problem.is_massless[static_cast<std::size_t>(first)] != 0) continue;
-    resting[static_cast<std::size_t>(i)] =
-        gap[i] <= problem.contact.gap_rounding[i] && std::abs(rate[i]) <= rate_rounding ? 1 : 0;
+    const bool closed = gap[i] <= problem.contact.gap_rounding[i] || (pressed.size() > 0 && pressed[i] > 0.0);
+    resting[static_cast<std::size_t>(i)] = closed && std::abs(rate[i]) <= rate_rounding ? 1 : 0;
   }
   return resting;
 }
 
-void find_acceleration(const SemidiscreteProblem& problem, const Vector& support_acceleration, State& state) {
+void find_acceleration(const SemidiscreteProblem& problem, const Vector& support_acceleration, const Vector& pressed,
+                       State& state) {
   const auto solver = make_direct_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}});
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   stage.prescribed = support_acceleration;
-  stage.eligible = resting_points(problem, state);
+  stage.eligible = resting_points(problem, state, pressed);
   stage.gap_offset.setZero();  // the condition is on G a
   stage.gap_offset_rounding.setZero();
   StageSolution solution;
@@ -116,56 +119,97 @@ void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
 
 }  // namespace
 
-Vector static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess) {
-  const SparseMatrix& stiffness = problem.internal_force->tangent();
-  // Far below the lowest elastic frequency squared, far above rounding: ε only sets how fast the iteration converges.
-  const double epsilon = 1e-8 * stiffness.diagonal().maxCoeff() / problem.mass.diagonal().maxCoeff();
-  const auto solver = make_direct_step_solver(problem, {{epsilon, 1.0, 0.0, StageDofs::all}});
-  Vector displacement = guess;
-  Vector supported, reference;
-  problem.supports.values(0.0, supported);
-  StageSolution solution;
-  Vector left_over;
-  constexpr int limit = 300;
-  for (int iteration = 0; iteration < limit; ++iteration) {
-    Stage stage = contact_stage(problem, displacement, residual_force(problem, displacement, Vector()));
-    for (Index i = 0; i < problem.supports.size(); ++i) {
-      stage.prescribed[i] = supported[i] - displacement[problem.supports.dofs()[static_cast<std::size_t>(i)]];
-    }
-    solver->solve(0, stage, solution);
-    displacement += solution.increment;
-    left_over = epsilon * (problem.mass * solution.increment);
-    problem.loads.total(0.0, reference);
-    const double force =
-        std::max({reference.lpNorm<Eigen::Infinity>(),
-                  solution.normal_reaction.size() > 0 ? solution.normal_reaction.lpNorm<Eigen::Infinity>() : 0.0,
-                  solution.support_reaction.size() > 0 ? solution.support_reaction.lpNorm<Eigen::Infinity>() : 0.0});
-    if (left_over.lpNorm<Eigen::Infinity>() <= 1e-13 * force || (force == 0.0 && solution.increment.isZero(0.0)))
-      return displacement;
+namespace {
+
+/// One proximal point iteration: (εM + K) δ = L − K U + Gᵀr, then U += δ.
+class ProximalPoint {
+ public:
+  /// ε as a fraction of the largest stiffness over the largest mass.
+  ProximalPoint(const SemidiscreteProblem& problem, double fraction)
+      : problem_(problem),
+        epsilon_(fraction * problem.internal_force->tangent().diagonal().maxCoeff() /
+                 problem.mass.diagonal().maxCoeff()),
+        solver_(make_direct_step_solver(problem, {{epsilon_, 1.0, 0.0, StageDofs::all}})) {
+    problem.supports.values(0.0, supported_);
+    problem.loads.total(0.0, load_);
   }
-  Vector resultant = Vector::Zero(problem.dimension);
-  for (Index node = 0; node < problem.nodes.cols(); ++node)
-    resultant += left_over.segment(node * problem.dimension, problem.dimension);
-  throw Error(
-      ErrorKind::invalid_input,
-      fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: after {} "
-                  "iterations a resultant force of ({:.3g}, {:.3g}{}) still moves the body; add a [[support]] in the "
-                  "direction in which it is free, or give the displacement by expressions",
-                  limit, resultant[0], resultant[1],
-                  resultant.size() == 3 ? fmt::format(", {:.3g}", resultant[2]) : ""));
+
+  void iterate(StaticEquilibrium& at) {
+    Stage stage = contact_stage(problem_, at.displacement, residual_force(problem_, at.displacement, Vector()));
+    for (Index i = 0; i < problem_.supports.size(); ++i) {
+      stage.prescribed[i] = supported_[i] - at.displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+    }
+    solver_->solve(0, stage, solution_);
+    at.displacement += solution_.increment;
+    at.normal_reaction = solution_.normal_reaction;
+    left_over_ = epsilon_ * (problem_.mass * solution_.increment);
+  }
+
+  /// The force that is not in equilibrium yet.
+  [[nodiscard]] const Vector& left_over() const { return left_over_; }
+  /// True when it is rounding of the forces there are.
+  [[nodiscard]] bool converged() const {
+    const auto size = [](const Vector& v) { return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0; };
+    const double force = std::max({size(load_), size(solution_.normal_reaction), size(solution_.support_reaction)});
+    return size(left_over_) <= 1e-13 * force;
+  }
+
+ private:
+  const SemidiscreteProblem& problem_;
+  double epsilon_;
+  std::unique_ptr<StepSolver> solver_;
+  StageSolution solution_;
+  Vector supported_, load_, left_over_;
+};
+
+}  // namespace
+
+StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess) {
+  StaticEquilibrium result{guess, Vector::Zero(problem.contact.size())};
+  // ε far below the lowest elastic frequency squared converges in a few iterations, wherever the body has to go.
+  ProximalPoint far(problem, 1e-8);
+  constexpr int limit = 300;
+  int iteration = 0;
+  do {
+    far.iterate(result);
+  } while (!far.converged() && ++iteration < limit);
+  if (iteration == limit) {
+    Vector resultant = Vector::Zero(problem.dimension);
+    for (Index node = 0; node < problem.nodes.cols(); ++node) {
+      resultant += far.left_over().segment(node * problem.dimension, problem.dimension);
+    }
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: after {} "
+                    "iterations a resultant force of ({:.3g}, {:.3g}{}) still moves the body; add a [[support]] in the "
+                    "direction in which it is free, or give the displacement by expressions",
+                    limit, resultant[0], resultant[1],
+                    resultant.size() == 3 ? fmt::format(", {:.3g}", resultant[2]) : ""));
+  }
+  // The small ε leaves rounding of the size of weight/ε in the gaps of a body that only contact holds. A large one,
+  // from where we are now, takes it away.
+  ProximalPoint near(problem, 1e-2);
+  for (int polish = 0; polish < 3; ++polish) near.iterate(result);
+  return result;
 }
 
 State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial, double step) {
   State state;
-  state.displacement = initial.static_equilibrium ? static_equilibrium(problem, Vector::Zero(problem.dof_count()))
-                                                  : initial.displacement;
+  Vector pressed;
+  if (initial.static_equilibrium) {
+    StaticEquilibrium equilibrium = static_equilibrium(problem, Vector::Zero(problem.dof_count()));
+    state.displacement = std::move(equilibrium.displacement);
+    pressed = std::move(equilibrium.normal_reaction);
+  } else {
+    state.displacement = initial.displacement;
+  }
   state.velocity = initial.velocity;
   state.acceleration.setZero(problem.dof_count());
   state.forces.normal_reaction.setZero(problem.contact.size());
   Vector support_acceleration;
   take_supports(problem, step, state, support_acceleration);
   if (problem.has_singular_mass()) relax_contact_nodes(problem, state);
-  find_acceleration(problem, support_acceleration, state);
+  find_acceleration(problem, support_acceleration, pressed, state);
   find_support_reaction(problem, state);
   if (problem.loads.varies()) problem.loads.varying(0.0, state.forces.varying_load);
   if (problem.has_damping()) state.forces.damping_force = problem.damping * state.velocity;

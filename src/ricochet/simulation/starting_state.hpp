@@ -21,9 +21,14 @@ struct InitialConditions {
 [[nodiscard]] State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial,
                                         double step);
 
+struct StaticEquilibrium {
+  Vector displacement;
+  Vector normal_reaction;  ///< r_N, per contact point
+};
+
 /// Equilibrium K U = L(0) + Gᵀ r with contact and supports, from a starting guess. Bodies that only contact holds are
 /// treated by the proximal point method: (εM + K)(U_{k+1} − U_k) = L − K U_k + Gᵀr, which converges to the equilibrium
 /// itself for any ε > 0 if there is one. Throws Error(invalid_input) when there is none, with the force left over.
-[[nodiscard]] Vector static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess);
+[[nodiscard]] StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess);
 
 }  // namespace ricochet

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "support/case_run.hpp"
+
+// The state at t = 0: static equilibrium with contact, consistent accelerations, nodes in contact at the start.
+
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+
+std::string block_mesh(double gap) {
+  return test_support::mesh_geometry("block",
+                                     "Rectangle(1)={0," + std::to_string(gap) +
+                                         ",0,2,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
+                                         "Physical Curve(\"left\")={4}; Physical Curve(\"top\")={3};",
+                                     0.25, 1);
+}
+
+std::string block_case(double gap, const std::string& mass, const std::string& rest) {
+  return "[mesh]\nfile = \"" + block_mesh(gap) +
+         "\"\n[[material]]\ngroup = \"body\"\ndensity = 2.0\nyoung = 1000.0\npoisson = 0.3\n"
+         "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
+         "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n[load]\ngravity = [0.0, -10.0]\n[mass]\ntype = \"" +
+         mass + "\"\n" + rest;
+}
+
+const std::string newmark = "[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 1e-3\nend = 0.2\n";
+constexpr double weight = 2.0 * 2.0 * 10.0;
+
+TEST(StartingState, StaticEquilibriumStaysAtRestWithEveryMassAndScheme) {
+  for (const char* scheme : {"scheme = \"midpoint\"\n", "scheme = \"klr-conserving\"\n",
+                             "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"}) {
+    for (const char* mass : {"consistent", "lumped", "equivalent"}) {
+      // The body starts above the floor, held by nothing: equilibrium is found on the floor.
+      CaseRun run(block_case(
+          0.01, mass,
+          "[initial]\ndisplacement = \"static\"\n[time]\n" + std::string(scheme) + "step = 1e-3\nend = 0.1\n"));
+      const Vector start = run.state().displacement;
+      double drift = 0.0, force_error = 0.0;
+      run.run([&] {
+        drift = std::max(drift, (run.state().displacement - start).lpNorm<Eigen::Infinity>());
+        if (run.state().step > 0)
+          force_error = std::max(force_error, std::abs(run.state().forces.normal_reaction.sum() - weight));
+      });
+      EXPECT_LT(drift, 1e-12) << scheme << mass;
+      EXPECT_LT(force_error, 1e-8 * weight) << scheme << mass;
+      Vector gap;
+      run.problem().gaps(start, gap);
+      EXPECT_GT(gap.minCoeff(), -1e-15) << "no interpenetration at the start";
+    }
+  }
+}
+
+TEST(StartingState, StaticEquilibriumUnderItsOwnWeightIsThatOfTheColumn) {
+  // Laterally held (x), ν = 0.3: uniaxial strain, σ_yy = −ρ g (H − y), pressure ρ g H on the floor.
+  const std::string mesh =
+      test_support::mesh_geometry("column",
+                                  "Rectangle(1)={0,0,0,2,1}; Physical Surface(\"body\")={1}; Physical "
+                                  "Curve(\"bottom\")={1}; Physical Curve(\"sides\")={2,4};",
+                                  0.25, 2);
+  CaseRun run("[mesh]\nfile = \"" + mesh +
+              "\"\ndegree = 2\n[[material]]\ngroup = \"body\"\ndensity = 2.0\nyoung = 1000.0\npoisson = 0.3\n"
+              "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n[[contact]]\ngroup = "
+              "\"bottom\"\nobstacle = \"floor\"\n"
+              "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\"]\nvalue = 0.0\n[load]\nbody_force = [0.0, "
+              "-20.0]\n[mass]\ntype = \"consistent\"\n"
+              "[initial]\ndisplacement = \"static\"\n" +
+              newmark);
+  const Vector& u = run.state().displacement;
+  const double modulus = 1000.0 * (1.0 - 0.3) / ((1.0 + 0.3) * (1.0 - 0.6));
+  for (Index i = 0; i < run.problem().nodes.cols(); ++i) {
+    const double y = run.problem().nodes(1, i);
+    EXPECT_NEAR(u[2 * i + 1], -20.0 / modulus * (y - 0.5 * y * y), 1e-11);
+    EXPECT_NEAR(u[2 * i], 0.0, 1e-11);
+  }
+  run.simulation().advance();
+  const Vector pressure = run.problem().contact.pressure_recovery * run.state().forces.normal_reaction;
+  for (Index i = 0; i < pressure.size(); ++i) EXPECT_NEAR(pressure[i], 20.0, 1e-7) << "uniform pressure on degree 2";
+}
+
+TEST(StartingState, SaysWhenThereIsNoEquilibrium) {
+  try {
+    CaseRun run(block_case(
+        0.01, "equivalent",
+        "[[traction]]\ngroup = \"top\"\nvalue = [1.0, 0.0]\n[initial]\ndisplacement = \"static\"\n" + newmark));
+    FAIL() << "no error";
+  } catch (const Error& problem) {
+    EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+    EXPECT_NE(std::string(problem.what()).find("there is no equilibrium"), std::string::npos) << problem.what();
+    EXPECT_NE(std::string(problem.what()).find("(2, "), std::string::npos)
+        << "the resultant is named: " << problem.what();
+  }
+}
+
+/// Residual of M A + C V + K U − L − Gᵀr on the dofs that no support holds, relative to the forces.
+double momentum_residual(CaseRun& run) {
+  const SemidiscreteProblem& problem = run.problem();
+  const State& state = run.state();
+  Vector load, internal;
+  problem.loads.total(state.time, load);
+  problem.internal_force->evaluate(state.displacement, internal);
+  Vector residual = problem.mass * state.acceleration + internal - load;
+  if (problem.has_damping()) residual += problem.damping * state.velocity;
+  problem.add_contact_force(-state.forces.normal_reaction, Vector(), residual);
+  for (const Index dof : problem.supports.dofs()) residual[dof] = 0.0;
+  return residual.lpNorm<Eigen::Infinity>() / (load.lpNorm<Eigen::Infinity>() + internal.lpNorm<Eigen::Infinity>());
+}
+
+TEST(StartingState, SatisfiesTheMomentumEquationWithEveryMass) {
+  for (const char* mass : {"consistent", "lumped", "equivalent"}) {
+    CaseRun run(block_case(0.0, mass,
+                           "[[support]]\ngroup = \"left\"\ncomponents = [\"x\"]\nvalue = \"0.1*t*t\"\n[initial]\n"
+                           "displacement = [\"0.01*x*y\", \"0.02*x*x\"]\nvelocity = [\"0.1*y\", \"0\"]\n" +
+                               newmark));
+    EXPECT_LT(momentum_residual(run), 1e-12) << mass;
+    EXPECT_GE(run.state().forces.normal_reaction.minCoeff(), 0.0);
+    for (const Index dof : run.problem().massless_dofs) EXPECT_EQ(run.state().acceleration[dof], 0.0);
+    // The support moves as 0.1 t²: velocity 0 and acceleration 0.2 from the first values of the expression.
+    const Index dof = run.problem().supports.dofs().front();
+    if (!run.problem().has_singular_mass() || run.problem().is_massless[static_cast<std::size_t>(dof)] == 0) {
+      EXPECT_NEAR(run.state().acceleration[dof], 0.2, 1e-9);
+    }
+    EXPECT_NEAR(run.state().velocity[dof], 0.0, 1e-12);
+  }
+}
+
+TEST(StartingState, RestingNodesCarryTheWeightFromTheStart) {
+  for (const char* mass : {"consistent", "lumped"}) {
+    CaseRun run(block_case(0.0, mass, newmark));  // undeformed, at rest on the floor, gravity starts to act
+    const Vector acceleration = run.problem().contact.gap_operator * run.state().acceleration;
+    EXPECT_GE(acceleration.minCoeff(), -1e-12 * 10.0) << "nothing accelerates into the floor";
+    EXPECT_GT(run.state().forces.normal_reaction.sum(), 0.0);
+  }
+}
+
+TEST(StartingState, ABodyThatIsStruckAtOnceHasNoReactionYet) {
+  CaseRun run(block_case(0.0, "consistent", "[initial]\nvelocity = [0.0, -1.0]\n" + newmark));
+  EXPECT_EQ(run.state().forces.normal_reaction.sum(), 0.0);
+  run.simulation().advance();
+  EXPECT_GT(run.state().forces.normal_reaction.sum(), 0.0);
+}
+
+TEST(FreeFall, LeavesTheBodyUndeformedWithEveryMass) {
+  for (const char* mass : {"consistent", "lumped", "equivalent"}) {
+    CaseRun run(block_case(100.0, mass, newmark));
+    double elastic = 0.0;
+    run.run([&] { elastic = std::max(elastic, run.simulation().account().energies(run.state()).elastic); });
+    const double fallen = 0.5 * 10.0 * 0.2 * 0.2;
+    EXPECT_LT(elastic, 1e-12 * 4.0 * 10.0 * fallen) << mass;
+    EXPECT_NEAR(run.state().displacement[1], -fallen, 1e-11) << mass;
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
