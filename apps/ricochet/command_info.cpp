@@ -17,13 +17,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// "triangles", "tetrahedra", …
+std::string plural(CellShape shape) {
+  const std::string singular = name(shape);
+  return singular.ends_with("hedron") ? singular.substr(0, singular.size() - 2) + "a" : singular + "s";
+}
+
 void describe_mesh(const std::string& path) {
+  if (needs_gmsh_program(path)) {
+    // A .geo file can run shell commands: only `run` hands one to gmsh.
+    fmt::print("{}: a geometry, meshed by the gmsh program when a case that names it is run\n", path);
+    return;
+  }
   MeshFile file;
   file.path = path;
   const Mesh mesh = read_mesh(file);
   fmt::print("{}: mesh of dimension {}, degree {}, {} nodes\n", path, mesh.dimension, mesh.degree, mesh.node_count());
-  for (const CellBlock& block : mesh.cells) fmt::print("  cells   {:>9} {}s\n", block.size(), name(block.shape));
-  for (const CellBlock& block : mesh.facets) fmt::print("  facets  {:>9} {}s\n", block.size(), name(block.shape));
+  for (const CellBlock& block : mesh.cells) fmt::print("  cells   {:>9} {}\n", block.size(), plural(block.shape));
+  for (const CellBlock& block : mesh.facets) fmt::print("  facets  {:>9} {}\n", block.size(), plural(block.shape));
   for (const Group& group : mesh.groups) {
     fmt::print("  group   {:>9} of dimension {} in \"{}\"\n", group.members.size(), group.dimension, group.name);
   }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -12,6 +13,23 @@
 namespace ricochet::program {
 
 namespace {
+
+/// How many hold; those that do not, and why some were left out.
+void print_expectations(const std::vector<ExpectationResult>& expectations) {
+  if (expectations.empty()) return;
+  const auto hold =
+      std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return e.checked && e.holds; });
+  const auto left_out =
+      std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return !e.checked; });
+  fmt::print("  {} of {} expectations hold", hold, static_cast<long>(expectations.size()) - left_out);
+  if (left_out > 0) fmt::print("; {} do not apply to this run (summary.json says why)", left_out);
+  fmt::print("\n");
+  for (const ExpectationResult& e : expectations) {
+    if (!e.checked || e.holds) continue;
+    fmt::print("  DOES NOT HOLD: {} (wanted {}, found {:.9g}{})\n", e.quantity, e.wanted, e.value,
+               e.note.empty() ? "" : "; " + e.note);
+  }
+}
 
 void print_summary(const RunSummary& s, const std::string& directory) {
   const ColumnDigest energy = s.digest("total_energy");
@@ -28,14 +46,7 @@ void print_summary(const RunSummary& s, const std::string& directory) {
   fmt::print("  deepest interpenetration {:.3g}\n", s.digest("max_penetration").maximum);
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
              s.timings.empty() ? "" : duration_text(s.timings.back().second));
-  for (const ExpectationResult& e : s.expectations) {
-    if (!e.checked) {
-      fmt::print("  expect  {}: not checked ({})\n", e.quantity, e.note);
-    } else {
-      fmt::print("  expect  {}: {} (wanted {}, found {:.9g}{})\n", e.quantity, e.holds ? "holds" : "DOES NOT HOLD",
-                 e.wanted, e.value, e.note.empty() ? "" : "; " + e.note);
-    }
-  }
+  print_expectations(s.expectations);
   for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
   fmt::print("  results in {}\n", directory);
 }

@@ -21,6 +21,7 @@ class NearestEquivalentMass final : public MassConstruction {
     const Matrix monomials = scaled_monomials(*input.nodes);
     SparseMatrix result = free_pattern(input);
     correct(result, monomials, *input.consistent);
+    check_conditions(result, monomials, *input.consistent);
     if (!is_positive_definite(result, input.contact_nodes)) {
       throw Error(
           ErrorKind::invalid_input,
@@ -52,6 +53,18 @@ class NearestEquivalentMass final : public MassConstruction {
       return is_contact[static_cast<std::size_t>(row)] == 0 && is_contact[static_cast<std::size_t>(column)] == 0;
     });
     return result;
+  }
+
+  /// Too few free nodes cannot keep mass, centre and inertia: the Gram system is then singular and has no solution.
+  static void check_conditions(const SparseMatrix& mass, const Matrix& monomials, const SparseMatrix& consistent) {
+    const Matrix wanted = monomials.transpose() * (consistent * monomials);
+    const Matrix found = monomials.transpose() * (mass * monomials);
+    // The monomials are of size one, so these are masses; rounding leaves 1e-13 of them.
+    if ((found - wanted).cwiseAbs().maxCoeff() <= 1e-10 * wanted.cwiseAbs().maxCoeff()) return;
+    throw Error(ErrorKind::invalid_input,
+                "mass type \"equivalent-nearest\": the nodes that are not on the contact boundary are too few to carry "
+                "the body's mass, centre of gravity and inertia; refine the mesh, or use mass type \"consistent\" or "
+                "\"lumped\"");
   }
 
   static void correct(SparseMatrix& mass, const Matrix& monomials, const SparseMatrix& consistent) {

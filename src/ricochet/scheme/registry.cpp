@@ -8,10 +8,17 @@
 
 namespace ricochet {
 
-// One constructor per file of this folder.
-std::unique_ptr<Scheme> make_midpoint(const SchemeParameters&);
-std::unique_ptr<Scheme> make_klr_conserving(const SchemeParameters&);
-std::unique_ptr<Scheme> make_newmark(const SchemeParameters&);
+// The schemes: a name as written in a case file and the constructor that its own file defines. One line each.
+// clang-format off
+#define RICOCHET_SCHEMES(scheme)                \
+  scheme("midpoint", make_midpoint)             \
+  scheme("klr-conserving", make_klr_conserving) \
+  scheme("newmark", make_newmark)
+// clang-format on
+
+#define RICOCHET_DECLARE(name, make) std::unique_ptr<Scheme> make(const SchemeParameters&);
+RICOCHET_SCHEMES(RICOCHET_DECLARE)
+#undef RICOCHET_DECLARE
 
 namespace {
 
@@ -21,11 +28,9 @@ struct Registration {
 };
 
 const std::vector<Registration>& registrations() {
-  static const std::vector<Registration> all{
-      {"midpoint", make_midpoint},
-      {"klr-conserving", make_klr_conserving},
-      {"newmark", make_newmark},
-  };
+#define RICOCHET_REGISTER(name, make) {name, make},
+  static const std::vector<Registration> all{RICOCHET_SCHEMES(RICOCHET_REGISTER)};
+#undef RICOCHET_REGISTER
   return all;
 }
 
