@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/fem/reference_element.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
 
@@ -133,7 +133,7 @@ std::map<Index, std::vector<Index>> middle_nodes(const DisplacementSpace& space,
   std::map<Index, std::vector<Index>> middles;
   Index first = 0;
   for (const CellBlock& block : space.facets) {
-    const auto& support = ReferenceElement::get(block.shape, space.degree).supporting_vertices();
+    const auto& support = node_vertices(block.shape, space.degree);
     for (const Index facet : facets) {
       const Index local = facet - first;
       if (local < 0 || local >= block.size()) continue;

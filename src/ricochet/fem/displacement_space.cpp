@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "ricochet/fem/reference_element.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
 
@@ -59,11 +59,10 @@ class SecondOrderNodes {
   std::vector<CellBlock> refine(const std::vector<CellBlock>& blocks) {
     std::vector<CellBlock> result;
     for (const CellBlock& block : blocks) {
-      const ReferenceElement& element = ReferenceElement::get(block.shape, 2);
-      CellBlock refined{block.shape, element.node_count(), {}, block.tags};
-      refined.nodes.reserve(static_cast<std::size_t>(block.size() * element.node_count()));
+      CellBlock refined{block.shape, node_count(block.shape, 2), {}, block.tags};
+      refined.nodes.reserve(static_cast<std::size_t>(block.size() * node_count(block.shape, 2)));
       for (Index i = 0; i < block.size(); ++i) {
-        for (const std::vector<int>& support : element.supporting_vertices()) {
+        for (const std::vector<int>& support : node_vertices(block.shape, 2)) {
           refined.nodes.push_back(node_on(block.cell(i), support));
         }
       }

@@ -74,18 +74,6 @@ Tabulation ReferenceElement::tabulate(const Points& points) const {
 ReferenceElement::ReferenceElement(CellShape shape, int degree) : shape_(shape), degree_(degree) {
   const auto [points, extents] = basix_element(shape, degree).points();
   nodes_ = Eigen::Map<const Points>(points.data(), static_cast<Index>(extents[1]), static_cast<Index>(extents[0]));
-  // A vertex supports a node exactly where its own (multi)linear function does not vanish.
-  const basix::FiniteElement& linear = basix_element(shape, 1);
-  const auto [data, linear_extents] =
-      linear.tabulate(0, std::span<const double>(points.data(), points.size()), extents);
-  const std::size_t vertices = linear_extents[2];
-  supporting_vertices_.resize(extents[0]);
-  for (std::size_t node = 0; node < extents[0]; ++node) {
-    for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
-      if (std::abs(data[node * vertices + vertex]) > 1e-6)
-        supporting_vertices_[node].push_back(static_cast<int>(vertex));
-    }
-  }
 }
 
 const ReferenceElement& ReferenceElement::get(CellShape shape, int degree) {

@@ -30,8 +30,6 @@ class ReferenceElement {
   [[nodiscard]] int node_count() const { return static_cast<int>(nodes_.cols()); }
   /// Node positions, dimension × nodes.
   [[nodiscard]] const Points& nodes() const { return nodes_; }
-  /// For each node the vertices of the entity it sits on (a vertex: itself; the middle of an edge: two; …).
-  [[nodiscard]] const std::vector<std::vector<int>>& supporting_vertices() const { return supporting_vertices_; }
   [[nodiscard]] Tabulation tabulate(const Points& points) const;
 
  private:
@@ -40,7 +38,6 @@ class ReferenceElement {
   CellShape shape_;
   int degree_;
   Points nodes_;
-  std::vector<std::vector<int>> supporting_vertices_;
 };
 
 /// Exact for polynomials of the given degree (on tensor-product cells: of that degree in each variable).

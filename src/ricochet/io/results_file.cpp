@@ -187,6 +187,8 @@ void ResultsWriter::write(const State& state) {
   own.dataset(frame + "/contact_pressure", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 0, own.pressure.data());
   own.dataset(frame + "/gap", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 0, own.gap.data());
   own.dataset(frame + "/contact_status", H5T_STD_I32LE, H5T_NATIVE_INT, count, 0, own.status.data());
+  // What the side-file names must be in the file even if the run is killed before the next frame.
+  own.check(H5Fflush(own.file, H5F_SCOPE_LOCAL) >= 0, "the file");
   own.write_side_frame(state, frame);
   ++own.frames;
 }

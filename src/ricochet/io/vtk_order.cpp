@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/fem/reference_element.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
 
@@ -88,7 +88,7 @@ VtkCell vtk_cell(CellShape shape, int degree) {
   }
   if (degree == 1) return result;
   const std::vector<int> vertices = result.from_ours;
-  const VertexSets& ours = ReferenceElement::get(shape, 2).supporting_vertices();
+  const VertexSets& ours = node_vertices(shape, 2);
   for (std::vector<int> set : vtk_middles(shape)) {
     for (int& vertex : set) vertex = vertices[static_cast<std::size_t>(vertex)];
     std::sort(set.begin(), set.end());

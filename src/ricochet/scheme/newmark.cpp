@@ -1,3 +1,4 @@
+#include "ricochet/scheme/gap_condition.hpp"
 #include "ricochet/scheme/scheme.hpp"
 
 namespace ricochet {
@@ -41,10 +42,7 @@ class Newmark final : public Scheme {
     for (Index i = 0; i < problem.supports.size(); ++i) {
       stage.prescribed[i] = supported_[i] - base_[problem.supports.dofs()[static_cast<std::size_t>(i)]];
     }
-    problem.gaps(base_, stage.gap_offset);
-    stage.gap_offset_rounding = problem.contact.gap_rounding;
-    stage.gap_factor = 1.0;
-    stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
+    require_no_penetration(problem, base_, stage);
   }
 
   void finish(const SemidiscreteProblem& problem, const std::vector<StageSolution>& solutions, State& state,

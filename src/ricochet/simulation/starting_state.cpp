@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/scheme/gap_condition.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 namespace ricochet {
@@ -29,9 +30,7 @@ Stage contact_stage(const SemidiscreteProblem& problem, const Vector& displaceme
   Stage stage;
   stage.right_hand_side = std::move(right_hand_side);
   stage.prescribed.setZero(problem.supports.size());
-  problem.gaps(displacement, stage.gap_offset);
-  stage.gap_offset_rounding = problem.contact.gap_rounding;
-  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
+  require_no_penetration(problem, displacement, stage);
   return stage;
 }
 
