@@ -1,5 +1,5 @@
 // A ball of radius 5 cm whose lowest point is 5 mm above the plane z = 0; tetrahedra, fine where it will touch.
-// gmsh ball.geo -3 -format msh41 -o ball.msh        (about 2500 nodes)
+// gmsh ball.geo -3 -format msh41 -o ball.msh        (1262 nodes)
 SetFactory("OpenCASCADE");
 radius = 0.05;
 gap = 0.005;
@@ -11,6 +11,9 @@ DefineConstant[ coarse = 0.013 ];
 Sphere(1) = {0, 0, radius + gap, radius, -Pi / 2, -Pi / 2 + cap};
 Sphere(2) = {0, 0, radius + gap, radius, -Pi / 2 + cap, Pi / 2};
 Coherence;
+centre = newp; Point(centre) = {0, 0, radius + gap};
+Point{centre} In Volume{2}; // a node there, for a probe
+
 Mesh.MeshSizeExtendFromBoundary = 0;
 Mesh.MeshSizeFromPoints = 0;
 Field[1] = Distance;

@@ -1,5 +1,5 @@
 // A bar as an upright strip, 10 long and 0.5 wide, 5 above the floor y = 0; unstructured triangles.
-// gmsh bar.geo -2 -format msh41 -o bar.msh        (about 750 nodes)
+// gmsh bar.geo -2 -format msh41 -o bar.msh        (710 nodes)
 length = 10;
 width = 0.5;
 gap = 5;

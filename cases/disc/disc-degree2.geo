@@ -1,5 +1,5 @@
 // The disc of disc.geo for a displacement of degree 2: curved six-node triangles, twice as wide.
-// gmsh disc-degree2.geo -2 -format msh41 -o disc-degree2.msh        (about 400 nodes)
+// gmsh disc-degree2.geo -2 -format msh41 -o disc-degree2.msh        (457 nodes)
 SetFactory("OpenCASCADE");
 radius = 0.02;
 gap = 0.001;

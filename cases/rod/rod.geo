@@ -1,5 +1,5 @@
 // A rod as a strip: 1 long, 0.1 high, unstructured triangles.
-// gmsh rod.geo -2 -format msh41 -o rod.msh        (about 400 nodes)
+// gmsh rod.geo -2 -format msh41 -o rod.msh        (360 nodes)
 length = 1;
 height = 0.1;
 DefineConstant[ size = 0.02 ];
