@@ -73,7 +73,8 @@ int dispatch(int argc, char** argv) {
     return app.exit(problem) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
   }
   log::set_level(log::parse_level(arguments.log_level));
-  if (arguments.run.quiet && !log::enabled(log::Level::debug)) log::set_level(log::Level::warning);
+  if (arguments.run.quiet && log::enabled(log::Level::info) && !log::enabled(log::Level::debug))
+    log::set_level(log::Level::warning);
   set_thread_count(arguments.threads);
   if (run->parsed()) return program::run(arguments.run);
   if (validate->parsed()) return program::validate(arguments.validate_file, arguments.validate_overrides);

@@ -34,8 +34,12 @@ struct ComplementaritySolution {
 class ActiveSetSolver {
  public:
   void solve(const ComplementarityProblem& problem, ComplementaritySolution& solution);
-  /// Forgets the warm start.
-  void reset() { active_.clear(); }
+  /// Forgets the warm start and the factor. Call it before a problem with another operator: as long as the active set
+  /// stays, the factor of its block is used again.
+  void reset() {
+    active_.clear();
+    factored_indices_.clear();
+  }
   /// The active set, for inspection and for a warm start from a checkpoint.
   [[nodiscard]] const std::vector<char>& active() const { return active_; }
   void set_active(std::vector<char> active) { active_ = std::move(active); }
