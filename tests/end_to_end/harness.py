@@ -114,7 +114,7 @@ class TestCase(unittest.TestCase):
 
     def expect_status(self, status, process):
         self.assertEqual(process.returncode, status,
-                         f"{' '.join(process.args)}\nstdout:\n{process.stdout}\nstderr:\n{process.stderr}")
+                         f"{' '.join(map(str, process.args))}\nstdout:\n{process.stdout}\nstderr:\n{process.stderr}")
         return process
 
     def simulate(self, case, name="out", values=None, options=("--quiet",)):

@@ -196,8 +196,6 @@ PointMap bend_map() {
     result[0] = (1.0 + x[1]) * std::sin(0.9 * x[0]) + 0.1 * x[1];
     result[1] = (1.0 + x[1]) * std::cos(0.9 * x[0]);
     if (x.size() == 3) result[2] = 1.2 * x[2] + 0.15 * x[0] * x[0] - 0.1 * x[1] * x[2];
-    // Orientation: the first two coordinates alone turn the plane over.
-    result[0] = -result[0];
     return result;
   };
 }
@@ -223,8 +221,8 @@ Material test_material() {
   return {"body", 1.7, 1.3, 0.8, 0.0, 0.0};
 }
 
-std::unique_ptr<TestBody> make_test_body(Mesh mesh, int displacement_degree, PlaneState plane) {
-  auto test = std::make_unique<TestBody>();
+std::unique_ptr<MeshedBody> make_meshed_body(Mesh mesh, int displacement_degree, PlaneState plane) {
+  auto test = std::make_unique<MeshedBody>();
   test->mesh = std::move(mesh);
   test->space = make_displacement_space(test->mesh, displacement_degree);
   test->body = Body{&test->mesh,
@@ -243,7 +241,7 @@ Vector interpolate(const DisplacementSpace& space, const PointMap& field) {
   return result;
 }
 
-double integrate(const TestBody& test, int degree, const std::function<double(const Vector&)>& value) {
+double integrate(const MeshedBody& test, int degree, const std::function<double(const Vector&)>& value) {
   double sum = 0.0;
   const int d = test.mesh.dimension;
   for (const CellBlock& block : test.mesh.cells) {

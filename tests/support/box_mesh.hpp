@@ -37,20 +37,20 @@ struct BoxMesh {
 [[nodiscard]] PointMap ball_map(const Vector& centre);
 
 /// A mesh with its space and material, at an address that does not change.
-struct TestBody {
+struct MeshedBody {
   Mesh mesh;
   DisplacementSpace space;
   Body body;
 };
 [[nodiscard]] Material test_material();
-[[nodiscard]] std::unique_ptr<TestBody> make_test_body(Mesh mesh, int displacement_degree,
-                                                       PlaneState plane = PlaneState::strain);
+[[nodiscard]] std::unique_ptr<MeshedBody> make_meshed_body(Mesh mesh, int displacement_degree,
+                                                           PlaneState plane = PlaneState::strain);
 
 /// Nodal values of a vector field, d per node.
 [[nodiscard]] Vector interpolate(const DisplacementSpace& space, const PointMap& field);
 
 /// ∫ over the cells (their curved geometry included) of a scalar.
-[[nodiscard]] double integrate(const TestBody& test, int degree, const std::function<double(const Vector&)>& value);
+[[nodiscard]] double integrate(const MeshedBody& test, int degree, const std::function<double(const Vector&)>& value);
 
 constexpr CellShape all_cell_shapes[] = {CellShape::triangle, CellShape::quadrilateral, CellShape::tetrahedron,
                                          CellShape::hexahedron};

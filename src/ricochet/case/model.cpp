@@ -11,6 +11,7 @@
 #include "ricochet/case/model_parts.hpp"
 #include "ricochet/fem/exterior_facets.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
 
@@ -175,6 +176,29 @@ void add_probes(const Case& input, Model& model) {
   }
 }
 
+namespace {
+
+/// True when a second-order node lies off the mean of its vertices by more than rounding.
+bool is_curved(const Mesh& mesh) {
+  if (mesh.degree == 1) return false;
+  for (const CellBlock& block : mesh.cells) {
+    const std::vector<std::vector<int>>& vertices = node_vertices(block.shape, 2);
+    for (Index cell = 0; cell < block.size(); ++cell) {
+      const Index* nodes = block.cell(cell);
+      const double size = (mesh.nodes.col(nodes[1]) - mesh.nodes.col(nodes[0])).norm();
+      for (std::size_t k = 0; k < vertices.size(); ++k) {
+        Vector mean = Vector::Zero(mesh.dimension);
+        for (const int vertex : vertices[k]) mean += mesh.nodes.col(nodes[vertex]);
+        mean /= static_cast<double>(vertices[k].size());
+        if ((mesh.nodes.col(nodes[k]) - mean).norm() > 1e-9 * size) return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   auto model = std::make_unique<Model>();
   Timer timer;
@@ -182,6 +206,11 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   if (times != nullptr) times->read_mesh = timer.restart();
   check_dimensions(input, model->mesh.dimension);
   model->space = make_displacement_space(model->mesh, input.mesh.degree);
+  if (input.mesh.degree == 1 && is_curved(model->mesh)) {
+    log::warning(
+        "the mesh has curved cells but the displacement is of degree 1: on curved cells its functions do not contain "
+        "rigid rotations, so angular momentum is kept only to the order h²; use mesh.degree = 2 or a straight mesh");
+  }
   model->problem.dimension = model->mesh.dimension;
   model->problem.nodes = model->space.nodes;
   assign_materials(input, *model);

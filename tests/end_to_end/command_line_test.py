@@ -1,0 +1,266 @@
+"""The command line: exit statuses, what goes to which stream, and that results do not depend on threads."""
+
+import json
+import os
+import re
+import unittest
+
+import h5py
+
+from harness import DISC, History, MESHES, PROGRAM, TestCase, block_case, run, settings
+
+NOWHERE = "/nowhere/at/all"
+
+
+class CommandLine(TestCase):
+    def setUp(self):
+        super().setUp()
+        self.case = self.write("block.toml", block_case())
+
+    def test_wrong_use_is_status_1(self):
+        for arguments, said in (((), "subcommand"),
+                                (("simulate", self.case), ""),
+                                (("run",), "case is required"),
+                                (("info",), "path is required"),
+                                (("validate",), "case is required"),
+                                (("run", self.case, "--bogus"), "--bogus"),
+                                (("run", self.case, "another"), "another"),
+                                (("run", self.case, "--log-level", "loud"), "debug, info, warning, error or off"),
+                                (("validate", self.case, "--log-level", "loud"), "debug, info, warning, error or off"),
+                                (("run", self.case, "--threads", "0"), "threads"),
+                                (("run", self.case, "--threads", "-1"), "threads"),
+                                (("run", self.case, "--threads", "two"), "threads"),
+                                (("run", self.case, "--set", "time.step"), "--set key.path=value"),
+                                (("run", self.case, "--set", "=3"), "--set key.path=value"),
+                                (("run", self.case, "-o"), "-o")):
+            with self.subTest(arguments):
+                process = self.expect_status(1, run(*arguments, directory=self.folder))
+                self.assertIn(said, process.stderr)
+                self.assertNotEqual(process.stderr, "")
+                self.assertEqual(process.stdout, "")
+        self.assertEqual(list(self.folder.iterdir()), [self.case], "wrong use writes nothing")
+
+    def test_help_and_version(self):
+        process = self.expect_status(0, run("--help"))
+        for word in ("run", "validate", "info", "schema", "Exit status", "did not converge"):
+            self.assertIn(word, process.stdout)
+        for command, words in (("run", ("-o", "--set", "--threads", "--log-level", "--quiet", "--force")),
+                               ("validate", ("CASE.toml",)), ("info", ("FILE_OR_DIR",)), ("schema", ("--markdown",))):
+            process = self.expect_status(0, run(command, "--help"))
+            for word in words:
+                self.assertIn(word, process.stdout)
+            self.assertEqual(process.stderr, "")
+        process = self.expect_status(0, run("--version"))
+        self.assertRegex(process.stdout, r"^ricochet \d+\.\d+\.\d+\n$")
+
+    def test_invalid_case_is_status_2(self):
+        self.case.write_text(block_case().replace("density", "densty"), encoding="utf-8")
+        for arguments in (("validate", self.case), ("info", self.case), ("run", self.case, "-o", self.folder / "out")):
+            process = self.expect_status(2, run(*arguments))
+            self.assertIn('block.toml:6:1: unknown key "densty"', process.stderr)
+            self.assertIn('did you mean "density"', process.stderr)
+        self.assertFalse((self.folder / "out").exists())
+        self.expect_status(2, run("validate", self.write("torn.toml", block_case()[:300])))
+
+    def test_missing_files_are_status_4(self):
+        missing = self.folder / "missing.toml"
+        for arguments in (("run", missing), ("validate", missing), ("info", missing), ("info", NOWHERE),
+                          ("run", self.folder), ("info", self.folder)):
+            with self.subTest(arguments):
+                process = self.expect_status(4, run(*arguments, directory=self.folder))
+                self.assertIn(str(arguments[1]), process.stderr)
+        process = self.expect_status(4, run("validate", self.case, "--set", f"mesh.file={NOWHERE}.msh"))
+        self.assertIn(f"{NOWHERE}.msh", process.stderr)
+
+    def test_unwritable_directory_is_status_4(self):
+        # These hold for root as well: below a regular file, the file itself, and file systems that take no folders.
+        for output in (self.case / "out", self.case, "/proc/ricochet-test", "/proc/self/fd/out"):
+            with self.subTest(output):
+                process = self.expect_status(4, run("run", self.case, "-o", output))
+                self.assertIn(str(output), process.stderr)
+
+    def test_full_disk_is_status_4(self):
+        """A limit on the size of files stands in for a full disk."""
+        import resource
+        import signal
+        import subprocess
+
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (40000, 40000))
+
+        for name, values in (("history.csv", {"output.fields_every": 0}), ("results.h5", {"output.fields_every": 1})):
+            with self.subTest(name):
+                process = subprocess.run([PROGRAM, "run", self.case, "-o", self.folder / name, "--quiet",
+                                          *settings(dict(values, **{"time.end": 3}))],
+                                         text=True, capture_output=True, restore_signals=False, preexec_fn=limit)
+                self.expect_status(4, process)
+                self.assertIn(f"{name}: cannot write", process.stderr)
+
+    def test_a_run_is_not_overwritten_without_force(self):
+        output = self.simulate(self.case)
+        before = {path.name: path.read_bytes() for path in output.iterdir()}
+        self.assertEqual(sorted(before), ["history.csv", "results.h5", "results.xdmf", "summary.json"])
+        process = self.expect_status(4, run("run", self.case, "-o", output, "--quiet"))
+        self.assertIn("--force", process.stderr)
+        self.assertEqual({path.name: path.read_bytes() for path in output.iterdir()}, before)
+        for name in before:  # any one of them is a run
+            folder = self.folder / ("only-" + name)
+            folder.mkdir()
+            (folder / name).write_bytes(before[name])
+            self.expect_status(4, run("run", self.case, "-o", folder))
+        (output / "notes.txt").write_text("mine", encoding="ascii")
+        self.expect_status(0, run("run", self.case, "-o", output, "--quiet", "--force", "--set",
+                                  "output.fields_every=0", "--set", "time.end=0.1"))
+        self.assertEqual(sorted(path.name for path in output.iterdir()), ["history.csv", "notes.txt", "summary.json"],
+                         "nothing of the old run stays, and nothing else goes")
+        self.assertEqual(History(output / "history.csv")["step"], list(range(11)))
+
+    def test_the_default_output_directory(self):
+        self.expect_status(0, run("run", "block.toml", directory=self.folder))
+        self.assertTrue((self.folder / "out" / "block" / "summary.json").exists())
+
+    def test_expectation_that_does_not_hold_is_status_5(self):
+        text = block_case() + '[[expect]]\nquantity = "history.total_energy[0]"\nvalue = 7.0\nrelative = 0.01\n'
+        case = self.write("expecting.toml", text)
+        process = self.expect_status(5, run("run", case, "-o", self.folder / "out", "--quiet"))
+        self.assertRegex(process.stderr, r"expecting\.toml:\d+:\d+: expected history\.total_energy\[0\] to be 7 ")
+        self.assertIn("DOES NOT HOLD", process.stdout)
+        summary = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual([summary["status"], summary["expectations"][0]["holds"]], ["done", False])
+        self.assertEqual(len(History(self.folder / "out" / "history.csv").rows), 31)
+        case.write_text(text.replace("value = 7.0", "value = 0.0").replace("relative", "absolute"), encoding="utf-8")
+        process = self.expect_status(0, run("run", case, "-o", self.folder / "held", "--quiet"))
+        self.assertIn("holds", process.stdout)
+        case.write_text(text.replace("total_energy", "totl_energy"), encoding="utf-8")
+        process = self.expect_status(5, run("run", case, "-o", self.folder / "unknown", "--quiet"))
+        self.assertIn('did you mean "total_energy"', process.stderr)
+
+    def test_streams(self):
+        output = self.folder / "out"
+        process = self.expect_status(0, run("run", self.case, "-o", output))
+        self.assertRegex(process.stderr, r"step \d+/30")
+        self.assertNotRegex(process.stdout, r"step \d+/30")
+        lines = process.stdout.splitlines()
+        self.assertEqual(lines[0], "A block falls")
+        self.assertEqual(lines[-1], f"  results in {output}")
+        for said in ("30 steps of 0.01", "energy account closes to", "deepest interpenetration"):
+            self.assertIn(said, process.stdout)
+        # Half the time: before any warning.
+        process = self.expect_status(0, run("run", self.case, "-o", output, "--force", "--quiet", "--set",
+                                            "time.end=0.1"))
+        self.assertEqual(process.stderr, "")
+        self.assertIn("results in", process.stdout)
+        process = self.expect_status(0, run("run", self.case, "-o", output, "--force", "--quiet", "--log-level",
+                                            "error"))
+        self.assertEqual(process.stderr, "")
+
+    def test_progress_bar_on_a_terminal(self):
+        import pty
+        import subprocess
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        process = subprocess.Popen([PROGRAM, "run", self.case, "-o", self.folder / "out"], stderr=theirs,
+                                   stdout=subprocess.PIPE)
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                piece = os.read(ours, 65536)
+            except OSError:  # the other end is closed
+                break
+            if not piece:
+                break
+            shown += piece
+        process.communicate()
+        self.assertEqual(process.returncode, 0)
+        self.assertIn(b"\r", shown.replace(b"\r\n", b"\n"))
+        self.assertIn(b"30/30", shown)
+
+    def test_overrides(self):
+        def steps(*arguments):
+            output = self.folder / "out"
+            self.expect_status(0, run("run", self.case, "-o", output, "--force", "--quiet", *arguments))
+            return json.loads((output / "summary.json").read_text(encoding="utf-8"))
+
+        summary = steps("--set", "time.step=0.02", "--set", "time.end=0.2", "--set", "time.scheme=klr-conserving",
+                        "--set", "load.gravity=[0,-5]", "--set", "title=Changed")
+        self.assertEqual([summary["steps"], summary["time_step"], summary["scheme"], summary["title"]],
+                         [10, 0.02, "klr-conserving", "Changed"])
+        self.assertEqual(summary["overrides"], ["time.step", "time.end", "time.scheme", "load.gravity", "title"])
+        self.assertEqual(steps("--set", "probe.0.name=heel")["probes"][0]["name"], "heel")
+        process = self.expect_status(2, run("validate", self.case, "--set", "time.stp=1"))
+        self.assertIn('--set time.stp=1: unknown key "stp" in [time]; did you mean "step"?', process.stderr)
+        self.expect_status(2, run("validate", self.case, "--set", "time.step=-1"))
+
+    def test_info(self):
+        output = self.simulate(self.case)
+        mesh = MESHES / "tetrahedron_o2_msh41_binary.msh"
+        for path, said in ((mesh, ("dimension 3", "degree 2", "tetrahedr", '"bottom"')),
+                           (self.case, ("A block falls", "newmark", "consistent", "30 steps")),
+                           (output, ("A block falls", "30 steps", 'probe "foot"', "energy account closes"))):
+            process = self.expect_status(0, run("info", path))
+            for fragment in said:
+                self.assertIn(fragment, process.stdout)
+        other = self.simulate(self.case, "other", {"time.scheme": "midpoint"})
+        process = self.expect_status(0, run("info", output, other))
+        self.assertRegex(process.stdout, rf"{re.escape(str(output))} +newmark +consistent")
+        self.assertRegex(process.stdout, rf"{re.escape(str(other))} +midpoint +consistent")
+        self.assertEqual(len(process.stdout.splitlines()), 4)
+        self.assertIn("dimension 3", self.expect_status(0, run("info", self.case, mesh)).stdout)
+
+    def test_info_on_garbage(self):
+        for name, content in (("garbage", "garbage"), ("garbage.msh", "\0\1\2" * 100), ("garbage.toml", "]["),
+                              ("empty.msh", "")):
+            process = self.expect_status(2, run("info", self.write(name, content)))
+            self.assertIn(name, process.stderr)
+        folder = self.folder / "garbage-run"
+        folder.mkdir()
+        for content in ("", "{}", '{"status": 3}', "[1, 2]"):
+            (folder / "summary.json").write_text(content, encoding="ascii")
+            process = self.expect_status(2, run("info", folder))
+            self.assertIn("not a summary of a run", process.stderr)
+
+    def test_schema_is_json(self):
+        process = self.expect_status(0, run("schema"))
+        schema = json.loads(process.stdout)
+        self.assertIn("$schema", schema)
+        for section in ("mesh", "material", "time", "expect"):
+            self.assertIn(section, schema["properties"])
+
+    def test_same_bits_again_and_with_threads(self):
+        for case, values in ((self.case, {}), (DISC, {"time.end": 0.01}),
+                             (DISC, {"time.end": 0.01, "time.scheme": "klr-conserving", "mass.type": "consistent"})):
+            outputs = [self.simulate(case, f"run{i}", values, ("--quiet", "--force", "--threads", str(threads)))
+                       for i, threads in enumerate((1, 1, 2, 5))]
+            for name in ("history.csv", "results.xdmf"):
+                contents = {(output / name).read_bytes() for output in outputs}
+                self.assertEqual(len(contents), 1, f"{name} of {case}")
+            # HDF5 stores times of day: only what is in it is the same.
+            found = set()
+            for output in outputs:
+                pieces = []
+                with h5py.File(output / "results.h5", "r") as file:
+                    file.visititems(lambda path, item: pieces.append(
+                        (path, item[()].tobytes() if isinstance(item, h5py.Dataset) else b"")))
+                found.add(tuple(pieces))
+            self.assertEqual(len(found), 1, f"results.h5 of {case}")
+
+    def test_motion_beyond_all_bounds_is_status_3(self):
+        """Newmark's scheme below γ = ½ is unstable at any step: it takes energy in until numbers run out."""
+        output = self.folder / "out"
+        process = self.expect_status(3, run("run", self.case, "-o", output, "--quiet", *settings(
+            {"time.beta": 0.25, "time.gamma": 0, "time.end": 1000, "output.fields_every": 100})))
+        self.assertIn("unstable with gamma = 0", process.stderr)
+        self.assertRegex(process.stderr, r"ricochet: step \d+ \(t = [\d.]+\): \w+ is no longer finite")
+        self.assertIn("smaller time.step", process.stderr)
+        summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["status"], "failed")
+        self.assertIn("no longer finite", summary["message"])
+        history = History(output / "history.csv")  # whose numbers are all finite
+        self.assertGreater(len(history.rows), 100)
+        self.assertIn("(FAILED)", self.expect_status(0, run("info", output)).stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

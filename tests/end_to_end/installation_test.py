@@ -1,0 +1,57 @@
+"""The project installs into a prefix of its own, and a project outside finds it there, builds against nothing but that
+prefix, and runs; so does the installed program."""
+
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+
+from harness import SOURCE, TestCase, block_case, run
+
+BUILD = pathlib.Path(os.environ["RICOCHET_BUILD_DIR"])
+
+
+class Installation(TestCase):
+    def command(self, *arguments):
+        process = subprocess.run(list(map(str, arguments)), text=True, capture_output=True, cwd=self.folder)
+        return self.expect_status(0, process).stdout
+
+    def test_installed_prefix_is_enough(self):
+        prefix = self.folder / "prefix"
+        self.command("cmake", "--install", BUILD, "--prefix", prefix)
+        case = self.write("block.toml", block_case())
+
+        program = prefix / "bin" / "ricochet"
+        self.assertEqual(self.command(program, "--version"), run("--version").stdout)
+        self.assertIn("results in", self.command(program, "run", case, "-o", self.folder / "by-program", "--quiet"))
+        linked = re.search(r"libricochet\S* => (\S+)", self.command("ldd", program))
+        self.assertTrue(pathlib.Path(linked[1]).resolve().is_relative_to(prefix), linked[0])
+
+        build = self.folder / "build"
+        self.command("cmake", "-S", SOURCE / "tests" / "end_to_end" / "consumer", "-B", build, "-G", "Ninja",
+                     f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release",
+                     "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", "-DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF")
+        self.command("cmake", "--build", build)
+        commands = (build / "compile_commands.json").read_text(encoding="utf-8")
+        for foreign in (f"{BUILD}/", f"{SOURCE}/src"):
+            self.assertNotIn(foreign, commands, "the consumer must not look into the build or source tree")
+        said = self.command(build / "consumer", case, self.folder / "by-consumer")
+        self.assertRegex(said, r"^ricochet \d+\.\d+\.\d+: done, 30 steps\n$")
+        self.assertEqual((self.folder / "by-consumer" / "history.csv").read_bytes(),
+                         (self.folder / "by-program" / "history.csv").read_bytes())
+
+    def test_every_installed_header_stands_alone(self):
+        """Each public header compiles by itself with nothing but Eigen beside the installed ones."""
+        prefix = self.folder / "prefix"
+        self.command("cmake", "--install", BUILD, "--prefix", prefix)
+        include = prefix / "include"
+        headers = sorted(path.relative_to(include) for path in include.rglob("*.hpp"))
+        self.assertGreater(len(headers), 30)
+        one = self.write("all.cpp", "".join(f'#include "{header}"\n' for header in headers))
+        eigen = self.command("pkg-config", "--cflags-only-I", "eigen3").split()
+        self.command("c++", "-std=c++20", "-fsyntax-only", f"-I{include}", *eigen, one)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,77 @@
+"""Includes go one way: each folder of src/ricochet includes only itself and those before it; and what other projects'
+headers bring stays inside a few source files."""
+
+import collections
+import re
+import unittest
+
+from harness import SOURCE
+
+LAYERS = ["base", "linear_algebra", "mesh", "fem", "contact", "mass", "problem", "scheme", "solver", "simulation", "io",
+          "case"]
+# linear_algebra is a tool of the layers from mass on: meshes, elements and contact do without it.
+WITHOUT_LINEAR_ALGEBRA = {"mesh", "fem", "contact"}
+
+# Headers of other projects that stay in the named places, each a folder and how many source files may include it there.
+CONFINED = {
+    "Basix": (r"basix/", {"src/ricochet/fem": 1}),
+    "HDF5": (r"hdf5\.h|H5", {"src/ricochet/io": 1}),
+    "toml++": (r"toml\+\+/|toml\.hpp", {"src/ricochet/case": 2}),
+    "CLI11": (r"CLI/", {"apps/ricochet": 1}),
+    "nlohmann": (r"nlohmann/", {"src/ricochet/io": 1, "src/ricochet/case": 1}),
+    "CHOLMOD": (r"cholmod|suitesparse/", {"src/ricochet/linear_algebra": 1}),
+    "spdlog": (r"spdlog/", {"src/ricochet/base": 1}),
+    "muParser": (r"muParser", {"src/ricochet/base": 1}),
+}
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+
+
+def sources():
+    return sorted(path for folder in ("src", "apps") for path in (SOURCE / folder).rglob("*.[ch]pp"))
+
+
+def includes(path):
+    return INCLUDE.findall(path.read_text(encoding="utf-8"))
+
+
+class Layering(unittest.TestCase):
+    def test_every_folder_is_a_layer(self):
+        folders = sorted(path.name for path in (SOURCE / "src" / "ricochet").iterdir() if path.is_dir())
+        self.assertEqual(folders, sorted(LAYERS))
+        self.assertGreater(len(sources()), 60)
+
+    def test_includes_go_one_way(self):
+        wrong = []
+        for path in sources():
+            if not path.is_relative_to(SOURCE / "src" / "ricochet"):
+                continue
+            layer = path.relative_to(SOURCE / "src" / "ricochet").parts[0]
+            for include in includes(path):
+                parts = include.split("/")
+                if parts[0] != "ricochet" or include == "ricochet/version.hpp":
+                    continue
+                backwards = LAYERS.index(parts[1]) > LAYERS.index(layer)
+                if backwards or (parts[1] == "linear_algebra" and layer in WITHOUT_LINEAR_ALGEBRA):
+                    wrong.append(f"{path.relative_to(SOURCE)} includes {include}")
+        self.assertEqual(wrong, [])
+
+    def test_own_headers_are_included_by_their_full_path(self):
+        """A relative include would escape the check above."""
+        wrong = [f"{path.relative_to(SOURCE)} includes {include}" for path in sources() for include in includes(path)
+                 if (path.parent / include).exists() and path.is_relative_to(SOURCE / "src")]
+        self.assertEqual(wrong, [])
+
+    def test_headers_of_other_projects_stay_inside(self):
+        for name, (pattern, places) in CONFINED.items():
+            found = collections.Counter()
+            for path in sources():
+                if any(re.match(pattern, include) for include in includes(path)):
+                    self.assertNotEqual(path.suffix, ".hpp", f"{path} passes {name} on to whoever includes it")
+                    found[str(path.relative_to(SOURCE).parent)] += 1
+            self.assertTrue(found, f"{name} is included nowhere: this test looks for something else")
+            for folder, count in found.items():
+                self.assertLessEqual(count, places.get(folder, 0), f"{count} files of {folder} include {name}")
+
+
+if __name__ == "__main__":
+    unittest.main()

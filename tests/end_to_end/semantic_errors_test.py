@@ -1,0 +1,177 @@
+"""Cases that are well formed but make no sense with their mesh: each ends with status 2 and a message that says what is
+wrong, where it stands (file:line:column), and what there is instead."""
+
+import os
+import unittest
+
+from harness import MESHES, TestCase, block_case, run
+
+MIXED = block_case("mixed_o1_msh41_ascii.msh").replace('group = "body"', 'group = "all"')
+
+# Four nodes, all of them on the boundary.
+TWO_TRIANGLES = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+1 1 "bottom"
+2 2 "body"
+$EndPhysicalNames
+$Nodes
+4
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+$EndNodes
+$Elements
+6
+1 1 2 1 1 1 2
+2 1 2 1 1 2 3
+3 1 2 1 1 3 4
+4 1 2 1 1 4 1
+5 2 2 2 1 1 2 3
+6 2 2 2 1 1 3 4
+$EndElements
+"""
+
+
+def support(group, components, value, parameters=""):
+    lines = ["[[support]]", f'group = "{group}"', f"components = {components}", f"value = {value}"]
+    return "\n".join(lines + ([f"parameters = {{ {parameters} }}"] if parameters else [])) + "\n"
+
+
+class SemanticErrors(TestCase):
+    def refuse(self, text, at, *fragments, command="validate", environment=None):
+        """`at` is the piece of the case file whose place the message must name: its last occurrence."""
+        case = self.write("case.toml", text)
+        arguments = [command, case] + (["-o", self.folder / "out", "--quiet"] if command == "run" else [])
+        process = self.expect_status(2, run(*arguments, environment=environment))
+        for fragment in fragments:
+            self.assertIn(fragment, process.stderr)
+        if at:
+            before = text[:text.rindex(at)]
+            line, column = before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1
+            self.assertIn(f"case.toml:{line}:{column}: ", process.stderr)
+        self.assertTrue(process.stderr.startswith("ricochet: "), process.stderr)
+        self.assertEqual(process.stdout, "")
+        if command == "validate":
+            self.expect_status(2, run("run", case, "-o", self.folder / "out", environment=environment))
+
+    def test_the_case_they_start_from_is_valid(self):
+        for text in (block_case(), MIXED):
+            self.expect_status(0, run("validate", self.write("case.toml", text)))
+
+    def test_contact_group_that_the_mesh_does_not_have(self):
+        self.refuse(block_case().replace('group = "bottom"', 'group = "botom"'), '"botom"', 'no group "botom"',
+                    'did you mean "bottom"')
+
+    def test_material_group_that_the_mesh_does_not_have(self):
+        self.refuse(block_case().replace('group = "body"', 'group = "steel"'), '"steel"', 'no group "steel"', '"body"')
+
+    def test_group_of_cells_where_facets_are_wanted(self):
+        self.refuse(block_case().replace('group = "bottom"', 'group = "body"'), '"body"', '"body"', "facets")
+
+    def test_group_without_elements(self):
+        self.refuse(MIXED.replace('group = "bottom"', 'group = "nothing"'), '"nothing"', '"nothing"', "is empty")
+
+    def test_support_in_a_direction_that_does_not_exist(self):
+        self.refuse(block_case() + support("sides", '["x", "z"]', 0), '"z"]', 'no component "z" in two dimensions')
+
+    def test_vectors_of_three_dimensions_on_a_plane_mesh(self):
+        text = (block_case().replace("[0.0, 0.0]", "[0.0, 0.0, 0.0]").replace("[0.0, 1.0]", "[0.0, 0.0, 1.0]")
+                .replace("[0.0, -10.0]", "[0.0, 0.0, -10.0]").replace("[1.3, 0.1]", "[1.3, 0.1, 0.0]"))
+        self.refuse(text, "[0.0, 0.0, 0.0]", "has 3 entries", "dimension 2")
+
+    def test_vectors_of_different_lengths(self):
+        self.refuse(block_case().replace("[0.0, -10.0]", "[0.0, 0.0, -10.0]"), "[0.0, 0.0, -10.0]", '"gravity"',
+                    "has 3 entries")
+
+    def test_contact_inside_the_body(self):
+        self.refuse(MIXED.replace('group = "bottom"', 'group = "interface"'), '"interface"',
+                    '"interface" is not on the surface')
+
+    def test_traction_inside_the_body(self):
+        self.refuse(MIXED + '[[traction]]\ngroup = "interface"\nvalue = [1.0, 0.0]\n', '"interface"',
+                    '"interface" is not on the surface')
+
+    def test_cells_without_material(self):
+        self.refuse(MIXED.replace('group = "all"', 'group = "left half"'), "[[material]]", "have no material", '"all"')
+
+    def test_cells_with_two_materials(self):
+        second = '[[material]]\ngroup = "left half"\ndensity = 2.0\nlambda = 1.0\nmu = 1.0\n'
+        self.refuse(MIXED + second, '"left half"', '"all" and "left half" overlap')
+
+    def test_obstacle_that_does_not_exist(self):
+        self.refuse(block_case().replace('obstacle = "floor"', 'obstacle = "flor"'), '"flor"', "there is no [obstacle.flor]", 'did you mean "floor"')
+
+    def test_two_contacts_of_the_same_facets_with_the_same_obstacle(self):
+        self.refuse(MIXED + '[[contact]]\ngroup = "bottom left"\nobstacle = "floor"\n', '"bottom left"',
+                    '"bottom" and "bottom left" overlap')
+
+    def test_more_obstacles_than_directions_at_a_node(self):
+        more = "".join(f'[obstacle.{name}]\ntype = "plane"\npoint = [0.0, -1.0]\nnormal = {normal}\n'
+                       f'[[contact]]\ngroup = "bottom"\nobstacle = "{name}"\n'
+                       for name, normal in (("ramp", [1, 1]), ("wall", [-1, 1])))
+        self.refuse(block_case() + more, None, "case.toml:", "contact")
+
+    def test_supports_that_disagree(self):
+        self.refuse(MIXED + support("bottom", '["x"]', 0) + support("interface", '["x"]', '"t"'), '"interface"',
+                    'support of group "interface"', '"0"')
+
+    def test_supports_that_disagree_in_a_parameter(self):
+        self.refuse(MIXED + support("bottom", '["x"]', '"p*t"', "p = 1.0")
+                    + support("interface", '["x"]', '"p*t"', "p = 2.0"), '"interface"', 'support of group "interface"')
+
+    def test_two_probes_of_one_name(self):
+        self.refuse(block_case() + '[[probe]]\nname = "foot"\nat = [0.0, 0.0]\n', '"foot"', '"foot"')
+
+    def test_probe_with_the_name_of_a_column(self):
+        self.refuse(block_case().replace('"foot"', '"total_energy"'), '"total_energy"', '"total_energy"')
+
+    def test_initial_displacement_that_is_not_finite(self):
+        self.refuse(block_case() + '[initial]\ndisplacement = ["log(x-0.1)", "0"]\n', '["log(x-0.1)", "0"]',
+                    "no finite value at x = 0.1")
+
+    def test_equilibrium_that_does_not_exist(self):
+        self.refuse(block_case().replace("[0.0, -10.0]", "[1.0, -10.0]") + '[initial]\ndisplacement = "static"\n', None,
+                    "there is no equilibrium", "[[support]]", command="run")
+
+    def test_load_that_is_not_finite_at_some_instant(self):
+        self.refuse(block_case() + '[[traction]]\ngroup = "sides"\nvalue = ["1/(t-0.25)", "0"]\n', None,
+                    '"1/(t-0.25)" has no finite value', "t = 0.25", command="run")
+        self.assertIn('"failed"', (self.folder / "out" / "summary.json").read_text(encoding="utf-8"))
+
+    def test_equivalent_mass_without_a_free_node(self):
+        mesh = self.write("all_around.msh", TWO_TRIANGLES)
+        text = block_case().replace(str(MESHES / "quadrilateral_o1_msh41_ascii.msh"), str(mesh))
+        for mass in ("equivalent", "equivalent-nearest"):
+            with self.subTest(mass):
+                self.refuse(text.replace('"consistent"', f'"{mass}"'), f'"{mass}"', "contact")
+
+    def test_geometry_without_the_gmsh_program(self):
+        text = block_case("quadrilateral.geo").replace("[[material]]", "size = 0.5\n[[material]]", 1)
+        # Our own cache of meshes must not help.
+        environment = dict(os.environ, PATH=str(self.folder), RICOCHET_CACHE=str(self.folder))
+        self.refuse(text, None, "gmsh", "quadrilateral.geo", command="run", environment=environment)
+
+    def test_support_against_an_obstacle_is_a_warning(self):
+        case = self.write("case.toml", block_case() + support("bottom", '["y"]', 0))
+        process = self.expect_status(0, run("validate", case))
+        self.assertIn("warning: 4 nodes of contact boundaries are held by supports", process.stderr)
+
+    def test_supports_with_parameters_of_their_own(self):
+        """Two supports with the same text are not the same support."""
+        text = MIXED.replace("end = 0.3", "end = 0.1") + support("bottom", '["x"]', '"p*t"', "p = 1.0")
+        text = text.replace('name = "foot"\nat = [1.3, 0.1]', 'name = "foot"\nat = [0.0, 0.0]')
+        text += support("bottom", '["y"]', '"p*t"', "p = 2.0")
+        results = self.simulate(self.write("case.toml", text), options=("--log-level", "error"))
+        *_, last = (results / "history.csv").read_text(encoding="ascii").splitlines()
+        header = (results / "history.csv").read_text(encoding="ascii").splitlines()[0].split(",")
+        values = dict(zip(header, map(float, last.split(","))))
+        self.assertAlmostEqual(values["foot.displacement_x"], 0.1, delta=1e-15)
+        self.assertAlmostEqual(values["foot.displacement_y"], 0.2, delta=1e-15)
+
+
+if __name__ == "__main__":
+    unittest.main()

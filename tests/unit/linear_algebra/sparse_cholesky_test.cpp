@@ -1,0 +1,196 @@
+#include "ricochet/linear_algebra/sparse_cholesky.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace ricochet {
+namespace {
+
+double uniform(std::mt19937& random) {
+  return static_cast<double>(random()) / 2147483648.0 - 1.0;
+}
+
+/// A sparse symmetric positive definite matrix: a weighted graph's Laplacian (a ring and random chords) and a small
+/// diagonal, badly scaled when asked.
+SparseMatrix random_matrix(Index size, unsigned seed, double spread = 1.0) {
+  std::mt19937 random(seed);
+  Matrix dense = Matrix::Zero(size, size);
+  for (Index i = 0; i < size; ++i) {
+    for (const Index j : {(i + 1) % size, static_cast<Index>(random() % static_cast<unsigned>(size))}) {
+      if (i == j) continue;
+      const double weight = std::pow(spread, uniform(random));
+      dense(i, j) -= weight;
+      dense(j, i) = dense(i, j);
+      dense(i, i) += weight;
+      dense(j, j) += weight;
+    }
+    dense(i, i) += 0.1;
+  }
+  return dense.sparseView();
+}
+
+Vector random_vector(Index size, unsigned seed) {
+  std::mt19937 random(seed);
+  Vector result(size);
+  for (double& value : result) value = uniform(random);
+  return result;
+}
+
+std::vector<Index> every_third(Index size) {
+  std::vector<Index> result;
+  for (Index i = 0; i < size; i += 3) result.push_back(i);
+  return result;
+}
+
+TEST(SparseCholesky, SolvesAsEigenDoes) {
+  for (const Index size : {1, 2, 3, 10, 57, 200}) {
+    const SparseMatrix matrix = random_matrix(size, 5);
+    const Vector right = random_vector(size, 6);
+    const Vector expected = Matrix(matrix).llt().solve(right);
+    for (const auto& trailing : {std::vector<Index>{}, every_third(size), std::vector<Index>{size - 1}}) {
+      SparseCholesky factor(matrix, trailing);
+      ASSERT_TRUE(factor.positive_definite());
+      EXPECT_EQ(factor.size(), size);
+      EXPECT_EQ(factor.failed_unknown(), -1);
+      EXPECT_GE(factor.factor_entries(), static_cast<std::size_t>(size));
+      Vector x;
+      factor.solve(right, x);
+      EXPECT_LE((x - expected).norm(), 1e-13 * expected.norm()) << size;
+      factor.solve(2.0 * right, x);
+      EXPECT_LE((x - 2.0 * expected).norm(), 1e-13 * expected.norm()) << "the second solve";
+    }
+  }
+}
+
+TEST(SparseCholesky, AllUnknownsMayTrail) {
+  const Index size = 12;
+  const SparseMatrix matrix = random_matrix(size, 8);
+  std::vector<Index> all(static_cast<std::size_t>(size));
+  std::iota(all.begin(), all.end(), Index{0});
+  SparseCholesky factor(matrix, all);
+  const Matrix expected = (Matrix(matrix) * factor.scale()).llt().matrixL();
+  EXPECT_LE((factor.trailing_factor() - expected).cwiseAbs().maxCoeff(), 1e-15 * expected.cwiseAbs().maxCoeff() * 10.0);
+}
+
+TEST(SparseCholesky, TrailingFactorIsThatOfTheSchurComplement) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Index size = 90;
+    const SparseMatrix matrix = random_matrix(size, seed, 100.0);
+    // Ascending, as contact dofs are, but also in any other order: it is kept.
+    std::vector<Index> trailing = every_third(size);
+    if (seed == 2U) std::reverse(trailing.begin(), trailing.end());
+    std::vector<Index> leading;
+    for (Index i = 0; i < size; ++i) {
+      if (std::find(trailing.begin(), trailing.end(), i) == trailing.end()) leading.push_back(i);
+    }
+    const Matrix dense = matrix;
+    const Matrix schur =
+        dense(trailing, trailing) -
+        dense(trailing, leading) * Matrix(dense(leading, leading)).llt().solve(dense(leading, trailing));
+    SparseCholesky factor(matrix, trailing);
+    const Matrix found = factor.trailing_factor();
+    const Matrix expected = (factor.scale() * schur).llt().matrixL();
+    EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
+    EXPECT_TRUE(found.triangularView<Eigen::StrictlyUpper>().toDenseMatrix().isZero(0.0));
+  }
+}
+
+/// The tail of L⁻¹P 2ᵏ b is what a condensed contact problem works on: changing it and going back must be a solve too.
+TEST(SparseCholesky, ForcesOnTrailingUnknownsMayEnterBetweenTheTwoSolves) {
+  const Index size = 60;
+  const SparseMatrix matrix = random_matrix(size, 21);
+  const std::vector<Index> trailing = every_third(size);
+  SparseCholesky factor(matrix, trailing);
+  const auto count = static_cast<Index>(trailing.size());
+  const Vector right = random_vector(size, 22);
+  const Vector force = random_vector(count, 23);
+  Vector y, x, expected;
+  factor.forward(right, y);
+  y.tail(count) += factor.scale() * factor.trailing_factor().triangularView<Eigen::Lower>().solve(force);
+  factor.backward(y, x);
+  Vector total = right;
+  for (Index i = 0; i < count; ++i) total[trailing[static_cast<std::size_t>(i)]] += force[i];
+  factor.solve(total, expected);
+  EXPECT_LE((x - expected).norm(), 1e-13 * expected.norm());
+}
+
+TEST(SparseCholesky, PowersOfTwoChangeNoBit) {
+  const Index size = 120;
+  const SparseMatrix matrix = random_matrix(size, 31, 1e3);
+  const Vector right = random_vector(size, 32);
+  const std::vector<Index> trailing = every_third(size);
+  SparseCholesky one(matrix, trailing);
+  Vector expected;
+  one.solve(right, expected);
+  for (const int power : {-301, -37, -2, -1, 1, 2, 3, 20, 41, 300}) {
+    SparseCholesky scaled(matrix * std::ldexp(1.0, power), trailing);
+    EXPECT_TRUE(scaled.trailing_factor() == one.trailing_factor()) << power;
+    Vector x;
+    scaled.solve(right * std::ldexp(1.0, power + 5), x);
+    EXPECT_TRUE(x == expected * 32.0) << power;
+  }
+}
+
+TEST(SparseCholesky, SeesThatAMatrixIsNotPositiveDefinite) {
+  const Index size = 30;
+  for (const Index unknown : {Index{0}, Index{13}, size - 1}) {
+    for (const auto& trailing : {std::vector<Index>{}, every_third(size)}) {
+      SparseMatrix negative = random_matrix(size, 41);
+      negative.coeffRef(unknown, unknown) = -1.0;
+      EXPECT_FALSE(SparseCholesky(negative, trailing).positive_definite()) << unknown;
+      EXPECT_GE(SparseCholesky(negative, trailing).failed_unknown(), 0);
+    }
+  }
+}
+
+TEST(SparseCholesky, NamesTheUnknownAtWhichItStops) {
+  // A diagonal matrix: only one pivot can fail.
+  for (const Index unknown : {Index{0}, Index{4}, Index{9}}) {
+    for (const double bad : {0.0, -3.0}) {
+      SparseMatrix diagonal(10, 10);
+      for (Index i = 0; i < 10; ++i) diagonal.insert(i, i) = i == unknown ? bad : 1.0 + static_cast<double>(i);
+      diagonal.makeCompressed();
+      for (const auto& trailing : {std::vector<Index>{}, std::vector<Index>{4, 9}}) {
+        const SparseCholesky factor(diagonal, trailing);
+        EXPECT_FALSE(factor.positive_definite()) << unknown << " " << bad;
+        EXPECT_EQ(factor.failed_unknown(), unknown);
+      }
+    }
+  }
+}
+
+TEST(SparseCholesky, OfNothingIsNothing) {
+  SparseCholesky factor((SparseMatrix(0, 0)));
+  EXPECT_TRUE(factor.positive_definite());
+  EXPECT_EQ(factor.size(), 0);
+  Vector x = Vector::Ones(3);
+  factor.solve(Vector(), x);
+  EXPECT_EQ(x.size(), 0);
+}
+
+TEST(SparseCholesky, MayBeMoved) {
+  const SparseMatrix matrix = random_matrix(20, 51);
+  SparseCholesky first(matrix);
+  SparseCholesky second(std::move(first));
+  Vector x;
+  second.solve(matrix * Vector::Ones(20), x);
+  EXPECT_LE((x - Vector::Ones(20)).norm(), 1e-12);
+}
+
+TEST(Extract, TakesTheNumberedRowsAndColumns) {
+  const SparseMatrix matrix = random_matrix(6, 61);
+  const std::vector<int> rows{1, -1, 0, -1, 2, -1};
+  const std::vector<int> columns{-1, 0, -1, 1, -1, -1};
+  const Matrix found = extract(matrix, rows, 3, columns, 2);
+  const Matrix dense = matrix;
+  const std::vector<Index> row_of{2, 0, 4};
+  const std::vector<Index> column_of{1, 3};
+  EXPECT_TRUE(found == Matrix(dense(row_of, column_of)));
+}
+
+}  // namespace
+}  // namespace ricochet

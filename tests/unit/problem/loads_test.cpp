@@ -1,0 +1,157 @@
+#include "ricochet/problem/loads.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/internal_force.hpp"
+
+namespace ricochet {
+namespace {
+
+TEST(Loads, AreTheSumOfTheirParts) {
+  Loads loads(3);
+  Vector load;
+  EXPECT_FALSE(loads.varies());
+  loads.total(1.0, load);
+  EXPECT_EQ(load, Vector::Zero(3));
+
+  loads.add_constant(Vector::Constant(3, 2.0));
+  loads.add_constant(Vector::Unit(3, 0));
+  EXPECT_FALSE(loads.varies());
+  EXPECT_EQ(loads.constant(), Vector(Vector::Constant(3, 2.0) + Vector::Unit(3, 0)));
+
+  loads.add_separable(Vector::Unit(3, 1), Expression("4*t"));
+  EXPECT_TRUE(loads.varies());
+  loads.add_general([](double time, Vector& to) { to[2] += time * time; });
+  loads.varying(3.0, load);
+  EXPECT_EQ(load, Vector(Eigen::Vector3d(0.0, 12.0, 9.0)));
+  loads.total(3.0, load);
+  EXPECT_EQ(load, Vector(Eigen::Vector3d(3.0, 14.0, 11.0)));
+  loads.total(0.0, load);  // nothing is left of the previous instant
+  EXPECT_EQ(load, loads.constant());
+}
+
+TEST(Loads, AGeneralPartAloneVaries) {
+  Loads loads(2);
+  loads.add_general([](double, Vector& to) { to[0] += 1.0; });
+  EXPECT_TRUE(loads.varies());
+}
+
+TEST(Loads, PassOnTheErrorOfAnAmplitude) {
+  Loads loads(1);
+  loads.add_separable(Vector::Ones(1), Expression("1/(1-t)"));
+  Vector load;
+  loads.total(0.0, load);
+  EXPECT_EQ(load[0], 1.0);
+  EXPECT_THROW(loads.total(1.0, load), Error);
+}
+
+TEST(Supports, AreSortedByDof) {
+  Supports supports;
+  EXPECT_TRUE(supports.add(7, Expression("t")));
+  EXPECT_TRUE(supports.add(2, Expression("3*t")));
+  EXPECT_TRUE(supports.add(4, Expression("t")));
+  supports.finish();
+  EXPECT_EQ(supports.dofs(), (std::vector<Index>{2, 4, 7}));
+  Vector values;
+  supports.values(2.0, values);
+  EXPECT_EQ(values, Vector(Eigen::Vector3d(6.0, 2.0, 2.0)));
+  EXPECT_TRUE(supports.contains(4));
+  EXPECT_FALSE(supports.contains(3));
+  EXPECT_EQ(supports.expression(2).text(), "3*t");
+  EXPECT_EQ(supports.expression(7).text(), "t");
+}
+
+TEST(Supports, KeepTheFirstValueOfADof) {
+  Supports supports;
+  EXPECT_TRUE(supports.add(1, Expression("5")));
+  EXPECT_FALSE(supports.add(1, Expression("6")));
+  supports.finish();
+  EXPECT_EQ(supports.size(), 1);
+  Vector values;
+  supports.values(0.0, values);
+  EXPECT_EQ(values[0], 5.0);
+  EXPECT_EQ(supports.expression(1).text(), "5");
+}
+
+/// The same formula may be given twice with different parameters.
+TEST(Supports, TellFormulasApartByTheirParameters) {
+  Supports supports;
+  supports.add(0, Expression("a*t", {{"a", 1.0}}));
+  supports.add(1, Expression("a*t", {{"a", 2.0}}));
+  supports.add(2, Expression("a*t", {{"a", 2.0}}));
+  supports.finish();
+  Vector values;
+  supports.values(3.0, values);
+  EXPECT_EQ(values, Vector(Eigen::Vector3d(3.0, 6.0, 6.0)));
+}
+
+TEST(Supports, OfNoDofHaveNoValues) {
+  Supports supports;
+  supports.finish();
+  Vector values = Vector::Ones(3), velocity, acceleration;
+  supports.values(1.0, values);
+  supports.derivatives(0.0, 0.1, velocity, acceleration);
+  EXPECT_EQ(values.size(), 0);
+  EXPECT_EQ(velocity.size(), 0);
+  EXPECT_EQ(acceleration.size(), 0);
+}
+
+TEST(Supports, DerivativesAreExactForParabolas) {
+  Supports supports;
+  supports.add(0, Expression("3 - 2*t + 5*t^2"));
+  supports.finish();
+  Vector velocity, acceleration;
+  supports.derivatives(0.5, 0.25, velocity, acceleration);
+  EXPECT_NEAR(velocity[0], 3.0, 1e-13);
+  EXPECT_NEAR(acceleration[0], 10.0, 1e-12);
+}
+
+TEST(Supports, DerivativesAreOfSecondOrder) {
+  Supports supports;
+  supports.add(0, Expression("sin(3*t + 0.4)"));
+  supports.finish();
+  double previous_velocity = 0.0, previous_acceleration = 0.0;
+  for (const double spacing : {0.02, 0.01, 0.005}) {
+    Vector velocity, acceleration;
+    supports.derivatives(0.0, spacing, velocity, acceleration);
+    const double velocity_error = std::abs(velocity[0] - 3.0 * std::cos(0.4));
+    const double acceleration_error = std::abs(acceleration[0] + 9.0 * std::sin(0.4));
+    if (previous_velocity > 0.0) {
+      EXPECT_NEAR(std::log2(previous_velocity / velocity_error), 2.0, 0.15);
+      EXPECT_NEAR(std::log2(previous_acceleration / acceleration_error), 2.0, 0.15);
+    }
+    previous_velocity = velocity_error;
+    previous_acceleration = acceleration_error;
+  }
+}
+
+/// Formulas may be undefined before the instant asked for.
+TEST(Supports, DerivativesLookForwardOnly) {
+  Supports supports;
+  supports.add(0, Expression("sqrt(t)^3"));
+  supports.finish();
+  Vector velocity, acceleration;
+  EXPECT_NO_THROW(supports.derivatives(0.0, 1e-3, velocity, acceleration));
+}
+
+TEST(LinearElasticity, HasItsForceEnergyAndTangent) {
+  SparseMatrix stiffness(2, 2);
+  stiffness.insert(0, 0) = 2.0;
+  stiffness.insert(1, 0) = -1.0;
+  stiffness.insert(0, 1) = -1.0;
+  stiffness.insert(1, 1) = 3.0;
+  stiffness.makeCompressed();
+  const LinearElasticity elasticity(stiffness);
+  const Vector u = Eigen::Vector2d(1.0, 2.0);
+  Vector force;
+  elasticity.evaluate(u, force);
+  EXPECT_EQ(force, Vector(Eigen::Vector2d(0.0, 5.0)));
+  EXPECT_EQ(elasticity.energy(u), 5.0);
+  EXPECT_EQ(Matrix(elasticity.tangent()), Matrix(stiffness));
+}
+
+}  // namespace
+}  // namespace ricochet
