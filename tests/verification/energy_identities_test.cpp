@@ -138,7 +138,7 @@ TEST(EnergyIdentity, NewmarkWithAnyParametersAndMass) {
 
 TEST(EnergyIdentity, KlrConservesTheHalfStepEnergy) {
   for (const Body& body : bodies()) {
-    for (const char* mass : {"consistent", "lumped", "equivalent"}) {
+    for (const char* mass : {"consistent", "lumped"}) {
       CaseRun run(case_text(body, mass, "scheme = \"klr-conserving\"\n"));
       Vector displacement, velocity;
       double first = 0.0, worst = 0.0, touched = 0.0, penetration = 0.0;
@@ -167,6 +167,8 @@ TEST(EnergyIdentity, AccountClosesWithSupportsDampingAndLoadsThatVary) {
        {"scheme = \"midpoint\"\n", "scheme = \"klr-conserving\"\n", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
         "scheme = \"newmark\"\nbeta = 0.3025\ngamma = 0.6\n"}) {
     for (const char* mass : {"consistent", "lumped", "equivalent"}) {
+      // Refused: klr-conserving needs inertia on contact nodes.
+      if (std::string(scheme).find("klr") != std::string::npos && std::string(mass) == "equivalent") continue;
       CaseRun run(
           "[mesh]\nfile = \"" + mesh +
           "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 50.0\npoisson = 0.3\ndamping = { mass = 0.1, "

@@ -35,6 +35,8 @@ TEST(StartingState, StaticEquilibriumStaysAtRestWithEveryMassAndScheme) {
   for (const char* scheme : {"scheme = \"midpoint\"\n", "scheme = \"klr-conserving\"\n",
                              "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"}) {
     for (const char* mass : {"consistent", "lumped", "equivalent"}) {
+      if (std::string(scheme).find("klr") != std::string::npos && std::string(mass) == "equivalent")
+        continue;  // refused
       // The body starts above the floor, held by nothing: equilibrium is found on the floor.
       CaseRun run(block_case(
           0.01, mass,
@@ -142,6 +144,80 @@ TEST(StartingState, ABodyThatIsStruckAtOnceHasNoReactionYet) {
   EXPECT_EQ(run.state().forces.normal_reaction.sum(), 0.0);
   run.simulation().advance();
   EXPECT_GT(run.state().forces.normal_reaction.sum(), 0.0);
+}
+
+TEST(StartingState, KlrConservingRefusesAMassWithoutInertiaOnContactNodes) {
+  try {
+    CaseRun run(block_case(0.01, "equivalent", "[time]\nscheme = \"klr-conserving\"\nstep = 1e-3\nend = 0.1\n"));
+    FAIL() << "no error";
+  } catch (const Error& problem) {
+    EXPECT_NE(std::string(problem.what()).find("needs inertia on the contact nodes"), std::string::npos)
+        << problem.what();
+  }
+}
+
+/// A strip held at its left end, loaded by its weight: thickness and stiffness ratio make the iteration hard.
+double static_tip(double length, double thickness, double young, double stiff_young) {
+  const std::string t = std::to_string(thickness), half = std::to_string(0.5 * length);
+  const std::string mesh = test_support::mesh_geometry(
+      "slender",
+      "Rectangle(1)={0,0,0," + half + "," + t + "}; Rectangle(2)={" + half + ",0,0," + half + "," + t +
+          "}; BooleanFragments{Surface{1};Delete;}{Surface{2};Delete;} Physical Surface(\"near\")={1}; "
+          "Physical Surface(\"far\")={2}; l() = Curve In BoundingBox{-1e-3,-1,-1,1e-3,1,1}; Physical "
+          "Curve(\"left\")={l()};",
+      0.5 * thickness, 2);
+  const auto material = [](const std::string& name, double e) {
+    return "[[material]]\ngroup = \"" + name + "\"\ndensity = 1.0\npoisson = 0.0\nyoung = " + std::to_string(e) + "\n";
+  };
+  CaseRun run("[mesh]\nfile = \"" + mesh + "\"\ndegree = 2\nplane = \"stress\"\n" + material("near", young) +
+              material("far", stiff_young) +
+              "[[support]]\ngroup = \"left\"\ncomponents = [\"x\", \"y\"]\nvalue = 0.0\n[load]\ngravity = [0.0, -1.0]\n"
+              "[initial]\ndisplacement = \"static\"\n[mass]\ntype = \"consistent\"\n" +
+              newmark);
+  return run.state().displacement.minCoeff();
+}
+
+TEST(StartingState, StaticEquilibriumOfSlenderAndOfUnevenBodies) {
+  // Euler–Bernoulli cantilever under its weight: w = q L⁴ / 8EI, q = ρ g t, I = t³/12; shear adds of the order (t/L)².
+  const double thickness = 0.02, young = 1e6;
+  const double beam = 1.5 / (young * thickness * thickness);
+  EXPECT_NEAR(static_tip(1.0, thickness, young, young), -beam, 2e-3 * beam);
+  // The outer half a million times stiffer: it only turns. Inner half with moment M(x) = q(L−x)²/2 up to L/2, then
+  // straight.
+  const double half = 0.5, q = thickness, inertia = young * thickness * thickness * thickness / 12.0;
+  const auto power = [](double x, int n) { return std::pow(x, n); };
+  const double slope = q / (6.0 * inertia) * (1.0 - power(half, 3));
+  const double deflection = q / (2.0 * inertia) * (0.5 * half * half - power(half, 3) / 3.0 + power(half, 4) / 12.0);
+  EXPECT_NEAR(static_tip(1.0, thickness, young, 1e6 * young), -(deflection + slope * half), 5e-3 * beam);
+}
+
+TEST(StartingState, StaticEquilibriumWithoutAnyForceIsFound) {
+  CaseRun run("[mesh]\nfile = \"" + block_mesh(0.0) +
+              "\"\n[[material]]\ngroup = \"body\"\ndensity = 2.0\nyoung = 1000.0\npoisson = 0.3\n"
+              "[[support]]\ngroup = \"left\"\ncomponents = [\"x\", \"y\"]\nvalue = 0.3\n[initial]\ndisplacement = "
+              "\"static\"\n[mass]\ntype = \"consistent\"\n" +
+              newmark);
+  EXPECT_LT((run.state().displacement.array() - 0.3).abs().maxCoeff(), 1e-12);
+}
+
+TEST(StiffBody, EnergyAccountClosesThoughTheBodyMovesFar) {
+  // A steel block in SI units falls five times its size: its strain energy is next to nothing, and must not be the
+  // rounding of K times the fall.
+  for (const char* scheme : {"scheme = \"midpoint\"\n", "scheme = \"klr-conserving\"\n",
+                             "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"}) {
+    CaseRun run("[mesh]\nfile = \"" + block_mesh(10.0) +
+                "\"\n[[material]]\ngroup = \"body\"\ndensity = 7850.0\nyoung = 2.1e11\npoisson = 0.3\n"
+                "[load]\ngravity = [0.0, -9.81]\n[initial]\nvelocity = [\"1-0.001*y\", \"0.001*x\"]\n"
+                "[mass]\ntype = \"consistent\"\n[time]\n" +
+                std::string(scheme) + "step = 1e-3\nend = 1.0\n");
+    double worst = 0.0, largest = 0.0;
+    run.run([&] {
+      const Energies now = run.simulation().account().energies(run.state());
+      largest = std::max(largest, now.kinetic);
+      worst = std::max(worst, std::abs(run.simulation().account().residual(now)));
+    });
+    EXPECT_LT(worst, 1e-11 * largest) << scheme;
+  }
 }
 
 TEST(FreeFall, LeavesTheBodyUndeformedWithEveryMass) {

@@ -37,7 +37,7 @@ struct Expression::Implementation {
   mu::Parser parser;
   bool number = true;  ///< a plain constant: no parser is asked
   double constant = 0.0;
-  bool uses_time = false, uses_position = false;
+  bool uses_time = false, uses_position = false, uses_z = false;
 
   void compile();
 };
@@ -59,6 +59,7 @@ void Expression::Implementation::compile() {
     parser.SetExpr(text);
     for (const auto& [name, address] : parser.GetUsedVar()) {
       uses_time = uses_time || name == "t";
+      uses_z = uses_z || name == "z";
       uses_position = uses_position || name == "x" || name == "y" || name == "z";
       if (address == nullptr) {
         std::vector<std::string> known{"x", "y", "z", "t", "pi"};
@@ -142,6 +143,9 @@ bool Expression::depends_on_time() const {
 }
 bool Expression::depends_on_position() const {
   return implementation_->uses_position;
+}
+bool Expression::depends_on_z() const {
+  return implementation_->uses_z;
 }
 const std::string& Expression::text() const {
   return implementation_->text;

@@ -28,6 +28,7 @@ class Expression {
 
   [[nodiscard]] bool depends_on_time() const;
   [[nodiscard]] bool depends_on_position() const;
+  [[nodiscard]] bool depends_on_z() const;
   [[nodiscard]] bool is_constant() const { return !depends_on_time() && !depends_on_position(); }
   [[nodiscard]] const std::string& text() const;
   /// The same constant, or the same text with the same parameters: one value everywhere, always.

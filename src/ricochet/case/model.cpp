@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "ricochet/base/error.hpp"
@@ -31,6 +32,22 @@ void check_length(const Case& input, const std::string& key_path, std::size_t le
 
 }  // namespace
 
+namespace {
+
+/// As check_length; in two dimensions "z" would silently be 0.
+void check_expressions(const Case& input, const std::string& key_path, const std::vector<Expression>& value,
+                       int dimension) {
+  check_length(input, key_path, value.size(), dimension);
+  for (const Expression& component : value) {
+    if (dimension == 2 && component.depends_on_z()) {
+      refuse(input, key_path,
+             fmt::format("the expression \"{}\" depends on z, but the mesh has dimension 2", component.text()));
+    }
+  }
+}
+
+}  // namespace
+
 void check_dimensions(const Case& input, int dimension) {
   for (const ObstacleSection& obstacle : input.obstacles) {
     check_length(input, "obstacle." + obstacle.name + ".point", obstacle.point.size(), dimension);
@@ -44,12 +61,12 @@ void check_dimensions(const Case& input, int dimension) {
     }
   }
   for (std::size_t i = 0; i < input.tractions.size(); ++i) {
-    check_length(input, fmt::format("traction.{}.value", i), input.tractions[i].value.size(), dimension);
+    check_expressions(input, fmt::format("traction.{}.value", i), input.tractions[i].value, dimension);
   }
   check_length(input, "load.gravity", input.load.gravity.size(), dimension);
-  check_length(input, "load.body_force", input.load.body_force.size(), dimension);
-  check_length(input, "initial.displacement", input.initial.displacement.size(), dimension);
-  check_length(input, "initial.velocity", input.initial.velocity.size(), dimension);
+  check_expressions(input, "load.body_force", input.load.body_force, dimension);
+  check_expressions(input, "initial.displacement", input.initial.displacement, dimension);
+  check_expressions(input, "initial.velocity", input.initial.velocity, dimension);
   for (std::size_t i = 0; i < input.probes.size(); ++i) {
     check_length(input, fmt::format("probe.{}.at", i), input.probes[i].at.size(), dimension);
   }
@@ -168,8 +185,15 @@ void add_probes(const Case& input, Model& model) {
         nearest_node(model.space, Eigen::Map<const Vector>(section.at.data(), static_cast<Index>(section.at.size())));
     Probe probe{section.name, nearest.node, nearest.distance, -1};
     const auto& nodes = model.problem.contact.nodes;
-    for (std::size_t i = nodes.size(); i-- > 0;) {
-      if (nodes[i] == nearest.node) probe.contact_point = static_cast<Index>(i);
+    const auto points = std::count(nodes.begin(), nodes.end(), nearest.node);
+    if (points > 0) probe.contact_point = std::find(nodes.begin(), nodes.end(), nearest.node) - nodes.begin();
+    if (points > 1) {
+      const auto pair =
+          static_cast<std::size_t>(model.problem.contact.pair[static_cast<std::size_t>(probe.contact_point)]);
+      log::warning(
+          fmt::format("probe \"{}\" is at a node that {} obstacles may touch: its gap, pressure and reaction are "
+                      "those of obstacle \"{}\"",
+                      probe.name, points, model.contact_pairs[pair].obstacle_name));
     }
     log::info(fmt::format("probe \"{}\": nearest node is {:.3g} away", probe.name, probe.distance));
     model.probes.push_back(probe);

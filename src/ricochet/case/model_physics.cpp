@@ -88,7 +88,8 @@ void assemble_operators(const Case& input, Model& model) {
     }
   };
   model.problem.mass = expand_to_components(build(consistent), d);
-  model.problem.internal_force = std::make_shared<LinearElasticity>(assemble_stiffness(model.body, graph));
+  model.problem.internal_force =
+      std::make_shared<LinearElasticity>(assemble_stiffness(model.body, graph), model.space.nodes);
   std::vector<double> mass_damping, stiffness_damping;
   for (const Material& material : model.body.materials) {
     mass_damping.push_back(material.mass_damping);

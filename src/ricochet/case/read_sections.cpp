@@ -129,12 +129,17 @@ void check_obstacle_name(const SectionReader& reader, const std::vector<std::str
                                                      : fmt::format("the obstacles are {}", join_names(obstacles))));
 }
 
-// The same text under the same key in two entries of a list.
-void check_distinct(const std::vector<SectionReader>& readers, const std::string& section, const std::string& name) {
+// The same text under the same key in two entries of a list; with `together`, only where that key agrees, too.
+void check_distinct(const std::vector<SectionReader>& readers, const std::string& section, const std::string& name,
+                    const std::string& together = "") {
   for (std::size_t i = 0; i < readers.size(); ++i) {
     if (!readers[i].is_usable(name)) continue;
     for (std::size_t j = 0; j < i; ++j) {
       if (!readers[j].is_usable(name) || readers[j].text(name) != readers[i].text(name)) continue;
+      if (!together.empty() && readers[i].is_usable(together) && readers[j].is_usable(together) &&
+          readers[i].text(together) != readers[j].text(together)) {
+        continue;
+      }
       readers[i].add_problem(name, fmt::format("the {} \"{}\" is in another [[{}]] already, at {}", name,
                                                readers[i].text(name), section, readers[j].where(name).text()));
       break;
@@ -225,7 +230,7 @@ void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections,
     result.contacts.push_back(read_contact(reader));
     if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, names);
   }
-  check_distinct(contacts, "contact", "group");
+  check_distinct(contacts, "contact", "group", "obstacle");
 }
 
 }  // namespace

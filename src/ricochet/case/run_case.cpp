@@ -43,12 +43,18 @@ void prepare_directory(const RunOptions& options) {
                               options.output_directory, name));
     }
   }
-  // Nothing of an earlier run stays: this one may write no fields.
+}
+
+/// Takes away what an earlier run left (this one may write no fields). Called when the new run is ready to start, so
+/// that a case that is refused costs nothing.
+void remove_old_run(const std::string& directory) {
   for (const char* name : result_files) {
-    const fs::path file = fs::path(options.output_directory) / name;
-    fs::remove(file, problem);
-    if (problem)
+    const std::filesystem::path file = std::filesystem::path(directory) / name;
+    std::error_code problem;
+    std::filesystem::remove(file, problem);
+    if (problem) {
       throw Error(ErrorKind::file_access, fmt::format("{}: cannot be removed: {}", file.string(), problem.message()));
+    }
   }
 }
 
@@ -160,6 +166,33 @@ class Recording {
   double seconds_ = 0.0;
 };
 
+/// What the account of energy says that a user should hear.
+void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
+  const double scale = summary.energy_scale();
+  // A body that is merely displaced has no energy but the rounding of these terms: nothing to judge.
+  const Vector magnitude = state.displacement.cwiseAbs();
+  const double terms = magnitude.dot(problem.internal_force->tangent().cwiseAbs() * magnitude);
+  if (scale <= 1e-14 * terms) return;
+  const auto largest = [&](const char* column) {
+    const ColumnDigest digest = summary.digest(column);
+    return std::max(std::abs(digest.minimum), std::abs(digest.maximum));
+  };
+  if (largest("energy_residual") > 1e-8 * scale) {
+    log::warning(fmt::format(
+        "the energy account does not close: its residual reaches {:.2g} of the largest energy, by rounding; "
+        "stiffnesses or densities that differ by many orders of magnitude, a Poisson's ratio at 1/2 or an "
+        "extreme time.step are likely causes; do not trust this run to more digits than that",
+        largest("energy_residual") / scale));
+  }
+  if (summary.digest("contact_work").maximum > 0.01 * scale) {
+    log::warning(fmt::format(
+        "contact forces have created energy: contact_work reaches {:.2g} of the largest energy; it comes from "
+        "the time scheme: use newmark with mass \"equivalent\" and a time.step below the time in which a wave "
+        "crosses a cell",
+        summary.digest("contact_work").maximum / scale));
+  }
+}
+
 }  // namespace
 
 long step_count(const TimeSection& time) {
@@ -185,6 +218,7 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   }
 
   RunSummary summary = describe(input, *model, *scheme, simulation);
+  remove_old_run(options.output_directory);
   Recording recording(input, *model, options.output_directory, steps);
   recording.record(simulation.state(), simulation.account());
   std::optional<Error> failure;
@@ -210,6 +244,7 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   summary.timings = {
       {"read_mesh", build.read_mesh}, {"assembly", build.assembly},    {"start_and_factorization", start_seconds},
       {"steps", step_seconds},        {"output", recording.seconds()}, {"total", total.seconds()}};
+  judge_energy(summary, model->problem, simulation.state());
   summary.warnings = log::warnings();
   if (failure) {
     summary.status = "failed";

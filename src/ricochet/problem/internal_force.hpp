@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ricochet/base/types.hpp"
+#include "ricochet/problem/rigid_motion.hpp"
 
 /// @file The body's elastic response: internal force, tangent and energy behind one small interface. Linear elasticity
 /// has a constant tangent; a law of finite strain would not.
@@ -17,18 +18,20 @@ class InternalForce {
   [[nodiscard]] virtual const SparseMatrix& tangent() const = 0;
 };
 
+/// K U, computed from U less its rigid motion, which has no part in it.
 class LinearElasticity final : public InternalForce {
  public:
-  explicit LinearElasticity(SparseMatrix stiffness) : stiffness_(std::move(stiffness)) {}
-  void evaluate(const Vector& displacement, Vector& force) const override {
-    force.noalias() = stiffness_ * displacement;
-  }
+  /// `nodes`: reference positions, d × count.
+  LinearElasticity(SparseMatrix stiffness, const Points& nodes)
+      : stiffness_(std::move(stiffness)), rigid_(nodes, stiffness_) {}
+  void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   [[nodiscard]] const SparseMatrix& tangent() const override { return stiffness_; }
 
  private:
   SparseMatrix stiffness_;
-  mutable Vector work_;
+  RigidMotion rigid_;
+  mutable Vector deformation_, work_;
 };
 
 }  // namespace ricochet

@@ -4,14 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "ricochet/problem/internal_force.hpp"
-
 namespace ricochet {
-
-double LinearElasticity::energy(const Vector& displacement) const {
-  work_.noalias() = stiffness_ * displacement;
-  return 0.5 * displacement.dot(work_);
-}
 
 void Loads::add_separable(Vector pattern, Expression amplitude) {
   separable_.push_back({std::move(pattern), std::move(amplitude)});

@@ -18,15 +18,16 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
 void Simulation::advance() {
   int iterations = 0;
   for (std::size_t number = 0; number < solutions_.size(); ++number) {
-    scheme_.prepare(problem_, state_, static_cast<int>(number), stage_);
     try {
+      scheme_.prepare(problem_, state_, static_cast<int>(number), stage_);
       solver_->solve(number, stage_, solutions_[number]);
     } catch (const Error& problem) {
-      throw Error(problem.kind(),
-                  fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}; try a smaller "
-                              "time.step, or a finer mesh where contact begins",
-                              state_.step + 1, state_.time + scheme_.step(), scheme_.step(), problem_.contact.size(),
-                              problem.what()));
+      const std::string advice = problem.kind() == ErrorKind::not_converged
+                                     ? "; try a smaller time.step, or a finer mesh where contact begins"
+                                     : "";
+      throw Error(problem.kind(), fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}{}",
+                                              state_.step + 1, state_.time + scheme_.step(), scheme_.step(),
+                                              problem_.contact.size(), problem.what(), advice));
     }
     if (!solutions_[number].increment.allFinite()) {
       throw Error(

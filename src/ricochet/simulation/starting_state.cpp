@@ -120,14 +120,29 @@ void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
 
 namespace {
 
-/// One proximal point iteration: (εM + K) δ = L − K U + Gᵀr, then U += δ.
+double largest(const Vector& v) {
+  return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0;
+}
+
+double lowest_local_frequency_squared(const SemidiscreteProblem& problem) {
+  const Vector stiffness = problem.internal_force->tangent().diagonal();
+  const Vector mass = problem.mass.diagonal();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < mass.size(); ++i) {
+    if (mass[i] > 0.0) lowest = std::min(lowest, stiffness[i] / mass[i]);
+  }
+  return lowest;
+}
+
+/// Proximal point iterations: (εM + K) δ = L − K U + Gᵀr, then U += δ.
 class ProximalPoint {
  public:
-  /// ε as a fraction of the largest stiffness over the largest mass.
+  /// ε as a fraction of the least K_ii/M_ii: of the softest region, where stiffnesses differ.
   ProximalPoint(const SemidiscreteProblem& problem, double fraction)
       : problem_(problem),
-        epsilon_(fraction * problem.internal_force->tangent().diagonal().maxCoeff() /
-                 problem.mass.diagonal().maxCoeff()),
+        epsilon_(fraction * lowest_local_frequency_squared(problem)),
+        magnitude_(problem.internal_force->tangent().cwiseAbs()),
+        rigid_(problem.nodes, magnitude_),
         solver_(make_direct_step_solver(problem, {{epsilon_, 1.0, 0.0, StageDofs::all}})) {
     problem.supports.values(0.0, supported_);
     problem.loads.total(0.0, load_);
@@ -142,55 +157,104 @@ class ProximalPoint {
     at.displacement += solution_.increment;
     at.normal_reaction = solution_.normal_reaction;
     left_over_ = epsilon_ * (problem_.mass * solution_.increment);
+    for (const Index dof : problem_.supports.dofs()) left_over_[dof] = 0.0;
   }
 
   /// The force that is not in equilibrium yet.
   [[nodiscard]] const Vector& left_over() const { return left_over_; }
-  /// True when it is rounding of the forces there are.
-  [[nodiscard]] bool converged() const {
-    const auto size = [](const Vector& v) { return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0; };
-    const double force = std::max({size(load_), size(solution_.normal_reaction), size(solution_.support_reaction)});
-    return size(left_over_) <= 1e-13 * force;
+
+  /// True when what is left is rounding of the internal forces' terms, and small beside the loads that act.
+  [[nodiscard]] bool converged(const StaticEquilibrium& at) const {
+    rigid_.remove(at.displacement, deformation_);
+    const double terms = largest(magnitude_ * deformation_.cwiseAbs()) + largest(load_);
+    const bool rounding = largest(left_over_) <= 1e-13 * terms;
+    return rounding && (largest(load_) == 0.0 || largest(left_over_) <= 1e-6 * largest(load_));
   }
 
  private:
   const SemidiscreteProblem& problem_;
   double epsilon_;
+  SparseMatrix magnitude_;  ///< |K|
+  RigidMotion rigid_;
   std::unique_ptr<StepSolver> solver_;
   StageSolution solution_;
   Vector supported_, load_, left_over_;
+  mutable Vector deformation_;
 };
+
+[[noreturn]] void refuse_static(const SemidiscreteProblem& problem, const Vector& left_over) {
+  Vector load;
+  problem.loads.total(0.0, load);
+  Vector resultant = Vector::Zero(problem.dimension);
+  for (Index node = 0; node < problem.nodes.cols(); ++node) {
+    resultant += left_over.segment(node * problem.dimension, problem.dimension);
+  }
+  const std::string force = fmt::format("({:.3g}, {:.3g}{})", resultant[0], resultant[1],
+                                        resultant.size() == 3 ? fmt::format(", {:.3g}", resultant[2]) : "");
+  if (largest(left_over) <= 1e-3 * largest(load)) {
+    throw Error(
+        ErrorKind::not_converged,
+        fmt::format("initial.displacement = \"static\": the equilibrium was not found to rounding; a force of {:.2g} "
+                    "of the largest load is left. Stiffnesses that differ by many orders of magnitude or very slender "
+                    "bodies are likely causes; give the displacement by expressions instead",
+                    largest(left_over) / largest(load)));
+  }
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: a resultant "
+                  "force of {} still moves the body; add a [[support]] in the direction in which it is free to move "
+                  "or turn, or give the displacement by expressions",
+                  force));
+}
 
 }  // namespace
 
 StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess) {
   StaticEquilibrium result{guess, Vector::Zero(problem.contact.size())};
-  // ε far below the lowest elastic frequency squared converges in a few iterations, wherever the body has to go.
-  ProximalPoint far(problem, 1e-8);
-  constexpr int limit = 300;
-  int iteration = 0;
-  do {
-    far.iterate(result);
-  } while (!far.converged() && ++iteration < limit);
-  if (iteration == limit) {
-    Vector resultant = Vector::Zero(problem.dimension);
-    for (Index node = 0; node < problem.nodes.cols(); ++node) {
-      resultant += far.left_over().segment(node * problem.dimension, problem.dimension);
+  // ε well below the lowest elastic frequency squared converges in a few iterations, wherever the body has to go.
+  // Slender or very uneven bodies have lower frequencies: ε is taken down while the iteration stalls.
+  constexpr int rounds = 60;
+  Vector left_over;
+  bool found = false;
+  for (const double fraction : {1e-8, 1e-10, 1e-12}) {
+    ProximalPoint point(problem, fraction);
+    for (int k = 0; k < rounds && !found; ++k) {
+      point.iterate(result);
+      found = point.converged(result);
     }
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: after {} "
-                    "iterations a resultant force of ({:.3g}, {:.3g}{}) still moves the body; add a [[support]] in the "
-                    "direction in which it is free, or give the displacement by expressions",
-                    limit, resultant[0], resultant[1],
-                    resultant.size() == 3 ? fmt::format(", {:.3g}", resultant[2]) : ""));
+    left_over = point.left_over();
+    if (found) break;
   }
-  // The small ε leaves rounding of the size of weight/ε in the gaps of a body that only contact holds. A large one,
-  // from where we are now, takes it away.
+  if (!found) refuse_static(problem, left_over);
+  // A small ε leaves rounding of the size of weight/ε in the gaps of a body that only contact holds. A large one, from
+  // where we are now, takes it away.
   ProximalPoint near(problem, 1e-2);
   for (int polish = 0; polish < 3; ++polish) near.iterate(result);
   return result;
 }
+
+namespace {
+
+/// A body that starts inside its obstacle is pushed out at once, which creates energy: rarely what was meant.
+void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
+  Vector gap;
+  problem.gaps(state.displacement, gap);
+  Index inside = 0;
+  double deepest = 0.0;
+  for (Index i = 0; i < gap.size(); ++i) {
+    if (gap[i] >= -problem.contact.gap_rounding[i]) continue;
+    ++inside;
+    deepest = std::max(deepest, -gap[i]);
+  }
+  if (inside == 0) return;
+  log::warning(
+      fmt::format("at the start {} of {} contact points are inside their obstacle, the deepest by {:.3g}: they are "
+                  "pushed out at once, which creates energy; check the obstacle's point and normal (which points "
+                  "out of the obstacle), or start from initial.displacement = \"static\"",
+                  inside, gap.size(), deepest));
+}
+
+}  // namespace
 
 State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial, double step) {
   State state;
@@ -207,6 +271,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   state.forces.normal_reaction.setZero(problem.contact.size());
   Vector support_acceleration;
   take_supports(problem, step, state, support_acceleration);
+  if (!initial.static_equilibrium) warn_of_overlap(problem, state);
   if (problem.has_singular_mass()) relax_contact_nodes(problem, state);
   find_acceleration(problem, support_acceleration, pressed, state);
   find_support_reaction(problem, state);

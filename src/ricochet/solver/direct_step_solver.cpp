@@ -46,10 +46,11 @@ class DirectStage {
 
   const SemidiscreteProblem& problem_;
   std::vector<Index> free_dofs_;
-  std::vector<int> free_number_;      ///< per dof, −1 where it is not solved for
-  std::vector<Index> contact_dofs_;   ///< those solved for, in the factor's order
-  SparseMatrix free_supported_;       ///< A_fs: acts on prescribed increments
-  SparseMatrix supported_supported_;  ///< A_ss
+  std::vector<int> free_number_;       ///< per dof, −1 where it is not solved for
+  std::vector<Index> contact_dofs_;    ///< those solved for, in the factor's order
+  std::vector<int> contact_position_;  ///< per dof: its place among them, or −1
+  SparseMatrix free_supported_;        ///< A_fs: acts on prescribed increments
+  SparseMatrix supported_supported_;   ///< A_ss
   std::unique_ptr<SparseCholesky> factor_;
   SparseRowMatrix gap_supported_;  ///< G on supported dofs: points × supports
   Matrix contact_columns_;         ///< Y, contact dofs × points
@@ -81,8 +82,14 @@ void DirectStage::number_dofs(const OperatorCoefficients& coefficients) {
     free_number_[static_cast<std::size_t>(dof)] = static_cast<int>(free_dofs_.size());
     free_dofs_.push_back(dof);
   }
-  for (const Index dof : problem_.contact_dofs) {
-    if (free_number_[static_cast<std::size_t>(dof)] >= 0) contact_dofs_.push_back(dof);
+  // By component: the mass alone does not couple components, and its dense columns then lie side by side.
+  contact_position_.assign(static_cast<std::size_t>(problem_.dof_count()), -1);
+  for (int component = 0; component < problem_.dimension; ++component) {
+    for (const Index dof : problem_.contact_dofs) {
+      if (dof % problem_.dimension != component || free_number_[static_cast<std::size_t>(dof)] < 0) continue;
+      contact_position_[static_cast<std::size_t>(dof)] = static_cast<int>(contact_dofs_.size());
+      contact_dofs_.push_back(dof);
+    }
   }
 }
 
@@ -121,9 +128,8 @@ void DirectStage::condense() {
   const std::vector<Index>& supported_dofs = problem_.supports.dofs();
   for (Index point = 0; point < problem_.contact.size(); ++point) {
     for (SparseRowMatrix::InnerIterator entry(problem_.contact.gap_operator, point); entry; ++entry) {
-      const auto at = std::lower_bound(contact_dofs_.begin(), contact_dofs_.end(), static_cast<Index>(entry.col()));
-      if (at != contact_dofs_.end() && *at == entry.col())
-        contact_columns_(at - contact_dofs_.begin(), point) = entry.value();
+      const int at = contact_position_[static_cast<std::size_t>(entry.col())];
+      if (at >= 0) contact_columns_(at, point) = entry.value();
       const auto held = std::lower_bound(supported_dofs.begin(), supported_dofs.end(), static_cast<Index>(entry.col()));
       if (held != supported_dofs.end() && *held == entry.col()) {
         supported.emplace_back(static_cast<int>(point), static_cast<int>(held - supported_dofs.begin()), entry.value());

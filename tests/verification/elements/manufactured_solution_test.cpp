@@ -83,7 +83,7 @@ SemidiscreteProblem make_problem(const MeshedBody& test, const Wave& wave, bool 
   problem.dimension = d;
   problem.nodes = test.space.nodes;
   problem.mass = expand_to_components(assemble_scalar_mass(test.body, graph), d);
-  problem.internal_force = std::make_shared<LinearElasticity>(assemble_stiffness(test.body, graph));
+  problem.internal_force = std::make_shared<LinearElasticity>(assemble_stiffness(test.body, graph), problem.nodes);
   problem.loads = Loads(test.space.dof_count());
   if (integrate_at_every_instant) {
     problem.loads.add_general(
