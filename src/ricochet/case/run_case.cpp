@@ -244,7 +244,7 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   summary.timings = {
       {"read_mesh", build.read_mesh}, {"assembly", build.assembly},    {"start_and_factorization", start_seconds},
       {"steps", step_seconds},        {"output", recording.seconds()}, {"total", total.seconds()}};
-  judge_energy(summary, model->problem, simulation.state());
+  if (!failure) judge_energy(summary, model->problem, simulation.state());
   summary.warnings = log::warnings();
   if (failure) {
     summary.status = "failed";

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include "ricochet/base/error.hpp"
 #include "ricochet/problem/internal_force.hpp"
 
@@ -138,19 +139,54 @@ TEST(Supports, DerivativesLookForwardOnly) {
 }
 
 TEST(LinearElasticity, HasItsForceEnergyAndTangent) {
-  SparseMatrix stiffness(2, 2);
-  stiffness.insert(0, 0) = 2.0;
-  stiffness.insert(1, 0) = -1.0;
-  stiffness.insert(0, 1) = -1.0;
-  stiffness.insert(1, 1) = 3.0;
-  stiffness.makeCompressed();
-  const LinearElasticity elasticity(stiffness);
-  const Vector u = Eigen::Vector2d(1.0, 2.0);
+  // A spring of stiffness 2 along x between two nodes.
+  Matrix dense = Matrix::Zero(4, 4);
+  dense(0, 0) = dense(2, 2) = 2.0;
+  dense(0, 2) = dense(2, 0) = -2.0;
+  const SparseMatrix stiffness = dense.sparseView();
+  Points nodes(2, 2);
+  nodes << 0.0, 1.0, 0.0, 0.0;
+  const LinearElasticity elasticity(stiffness, nodes);
   Vector force;
+  const Vector u = Eigen::Vector4d(1.0, 5.0, 4.0, 5.0);
   elasticity.evaluate(u, force);
-  EXPECT_EQ(force, Vector(Eigen::Vector2d(0.0, 5.0)));
-  EXPECT_EQ(elasticity.energy(u), 5.0);
+  EXPECT_EQ(force, Vector(Eigen::Vector4d(-6.0, 0.0, 6.0, 0.0)));
+  EXPECT_EQ(elasticity.energy(u), 9.0);
   EXPECT_EQ(Matrix(elasticity.tangent()), Matrix(stiffness));
+}
+
+TEST(RigidMotion, LeavesTheDeformationOfEachBody) {
+  // Two triangles of three nodes each, in three dimensions too: rigid motions of their own, and a deformation.
+  for (const Index d : {Index{2}, Index{3}}) {
+    const Index count = d + 1;
+    Points nodes = Points::Random(d, 2 * count);
+    Matrix coupled = Matrix::Zero(2 * count * d, 2 * count * d);
+    coupled.topLeftCorner(count * d, count * d).setOnes();
+    coupled.bottomRightCorner(count * d, count * d).setOnes();
+    const RigidMotion rigid(nodes, coupled.sparseView());
+    Vector displacement(2 * count * d), deformation;
+    for (Index i = 0; i < 2 * count; ++i) {
+      const double body = i < count ? 1.0 : -2.0;
+      Eigen::Vector3d x = Eigen::Vector3d::Zero();
+      x.head(d) = nodes.col(i);
+      const Eigen::Vector3d axis = d == 2 ? Eigen::Vector3d(0.0, 0.0, 0.7) : Eigen::Vector3d(0.3, -0.2, 0.7);
+      displacement.segment(i * d, d) = (body * Eigen::Vector3d(3.0, -1.0, 2.0) + body * axis.cross(x)).head(d);
+    }
+    rigid.remove(displacement, deformation);
+    EXPECT_LT(deformation.lpNorm<Eigen::Infinity>(), 1e-14) << "rigid motions are taken out";
+    // What is taken out is rigid: distances change by the same amount with and without it.
+    const Vector random = Vector::Random(2 * count * d);
+    rigid.remove(random + displacement, deformation);
+    for (const Index first : {Index{0}, count}) {
+      for (Index i = first; i < first + count; ++i) {
+        for (Index j = first; j < i; ++j) {
+          const Vector edge = nodes.col(i) - nodes.col(j);
+          const auto stretch = [&](const Vector& u) { return edge.dot(u.segment(i * d, d) - u.segment(j * d, d)); };
+          EXPECT_NEAR(stretch(deformation), stretch(random), 1e-13);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/fem/assembly.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
+#include "support/case_run.hpp"
 
 // The equivalent masses on meshes of every kind: thin strips and plates, coarse balls, contact all around,
 // quadrilaterals and hexahedra, curved second-order cells. Meshed by the gmsh program from the descriptions below.
@@ -92,10 +91,10 @@ struct Assembled {
   MassInput input;
 
   explicit Assembled(const Description& description) {
-    const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "equivalent_mass_test.geo";
-    std::ofstream(path) << "SetFactory(\"OpenCASCADE\");\n" << description.geometry << "\n";
+    const std::string path =
+        test_support::write_temporary("body.geo", "SetFactory(\"OpenCASCADE\");\n" + description.geometry + "\n");
     MeshFile file;
-    file.path = path.string();
+    file.path = path;
     file.size = description.size;
     file.geometry_degree = description.order;
     mesh = read_mesh(file);
