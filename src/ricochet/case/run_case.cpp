@@ -193,6 +193,25 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
   }
 }
 
+/// All steps, recorded. Returns what ended them early, if anything did; `seconds` receives the time without recording.
+std::optional<Error> take_steps(Simulation& simulation, Recording& recording, long steps, bool quiet, double& seconds) {
+  Progress progress(steps, quiet);
+  const double recorded_before = recording.seconds();
+  std::optional<Error> failure;
+  Timer timer;
+  try {
+    while (simulation.state().step < steps) {
+      simulation.advance();
+      recording.record(simulation.state(), simulation.account());
+      progress.update(simulation.state().step, simulation.state().time);
+    }
+  } catch (const Error& problem) {
+    failure = problem;
+  }
+  seconds = timer.seconds() - (recording.seconds() - recorded_before);
+  return failure;
+}
+
 }  // namespace
 
 long step_count(const TimeSection& time) {
@@ -221,23 +240,8 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   remove_old_run(options.output_directory);
   Recording recording(input, *model, options.output_directory, steps);
   recording.record(simulation.state(), simulation.account());
-  std::optional<Error> failure;
   double step_seconds = 0.0;
-  {
-    Progress progress(steps, options.quiet);
-    const double recorded_before = recording.seconds();
-    timer.restart();
-    try {
-      while (simulation.state().step < steps) {
-        simulation.advance();
-        recording.record(simulation.state(), simulation.account());
-        progress.update(simulation.state().step, simulation.state().time);
-      }
-    } catch (const Error& problem) {
-      failure = problem;
-    }
-    step_seconds = timer.seconds() - (recording.seconds() - recorded_before);
-  }
+  const std::optional<Error> failure = take_steps(simulation, recording, steps, options.quiet, step_seconds);
   recording.close(summary);
   summary.steps = simulation.state().step;
   summary.time_per_step = summary.steps > 0 ? step_seconds / static_cast<double>(summary.steps) : 0.0;
