@@ -158,7 +158,10 @@ class CommandLine(TestCase):
     def test_progress_bar_on_a_terminal(self):
         import pty
         import subprocess
-        ours, theirs = pty.openpty()
+        try:
+            ours, theirs = pty.openpty()
+        except OSError as problem:  # a root without /dev/pts, as debootstrap leaves it
+            self.skipTest(f"no terminal can be made here: {problem}")
         self.addCleanup(os.close, ours)
         process = subprocess.Popen([PROGRAM, "run", self.case, "-o", self.folder / "out"], stderr=theirs,
                                    stdout=subprocess.PIPE)

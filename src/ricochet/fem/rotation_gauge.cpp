@@ -45,25 +45,32 @@ Eigen::Matrix<double, d, d> displacement_gradient(const Index* nodes, int count,
 }  // namespace
 
 double RotationGauge::largest(const Vector& displacement) const {
-  double result = 0.0;
+  // Below a right angle the tangent tells which rotation is larger: one arc tangent serves all cells.
+  double largest_tangent = 0.0;
+  double beyond_right_angle = 0.0;
+  const auto enter = [&](double axial, double trace) {
+    if (trace > 0.0) {
+      largest_tangent = std::max(largest_tangent, axial / trace);
+    } else {
+      beyond_right_angle = std::max(beyond_right_angle, std::atan2(axial, trace));
+    }
+  };
   for (const Block& block : blocks_) {
     const auto cells = static_cast<Index>(block.nodes.size()) / block.nodes_per_cell;
     for (Index cell = 0; cell < cells; ++cell) {
       const Index* nodes = block.nodes.data() + cell * block.nodes_per_cell;
       const double* gradients = block.gradients.data() + cell * block.nodes_per_cell * dimension_;
-      double angle = 0.0;
       if (dimension_ == 2) {
         const Eigen::Matrix2d h = displacement_gradient<2>(nodes, block.nodes_per_cell, gradients, displacement);
-        angle = std::atan2(std::abs(h(1, 0) - h(0, 1)), 2.0 + h(0, 0) + h(1, 1));
+        enter(std::abs(h(1, 0) - h(0, 1)), 2.0 + h(0, 0) + h(1, 1));
       } else {
         const Eigen::Matrix3d h = displacement_gradient<3>(nodes, block.nodes_per_cell, gradients, displacement);
         const Eigen::Vector3d axial(h(2, 1) - h(1, 2), h(0, 2) - h(2, 0), h(1, 0) - h(0, 1));
-        angle = std::atan2(axial.norm(), 2.0 + h.trace());
+        enter(axial.norm(), 2.0 + h.trace());
       }
-      result = std::max(result, angle);
     }
   }
-  return result;
+  return std::max(beyond_right_angle, std::atan(largest_tangent));
 }
 
 }  // namespace ricochet

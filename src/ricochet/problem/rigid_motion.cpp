@@ -38,29 +38,39 @@ RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
 }
 
 void RigidMotion::remove(const Vector& displacement, Vector& deformation) const {
-  const int d = dimension_;
+  dimension_ == 2 ? remove_in<2>(displacement, deformation) : remove_in<3>(displacement, deformation);
+}
+
+template <int d>
+void RigidMotion::remove_in(const Vector& displacement, Vector& deformation) const {
+  using Point = Eigen::Matrix<double, d, 1>;
   deformation.resize(displacement.size());
-  for (const Body& body : bodies_) {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const Index node : body.nodes) mean.head(d) += displacement.segment(node * d, d);
-    mean /= static_cast<double>(body.nodes.size());
-    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-    Eigen::Vector3d x = Eigen::Vector3d::Zero();
-    Eigen::Vector3d u = Eigen::Vector3d::Zero();
-    for (const Index node : body.nodes) {
-      x.head(d) = positions_.col(node);
-      u.head(d) = displacement.segment(node * d, d) - mean.head(d);
-      moment += x.cross(u);
-    }
-    Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
-    if (d == 2) {
-      rotation[2] = body.inverse_inertia(0, 0) * moment[2];
+  const auto part = [](const Point& x, const Point& u) {  // x × u
+    if constexpr (d == 2) {
+      return Eigen::Matrix<double, 1, 1>(x[0] * u[1] - x[1] * u[0]);
     } else {
-      rotation = body.inverse_inertia * moment;
+      return Eigen::Vector3d(x.cross(u));
     }
+  };
+  for (const Body& body : bodies_) {
+    Point mean = Point::Zero();
+    for (const Index node : body.nodes) mean += displacement.segment<d>(node * d);
+    mean /= static_cast<double>(body.nodes.size());
+    Eigen::Matrix<double, d == 2 ? 1 : 3, 1> moment;
+    moment.setZero();
     for (const Index node : body.nodes) {
-      x.head(d) = positions_.col(node);
-      deformation.segment(node * d, d) = displacement.segment(node * d, d) - mean.head(d) - rotation.cross(x).head(d);
+      moment += part(positions_.col(node).head<d>(), displacement.segment<d>(node * d) - mean);
+    }
+    const Eigen::Matrix<double, d == 2 ? 1 : 3, 1> rotation = body.inverse_inertia * moment;
+    for (const Index node : body.nodes) {
+      const Point x = positions_.col(node).head<d>();
+      Point turned;
+      if constexpr (d == 2) {
+        turned << -rotation[0] * x[1], rotation[0] * x[0];
+      } else {
+        turned = rotation.cross(x);
+      }
+      deformation.segment<d>(node * d) = displacement.segment<d>(node * d) - mean - turned;
     }
   }
 }

@@ -26,6 +26,9 @@ class RigidMotion {
     Matrix
         inverse_inertia;  ///< of unit masses at the nodes: 1 × 1 in 2D, 3 × 3 in 3D; zero where a rotation is no motion
   };
+  template <int d>
+  void remove_in(const Vector& displacement, Vector& deformation) const;
+
   int dimension_ = 2;
   Points positions_;  ///< relative to the centre of the node's body
   std::vector<Body> bodies_;
