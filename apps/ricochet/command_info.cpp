@@ -91,10 +91,10 @@ void describe_result(const std::string& directory) {
 
 /// One line per run: what a reader needs to choose between them.
 void compare_results(const std::vector<std::string>& directories) {
-  fmt::print("{:<28} {:<16} {:<20} {:>11} {:>11} {:>16} {:>13} {:>9}\n", "run", "scheme", "mass", "energy end",
-             "energy max", "variation of", "deepest inter-", "time per");
-  fmt::print("{:<28} {:<16} {:<20} {:>11} {:>11} {:>16} {:>13} {:>9}\n", "", "", "", "/ start", "/ start",
-             "contact force", "penetration", "step, ms");
+  fmt::print("{:<24} {:<15} {:<18} {:>11} {:>11} {:>11} {:>14} {:>14} {:>9}\n", "run", "scheme", "mass", "energy at",
+             "energy at", "largest", "variation of", "deepest inter-", "time per");
+  fmt::print("{:<24} {:<15} {:<18} {:>11} {:>11} {:>11} {:>14} {:>14} {:>9}\n", "", "", "", "the start", "the end",
+             "energy", "contact force", "penetration", "step, ms");
   for (const std::string& directory : directories) {
     const RunSummary s = read_summary(directory + "/summary.json");
     const ColumnDigest energy = s.digest("total_energy");
@@ -108,8 +108,8 @@ void compare_results(const std::vector<std::string>& directories) {
       for (const char* axis : {"x", "y", "z"})
         variation = std::max(variation, s.digest(fmt::format("contact_force_{}", axis)).total_variation);
     }
-    fmt::print("{:<28} {:<16} {:<20} {:>11.6g} {:>11.4g} {:>16.4g} {:>13.3g} {:>9.3g}{}\n", directory, s.scheme, s.mass,
-               ratio(energy.last, energy.first), ratio(energy.maximum, energy.first), variation,
+    fmt::print("{:<24} {:<15} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14.4g} {:>14.3g} {:>9.3g}{}\n", directory,
+               s.scheme, s.mass, energy.first, energy.last, energy.maximum, variation,
                s.digest("max_penetration").maximum, 1e3 * s.time_per_step, s.status == "done" ? "" : "  FAILED");
   }
 }

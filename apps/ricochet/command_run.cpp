@@ -43,7 +43,8 @@ void print_summary(const RunSummary& s, const std::string& directory) {
              energy.maximum);
   fmt::print("  energy account closes to {:.1e} of the largest energy\n",
              scale > 0.0 ? largest_residual / scale : largest_residual);
-  fmt::print("  deepest interpenetration {:.3g}\n", s.digest("max_penetration").maximum);
+  fmt::print("  deepest interpenetration {:.3g}, largest rotation of a cell {:.3g} rad\n",
+             s.digest("max_penetration").maximum, s.digest("max_rotation").maximum);
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
              s.timings.empty() ? "" : duration_text(s.timings.back().second));
   print_expectations(s.expectations);

@@ -29,7 +29,7 @@ void add_common(CLI::App& command, Arguments& arguments) {
 }
 
 int dispatch(int argc, char** argv) {
-  CLI::App app{"Ricochet simulates elastic bodies that strike, rest on, slide along and leave obstacles."};
+  CLI::App app{"Ricochet simulates elastic bodies that strike, rest on and leave rigid obstacles."};
   app.set_version_flag("--version", std::string("ricochet ") + version);
   app.require_subcommand(1);
   app.footer(

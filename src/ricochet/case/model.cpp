@@ -195,7 +195,14 @@ void add_probes(const Case& input, Model& model) {
                       "those of obstacle \"{}\"",
                       probe.name, points, model.contact_pairs[pair].obstacle_name));
     }
-    log::info(fmt::format("probe \"{}\": nearest node is {:.3g} away", probe.name, probe.distance));
+    const double body_size = (model.space.nodes.rowwise().maxCoeff() - model.space.nodes.rowwise().minCoeff()).norm();
+    const std::string message =
+        fmt::format("probe \"{}\": the nearest node is {:.3g} away", probe.name, probe.distance);
+    if (probe.distance > 0.1 * body_size) {
+      log::warning(message + fmt::format(", far for a body of size {:.3g}", body_size));
+    } else {
+      log::info(message);
+    }
     model.probes.push_back(probe);
   }
 }

@@ -23,6 +23,8 @@ namespace {
 
 /// Above this rotation, in rad, small strain no longer holds.
 constexpr double rotation_limit = 0.1;
+/// Above this one, results no longer resemble anything.
+constexpr double large_rotation = 1.0;
 
 /// What a run leaves in its directory.
 constexpr const char* result_files[] = {"history.csv", "summary.json", "results.h5", "results.xdmf"};
@@ -185,11 +187,19 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
         largest("energy_residual") / scale));
   }
   if (summary.digest("contact_work").maximum > 0.01 * scale) {
-    log::warning(fmt::format(
-        "contact forces have created energy: contact_work reaches {:.2g} of the largest energy; it comes from "
-        "the time scheme: use newmark with mass \"equivalent\" and a time.step below the time in which a wave "
-        "crosses a cell",
-        summary.digest("contact_work").maximum / scale));
+    const bool best = summary.scheme == "newmark" && problem.has_singular_mass();
+    log::warning(
+        fmt::format("contact forces have created energy: contact_work reaches {:.2g} of the largest energy; {}",
+                    summary.digest("contact_work").maximum / scale,
+                    best ? "take a time.step below the time in which a wave crosses a cell, and see that no body "
+                           "starts inside an obstacle"
+                         : "it comes from the time scheme: use newmark with mass \"equivalent\""));
+  }
+  if (summary.digest("max_rotation").maximum > large_rotation) {
+    log::warning(
+        fmt::format("cells rotate by up to {:.3g} rad: this is far outside small strain, and the motion is not that "
+                    "of a real body; a body much softer or faster than was meant (units?) or one that spins",
+                    summary.digest("max_rotation").maximum));
   }
 }
 

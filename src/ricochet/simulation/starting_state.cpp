@@ -263,6 +263,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
     StaticEquilibrium equilibrium = static_equilibrium(problem, Vector::Zero(problem.dof_count()));
     state.displacement = std::move(equilibrium.displacement);
     pressed = std::move(equilibrium.normal_reaction);
+    log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(state.displacement)));
   } else {
     state.displacement = initial.displacement;
   }
