@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <sstream>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
@@ -37,12 +38,12 @@ std::string block_mesh(int dimension, int n) {
         out << node(i, j, k) << " " << double(i) / n << " " << double(j) / n << " " << double(k) / n << "\n";
     }
   }
-  std::string cells;
+  std::ostringstream cells;
   int count = 0;
   const auto add = [&](int type, int group, std::initializer_list<int> nodes) {
-    cells += std::to_string(++count) + " " + std::to_string(type) + " 2 " + std::to_string(group) + " 1";
-    for (const int i : nodes) cells += " " + std::to_string(i);
-    cells += "\n";
+    cells << ++count << ' ' << type << " 2 " << group << " 1";
+    for (const int i : nodes) cells << ' ' << i;
+    cells << '\n';
   };
   if (flat) {
     for (int j = 0; j < n; ++j) {
@@ -70,7 +71,7 @@ std::string block_mesh(int dimension, int n) {
       }
     }
   }
-  out << "$EndNodes\n$Elements\n" << count << "\n" << cells << "$EndElements\n";
+  out << "$EndNodes\n$Elements\n" << count << "\n" << cells.str() << "$EndElements\n";
   return path.string();
 }
 
