@@ -18,8 +18,7 @@ int validate(const std::string& case_file, const std::vector<std::string>& overr
   }
   const std::unique_ptr<Model> model = build_model(input);
   // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.
-  const std::unique_ptr<Scheme> scheme =
-      make_scheme({input.time.scheme, input.time.step, input.time.beta, input.time.gamma});
+  const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
   const Simulation simulation(model->problem, *scheme, model->initial);
   fmt::print("{}: valid: {} nodes, {} cells, {} contact points, {} supported dofs, {} steps\n", case_file,
              model->space.node_count(), model->mesh.cell_count(), model->problem.contact.size(),

@@ -39,7 +39,7 @@ CaseRun::CaseRun(const std::string& toml, const std::vector<std::string>& overri
   log::set_level(log::Level::error);
   input_ = read_case(write_temporary("case.toml", toml), overrides);
   model_ = build_model(input_);
-  scheme_ = make_scheme({input_.time.scheme, input_.time.step, input_.time.beta, input_.time.gamma});
+  scheme_ = make_scheme(input_.time);
   simulation_ = std::make_unique<Simulation>(model_->problem, *scheme_, model_->initial);
   steps_ = step_count(input_.time);
 }

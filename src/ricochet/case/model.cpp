@@ -195,7 +195,7 @@ void add_probes(const Case& input, Model& model) {
                       "those of obstacle \"{}\"",
                       probe.name, points, model.contact_pairs[pair].obstacle_name));
     }
-    const double body_size = (model.space.nodes.rowwise().maxCoeff() - model.space.nodes.rowwise().minCoeff()).norm();
+    const double body_size = extent(model.space);
     const std::string message =
         fmt::format("probe \"{}\": the nearest node is {:.3g} away", probe.name, probe.distance);
     if (probe.distance > 0.1 * body_size) {
@@ -229,6 +229,10 @@ bool is_curved(const Mesh& mesh) {
 }
 
 }  // namespace
+
+std::unique_ptr<Scheme> make_scheme(const TimeSection& time) {
+  return make_scheme(SchemeParameters{time.scheme, time.step, time.beta, time.gamma});
+}
 
 std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   auto model = std::make_unique<Model>();

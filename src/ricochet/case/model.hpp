@@ -27,6 +27,9 @@ struct Model {
   Model& operator=(const Model&) = delete;
 };
 
+/// The scheme that [time] asks for.
+[[nodiscard]] std::unique_ptr<Scheme> make_scheme(const TimeSection& time);
+
 /// Seconds spent in the phases of building a model.
 struct BuildTimes {
   double read_mesh = 0.0;

@@ -236,8 +236,7 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   BuildTimes build;
   const std::unique_ptr<Model> model = build_model(input, &build);
   timer.restart();
-  const std::unique_ptr<Scheme> scheme =
-      make_scheme({input.time.scheme, input.time.step, input.time.beta, input.time.gamma});
+  const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
   Simulation simulation(model->problem, *scheme, model->initial);
   const double start_seconds = timer.restart();
   const long steps = step_count(input.time);

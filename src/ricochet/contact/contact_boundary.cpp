@@ -215,7 +215,7 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
   boundary.weights.resize(count);
   boundary.friction_coefficient.resize(count);
   // Displacements come from solves over the whole body, so their rounding is relative to its size, wherever a node is.
-  const double body_size = (body.space->nodes.rowwise().maxCoeff() - body.space->nodes.rowwise().minCoeff()).norm();
+  const double body_size = extent(*body.space);
   const double body_rounding = 8.0 * std::numeric_limits<double>::epsilon() * body_size;
   for (Index i = 0; i < count; ++i) {
     const Point& point = points[static_cast<std::size_t>(i)];

@@ -115,6 +115,10 @@ DisplacementSpace make_displacement_space(const Mesh& mesh, int degree) {
   return space;
 }
 
+double extent(const DisplacementSpace& space) {
+  return (space.nodes.rowwise().maxCoeff() - space.nodes.rowwise().minCoeff()).norm();
+}
+
 std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::vector<Index> nodes;
   for (const Index facet : facets) {

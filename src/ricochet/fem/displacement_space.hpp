@@ -20,6 +20,9 @@ struct DisplacementSpace {
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
 };
 
+/// Diagonal of the box around all nodes: the length that "small" is measured against.
+[[nodiscard]] double extent(const DisplacementSpace& space);
+
 /// Builds the space on a mesh whose geometry is of degree 1 or 2, independently of `degree`.
 [[nodiscard]] DisplacementSpace make_displacement_space(const Mesh& mesh, int degree);
 

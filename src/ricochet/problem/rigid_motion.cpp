@@ -21,12 +21,12 @@ RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
         body.nodes.push_back(neighbour);
       }
     }
-    body.centre = Vector::Zero(d);
-    for (const Index node : body.nodes) body.centre += nodes.col(node);
-    body.centre /= static_cast<double>(body.nodes.size());
+    Vector centre = Vector::Zero(d);
+    for (const Index node : body.nodes) centre += nodes.col(node);
+    centre /= static_cast<double>(body.nodes.size());
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
     for (const Index node : body.nodes) {
-      positions_.col(node) -= body.centre;
+      positions_.col(node) -= centre;
       Eigen::Vector3d x = Eigen::Vector3d::Zero();
       x.head(d) = positions_.col(node);
       inertia += x.squaredNorm() * Eigen::Matrix3d::Identity() - x * x.transpose();

@@ -12,7 +12,6 @@ namespace ricochet {
 /// above the forces of a stiff body's small strains.
 class RigidMotion {
  public:
-  RigidMotion() = default;
   /// Bodies are the connected components of the matrix's graph (nodes that share an entry). `nodes`: d × count.
   RigidMotion(const Points& nodes, const SparseMatrix& stiffness);
 
@@ -22,7 +21,6 @@ class RigidMotion {
  private:
   struct Body {
     std::vector<Index> nodes;
-    Vector centre;
     Matrix
         inverse_inertia;  ///< of unit masses at the nodes: 1 × 1 in 2D, 3 × 3 in 3D; zero where a rotation is no motion
   };

@@ -15,6 +15,10 @@ namespace ricochet {
 
 namespace {
 
+double largest(const Vector& v) {
+  return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0;
+}
+
 /// L(0) − K U − C V.
 Vector residual_force(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {
   Vector load, internal;
@@ -64,7 +68,7 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, State& state) {
   solver->solve(0, stage, solution);
   state.displacement += solution.increment;
   state.forces.normal_reaction = solution.normal_reaction;
-  const double change = solution.increment.size() > 0 ? solution.increment.lpNorm<Eigen::Infinity>() : 0.0;
+  const double change = largest(solution.increment);
   if (change > 0.0) {
     log::info(fmt::format(
         "contact nodes have no inertia: their initial displacement was moved by up to {:.3g} to equilibrium", change));
@@ -120,10 +124,6 @@ void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
 
 namespace {
 
-double largest(const Vector& v) {
-  return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0;
-}
-
 double lowest_local_frequency_squared(const SemidiscreteProblem& problem) {
   const Vector stiffness = problem.internal_force->tangent().diagonal();
   const Vector mass = problem.mass.diagonal();
@@ -134,6 +134,31 @@ double lowest_local_frequency_squared(const SemidiscreteProblem& problem) {
   return lowest;
 }
 
+/// Tells rounding from a force that still moves the body.
+class EquilibriumTest {
+ public:
+  explicit EquilibriumTest(const SemidiscreteProblem& problem)
+      : magnitude_(problem.internal_force->tangent().cwiseAbs()), rigid_(problem.nodes, magnitude_) {
+    Vector load;
+    problem.loads.total(0.0, load);
+    load_ = largest(load);
+  }
+
+  /// True when what is left is rounding of the internal forces' terms, and small beside the loads that act.
+  [[nodiscard]] bool passed(const Vector& displacement, const Vector& left_over) const {
+    Vector deformation;
+    rigid_.remove(displacement, deformation);
+    const double terms = largest(magnitude_ * deformation.cwiseAbs()) + load_;
+    const double left = largest(left_over);
+    return left <= 1e-13 * terms && (load_ == 0.0 || left <= 1e-6 * load_);
+  }
+
+ private:
+  SparseMatrix magnitude_;  ///< |K|
+  RigidMotion rigid_;
+  double load_ = 0.0;  ///< the largest
+};
+
 /// Proximal point iterations: (εM + K) δ = L − K U + Gᵀr, then U += δ.
 class ProximalPoint {
  public:
@@ -141,11 +166,8 @@ class ProximalPoint {
   ProximalPoint(const SemidiscreteProblem& problem, double fraction)
       : problem_(problem),
         epsilon_(fraction * lowest_local_frequency_squared(problem)),
-        magnitude_(problem.internal_force->tangent().cwiseAbs()),
-        rigid_(problem.nodes, magnitude_),
         solver_(make_direct_step_solver(problem, {{epsilon_, 1.0, 0.0, StageDofs::all}})) {
     problem.supports.values(0.0, supported_);
-    problem.loads.total(0.0, load_);
   }
 
   void iterate(StaticEquilibrium& at) {
@@ -163,23 +185,12 @@ class ProximalPoint {
   /// The force that is not in equilibrium yet.
   [[nodiscard]] const Vector& left_over() const { return left_over_; }
 
-  /// True when what is left is rounding of the internal forces' terms, and small beside the loads that act.
-  [[nodiscard]] bool converged(const StaticEquilibrium& at) const {
-    rigid_.remove(at.displacement, deformation_);
-    const double terms = largest(magnitude_ * deformation_.cwiseAbs()) + largest(load_);
-    const bool rounding = largest(left_over_) <= 1e-13 * terms;
-    return rounding && (largest(load_) == 0.0 || largest(left_over_) <= 1e-6 * largest(load_));
-  }
-
  private:
   const SemidiscreteProblem& problem_;
   double epsilon_;
-  SparseMatrix magnitude_;  ///< |K|
-  RigidMotion rigid_;
   std::unique_ptr<StepSolver> solver_;
   StageSolution solution_;
-  Vector supported_, load_, left_over_;
-  mutable Vector deformation_;
+  Vector supported_, left_over_;
 };
 
 [[noreturn]] void refuse_static(const SemidiscreteProblem& problem, const Vector& left_over) {
@@ -214,13 +225,14 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
   // ε well below the lowest elastic frequency squared converges in a few iterations, wherever the body has to go.
   // Slender or very uneven bodies have lower frequencies: ε is taken down while the iteration stalls.
   constexpr int rounds = 60;
+  const EquilibriumTest test(problem);
   Vector left_over;
   bool found = false;
   for (const double fraction : {1e-8, 1e-10, 1e-12}) {
     ProximalPoint point(problem, fraction);
     for (int k = 0; k < rounds && !found; ++k) {
       point.iterate(result);
-      found = point.converged(result);
+      found = test.passed(result.displacement, point.left_over());
     }
     left_over = point.left_over();
     if (found) break;
