@@ -82,8 +82,8 @@ struct Bench {
   std::unique_ptr<Simulation> simulation;
 };
 
-/// A block that falls onto the floor at once, so that contact is active in the steps measured.
-std::unique_ptr<Bench> make_bench(int dimension, int n) {
+/// A block that falls onto the floor at once, so that contact is active in the steps measured, sliding at first.
+std::unique_ptr<Bench> make_bench(int dimension, int n, double friction = 0.0) {
   log::set_level(log::Level::error);
   auto bench = std::make_unique<Bench>();
   const std::string zero = dimension == 3 ? ", 0.0]" : "]";
@@ -91,9 +91,9 @@ std::unique_ptr<Bench> make_bench(int dimension, int n) {
   std::ofstream(path) << "[mesh]\nfile = \"" << block_mesh(dimension, n)
                       << "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 1e4\nmu = 5e3\n"
                       << "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0" << zero << "\nnormal = [0.0, 1.0"
-                      << zero
-                      << "\n[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n[initial]\nvelocity = [0.0, -1.0"
-                      << zero << "\n[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 1e-4\nend = 1.0\n";
+                      << zero << "\n[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = " << friction
+                      << "\n[initial]\nvelocity = [0.2, -1.0" << zero
+                      << "\n[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 1e-4\nend = 1.0\n";
   bench->input = read_case(path.string());
   bench->model = build_model(bench->input);
   bench->scheme = make_scheme({"newmark", 1e-4, 0.25, 0.5});
@@ -119,7 +119,7 @@ double plain_solve_seconds(const Bench& bench) {
 }
 
 void step(benchmark::State& state, int dimension) {
-  const auto bench = make_bench(dimension, static_cast<int>(state.range(0)));
+  const auto bench = make_bench(dimension, static_cast<int>(state.range(0)), 0.1 * static_cast<double>(state.range(1)));
   const double solve = plain_solve_seconds(*bench);
   bench->simulation->advance();
   double seconds = 0.0;
@@ -133,6 +133,13 @@ void step(benchmark::State& state, int dimension) {
   state.counters["contact_points"] = static_cast<double>(bench->model->problem.contact.size());
   state.counters["active"] =
       static_cast<double>((bench->simulation->state().forces.normal_reaction.array() > 0.0).count());
+  long sticking = 0, slipping = 0;
+  for (const ContactStatus status : bench->simulation->state().contact_status) {
+    sticking += status == ContactStatus::stick ? 1 : 0;
+    slipping += status == ContactStatus::slip ? 1 : 0;
+  }
+  state.counters["sticking"] = static_cast<double>(sticking);
+  state.counters["slipping"] = static_cast<double>(slipping);
   state.counters["plain_solve_ms"] = 1e3 * solve;
   state.counters["step_over_solve"] = per_step / solve;
 }
@@ -154,8 +161,9 @@ void assemble(benchmark::State& state) {
 
 }  // namespace
 
-BENCHMARK(step_2d)->Arg(30)->Arg(100)->Arg(190)->Unit(benchmark::kMillisecond);
-BENCHMARK(step_3d)->Arg(8)->Arg(15)->Unit(benchmark::kMillisecond);
+// Cells per side, and ten times the coefficient of friction.
+BENCHMARK(step_2d)->ArgsProduct({{30, 100, 190}, {0, 3}})->Unit(benchmark::kMillisecond);
+BENCHMARK(step_3d)->ArgsProduct({{8, 15}, {0, 3}})->Unit(benchmark::kMillisecond);
 BENCHMARK(assemble)->Arg(20)->Unit(benchmark::kMillisecond);
 
 BENCHMARK_MAIN();

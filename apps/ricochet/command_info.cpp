@@ -69,6 +69,12 @@ void describe_result(const std::string& directory) {
   fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass, s.dimension, s.degree);
   fmt::print("  {} nodes, {} cells, {} contact points, {} steps of {:g}, {} frames\n", s.nodes, s.cells,
              s.contact_points, s.steps, s.step, s.frames);
+  for (const ContactDescription& c : s.contacts) {
+    const std::string law = c.friction_bound > 0.0 ? fmt::format("friction bound {:g}", c.friction_bound)
+                            : c.friction > 0.0     ? fmt::format("friction {:g}", c.friction)
+                                                   : "no friction";
+    fmt::print("  contact of \"{}\" with \"{}\": {}, {} multipliers\n", c.group, c.obstacle, law, c.multipliers);
+  }
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
              energy.maximum);
   fmt::print("  energy account closes to {:.1e} of the largest energy\n",
@@ -78,7 +84,7 @@ void describe_result(const std::string& directory) {
   for (std::size_t i = 0; i < s.probes.size(); ++i) {
     const Probe& probe = s.probes[i];
     fmt::print("  probe \"{}\" {:.3g} from the point asked for", probe.name, probe.distance);
-    if (probe.contact_point >= 0) {
+    if (probe.contact_node >= 0) {
       const ColumnDigest force = s.digest(probe.name + ".reaction_normal");
       fmt::print(", largest contact force {:.6g}, total variation {:.4g}", force.maximum, force.total_variation);
     }
@@ -101,7 +107,7 @@ void compare_results(const std::vector<std::string>& directories) {
     // The first probe on a contact boundary; where there is none, the resultant in its largest direction.
     double variation = 0.0;
     const auto probe =
-        std::find_if(s.probes.begin(), s.probes.end(), [](const Probe& p) { return p.contact_point >= 0; });
+        std::find_if(s.probes.begin(), s.probes.end(), [](const Probe& p) { return p.contact_node >= 0; });
     if (probe != s.probes.end()) {
       variation = s.digest(probe->name + ".reaction_normal").total_variation;
     } else {

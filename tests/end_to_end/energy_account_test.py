@@ -73,40 +73,61 @@ def klr_conserving(account, h):
 
 
 class EnergyAccount(TestCase):
-    def check(self, scheme, recompute):
+    def check(self, scheme, recompute, friction=0.0):
+        """The works of normal and of tangential contact forces, as fractions of the largest energy."""
         values = {"time.scheme": scheme, "mass.type": "consistent", "time.step": STEP, "time.end": STEP * STEPS,
-                  "output.fields_every": 1}
-        results = self.simulate(DISC, values=values)
+                  "output.fields_every": 1, "contact.0.friction": friction}
+        if friction > 0.0:
+            values["initial.velocity"] = "[0.05,-0.1]"
+        results = self.simulate(DISC, name=scheme, values=values)
         history = History(results / "history.csv")
         account = Account(results)
         self.assertEqual(len(account.displacement), STEPS + 1)
         scale = history.largest_energy()
         largest_force = max(history["contact_force_y"])
         self.assertGreater(largest_force, 0.0)
-        work, worst = 0.0, 0.0
-        # The contact boundary is the lower half of the circle: all other dofs are without force, and so is sideways.
+        works, worst = numpy.zeros(2), 0.0  # along the floor and across it
+        # The contact boundary is the lower half of the circle: all other dofs are without force, and so is sideways
+        # without friction.
         free = numpy.ones(2 * len(account.nodes), dtype=bool)
         free[1::2] = account.nodes[:, 1] > 0.021 + 1e-9
+        if friction > 0.0:
+            free[0::2] = free[1::2]
         lowest = 2 * int(numpy.argmin(numpy.linalg.norm(account.nodes - [0.0, 0.001], axis=1))) + 1
         for row, (energies, force, increment) in enumerate(recompute(account, STEP)):
-            work += force @ increment
-            found = dict(energies, contact_work=work, total_energy=sum(energies.values()))
+            works += (force * increment).reshape(-1, 2).sum(axis=0)
+            found = dict(energies, friction_work=works[0], contact_work=works[1], total_energy=sum(energies.values()))
             for name, value in found.items():
                 difference = abs(value - history[name][row])
                 worst = max(worst, difference / scale)
                 self.assertLessEqual(difference, 1e-10 * scale, f"{name} in row {row}")
             self.assertLessEqual(numpy.abs(force[free]).max(), 1e-9 * largest_force, f"row {row}: no equilibrium")
-            self.assertGreaterEqual(force[~free].min(), -1e-9 * largest_force, f"row {row}: contact pulls")
-            for name, value in (("contact_force_y", force[1::2].sum()), ("lowest.reaction_normal", force[lowest])):
+            across, along = force[1::2], force[0::2]
+            self.assertGreaterEqual(across[~free[1::2]].min(), -1e-9 * largest_force, f"row {row}: contact pulls")
+            self.assertLessEqual((numpy.abs(along) - friction * across)[~free[1::2]].max(), 1e-9 * largest_force,
+                                 f"row {row}: more friction than Coulomb's law allows")
+            for name, value in (("contact_force_x", along.sum()), ("contact_force_y", across.sum()),
+                                ("lowest.reaction_normal", force[lowest]),
+                                ("lowest.reaction_tangential_x", force[lowest - 1])):
                 self.assertAlmostEqual(value, history[name][row], delta=1e-9 * largest_force, msg=f"{name}, row {row}")
-        print(f"{scheme}: largest difference {worst:.1e} of the largest energy, contact work {work:.3g} of {scale:.3g}")
-        return abs(work) / scale
+        print(f"{scheme}: largest difference {worst:.1e} of the largest energy {scale:.3g}, works {works}")
+        return works[::-1] / scale
 
     def test_midpoint(self):
-        self.assertGreater(self.check("midpoint", midpoint), 0.1, "contact does work in this scheme")
+        contact, friction = self.check("midpoint", midpoint)
+        self.assertGreater(abs(contact), 0.1, "contact does work in this scheme")
+        self.assertLess(abs(friction), 1e-12)
 
     def test_klr_conserving(self):
-        self.assertLess(self.check("klr-conserving", klr_conserving), 1e-10, "and none in this one")
+        contact, friction = self.check("klr-conserving", klr_conserving)
+        self.assertLess(abs(contact), 1e-10, "and none in this one")
+        self.assertLess(abs(friction), 1e-12)
+
+    def test_friction_in_both(self):
+        for scheme, recompute in (("midpoint", midpoint), ("klr-conserving", klr_conserving)):
+            with self.subTest(scheme):
+                contact, friction = self.check(scheme, recompute, friction=0.3)
+                self.assertLess(friction, -1e-5, "friction takes energy away")
 
 
 if __name__ == "__main__":

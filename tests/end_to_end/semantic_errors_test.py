@@ -109,6 +109,27 @@ class SemanticErrors(TestCase):
         self.refuse(MIXED + '[[contact]]\ngroup = "bottom left"\nobstacle = "floor"\n', '"bottom left"',
                     '"bottom" and "bottom left" overlap')
 
+    def test_friction_that_differs_at_a_shared_node(self):
+        text = block_case().replace('obstacle = "floor"', 'obstacle = "floor"\nfriction = 0.3')
+        self.refuse(text + '[[contact]]\ngroup = "sides"\nobstacle = "floor"\nfriction = 0.2\n', None, "share a node",
+                    "friction")
+
+    def test_multipliers_that_differ_at_a_shared_node(self):
+        self.refuse(block_case() + '[[contact]]\ngroup = "sides"\nobstacle = "floor"\nmultipliers = "dual"\n', None,
+                    "share a node", "multipliers")
+
+    def test_multipliers_that_are_not_stable(self):
+        text = block_case().replace('obstacle = "floor"', 'obstacle = "floor"\nmultipliers = "p0"')
+        self.refuse(text, '"p0"', "p0", 'unstable_multipliers = "allow"')
+        case = self.write("case.toml", text.replace('"p0"', '"p0"\nunstable_multipliers = "allow"'))
+        process = self.expect_status(0, run("validate", case))
+        self.assertIn("warning: ", process.stderr)
+        self.assertIn("p0", process.stderr)
+
+    def test_line_that_turns_about_its_normal(self):
+        self.refuse(block_case().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nrotation_rate = 1.0"), "1.0\n[[contact",
+                    "three dimensions")
+
     def test_more_obstacles_than_directions_at_a_node(self):
         more = "".join(f'[obstacle.{name}]\ntype = "plane"\npoint = [0.0, -1.0]\nnormal = {normal}\n'
                        f'[[contact]]\ngroup = "bottom"\nobstacle = "{name}"\n'

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
 
 // The discrete energy identities of each scheme: exact, for one step, on any mesh, frictionless. Energies and gaps are
 // computed here from the state, not taken from the energy account. λ are nodal forces, g₀ and g₁ the gaps at the two
@@ -13,39 +14,9 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
-
-struct Body {
-  std::string name;
-  int dimension;
-  int degree;
-  std::string mesh;
-};
-
-/// Unstructured discs and balls of radius 1 that touch the obstacle soon; the lower half is the contact boundary.
-std::vector<Body> bodies() {
-  const std::string disc = "Disk(1)={0,1.02,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
-  const std::string ball = "Sphere(1)={0,0,1.02,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1};";
-  using test_support::mesh_geometry;
-  return {{"disc of triangles", 2, 1, mesh_geometry("disc", disc, 0.3, 1)},
-          {"disc of quadrilaterals", 2, 1, mesh_geometry("quads", disc + " Recombine Surface{1};", 0.3, 1)},
-          {"curved disc of degree 2", 2, 2, mesh_geometry("disc2", disc, 0.5, 2)},
-          {"ball of tetrahedra", 3, 1, mesh_geometry("ball", ball, 0.45, 1)},
-          {"curved ball of degree 2", 3, 2, mesh_geometry("ball2", ball, 0.7, 2)}};
-}
-
-/// A body thrown at an oblique plane in oblique gravity, so that no component is special.
-std::string case_text(const Body& body, const std::string& mass, const std::string& time) {
-  const bool flat = body.dimension == 2;
-  return "[mesh]\nfile = \"" + body.mesh + "\"\ndegree = " + std::to_string(body.degree) +
-         "\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 30.0\nmu = 20.0\n"
-         "[obstacle.plane]\ntype = \"plane\"\n" +
-         (flat ? "point = [0.0, 0.0]\nnormal = [0.1, 1.0]\n"
-               : "point = [0.0, 0.0, 0.0]\nnormal = [0.1, -0.05, 1.0]\n") +
-         "[[contact]]\ngroup = \"contact\"\nobstacle = \"plane\"\n[load]\n" +
-         (flat ? "gravity = [0.3, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*y\", \"-0.5+0.2*x\"]\n"
-               : "gravity = [0.3, 0.1, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*z\", \"0.1\", \"-0.5+0.2*x\"]\n") +
-         "[mass]\ntype = \"" + mass + "\"\n[time]\n" + time + "step = 0.01\nend = 1.5\n";
-}
+using test_support::thrown_bodies;
+using test_support::thrown_case;
+using test_support::ThrownBody;
 
 /// Everything an identity needs of one end of a step.
 struct End {
@@ -58,7 +29,7 @@ struct End {
     velocity = state.velocity;
     acceleration = state.acceleration;
     force = state.forces.normal_reaction;
-    run.problem().gaps(displacement, gap);
+    run.problem().gaps(displacement, state.time, gap);
     energy = test_support::total_energy(run.problem(), displacement, velocity);
   }
 };
@@ -92,9 +63,9 @@ void expect_identity(CaseRun& run, const std::string& name,
 }
 
 TEST(EnergyIdentity, MidpointChangesByMinusTwiceForceTimesFirstGap) {
-  for (const Body& body : bodies()) {
+  for (const ThrownBody& body : thrown_bodies()) {
     for (const char* mass : {"consistent", "lumped"}) {
-      CaseRun run(case_text(body, mass, "scheme = \"midpoint\"\n"));
+      CaseRun run(thrown_case(body, mass, "scheme = \"midpoint\"\n"));
       expect_identity(run, body.name + ", " + mass,
                       [](const End& a, const End& b) { return -2.0 * b.force.dot(a.gap); });
     }
@@ -102,9 +73,9 @@ TEST(EnergyIdentity, MidpointChangesByMinusTwiceForceTimesFirstGap) {
 }
 
 TEST(EnergyIdentity, TrapezoidalNewmarkWithAnyMass) {
-  for (const Body& body : bodies()) {
+  for (const ThrownBody& body : thrown_bodies()) {
     for (const char* mass : {"consistent", "lumped", "equivalent"}) {
-      CaseRun run(case_text(body, mass, "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
+      CaseRun run(thrown_case(body, mass, "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
       expect_identity(run, body.name + ", " + mass,
                       [](const End& a, const End& b) { return 0.5 * (a.force.dot(b.gap) - b.force.dot(a.gap)); });
     }
@@ -113,10 +84,10 @@ TEST(EnergyIdentity, TrapezoidalNewmarkWithAnyMass) {
 
 TEST(EnergyIdentity, NewmarkWithAnyParametersAndMass) {
   const double h = 0.01;
-  for (const Body& body : bodies()) {
+  for (const ThrownBody& body : thrown_bodies()) {
     for (const auto& [beta, gamma] : {std::pair{0.5, 0.5}, {0.3025, 0.6}, {0.25, 0.5}, {0.5, 1.0}}) {
       for (const char* mass : {"consistent", "equivalent"}) {
-        CaseRun run(case_text(
+        CaseRun run(thrown_case(
             body, mass,
             "scheme = \"newmark\"\nbeta = " + std::to_string(beta) + "\ngamma = " + std::to_string(gamma) + "\n"));
         const SparseMatrix& m = run.problem().mass;
@@ -137,9 +108,9 @@ TEST(EnergyIdentity, NewmarkWithAnyParametersAndMass) {
 }
 
 TEST(EnergyIdentity, KlrConservesTheHalfStepEnergy) {
-  for (const Body& body : bodies()) {
+  for (const ThrownBody& body : thrown_bodies()) {
     for (const char* mass : {"consistent", "lumped"}) {
-      CaseRun run(case_text(body, mass, "scheme = \"klr-conserving\"\n"));
+      CaseRun run(thrown_case(body, mass, "scheme = \"klr-conserving\"\n"));
       Vector displacement, velocity;
       double first = 0.0, worst = 0.0, touched = 0.0, penetration = 0.0;
       run.run([&] {

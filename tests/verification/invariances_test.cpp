@@ -21,7 +21,9 @@ struct Setting {
   int dimension = 2;
   std::string mesh;
   double scale = 1.0;  ///< of the mesh
-  Eigen::Vector3d point{0.0, 0.0, 0.0}, normal{0.1, 1.0, 0.0}, gravity{0.3, -2.0, 0.0}, velocity{0.1, -0.8, 0.0};
+  Eigen::Vector3d point{0.0, 0.0, 0.0}, normal{0.1, 1.0, 0.0}, gravity{0.3, -2.0, 0.0}, velocity{0.1, -0.8, 0.0},
+      obstacle_velocity{0.0, 0.0, 0.0};
+  double friction = 0.0, rotation_rate = 0.0;
   double density = 1.3, lambda = 30.0, mu = 20.0, step = 0.01, end = 1.0;
 };
 
@@ -35,17 +37,19 @@ std::string case_text(const Setting& s, const std::string& time, const std::stri
   return fmt::format(
       "[mesh]\nfile = \"{}\"\nscale = {:.17e}\n[[material]]\ngroup = \"body\"\ndensity = {:.17e}\nlambda = {:.17e}\nmu "
       "= {:.17e}\n"
-      "[obstacle.plane]\ntype = \"plane\"\npoint = {}\nnormal = {}\n[[contact]]\ngroup = \"contact\"\nobstacle = "
-      "\"plane\"\n"
+      "[obstacle.plane]\ntype = \"plane\"\npoint = {}\nnormal = {}\nvelocity = {}\nrotation_rate = {:.17e}\n"
+      "[[contact]]\ngroup = \"contact\"\nobstacle = \"plane\"\nfriction = {:.17e}\n"
       "[load]\ngravity = {}\n[initial]\nvelocity = {}\n[mass]\ntype = \"{}\"\n[time]\n{}step = {:.17e}\nend = "
       "{:.17e}\n",
       s.mesh, s.scale, s.density, s.lambda, s.mu, vector_text(s.point, d), vector_text(s.normal, d),
-      vector_text(s.gravity, d), vector_text(s.velocity, d), mass, time, s.step, s.end);
+      vector_text(s.obstacle_velocity, d), s.rotation_rate, s.friction, vector_text(s.gravity, d),
+      vector_text(s.velocity, d), mass, time, s.step, s.end);
 }
 
-Setting setting(int dimension) {
+Setting setting(int dimension, double friction = 0.0) {
   Setting s;
   s.dimension = dimension;
+  s.friction = friction;
   if (dimension == 2) {
     s.mesh = test_support::mesh_geometry(
         "disc", "Disk(1)={0,1.02,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};", 0.3, 1);
@@ -74,24 +78,31 @@ const std::vector<SchemeChoice>& scheme_choices() {
 }
 
 struct Frame {
-  Vector displacement, reaction;
+  Vector displacement;
+  Vector reaction;  ///< contact forces on the body, per dof
+  Vector normal;    ///< normal reactions, per contact point
 };
 
 /// All frames of a run.
 std::vector<Frame> frames(const Setting& s, const SchemeChoice& choice) {
   CaseRun run(case_text(s, choice.time, choice.mass));
   std::vector<Frame> result;
-  run.run([&] { result.push_back({run.state().displacement, run.state().forces.normal_reaction}); });
+  run.run([&] {
+    const StepForces& forces = run.state().forces;
+    Vector reaction = Vector::Zero(run.problem().dof_count());
+    run.problem().add_contact_force(forces.normal_reaction, forces.tangential_reaction, reaction);
+    result.push_back({run.state().displacement, reaction, forces.normal_reaction});
+  });
   return result;
 }
 
 /// Frames up to the first step in which a contact opens again; all of them for smooth schemes.
 std::size_t comparable(const std::vector<Frame>& all, bool smooth) {
-  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Frame& f) { return f.reaction.maxCoeff() > 0.0; }))
+  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const Frame& f) { return f.normal.maxCoeff() > 0.0; }))
       << "no contact";
   if (smooth) return all.size();
   for (std::size_t k = 1; k < all.size(); ++k) {
-    if (((all[k - 1].reaction.array() > 0.0) && !(all[k].reaction.array() > 0.0)).any()) return k;
+    if (((all[k - 1].normal.array() > 0.0) && !(all[k].normal.array() > 0.0)).any()) return k;
   }
   return all.size();
 }
@@ -113,14 +124,18 @@ double difference(const std::vector<Frame>& a, const std::vector<Frame>& b, std:
 }
 
 TEST(Invariance, UnitsByPowersOfTwoGiveTheSameBits) {
-  for (const int dimension : {2, 3}) {
-    const Setting s = setting(dimension);
+  for (const auto& [dimension, friction] : {std::pair{2, 0.0}, {3, 0.0}, {2, 0.3}, {3, 0.3}}) {
+    Setting s = setting(dimension, friction);
+    if (friction > 0.0) s.obstacle_velocity = {0.2, -0.02, 0.0};
+    if (friction > 0.0 && dimension == 3) s.rotation_rate = 0.5;
     for (const auto& [length, time, mass] : {std::tuple{3, 0, 0}, {0, 5, 0}, {0, 0, 7}, {-9, 4, -3}, {1, 1, 1}}) {
       Setting t = s;
       const auto unit = [](int exponent) { return std::ldexp(1.0, exponent); };
       t.scale *= unit(length);
       t.point *= unit(length);
       t.velocity *= unit(length - time);
+      t.obstacle_velocity *= unit(length - time);
+      t.rotation_rate *= unit(-time);
       t.gravity *= unit(length - 2 * time);
       t.density *= unit(mass - 3 * length);
       t.lambda *= unit(mass - length - 2 * time);
@@ -134,8 +149,8 @@ TEST(Invariance, UnitsByPowersOfTwoGiveTheSameBits) {
         for (std::size_t k = 0; k < a.size(); ++k) {
           ASSERT_TRUE((a[k].displacement * unit(length) == b[k].displacement) &&
                       (a[k].reaction * force == b[k].reaction))
-              << choice.time << "step " << k << " dimension " << dimension << " units " << length << " " << time << " "
-              << mass;
+              << choice.time << "step " << k << " dimension " << dimension << " friction " << friction << " units "
+              << length << " " << time << " " << mass;
         }
       }
     }
@@ -143,8 +158,8 @@ TEST(Invariance, UnitsByPowersOfTwoGiveTheSameBits) {
 }
 
 TEST(Invariance, MetreKilogramAgainstMillimetreTonne) {
-  for (const int dimension : {2, 3}) {
-    const Setting s = setting(dimension);
+  for (const auto& [dimension, friction] : {std::pair{2, 0.0}, {3, 0.0}, {2, 0.3}, {3, 0.3}}) {
+    const Setting s = setting(dimension, friction);
     Setting t = s;
     t.scale *= 1e3;
     t.velocity *= 1e3;
@@ -156,9 +171,9 @@ TEST(Invariance, MetreKilogramAgainstMillimetreTonne) {
     for (const SchemeChoice& choice : scheme_choices()) {
       const std::vector<Frame> a = frames(s, choice), b = frames(t, choice);
       const double found = difference(a, b, comparable(a, choice.smooth), [&](const Frame& f) {
-        return Frame{f.displacement * 1e-3, f.reaction * force};
+        return Frame{f.displacement * 1e-3, f.reaction * force, f.normal * force};
       });
-      EXPECT_LT(found, 1e-9) << choice.time << dimension;
+      EXPECT_LT(found, 1e-9) << choice.time << dimension << " friction " << friction;
     }
   }
 }
@@ -216,7 +231,8 @@ void expect_same_under(const Setting& s, const Eigen::Matrix3d& map, bool renumb
   t.mesh = transformed_mesh(s.mesh, name + ".msh", map, renumber, map.determinant() < 0.0);
   Setting plain = s;
   plain.mesh = transformed_mesh(s.mesh, name + "_plain.msh", Eigen::Matrix3d::Identity(), false, false);
-  for (Eigen::Vector3d* v : {&t.point, &t.normal, &t.gravity, &t.velocity}) *v = map * *v;
+  for (Eigen::Vector3d* v : {&t.point, &t.normal, &t.gravity, &t.velocity, &t.obstacle_velocity}) *v = map * *v;
+  if (map.determinant() < 0.0) t.rotation_rate *= -1.0;
   const int d = s.dimension;
   for (const SchemeChoice& choice : scheme_choices()) {
     const std::vector<Frame> a = frames(plain, choice), b = frames(t, choice);
@@ -233,66 +249,96 @@ void expect_same_under(const Setting& s, const Eigen::Matrix3d& map, bool renumb
       (y.colwise() - image).colwise().squaredNorm().minCoeff(&at);
       partner[static_cast<std::size_t>(i)] = at;
     }
-    const auto& p = first.problem().contact.nodes;
-    const auto& q = second.problem().contact.nodes;
-    const double found = difference(a, b, comparable(a, choice.smooth), [&](const Frame& f) {
-      Frame mapped{Vector(f.displacement.size()), Vector(f.reaction.size())};
+    const auto image = [&](const Vector& field) {
+      Vector mapped(field.size());
       for (Index i = 0; i < x.cols(); ++i) {
         Eigen::Vector3d u = Eigen::Vector3d::Zero();
-        u.head(d) = f.displacement.segment(partner[static_cast<std::size_t>(i)] * d, d);
-        mapped.displacement.segment(i * d, d) = (map.transpose() * u).head(d);
-      }
-      for (std::size_t i = 0; i < p.size(); ++i) {
-        const auto at = std::find(q.begin(), q.end(), partner[static_cast<std::size_t>(p[i])]) - q.begin();
-        mapped.reaction[static_cast<Index>(i)] = f.reaction[at];
+        u.head(d) = field.segment(partner[static_cast<std::size_t>(i)] * d, d);
+        mapped.segment(i * d, d) = (map.transpose() * u).head(d);
       }
       return mapped;
+    };
+    const double found = difference(a, b, comparable(a, choice.smooth), [&](const Frame& f) {
+      return Frame{image(f.displacement), image(f.reaction), f.normal};
     });
-    EXPECT_LT(found, 1e-9) << name << " " << choice.time << "dimension " << d;
+    EXPECT_LT(found, 1e-9) << name << " " << choice.time << "dimension " << d << " friction " << s.friction;
   }
 }
 
 TEST(Invariance, RotationOfTheWholeCase) {
-  expect_same_under(setting(2), Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()).toRotationMatrix(), false, "rotated2");
-  expect_same_under(setting(3), Eigen::AngleAxisd(1.1, Eigen::Vector3d(1.0, 2.0, -0.5).normalized()).toRotationMatrix(),
+  for (const double friction : {0.0, 0.3}) {
+    expect_same_under(setting(2, friction), Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()).toRotationMatrix(), false,
+                      "rotated2");
+    expect_same_under(setting(3, friction),
+                      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1.0, 2.0, -0.5).normalized()).toRotationMatrix(), false,
+                      "rotated3");
+  }
+  // An obstacle that moves and turns, too.
+  Setting turning = setting(3, 0.3);
+  turning.obstacle_velocity = {0.2, -0.02, 0.1};
+  turning.rotation_rate = 0.8;
+  expect_same_under(turning, Eigen::AngleAxisd(1.1, Eigen::Vector3d(1.0, 2.0, -0.5).normalized()).toRotationMatrix(),
                     false, "rotated3");
 }
 
 TEST(Invariance, Reflection) {
   const Eigen::Matrix3d mirror = Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal();
-  expect_same_under(setting(2), mirror, false, "mirrored2");
-  expect_same_under(setting(3), mirror, false, "mirrored3");
+  for (const double friction : {0.0, 0.3}) {
+    expect_same_under(setting(2, friction), mirror, false, "mirrored2");
+    expect_same_under(setting(3, friction), mirror, false, "mirrored3");
+  }
+  Setting turning = setting(3, 0.3);
+  turning.rotation_rate = 0.8;
+  expect_same_under(turning, mirror, false, "mirrored3");
 }
 
 TEST(Invariance, RenumberingOfNodes) {
-  expect_same_under(setting(2), Eigen::Matrix3d::Identity(), true, "renumbered2");
-  expect_same_under(setting(3), Eigen::Matrix3d::Identity(), true, "renumbered3");
+  for (const double friction : {0.0, 0.3}) {
+    expect_same_under(setting(2, friction), Eigen::Matrix3d::Identity(), true, "renumbered2");
+    expect_same_under(setting(3, friction), Eigen::Matrix3d::Identity(), true, "renumbered3");
+  }
+}
+
+/// Compares a case with the same case seen by an observer who moves with −`moving`, so that body and obstacle move with
+/// it.
+void expect_same_for_observer(const Setting& s, const Eigen::Vector3d& moving, bool obstacle_moves_too) {
+  Setting t = s;
+  t.velocity += moving;
+  if (obstacle_moves_too) t.obstacle_velocity += moving;
+  for (const SchemeChoice& choice : scheme_choices()) {
+    const std::vector<Frame> a = frames(s, choice);
+    std::vector<Frame> b = frames(t, choice);
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      for (Index i = 0; i < b[k].displacement.size(); ++i)
+        b[k].displacement[i] -= moving[i % s.dimension] * s.step * static_cast<double>(k);
+    }
+    EXPECT_LT(difference(a, b, comparable(a, choice.smooth), [](const Frame& f) { return f; }), 1e-9)
+        << choice.time << s.dimension << " friction " << s.friction;
+  }
 }
 
 TEST(Invariance, ObserverMovingAlongThePlane) {
   // Without friction a uniform velocity along the plane changes nothing but the position.
   for (const int dimension : {2, 3}) {
     const Setting s = setting(dimension);
-    Setting t = s;
     const Eigen::Vector3d along = Eigen::Vector3d(1.0, -0.1, 0.0);  // in the plane: its normal is (0.1, 1, ·)
     ASSERT_NEAR(along.dot(s.normal), 0.0, 1e-15);
-    t.velocity += along;
-    for (const SchemeChoice& choice : scheme_choices()) {
-      const std::vector<Frame> a = frames(s, choice);
-      std::vector<Frame> b = frames(t, choice);
-      for (std::size_t k = 0; k < b.size(); ++k) {
-        for (Index i = 0; i < b[k].displacement.size(); ++i)
-          b[k].displacement[i] -= along[i % dimension] * s.step * static_cast<double>(k);
-      }
-      EXPECT_LT(difference(a, b, comparable(a, choice.smooth), [](const Frame& f) { return f; }), 1e-9)
-          << choice.time << dimension;
-    }
+    expect_same_for_observer(s, along, false);
+  }
+}
+
+TEST(Invariance, ObstacleMovingAgainstBodyMovingTheOtherWay) {
+  // Along the plane and across it, with friction and without.
+  for (const auto& [dimension, friction] : {std::pair{2, 0.0}, {3, 0.0}, {2, 0.3}, {3, 0.3}}) {
+    Eigen::Vector3d moving(0.7, 0.4, dimension == 3 ? -0.3 : 0.0);
+    expect_same_for_observer(setting(dimension, friction), moving, true);
   }
 }
 
 TEST(Invariance, SameBitsTwice) {
   for (const SchemeChoice& choice : scheme_choices()) {
-    const std::vector<Frame> a = frames(setting(2), choice), b = frames(setting(2), choice);
+    const Setting s = setting(2, 0.3);
+    const std::vector<Frame> a = frames(s, choice), b = frames(s, choice);
     for (std::size_t k = 0; k < a.size(); ++k)
       ASSERT_TRUE(a[k].displacement == b[k].displacement && a[k].reaction == b[k].reaction) << k;
   }

@@ -51,7 +51,7 @@ TEST(StartingState, StaticEquilibriumStaysAtRestWithEveryMassAndScheme) {
       EXPECT_LT(drift, 1e-12) << scheme << mass;
       EXPECT_LT(force_error, 1e-8 * weight) << scheme << mass;
       Vector gap;
-      run.problem().gaps(start, gap);
+      run.problem().gaps(start, 0.0, gap);
       EXPECT_GT(gap.minCoeff(), -1e-15) << "no interpenetration at the start";
     }
   }

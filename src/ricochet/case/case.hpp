@@ -46,14 +46,18 @@ struct ObstacleSection {
   std::string name;
   std::string type = "plane";
   std::vector<double> point;
-  std::vector<double> normal;  ///< out of the obstacle, as written (not yet of length one)
+  std::vector<double> normal;    ///< out of the obstacle, as written (not yet of length one)
+  std::vector<double> velocity;  ///< empty: at rest
+  double rotation_rate = 0.0;    ///< about the normal
 };
 
 struct ContactSection {
   std::string group;
   std::string obstacle;
-  double friction = 0.0;
+  double friction = 0.0;        ///< F of Coulomb's law
+  double friction_bound = 0.0;  ///< largest friction traction, a stress; 0: no bound
   std::string multipliers = "nodal";
+  bool allow_unstable_multipliers = false;
 };
 
 struct SupportSection {

@@ -120,47 +120,74 @@ Section material_section() {
 }
 
 Section obstacle_section() {
-  return {.name = "obstacle",
-          .kind = SectionKind::named,
-          .doc = "A rigid obstacle, named so that [[contact]] can refer to it.",
-          .keys = {
-              {.name = "type",
-               .type = KeyType::choice,
-               .required = true,
-               .choices = obstacle_types(),
-               .doc = "Shape: a half-space bounded by a plane."},
-              {.name = "point",
-               .type = KeyType::vector,
-               .unit = "length",
-               .required = true,
-               .doc = "A point of the plane."},
-              {.name = "normal",
-               .type = KeyType::vector,
-               .unit = "1",
-               .required = true,
-               .doc = "Normal of the plane, out of the obstacle; of any length but zero."},
-          }};
+  return {
+      .name = "obstacle",
+      .kind = SectionKind::named,
+      .doc = "A rigid obstacle, named so that [[contact]] can refer to it.",
+      .keys = {
+          {.name = "type",
+           .type = KeyType::choice,
+           .required = true,
+           .choices = obstacle_types(),
+           .doc = "Shape: a half-space bounded by a plane."},
+          {.name = "point",
+           .type = KeyType::vector,
+           .unit = "length",
+           .required = true,
+           .doc = "A point of the plane."},
+          {.name = "normal",
+           .type = KeyType::vector,
+           .unit = "1",
+           .required = true,
+           .doc = "Normal of the plane, out of the obstacle; of any length but zero."},
+          {.name = "velocity",
+           .type = KeyType::vector,
+           .unit = "length/time",
+           .doc = "Constant velocity of the plane; without it the plane rests. Friction acts on the velocity of the "
+                  "body relative to it, and obstacle_work is what it puts into the body."},
+          {.name = "rotation_rate",
+           .type = KeyType::number,
+           .unit = "angle/time",
+           .standard = "0",
+           .doc = "Rate in rad per time at which the plane turns about its normal through `point`, right-handed: a "
+                  "turntable. In three dimensions only."},
+      }};
 }
 
 Section contact_section() {
-  return {.name = "contact",
-          .kind = SectionKind::list,
-          .doc = "A part of the boundary that may touch an obstacle.",
-          .keys = {
-              {.name = "group", .required = true, .doc = "Name of the physical group of boundary facets in the mesh."},
-              {.name = "obstacle", .required = true, .doc = "Name of the obstacle, a section [obstacle.NAME]."},
-              {.name = "friction",
-               .type = KeyType::number,
-               .unit = "1",
-               .standard = "0",
-               .range = nonnegative,
-               .doc = "Coulomb's coefficient of friction. This version is frictionless: only 0 is accepted."},
-              {.name = "multipliers",
-               .type = KeyType::choice,
-               .standard = "nodal",
-               .choices = {"nodal"},
-               .doc = "Discretization of the contact pressure: one multiplier per contact node."},
-          }};
+  return {
+      .name = "contact",
+      .kind = SectionKind::list,
+      .doc = "A part of the boundary that may touch an obstacle.",
+      .keys = {
+          {.name = "group", .required = true, .doc = "Name of the physical group of boundary facets in the mesh."},
+          {.name = "obstacle", .required = true, .doc = "Name of the obstacle, a section [obstacle.NAME]."},
+          {.name = "friction",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "0",
+           .range = nonnegative,
+           .doc = "Coefficient F of Coulomb's law: the friction force is at most F times the normal force."},
+          {.name = "friction_bound",
+           .type = KeyType::number,
+           .unit = "stress",
+           .standard = "0",
+           .range = nonnegative,
+           .doc = "Tresca's law instead of Coulomb's: the friction traction is at most this where the body is "
+                  "pressed. 0: Coulomb's law."},
+          {.name = "multipliers",
+           .type = KeyType::choice,
+           .standard = "nodal",
+           .choices = multiplier_space_names(),
+           .doc = "Space of the contact pressure and the friction traction: forces at the nodes, piecewise constant, "
+                  "continuous piecewise linear, or biorthogonal to the displacement. See docs/multipliers.md."},
+          {.name = "unstable_multipliers",
+           .type = KeyType::choice,
+           .standard = "refuse",
+           .choices = {"refuse", "allow"},
+           .doc = "What to do with multipliers that do not go together with the displacement's degree (the inf-sup "
+                  "condition fails, and pressures may oscillate). Allowed ones are warned of."},
+      }};
 }
 
 Section support_section() {

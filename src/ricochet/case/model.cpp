@@ -52,6 +52,7 @@ void check_dimensions(const Case& input, int dimension) {
   for (const ObstacleSection& obstacle : input.obstacles) {
     check_length(input, "obstacle." + obstacle.name + ".point", obstacle.point.size(), dimension);
     check_length(input, "obstacle." + obstacle.name + ".normal", obstacle.normal.size(), dimension);
+    check_length(input, "obstacle." + obstacle.name + ".velocity", obstacle.velocity.size(), dimension);
   }
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     for (const int component : input.supports[i].components) {
@@ -185,15 +186,15 @@ void add_probes(const Case& input, Model& model) {
         nearest_node(model.space, Eigen::Map<const Vector>(section.at.data(), static_cast<Index>(section.at.size())));
     Probe probe{section.name, nearest.node, nearest.distance, -1};
     const auto& nodes = model.problem.contact.nodes;
-    const auto points = std::count(nodes.begin(), nodes.end(), nearest.node);
-    if (points > 0) probe.contact_point = std::find(nodes.begin(), nodes.end(), nearest.node) - nodes.begin();
-    if (points > 1) {
+    const auto entries = std::count(nodes.begin(), nodes.end(), nearest.node);
+    if (entries > 0) probe.contact_node = std::find(nodes.begin(), nodes.end(), nearest.node) - nodes.begin();
+    if (entries > 1) {
       const auto pair =
-          static_cast<std::size_t>(model.problem.contact.pair[static_cast<std::size_t>(probe.contact_point)]);
+          static_cast<std::size_t>(model.problem.contact.node_pair[static_cast<std::size_t>(probe.contact_node)]);
       log::warning(
           fmt::format("probe \"{}\" is at a node that {} obstacles may touch: its gap, pressure and reaction are "
                       "those of obstacle \"{}\"",
-                      probe.name, points, model.contact_pairs[pair].obstacle_name));
+                      probe.name, entries, model.contact_pairs[pair].obstacle_name));
     }
     const double body_size = extent(model.space);
     const std::string message =

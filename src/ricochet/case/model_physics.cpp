@@ -7,6 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/model_parts.hpp"
+#include "ricochet/contact/multiplier_space.hpp"
 #include "ricochet/mass/mass.hpp"
 
 namespace ricochet {
@@ -33,35 +34,60 @@ void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
   }
 }
 
+/// Multipliers that do not go together with the displacement's degree on the facets of a group are refused, or warned
+/// of.
+void check_stability(const Case& input, std::size_t number, const Model& model) {
+  const ContactSection& section = input.contacts[number];
+  Index first = 0;
+  for (const CellBlock& block : model.mesh.facets) {
+    const std::vector<Index>& facets = model.contact_pairs.back().facets;
+    const auto in_block = std::lower_bound(facets.begin(), facets.end(), first);
+    const bool has_facets = in_block != facets.end() && *in_block < first + block.size();
+    first += block.size();
+    if (!has_facets || is_stable(section.multipliers, block.shape, model.space.degree)) continue;
+    const std::string reason = instability(section.multipliers, block.shape, model.space.degree);
+    if (!section.allow_unstable_multipliers) {
+      refuse(input, fmt::format("contact.{}.multipliers", number),
+             fmt::format("{} (unstable_multipliers = \"allow\" runs it all the same)", reason));
+    }
+    log::warning(
+        fmt::format("contact of group \"{}\": {}; pressures may oscillate from point to point", section.group, reason));
+    return;
+  }
+}
+
 }  // namespace
 
 void add_contacts(const Case& input, Model& model) {
   std::map<std::string, const Obstacle*> by_name;
   for (const ObstacleSection& section : input.obstacles) {
-    model.obstacles.push_back(make_obstacle({section.type, to_vector(section.point), to_vector(section.normal)}));
+    try {
+      model.obstacles.push_back(make_obstacle({section.type, to_vector(section.point), to_vector(section.normal),
+                                               to_vector(section.velocity), section.rotation_rate}));
+    } catch (const Error& problem) {
+      refuse(input, fmt::format("obstacle.{}.rotation_rate", section.name), problem.what());
+    }
     by_name[section.name] = model.obstacles.back().get();
   }
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
     const ContactSection& section = input.contacts[i];
     model.contact_pairs.push_back({section.group,
                                    boundary_at(input, fmt::format("contact.{}.group", i), model.mesh, section.group),
-                                   section.obstacle, by_name.at(section.obstacle), section.friction});
+                                   section.obstacle,
+                                   by_name.at(section.obstacle),
+                                   {section.friction, section.friction_bound},
+                                   section.multipliers});
+    model.problem.obstacles.push_back(model.contact_pairs.back().obstacle);
+    check_stability(input, i, model);
   }
   check_overlap(input, model.contact_pairs);
   const int d = model.mesh.dimension;
-  Index held = 0;
-  const auto keep = [&](Index node, const Vector& normal) {
-    double free_part = 0.0;
-    for (int k = 0; k < d; ++k) {
-      if (!model.problem.supports.contains(node * d + k)) free_part = std::max(free_part, std::abs(normal[k]));
-    }
-    // A unit vector: the bound has no unit. Below it the remaining part of the normal is rounding.
-    const bool free = free_part > 1e-10;
-    held += free ? 0 : 1;
-    return free;
+  const auto is_free = [&](Index node, int component) {
+    return !model.problem.supports.contains(node * d + component);
   };
+  Index held = 0;
   try {
-    model.problem.contact = make_contact_boundary(model.body, model.contact_pairs, keep);
+    model.problem.contact = make_contact_boundary(model.body, model.contact_pairs, is_free, &held);
   } catch (const Error& problem) {
     refuse(input, "contact", problem.what());
   }

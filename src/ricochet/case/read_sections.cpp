@@ -96,6 +96,8 @@ ObstacleSection read_obstacle(const SectionReader& reader) {
   obstacle.type = reader.text("type");
   obstacle.point = reader.vector("point");
   obstacle.normal = reader.vector("normal");
+  obstacle.velocity = reader.vector("velocity");
+  obstacle.rotation_rate = reader.number("rotation_rate");
   const bool is_zero = std::all_of(obstacle.normal.begin(), obstacle.normal.end(), [](double n) { return n == 0.0; });
   if (reader.is_usable("normal") && is_zero) {
     reader.add_problem("normal", "\"normal\" must not be zero: it points out of the obstacle");
@@ -108,13 +110,9 @@ ContactSection read_contact(const SectionReader& reader) {
   contact.group = reader.text("group");
   contact.obstacle = reader.text("obstacle");
   contact.friction = reader.number("friction");
+  contact.friction_bound = reader.number("friction_bound");
   contact.multipliers = reader.text("multipliers");
-  if (contact.friction > 0.0) {
-    reader.add_problem("friction",
-                       fmt::format("\"friction\" is {}, but this version is frictionless (Coulomb friction is not "
-                                   "available yet): set it to 0",
-                                   contact.friction));
-  }
+  contact.allow_unstable_multipliers = reader.text("unstable_multipliers") == "allow";
   return contact;
 }
 

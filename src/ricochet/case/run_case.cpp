@@ -80,6 +80,10 @@ RunSummary describe(const Case& input, const Model& model, const Scheme& scheme,
   summary.end_time = input.time.end;
   summary.energy_instant = scheme.energy_instant();
   summary.force_instant = scheme.force_instant();
+  for (const ContactSection& contact : input.contacts) {
+    summary.contacts.push_back(
+        {contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound});
+  }
   summary.probes = model.probes;
   for (const Probe& probe : model.probes) {
     const Vector at = model.space.nodes.col(probe.node);
@@ -194,6 +198,12 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
                     best ? "take a time.step below the time in which a wave crosses a cell, and see that no body "
                            "starts inside an obstacle"
                          : "it comes from the time scheme: use newmark with mass \"equivalent\""));
+  }
+  if (summary.digest("friction_work").maximum > 0.01 * scale) {
+    log::warning(fmt::format(
+        "friction has created energy: friction_work reaches {:.2g} of the largest energy; it comes from the "
+        "weights that newmark gives to the forces at the two ends of a step: take a smaller time.step",
+        summary.digest("friction_work").maximum / scale));
   }
   if (summary.digest("max_rotation").maximum > large_rotation) {
     log::warning(

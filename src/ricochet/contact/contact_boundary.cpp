@@ -1,198 +1,272 @@
 #include "ricochet/contact/contact_boundary.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/contact/boundary_nodes.hpp"
+#include "ricochet/contact/contact_directions.hpp"
+#include "ricochet/contact/multiplier_space.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// d × (d−1) orthonormal directions that complete the normal; in 2D (1, 0) for the normal (0, 1).
-Points tangents_of(const Vector& normal) {
-  Points result(normal.size(), normal.size() - 1);
-  if (normal.size() == 2) {
-    result << normal[1], -normal[0];
-    return result;
-  }
-  // The axis least aligned with the normal gives a well-conditioned first tangent.
-  Index axis = 0;
-  normal.cwiseAbs().minCoeff(&axis);
-  const Eigen::Vector3d n = normal;
-  const Eigen::Vector3d first = Eigen::Vector3d::Unit(axis).cross(n).normalized();
-  result.col(0) = first;
-  result.col(1) = n.cross(first);
-  return result;
-}
-
-/// One contact point before numbering.
-struct Point {
-  Index node = 0;
-  int pair = 0;
-  double weight = 0.0;
+/// A patch with its space and the multipliers in use.
+struct Patch {
+  const Obstacle* obstacle = nullptr;
+  std::string multipliers;
+  ContactPatch facets;
+  std::unique_ptr<MultiplierSpace> space;
+  std::vector<Multiplier> kept;
+  std::vector<int> numbers;  ///< of the kept multipliers among all contact points
 };
 
-/// ∫ φ_i over the facets of a pair, for all nodes of the space.
-Vector nodal_weights(const Body& body, const std::vector<Index>& facets) {
-  const int d = body.space->dimension;
-  Vector load = Vector::Zero(body.space->dof_count());
-  add_facet_load(
-      body, facets, [](const Vector&, Vector& force) { force = Vector::Unit(force.size(), 0); }, load);
-  return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(load.data(), body.space->node_count(),
-                                                           Eigen::InnerStride<>(d));
-}
-
-/// All points of all pairs; a node that several groups bring against the same obstacle is one point.
-std::vector<Point> collect_points(const Body& body, const std::vector<ContactPair>& pairs,
-                                  const std::function<bool(Index, const Vector&)>& keep) {
-  std::vector<Point> points;
-  std::map<std::pair<Index, const Obstacle*>, std::size_t> known;
+std::vector<Patch> collect_patches(const Body& body, const std::vector<ContactPair>& pairs) {
+  std::vector<Patch> patches;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const Vector weights = nodal_weights(body, pairs[k].facets);
-    for (const Index node : facet_nodes(*body.space, pairs[k].facets)) {
-      if (!keep(node, pairs[k].obstacle->normal(body.space->nodes.col(node)))) continue;
-      const auto [entry, added] = known.try_emplace({node, pairs[k].obstacle}, points.size());
-      if (added) {
-        points.push_back({node, static_cast<int>(k), weights[node]});
-        continue;
-      }
-      Point& point = points[entry->second];
-      point.weight += weights[node];
-      const ContactPair& other = pairs[static_cast<std::size_t>(point.pair)];
-      if (other.friction_coefficient != pairs[k].friction_coefficient) {
-        throw Error(ErrorKind::invalid_input,
-                    fmt::format("contact groups \"{}\" and \"{}\" share a node against obstacle \"{}\" with different "
-                                "friction coefficients; separate them by at least one facet or give them the same",
-                                other.group, pairs[k].group, pairs[k].obstacle_name));
+    const auto same = [&](const Patch& patch) {
+      return patch.obstacle == pairs[k].obstacle && patch.multipliers == pairs[k].multipliers;
+    };
+    auto patch = std::find_if(patches.begin(), patches.end(), same);
+    if (patch == patches.end()) {
+      patches.push_back({pairs[k].obstacle, pairs[k].multipliers, {&body, {}, {}}, nullptr, {}, {}});
+      patch = patches.end() - 1;
+    }
+    patch->facets.parts.push_back({static_cast<int>(k), pairs[k].facets});
+  }
+  return patches;
+}
+
+/// Leaves out the multipliers that could only press against supports.
+void keep_free_multipliers(Patch& patch) {
+  patch.kept = patch.space->multipliers();
+  std::erase_if(patch.kept,
+                [&](const Multiplier& multiplier) { return only_presses_supports(multiplier, patch.facets); });
+}
+
+/// Numbers the contact points: by node (a facet counts as its first one), then by pair.
+Index number_points(std::vector<Patch>& patches) {
+  using Key = std::tuple<Index, int, std::size_t, std::size_t>;
+  std::vector<Key> order;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    patches[p].numbers.resize(patches[p].kept.size());
+    for (std::size_t i = 0; i < patches[p].kept.size(); ++i) {
+      const Multiplier& multiplier = patches[p].kept[i];
+      order.emplace_back(multiplier.node >= 0 ? multiplier.node : multiplier.trace.front().first, multiplier.pair, p,
+                         i);
+    }
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t number = 0; number < order.size(); ++number) {
+    const auto& [node, pair, p, i] = order[number];
+    patches[p].numbers[i] = static_cast<int>(number);
+  }
+  return static_cast<Index>(order.size());
+}
+
+void resize(ContactBoundary& boundary, Index count) {
+  boundary.pair.resize(static_cast<std::size_t>(count));
+  boundary.normals.resize(boundary.dimension, count);
+  boundary.tangents.resize(static_cast<std::size_t>(count));
+  boundary.initial_gap.resize(count);
+  boundary.gap_rounding.resize(count);
+  boundary.weights.resize(count);
+  boundary.friction_coefficient.resize(count);
+  boundary.friction_bound.resize(count);
+}
+
+/// Mean of a multiplier's nodes; its own for one that is anchored at a node.
+Vector anchor_position(const DisplacementSpace& space, const Multiplier& multiplier) {
+  if (multiplier.node >= 0) return space.nodes.col(multiplier.node);
+  Vector position = Vector::Zero(space.dimension);
+  for (const auto& [node, weight] : multiplier.trace) position += weight * space.nodes.col(node);
+  return position;
+}
+
+/// The node whose supports decide along which tangents there is friction.
+Index freest_node(const Multiplier& multiplier, int dimension, const FreeComponent& is_free) {
+  if (multiplier.node >= 0) return multiplier.node;
+  Index freest = -1;
+  int most = -1;
+  for (const auto& [node, weight] : multiplier.trace) {
+    int free = 0;
+    for (int k = 0; k < dimension; ++k) free += is_free(node, k) ? 1 : 0;
+    if (free > most) {
+      most = free;
+      freest = node;
+    }
+  }
+  return freest;
+}
+
+/// (1/D_i) ∫ψ_i g₀ over the curved facets, by anchor.
+std::map<Index, double> mean_gaps(const Patch& patch) {
+  std::map<Index, double> gaps, weights;
+  const FacetIntegration integration(*patch.facets.body);
+  FacetQuadrature quadrature;
+  FacetMultipliers functions;
+  Vector gap;
+  for (const ContactPatch::Part& part : patch.facets.parts) {
+    for (const Index facet : part.facets) {
+      integration.evaluate(facet, quadrature);
+      patch.space->evaluate(quadrature, functions);
+      gap.resize(quadrature.measure.size());
+      for (Index q = 0; q < gap.size(); ++q) gap[q] = patch.obstacle->gap(quadrature.positions.col(q));
+      const Matrix weighted = functions.values * quadrature.measure.asDiagonal();
+      for (std::size_t k = 0; k < functions.anchors.size(); ++k) {
+        gaps[functions.anchors[k]] += weighted.row(static_cast<Index>(k)).dot(gap);
+        weights[functions.anchors[k]] += weighted.row(static_cast<Index>(k)).sum();
       }
     }
   }
-  std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.node < b.node; });
-  return points;
+  for (auto& [anchor, gap_integral] : gaps) gap_integral /= weights.at(anchor);
+  return gaps;
 }
 
-/// The conditions at one node must be independent, or their forces are not determined.
-void check_independence(const ContactBoundary& boundary, const Body& body, const std::vector<ContactPair>& pairs) {
-  for (Index i = 0; i < boundary.size();) {
-    Index end = i + 1;
-    while (end < boundary.size() &&
-           boundary.nodes[static_cast<std::size_t>(end)] == boundary.nodes[static_cast<std::size_t>(i)])
-      ++end;
-    if (end - i > 1) {
-      Eigen::ColPivHouseholderQR<Matrix> qr(boundary.normals.middleCols(i, end - i));
-      qr.setThreshold(1e-8);
-      if (qr.rank() < end - i) {
-        std::string names;
-        for (Index k = i; k < end; ++k) {
-          const auto pair = static_cast<std::size_t>(boundary.pair[static_cast<std::size_t>(k)]);
-          names += fmt::format("{}\"{}\"", k == i ? "" : ", ", pairs[pair].obstacle_name);
+/// g₀ and its rounding. Where the displacement's space contains the geometry, the trace of the nodes' gaps is the mean
+/// gap against planes, exactly.
+void fill_gaps(const Patch& patch, const Body& body, ContactBoundary& boundary) {
+  // Displacements come from solves over the whole body, so their rounding is relative to its size, wherever a node is.
+  const double body_size = extent(*body.space);
+  const double body_rounding = 8.0 * std::numeric_limits<double>::epsilon() * body_size;
+  const bool by_quadrature = patch.space->has_functions() && body.mesh->degree > body.space->degree;
+  const std::map<Index, double> means = by_quadrature ? mean_gaps(patch) : std::map<Index, double>{};
+  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
+    const Multiplier& multiplier = patch.kept[i];
+    double gap = 0.0;
+    double rounding = 0.0;
+    for (const auto& [node, weight] : multiplier.trace) {
+      const Vector position = body.space->nodes.col(node);
+      gap += weight * patch.obstacle->gap(position);
+      rounding += std::abs(weight) * (patch.obstacle->gap_rounding(position) + body_rounding);
+    }
+    if (by_quadrature) gap = means.at(multiplier.node >= 0 ? multiplier.node : multiplier.facet);
+    boundary.initial_gap[patch.numbers[i]] = gap;
+    boundary.gap_rounding[patch.numbers[i]] = rounding;
+  }
+}
+
+/// Multipliers in stress units need positive weights; a nodal force needs one only where friction is a stress.
+void check_weights(const Patch& patch, const std::vector<ContactPair>& pairs) {
+  double largest = 0.0;
+  for (const Multiplier& multiplier : patch.kept) largest = std::max(largest, multiplier.weight);
+  for (const Multiplier& multiplier : patch.kept) {
+    const ContactPair& pair = pairs[static_cast<std::size_t>(multiplier.pair)];
+    if (patch.space->has_functions() && multiplier.weight <= 1e-10 * largest) {
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("contact group \"{}\": a multiplier of \"{}\" has no positive share of the area; its "
+                              "facets are too strongly curved",
+                              pair.group, pair.multipliers));
+    }
+    if (!patch.space->has_functions() && pair.friction.bound > 0.0 && multiplier.weight < -1e-10 * largest) {
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("contact group \"{}\": a node's share of the area is negative on its curved facets, so "
+                              "a friction bound has no meaning for its force; use multipliers \"dual\" or \"p1\"",
+                              pair.group));
+    }
+  }
+}
+
+void fill_friction(const Patch& patch, const std::vector<ContactPair>& pairs, ContactBoundary& boundary) {
+  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
+    const FrictionLaw& law = pairs[static_cast<std::size_t>(patch.kept[i].pair)].friction;
+    boundary.friction_coefficient[patch.numbers[i]] = law.coefficient;
+    boundary.friction_bound[patch.numbers[i]] = 0.0;
+    if (law.bound == 0.0) continue;
+    // Weights of nodal forces at the vertices of flat triangles of degree 2 vanish: a rounding error below zero is
+    // zero, and with it the friction that the bound leaves.
+    const double bound = law.bound * std::max(patch.kept[i].weight, 0.0);
+    boundary.friction_bound[patch.numbers[i]] = bound;
+    if (bound == 0.0) boundary.friction_coefficient[patch.numbers[i]] = 0.0;
+  }
+}
+
+/// G = c ⊗ nᵀ and B_T = c ⊗ tᵀ.
+class Operators {
+ public:
+  explicit Operators(int dimension) : d_(dimension) {}
+
+  void add(int point, const Multiplier& multiplier, const Vector& normal, const ContactTangents& tangents) {
+    for (const auto& [node, weight] : multiplier.trace) {
+      trace_.emplace_back(point, static_cast<int>(node), weight);
+      for (int k = 0; k < d_; ++k) {
+        const int dof = static_cast<int>(node) * d_ + k;
+        gap_.emplace_back(point, dof, weight * normal[k]);
+        for (int j = 0; j < d_ - 1; ++j) {
+          if (!tangents.slips[static_cast<std::size_t>(j)]) continue;
+          slip_.emplace_back(point * (d_ - 1) + j, dof, weight * tangents.directions(k, j));
         }
-        const Vector at = body.space->nodes.col(boundary.nodes[static_cast<std::size_t>(i)]);
-        throw Error(
-            ErrorKind::invalid_input,
-            fmt::format("the node at ({}{}{}) is in contact with obstacles {} whose normals are linearly "
-                        "dependent there; remove one of these contacts",
-                        at[0], ", ", at.size() == 3 ? fmt::format("{}, {}", at[1], at[2]) : fmt::format("{}", at[1]),
-                        names));
       }
     }
-    i = end;
   }
+
+  void finish(Index points, Index nodes, ContactBoundary& boundary) const {
+    boundary.trace.resize(points, nodes);
+    boundary.trace.setFromTriplets(trace_.begin(), trace_.end());
+    boundary.gap_operator.resize(points, nodes * d_);
+    boundary.gap_operator.setFromTriplets(gap_.begin(), gap_.end());
+    boundary.tangential_trace.resize(points * (d_ - 1), nodes * d_);
+    boundary.tangential_trace.setFromTriplets(slip_.begin(), slip_.end());
+  }
+
+ private:
+  int d_;
+  std::vector<Eigen::Triplet<double>> trace_, gap_, slip_;
+};
+
+/// The nodes that traces reach, and what is reported at them.
+void fill_nodes(const std::vector<Patch>& patches, const BoundaryNodes& all, const Body& body,
+                const std::vector<ContactPair>& pairs, ContactBoundary& boundary) {
+  std::map<std::pair<Index, int>, int> rows;  // (node, first pair) → row
+  for (const Patch& patch : patches) {
+    for (const Multiplier& multiplier : patch.kept) {
+      for (const auto& [node, weight] : multiplier.trace) rows[{node, all.first_pair(node, patch.obstacle)}] = 0;
+    }
+  }
+  const auto count = static_cast<Index>(rows.size());
+  boundary.node_normals.resize(boundary.dimension, count);
+  boundary.node_initial_gap.resize(count);
+  for (auto& [key, row] : rows) {
+    row = static_cast<int>(boundary.nodes.size());
+    const Obstacle& obstacle = *pairs[static_cast<std::size_t>(key.second)].obstacle;
+    const Vector position = body.space->nodes.col(key.first);
+    boundary.nodes.push_back(key.first);
+    boundary.node_pair.push_back(key.second);
+    boundary.node_normals.col(row) = obstacle.normal(position);
+    boundary.node_initial_gap[row] = obstacle.gap(position);
+  }
+  std::vector<Eigen::Triplet<double>> recovery;
+  for (const Patch& patch : patches) {
+    for (const auto& entry : patch.space->pressure_recovery(patch.kept)) {
+      const auto row = rows.find({entry.row(), all.first_pair(entry.row(), patch.obstacle)});
+      if (row == rows.end()) continue;  // no multiplier in use reaches the node
+      recovery.emplace_back(row->second, patch.numbers[static_cast<std::size_t>(entry.col())], entry.value());
+    }
+  }
+  boundary.pressure_recovery.resize(count, boundary.size());
+  boundary.pressure_recovery.setFromTriplets(recovery.begin(), recovery.end());
 }
 
-void fill_operators(ContactBoundary& boundary, Index dofs) {
-  const int d = boundary.dimension;
-  std::vector<Eigen::Triplet<double>> gap, slip;
-  for (Index i = 0; i < boundary.size(); ++i) {
-    const auto first = static_cast<int>(boundary.nodes[static_cast<std::size_t>(i)] * d);
-    for (int k = 0; k < d; ++k) {
-      gap.emplace_back(static_cast<int>(i), first + k, boundary.normals(k, i));
-      for (int j = 0; j < d - 1; ++j) {
-        slip.emplace_back(static_cast<int>(i) * (d - 1) + j, first + k,
-                          boundary.tangents[static_cast<std::size_t>(i)](k, j));
-      }
-    }
+void fill_points(const Patch& patch, const Body& body, const FreeComponent& is_free, ContactBoundary& boundary,
+                 Operators& operators) {
+  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
+    const Multiplier& multiplier = patch.kept[i];
+    const int number = patch.numbers[i];
+    const Vector normal = patch.obstacle->normal(anchor_position(*body.space, multiplier));
+    const ContactTangents tangents = tangents_at(freest_node(multiplier, boundary.dimension, is_free), normal, is_free);
+    boundary.pair[static_cast<std::size_t>(number)] = multiplier.pair;
+    boundary.normals.col(number) = normal;
+    boundary.tangents[static_cast<std::size_t>(number)] = tangents.directions;
+    boundary.weights[number] = multiplier.weight;
+    operators.add(number, multiplier, normal, tangents);
   }
-  boundary.gap_operator.resize(boundary.size(), dofs);
-  boundary.gap_operator.setFromTriplets(gap.begin(), gap.end());
-  boundary.tangential_trace.resize(boundary.size() * (d - 1), dofs);
-  boundary.tangential_trace.setFromTriplets(slip.begin(), slip.end());
-}
-
-/// For each non-vertex node of the pair's facets, the vertices it lies between.
-std::map<Index, std::vector<Index>> middle_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
-  std::map<Index, std::vector<Index>> middles;
-  Index first = 0;
-  for (const CellBlock& block : space.facets) {
-    const auto& support = node_vertices(block.shape, space.degree);
-    for (const Index facet : facets) {
-      const Index local = facet - first;
-      if (local < 0 || local >= block.size()) continue;
-      for (std::size_t k = 0; k < support.size(); ++k) {
-        if (support[k].size() == 1) continue;
-        std::vector<Index>& vertices = middles[block.cell(local)[k]];
-        vertices.clear();
-        for (const int v : support[k]) vertices.push_back(block.cell(local)[v]);
-      }
-    }
-    first += block.size();
-  }
-  return middles;
-}
-
-void fill_pressure_recovery(ContactBoundary& boundary, const DisplacementSpace& space,
-                            const std::vector<ContactPair>& pairs) {
-  const Index count = boundary.size();
-  std::map<std::pair<Index, const Obstacle*>, Index> number;
-  for (Index i = 0; i < count; ++i) {
-    const auto pair = static_cast<std::size_t>(boundary.pair[static_cast<std::size_t>(i)]);
-    number[{boundary.nodes[static_cast<std::size_t>(i)], pairs[pair].obstacle}] = i;
-  }
-  // gather(a, j) = ψ_a(x_j): the identity on degree 1.
-  std::vector<Eigen::Triplet<double>> gather, spread;
-  std::vector<char> is_middle(static_cast<std::size_t>(count), 0);
-  std::map<Index, std::vector<Index>> middles;
-  for (const ContactPair& pair : pairs) {
-    for (const auto& [node, vertices] : middle_nodes(space, pair.facets)) {
-      const auto point = number.find({node, pair.obstacle});
-      if (point == number.end() || is_middle[static_cast<std::size_t>(point->second)] != 0) continue;
-      is_middle[static_cast<std::size_t>(point->second)] = 1;
-      std::vector<Index> known;
-      for (const Index vertex : vertices) {
-        const auto found = number.find({vertex, pair.obstacle});
-        if (found != number.end()) known.push_back(found->second);
-      }
-      // Where supports have removed the vertices, the middle keeps its force to itself.
-      if (known.empty()) is_middle[static_cast<std::size_t>(point->second)] = 0;
-      for (const Index vertex : known) {
-        const double share = 1.0 / static_cast<double>(known.size());
-        gather.emplace_back(static_cast<int>(vertex), static_cast<int>(point->second), share);
-        spread.emplace_back(static_cast<int>(point->second), static_cast<int>(vertex), share);
-      }
-    }
-  }
-  for (Index i = 0; i < count; ++i) {
-    if (is_middle[static_cast<std::size_t>(i)] != 0) continue;
-    gather.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
-    spread.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
-  }
-  SparseRowMatrix gathering(count, count), spreading(count, count);
-  gathering.setFromTriplets(gather.begin(), gather.end());
-  spreading.setFromTriplets(spread.begin(), spread.end());
-  const Vector weights = gathering * boundary.weights;
-  for (Index row = 0; row < count; ++row) {
-    for (SparseRowMatrix::InnerIterator entry(gathering, row); entry; ++entry) entry.valueRef() /= weights[row];
-  }
-  boundary.pressure_recovery = spreading * gathering;
 }
 
 }  // namespace
@@ -204,35 +278,29 @@ std::vector<Index> ContactBoundary::unique_nodes() const {
 }
 
 ContactBoundary make_contact_boundary(const Body& body, const std::vector<ContactPair>& pairs,
-                                      const std::function<bool(Index, const Vector&)>& keep) {
-  const std::vector<Point> points = collect_points(body, pairs, keep);
+                                      const FreeComponent& is_free, Index* held_nodes) {
+  const BoundaryNodes nodes(body, pairs, is_free);
+  if (held_nodes != nullptr) *held_nodes = nodes.held_count();
+  std::vector<Patch> patches = collect_patches(body, pairs);
+  for (Patch& patch : patches) {
+    const Obstacle* obstacle = patch.obstacle;
+    patch.facets.is_held = [&nodes, obstacle](Index node) { return nodes.is_held(node, obstacle); };
+    patch.space = make_multiplier_space(patch.multipliers, patch.facets);
+    keep_free_multipliers(patch);
+  }
   ContactBoundary boundary;
   boundary.dimension = body.space->dimension;
-  const auto count = static_cast<Index>(points.size());
-  boundary.normals.resize(boundary.dimension, count);
-  boundary.initial_gap.resize(count);
-  boundary.gap_rounding.resize(count);
-  boundary.weights.resize(count);
-  boundary.friction_coefficient.resize(count);
-  // Displacements come from solves over the whole body, so their rounding is relative to its size, wherever a node is.
-  const double body_size = extent(*body.space);
-  const double body_rounding = 8.0 * std::numeric_limits<double>::epsilon() * body_size;
-  for (Index i = 0; i < count; ++i) {
-    const Point& point = points[static_cast<std::size_t>(i)];
-    const ContactPair& pair = pairs[static_cast<std::size_t>(point.pair)];
-    const Vector position = body.space->nodes.col(point.node);
-    boundary.nodes.push_back(point.node);
-    boundary.pair.push_back(point.pair);
-    boundary.normals.col(i) = pair.obstacle->normal(position);
-    boundary.tangents.push_back(tangents_of(boundary.normals.col(i)));
-    boundary.initial_gap[i] = pair.obstacle->gap(position);
-    boundary.gap_rounding[i] = pair.obstacle->gap_rounding(position) + body_rounding;
-    boundary.weights[i] = point.weight;
-    boundary.friction_coefficient[i] = pair.friction_coefficient;
+  const Index count = number_points(patches);
+  resize(boundary, count);
+  Operators operators(boundary.dimension);
+  for (const Patch& patch : patches) {
+    check_weights(patch, pairs);
+    fill_points(patch, body, is_free, boundary, operators);
+    fill_gaps(patch, body, boundary);
+    fill_friction(patch, pairs, boundary);
   }
-  check_independence(boundary, body, pairs);
-  fill_operators(boundary, body.space->dof_count());
-  fill_pressure_recovery(boundary, *body.space, pairs);
+  operators.finish(count, body.space->node_count(), boundary);
+  fill_nodes(patches, nodes, body, pairs, boundary);
   return boundary;
 }
 

@@ -1,21 +1,33 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "ricochet/contact/obstacle.hpp"
 #include "ricochet/fem/assembly.hpp"
 
-/// @file The contact boundary and its trace operators.
+/// @file The contact boundary: its multipliers and trace operators.
 ///
 /// Signs, once and for all. The source writes U·N_i ≤ 0 for contact at zero gap, with N_i the normal out of the body,
 /// and multipliers ≤ 0. Here:
-///   gap operator       G = −B_N: row i is the obstacle's outward normal at the dofs of contact node i;
+///   gap operator       G = −B_N: row i is the obstacle's outward normal times multiplier i's weights of the nodes;
 ///   gap                g = g₀ + G U, ≥ 0 when open;
 ///   normal reaction    r_N ≥ 0 in compression, a force (per length out of the plane in 2D);
-///   force on the body  Gᵀ r_N − B_Tᵀ r_T, with r_T aligned with the slip rate.
+///   force on the body  Gᵀ r_N − B_Tᵀ r_T, with r_T aligned with the slip rate of the body relative to the obstacle.
 /// Back to the source: λ̃_N^i = −r_N,i and U·N_i = −(g_i − g₀,i) where the obstacle's normal is −N_i.
 namespace ricochet {
+
+/// Friction between a body and an obstacle.
+struct FrictionLaw {
+  double coefficient = 0.0;  ///< F of Coulomb's law |r_T| ≤ F r_N
+  /// A stress, 0: none. With a coefficient the friction is at most min(F r_N, bound × area); without one it is Tresca's
+  /// law, |r_T| ≤ bound × area where pressed.
+  double bound = 0.0;
+
+  [[nodiscard]] bool any() const { return coefficient > 0.0 || bound > 0.0; }
+  friend bool operator==(const FrictionLaw&, const FrictionLaw&) = default;
+};
 
 /// One boundary group against one obstacle, as a case asks for it.
 struct ContactPair {
@@ -23,38 +35,57 @@ struct ContactPair {
   std::vector<Index> facets;  ///< numbered through all blocks
   std::string obstacle_name;
   const Obstacle* obstacle = nullptr;
-  double friction_coefficient = 0.0;
+  FrictionLaw friction;
+  std::string multipliers = "nodal";
 };
 
-/// Nodal contact: each node of the contact boundary is a contact point (once per obstacle that may touch it).
+/// Whether a node may move along a direction of space: false where a support prescribes that component.
+using FreeComponent = std::function<bool(Index node, int component)>;
+
+/// A contact point is a multiplier ψ_i, and carries one normal condition and one normal and tangential reaction. With
+/// D_i = ∫ψ_i over the boundary and the trace c_ij = (1/D_i) ∫ψ_i φ_j (Σ_j c_ij = 1), it sees the mean gap
+/// g_i = (1/D_i) ∫ψ_i g and its reaction is r_i = D_i λ_i for a multiplier λ in stress units: λ_h = Σ_i (r_i/D_i) ψ_i.
+/// The signs of the source's Λ_N^h and the disc of Λ_T^h are conditions on the λ_i. For nodal multipliers c is the
+/// identity: each node is a contact point, once per obstacle that may touch it.
 struct ContactBoundary {
   int dimension = 2;
-  std::vector<Index> nodes;      ///< per point: its node
-  std::vector<int> pair;         ///< per point: index of the ContactPair it came from (the first that names it)
-  Points normals;                ///< per point: unit normal out of the obstacle, d × points
-  std::vector<Points> tangents;  ///< per point: d × (d−1), orthonormal with the normal
+
+  // Per contact point:
+  std::vector<int> pair;         ///< index of the ContactPair it came from (the first that names it)
+  Points normals;                ///< unit normal out of the obstacle, d × points
+  std::vector<Points> tangents;  ///< d × (d−1), orthonormal with the normal
   Vector initial_gap;            ///< g₀
   Vector gap_rounding;           ///< a gap up to this is zero to rounding
-  Vector weights;                ///< ∫ φ_i over the boundary: length in 2D, area in 3D
-  Vector friction_coefficient;
-  SparseRowMatrix gap_operator;       ///< G, points × dofs
-  SparseRowMatrix tangential_trace;   ///< B_T, (d−1)·points × dofs
-  SparseRowMatrix pressure_recovery;  ///< pressure = this · r_N, see recovery rule below
+  Vector weights;                ///< D_i > 0: length in 2D, area in 3D
+  Vector friction_coefficient;   ///< F
+  Vector friction_bound;         ///< a force, bound × D_i; 0: none
+  SparseRowMatrix trace;         ///< c, points × nodes of the space
+  SparseRowMatrix gap_operator;  ///< G = c ⊗ nᵀ, points × dofs
+  SparseRowMatrix tangential_trace;  ///< B_T = c ⊗ tᵀ, (d−1)·points × dofs; a row is zero where supports hold the body
+                                     ///< in that direction: no friction acts along it
 
-  [[nodiscard]] Index size() const { return static_cast<Index>(nodes.size()); }
-  /// The nodes that carry at least one point, ascending, each once.
+  // Per node of the contact boundary (once per obstacle), for what is reported node by node:
+  std::vector<Index> nodes;    ///< ascending; all nodes that the trace of some point reaches
+  std::vector<int> node_pair;  ///< index of the (first) ContactPair
+  Points node_normals;         ///< d × nodes
+  Vector node_initial_gap;
+  SparseRowMatrix pressure_recovery;  ///< contact nodes × points: pressure at the nodes = this · r_N, in stress units;
+                                      ///< any component of the friction traction likewise from that of the reaction
+
+  [[nodiscard]] Index size() const { return initial_gap.size(); }
+  [[nodiscard]] bool has_friction() const {
+    return (friction_coefficient.array() > 0.0).any() || (friction_bound.array() > 0.0).any();
+  }
+  /// The nodes that the trace of some point reaches, ascending, each once.
   [[nodiscard]] std::vector<Index> unique_nodes() const;
 };
 
-/// Builds the boundary. Points that `keep` refuses (given the node and the unit normal) are left out: nodes whose
-/// normal displacement is prescribed. Throws Error(invalid_input) when more conditions meet at a node than it has
-/// components.
-///
-/// Pressure from nodal forces. On degree 1: p_i = r_i / ∫φ_i. On degree 2 vertex weights are smaller than those of the
-/// middles and vanish on flat triangles, so forces are first gathered on the linear hat functions ψ_a of the vertices:
-/// p_a = Σ_j ψ_a(x_j) r_j / ∫ψ_a, and a middle node takes the mean of the vertices of its edge or face. This is exact
-/// for a uniform pressure, keeps the sign, and Σ_a p_a ∫ψ_a is the total force.
+/// Builds the boundary. Multipliers of nodes that supports hold along the normal are left out, and so are those of
+/// facets all of whose nodes are; `held_nodes` (may be null) receives the number of such nodes, each once per obstacle.
+/// Throws Error(invalid_input) when the obstacles that share a node have dependent normals there, when pairs that share
+/// a node and an obstacle differ in multipliers or (but for "p0") in friction, when a multiplier space is unknown, when
+/// a multiplier has no positive D_i, or when a nodal force has a negative one under Tresca's law.
 [[nodiscard]] ContactBoundary make_contact_boundary(const Body& body, const std::vector<ContactPair>& pairs,
-                                                    const std::function<bool(Index node, const Vector& normal)>& keep);
+                                                    const FreeComponent& is_free, Index* held_nodes = nullptr);
 
 }  // namespace ricochet

@@ -1,6 +1,7 @@
 #include "ricochet/contact/obstacle.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <functional>
 #include <limits>
@@ -16,7 +17,15 @@ namespace {
 class Plane final : public Obstacle {
  public:
   explicit Plane(const ObstacleParameters& parameters)
-      : point_(parameters.point), normal_(parameters.normal / parameters.normal.norm()) {}
+      : point_(parameters.point),
+        normal_(parameters.normal / parameters.normal.norm()),
+        velocity_(parameters.velocity.size() > 0 ? parameters.velocity : Vector::Zero(parameters.normal.size())),
+        rotation_rate_(parameters.rotation_rate) {
+    if (rotation_rate_ != 0.0 && normal_.size() != 3) {
+      throw Error(ErrorKind::invalid_input,
+                  "a plane turns about its normal, which needs three dimensions: leave rotation_rate out in 2D");
+    }
+  }
 
   [[nodiscard]] double gap(const Vector& position) const override { return (position - point_).dot(normal_); }
   [[nodiscard]] Vector normal(const Vector&) const override { return normal_; }
@@ -24,10 +33,20 @@ class Plane final : public Obstacle {
     const double size = (position.cwiseAbs() + point_.cwiseAbs()).dot(normal_.cwiseAbs());
     return 8.0 * std::numeric_limits<double>::epsilon() * size;
   }
+  [[nodiscard]] bool moves() const override { return rotation_rate_ != 0.0 || !velocity_.isZero(0.0); }
+  [[nodiscard]] Vector translation(double time) const override { return time * velocity_; }
+  [[nodiscard]] Vector surface_velocity(const Vector& position, double time) const override {
+    if (rotation_rate_ == 0.0) return velocity_;
+    const Eigen::Vector3d axis = normal_;
+    const Eigen::Vector3d arm = position - point_ - translation(time);
+    return velocity_ + rotation_rate_ * axis.cross(arm);
+  }
 
  private:
   Vector point_;
   Vector normal_;
+  Vector velocity_;
+  double rotation_rate_;
 };
 
 struct Registration {

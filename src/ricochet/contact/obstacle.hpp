@@ -9,7 +9,8 @@
 /// @file Rigid obstacles. To add one: a class here or in a file of its own, and one line in `make_obstacle`.
 namespace ricochet {
 
-/// A rigid body seen from a point of space: how far its surface is, and which way is out.
+/// A rigid body seen from a point of space: how far its surface is, which way is out, and how it moves. Gaps and
+/// normals are those at t = 0; an obstacle may translate, and turn in ways that leave its surface what it is.
 class Obstacle {
  public:
   virtual ~Obstacle() = default;
@@ -19,6 +20,12 @@ class Obstacle {
   [[nodiscard]] virtual Vector normal(const Vector& position) const = 0;
   /// Size of the rounding error of `gap` at this position: gaps no larger than this are zero.
   [[nodiscard]] virtual double gap_rounding(const Vector& position) const = 0;
+  /// Whether its material moves at all.
+  [[nodiscard]] virtual bool moves() const = 0;
+  /// Displacement of the obstacle as a whole since t = 0: the gap at t is that of position − translation(t) at 0.
+  [[nodiscard]] virtual Vector translation(double time) const = 0;
+  /// Velocity of the obstacle's material at a position of its surface: v + ω × (position − its point at that time).
+  [[nodiscard]] virtual Vector surface_velocity(const Vector& position, double time) const = 0;
 };
 
 /// What a case says of an obstacle.
@@ -26,6 +33,8 @@ struct ObstacleParameters {
   std::string type;
   Vector point;
   Vector normal;
+  Vector velocity = {};        ///< of `point`; empty: at rest
+  double rotation_rate = 0.0;  ///< about the normal through `point`, right-handed, in rad per time; 3D only
 };
 
 /// Throws Error(invalid_input) for an unknown type, naming the known ones.

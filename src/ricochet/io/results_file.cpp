@@ -24,7 +24,7 @@ struct ResultsWriter::Implementation {
   long frames = 0;
   std::vector<double> vector_values, pressure, gap;
   std::vector<int> status;
-  Vector point_gap, point_pressure;
+  Vector node_gap, node_pressure, traction;
 
   void check(bool good, const char* what) const {
     if (!good) throw Error(ErrorKind::file_access, fmt::format("{}: cannot write {} (is the disk full?)", path, what));
@@ -35,6 +35,7 @@ struct ResultsWriter::Implementation {
   void write_mesh(const DisplacementSpace& space);
   void vector_field(const std::string& name, const Vector& values);
   void contact_fields(const State& state);
+  void friction_field(const std::string& name, const State& state);
   void write_side_frame(const State& state, const std::string& frame);
 };
 
@@ -112,14 +113,36 @@ void ResultsWriter::Implementation::contact_fields(const State& state) {
   pressure.assign(count, 0.0);
   gap.assign(count, std::numeric_limits<double>::quiet_NaN());
   status.assign(count, -1);
-  problem->gaps(state.displacement, point_gap);
-  point_pressure = problem->contact.pressure_recovery * state.forces.normal_reaction;
-  for (Index i = 0; i < problem->contact.size(); ++i) {
-    const auto node = static_cast<std::size_t>(problem->contact.nodes[static_cast<std::size_t>(i)]);
-    pressure[node] = std::max(pressure[node], point_pressure[i]);
-    gap[node] = status[node] < 0 ? point_gap[i] : std::min(gap[node], point_gap[i]);
-    status[node] = std::max(status[node], state.forces.normal_reaction[i] > 0.0 ? 1 : 0);
+  const ContactBoundary& contact = problem->contact;
+  problem->node_gaps(state.displacement, state.time, node_gap);
+  node_pressure = contact.pressure_recovery * state.forces.normal_reaction;
+  for (Index i = 0; i < node_gap.size(); ++i) {
+    const auto node = static_cast<std::size_t>(contact.nodes[static_cast<std::size_t>(i)]);
+    pressure[node] = std::max(pressure[node], node_pressure[i]);
+    gap[node] = status[node] < 0 ? node_gap[i] : std::min(gap[node], node_gap[i]);
+    status[node] = std::max(status[node], 0);
+    // A node does what the contact points do that its pressure comes from.
+    for (SparseRowMatrix::InnerIterator entry(contact.pressure_recovery, i); entry; ++entry) {
+      if (state.contact_status.empty() || entry.value() == 0.0) continue;
+      status[node] =
+          std::max(status[node], static_cast<int>(state.contact_status[static_cast<std::size_t>(entry.col())]));
+    }
   }
+}
+
+/// The friction traction on the body, in stress units: −t r_T of the points, recovered at the nodes like pressures.
+void ResultsWriter::Implementation::friction_field(const std::string& name, const State& state) {
+  const ContactBoundary& contact = problem->contact;
+  const int d = problem->dimension;
+  traction.setZero(problem->dof_count());
+  for (std::size_t i = 0; i < contact.nodes.size() && state.forces.tangential_reaction.size() > 0; ++i) {
+    for (SparseRowMatrix::InnerIterator entry(contact.pressure_recovery, static_cast<Index>(i)); entry; ++entry) {
+      traction.segment(contact.nodes[i] * d, d) -=
+          entry.value() * contact.tangents[static_cast<std::size_t>(entry.col())] *
+          state.forces.tangential_reaction.segment(entry.col() * (d - 1), d - 1);
+    }
+  }
+  vector_field(name, traction);
 }
 
 void ResultsWriter::Implementation::write_side_frame(const State& state, const std::string& frame) {
@@ -138,6 +161,9 @@ void ResultsWriter::Implementation::write_side_frame(const State& state, const s
   text += attribute("displacement", "Vector", real, fmt::format("{} 3", count));
   text += attribute("velocity", "Vector", real, fmt::format("{} 3", count));
   text += attribute("contact_pressure", "Scalar", real, fmt::format("{}", count));
+  if (problem->contact.has_friction()) {
+    text += attribute("friction_traction", "Vector", real, fmt::format("{} 3", count));
+  }
   text += attribute("gap", "Scalar", real, fmt::format("{}", count));
   text += attribute("contact_status", "Scalar", whole, fmt::format("{}", count));
   text += "      </Grid>\n";
@@ -183,6 +209,7 @@ void ResultsWriter::write(const State& state) {
   own.vector_field(frame + "/displacement", state.displacement);
   own.vector_field(frame + "/velocity", state.velocity);
   own.contact_fields(state);
+  if (own.problem->contact.has_friction()) own.friction_field(frame + "/friction_traction", state);
   const auto count = static_cast<hsize_t>(own.problem->nodes.cols());
   own.dataset(frame + "/contact_pressure", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 0, own.pressure.data());
   own.dataset(frame + "/gap", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 0, own.gap.data());

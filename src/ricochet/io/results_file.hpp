@@ -10,9 +10,11 @@
 /// @file Fields over time: results.h5 and its XDMF 3.0 side-file results.xdmf, one dataset per frame and field.
 ///
 /// results.h5:  /mesh/nodes (nodes × 3), /mesh/cells_K (one per cell shape, nodes in VTK's order),
-///   /frames/NNNNNN/{displacement, velocity (nodes × 3), contact_pressure, gap, contact_status (nodes)}.
-/// Off the contact boundary contact_pressure is 0, gap is NaN and contact_status −1; on it 0 is open, 1 is closed.
-/// Where two obstacles meet at a node, the larger pressure, the smaller gap and the larger status are given.
+///   /frames/NNNNNN/{displacement, velocity (nodes × 3), contact_pressure, gap, contact_status (nodes)} and,
+///   with friction, friction_traction (nodes × 3): the traction on the body, in stress units like the pressure.
+/// Off the contact boundary contact_pressure is 0, gap is NaN and contact_status −1; on it 0 is open, 1 is closed
+/// without friction, 2 sticks and 3 slips. Where two obstacles meet at a node, the larger pressure, the smaller gap and
+/// the larger status are given.
 namespace ricochet {
 
 class ResultsWriter {

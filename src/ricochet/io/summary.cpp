@@ -52,7 +52,19 @@ Json probes_to_json(const RunSummary& summary) {
                       {"node", probe.node},
                       {"position", summary.probe_positions[i]},
                       {"distance", probe.distance},
-                      {"in_contact_boundary", probe.contact_point >= 0}});
+                      {"in_contact_boundary", probe.contact_node >= 0}});
+  }
+  return result;
+}
+
+Json contacts_to_json(const RunSummary& summary) {
+  Json result = Json::array();
+  for (const ContactDescription& c : summary.contacts) {
+    result.push_back({{"group", c.group},
+                      {"obstacle", c.obstacle},
+                      {"multipliers", c.multipliers},
+                      {"friction", c.friction},
+                      {"friction_bound", c.friction_bound}});
   }
   return result;
 }
@@ -117,6 +129,7 @@ std::string to_json(const RunSummary& s) {
                      {"timings_seconds", timings},
                      {"seconds_per_step", s.time_per_step},
                      {"energy_scale", number(s.energy_scale())},
+                     {"contacts", contacts_to_json(s)},
                      {"probes", probes_to_json(s)},
                      {"extrema", extrema_to_json(s)},
                      {"warnings", s.warnings},
@@ -162,6 +175,10 @@ RunSummary read_summary(const std::string& path) {
     s.time_per_step = json.at("seconds_per_step");
     s.warnings = json.at("warnings").get<std::vector<std::string>>();
     for (const auto& [phase, seconds] : json.at("timings_seconds").items()) s.timings.emplace_back(phase, seconds);
+    for (const auto& contact : json.at("contacts")) {
+      s.contacts.push_back({contact.at("group"), contact.at("obstacle"), contact.at("multipliers"),
+                            contact.at("friction"), contact.at("friction_bound")});
+    }
     for (const auto& probe : json.at("probes")) {
       s.probes.push_back({probe.at("name"), probe.at("node"), probe.at("distance"),
                           probe.at("in_contact_boundary").get<bool>() ? 0 : -1});

@@ -20,6 +20,12 @@ struct ExpectationResult {
   std::string note;
 };
 
+/// A [[contact]] entry as it ran.
+struct ContactDescription {
+  std::string group, obstacle, multipliers;
+  double friction = 0.0, friction_bound = 0.0;
+};
+
 struct RunSummary {
   std::string status = "done";  ///< "done" or "failed"
   std::string message;          ///< of the failure
@@ -33,6 +39,7 @@ struct RunSummary {
   long steps = 0;
   double energy_instant = 0.0, force_instant = 0.0;  ///< relative to a row's time, in steps
   long frames = 0;
+  std::vector<ContactDescription> contacts;
   std::vector<Probe> probes;
   std::vector<std::vector<double>> probe_positions;
   std::vector<std::pair<std::string, double>> timings;  ///< seconds by phase

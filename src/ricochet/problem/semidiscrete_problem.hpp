@@ -8,8 +8,16 @@
 #include "ricochet/problem/loads.hpp"
 
 /// @file The semi-discrete problem, eq. (2) of the source:
-///   M Ü + C U̇ + K U = L + Gᵀ r_N − B_Tᵀ r_T  (+ support reactions),   0 ≤ r_N ⟂ g₀ + G U ≥ 0.
+///   M Ü + C U̇ + K U = L + Gᵀ r_N − B_Tᵀ r_T  (+ support reactions),   0 ≤ r_N ⟂ g₀ + G U ≥ 0,
+///   |r_T,i| ≤ F_i r_N,i,   r_T,i = F_i r_N,i w_i/|w_i| where the slip rate w = B_T U̇ − (the obstacle's) is not zero.
+/// Where an obstacle translates by s(t), the gap is g₀ + G U − n·s(t).
 namespace ricochet {
+
+/// What obstacles do at the contact points: velocities, or increments over a step. Both empty when no obstacle moves.
+struct ObstacleMotion {
+  Vector normal;      ///< n·v, per point
+  Vector tangential;  ///< tᵀv, (d−1) per point; 0 along rows of B_T that are zero
+};
 
 struct SemidiscreteProblem {
   int dimension = 2;
@@ -20,6 +28,7 @@ struct SemidiscreteProblem {
   Loads loads;
   Supports supports;
   ContactBoundary contact;
+  std::vector<const Obstacle*> obstacles;  ///< of each contact pair
 
   /// Dofs without inertia: those of the contact nodes when the mass is an equivalent one, else none. Ascending.
   std::vector<Index> massless_dofs;
@@ -30,8 +39,18 @@ struct SemidiscreteProblem {
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
   [[nodiscard]] bool has_damping() const { return damping.cols() > 0; }
   [[nodiscard]] bool has_singular_mass() const { return !massless_dofs.empty(); }
-  /// Gaps of all contact points at a displacement: g₀ + G U.
-  void gaps(const Vector& displacement, Vector& gap) const;
+  [[nodiscard]] const Obstacle* obstacle_of_point(Index point) const {
+    return obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];
+  }
+  [[nodiscard]] bool has_moving_obstacles() const;
+  /// Gaps of all contact points at a displacement and a time.
+  void gaps(const Vector& displacement, double time, Vector& gap) const;
+  /// Gaps of the nodes of the contact boundary likewise.
+  void node_gaps(const Vector& displacement, double time, Vector& gap) const;
+  /// Velocities of the obstacles where the contact points are at this displacement and time.
+  void obstacle_velocity(const Vector& displacement, double time, ObstacleMotion& velocity) const;
+  /// Size of the rounding errors of a trace c·v, per point: ε Σ_j |c_ij| |v_j| for nodal vectors of that size.
+  void trace_rounding(const Vector& size, Vector& rounding) const;
   /// Adds Gᵀ r_N − B_Tᵀ r_T to a force vector. `tangential` may be empty (frictionless).
   void add_contact_force(const Vector& normal, const Vector& tangential, Vector& force) const;
 };

@@ -1,6 +1,7 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/scheme/contact_conditions.hpp"
 #include "ricochet/scheme/scheme.hpp"
 
 namespace ricochet {
@@ -8,10 +9,11 @@ namespace ricochet {
 namespace {
 
 /// The energy-conserving scheme of the source's section 4, with the contact condition on velocities:
-///   M (Uⁿ⁺¹−2Uⁿ+Uⁿ⁻¹)/h² + C Vⁿ + K (Uⁿ⁺¹+2Uⁿ+Uⁿ⁻¹)/4 = Lⁿ + Gᵀ rⁿ,   Vⁿ = (Uⁿ⁺¹−Uⁿ⁻¹)/2h,
-///   gⁿ > 0 ⇒ r = 0,   gⁿ ≤ 0 ⇒ 0 ≤ r ⟂ G Vⁿ ≥ 0.
+///   M (Uⁿ⁺¹−2Uⁿ+Uⁿ⁻¹)/h² + C Vⁿ + K (Uⁿ⁺¹+2Uⁿ+Uⁿ⁻¹)/4 = Lⁿ + Gᵀ r_Nⁿ − B_Tᵀ r_Tⁿ,
+///   Vⁿ = (Uⁿ⁺¹−Uⁿ⁻¹)/2h,   gⁿ > 0 ⇒ r_N = 0,   gⁿ ≤ 0 ⇒ 0 ≤ r_N ⟂ G Vⁿ ≥ 0,   friction on the slip rate B_T Vⁿ.
 /// Unknown x = Uⁿ⁺¹, base 2Uⁿ−Uⁿ⁻¹, so that M(…)/h² = M δ/h² and K(…)/4 = K Uⁿ + K δ/4.
-/// J((Uⁿ+Uⁿ⁺¹)/2, (Uⁿ⁺¹−Uⁿ)/h) is conserved exactly, since rⁿ does no work on (Uⁿ⁺¹−Uⁿ⁻¹)/2.
+/// J((Uⁿ+Uⁿ⁺¹)/2, (Uⁿ⁺¹−Uⁿ)/h) is conserved exactly, since r_Nⁿ does no work on (Uⁿ⁺¹−Uⁿ⁻¹)/2;
+/// friction takes h r_T·w ≥ 0 from it.
 /// What is remembered is Uⁿ⁺¹−Uⁿ, not Uⁿ⁺¹: small steps lose no digits.
 /// A row of the history at tₙ has Uⁿ, Vⁿ and rⁿ, and the energy at n+½.
 class KlrConserving final : public Scheme {
@@ -51,30 +53,19 @@ class KlrConserving final : public Scheme {
     const Vector& difference = state.memory.at("increment_ahead");  // Uⁿ − Uⁿ⁻¹
     const double time = state.time + h;
     now_ = before + difference;  // Uⁿ
+    velocity_ = difference / h;
     problem.internal_force->evaluate(now_, force_);
     problem.loads.total(time, stage.right_hand_side);
     stage.right_hand_side -= force_;
     // C Vⁿ = C (Uⁿ−Uⁿ⁻¹)/h + C δ/2h.
-    if (problem.has_damping()) stage.right_hand_side.noalias() -= problem.damping * difference * (1.0 / h);
+    if (problem.has_damping()) stage.right_hand_side.noalias() -= problem.damping * velocity_;
     problem.supports.values(time + h, supported_);
     stage.prescribed.resize(problem.supports.size());
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
       stage.prescribed[i] = supported_[i] - (now_[dof] + difference[dof]);
     }
-    problem.gaps(now_, gap_);
-    stage.gap_offset.noalias() = problem.contact.gap_operator * difference;
-    stage.gap_offset *= 1.0 / h;
-    stage.gap_factor = 0.5 / h;
-    stage.gap_offset_rounding.resize(gap_.size());
-    stage.eligible.resize(static_cast<std::size_t>(gap_.size()));
-    const double unit = 4.0 * std::numeric_limits<double>::epsilon() / h;
-    for (Index i = 0; i < gap_.size(); ++i) {
-      stage.eligible[static_cast<std::size_t>(i)] = gap_[i] <= problem.contact.gap_rounding[i] ? 1 : 0;
-      const Index first = problem.contact.nodes[static_cast<std::size_t>(i)] * problem.dimension;
-      stage.gap_offset_rounding[i] = unit * (now_.segment(first, problem.dimension).lpNorm<1>() +
-                                             before.segment(first, problem.dimension).lpNorm<1>());
-    }
+    require_contact(problem, time, stage);
   }
 
   void finish(const SemidiscreteProblem& problem, const std::vector<StageSolution>& solutions, State& state,
@@ -88,8 +79,7 @@ class KlrConserving final : public Scheme {
     state.velocity = increment / h;
     state.acceleration = solution.increment / (h * h);
     for (const Index dof : problem.massless_dofs) state.acceleration[dof] = 0.0;
-    state.forces.normal_reaction = solution.normal_reaction;
-    state.forces.support_reaction = solution.support_reaction;
+    take_contact(solution, obstacle_velocity_, h, state);
     if (problem.loads.varies()) problem.loads.varying(state.time + h, state.forces.varying_load);
     if (problem.has_damping()) state.forces.damping_force.noalias() = problem.damping * state.velocity;
   }
@@ -101,7 +91,28 @@ class KlrConserving final : public Scheme {
   }
 
  private:
-  Vector now_, force_, supported_, gap_;
+  /// On velocities: those at δ = 0 are (Uⁿ−Uⁿ⁻¹)/h.
+  void require_contact(const SemidiscreteProblem& problem, double time, Stage& stage) {
+    const double h = step();
+    problem.obstacle_velocity(now_, time, obstacle_velocity_);
+    problem.gaps(now_, time, gap_);
+    stage.gap_offset.noalias() = problem.contact.gap_operator * velocity_;
+    if (obstacle_velocity_.normal.size() > 0) stage.gap_offset -= obstacle_velocity_.normal;
+    stage.gap_factor = 0.5 / h;
+    // The velocity is a difference of displacements.
+    size_ = (now_.cwiseAbs() + velocity_.cwiseAbs() * h) / h;
+    problem.trace_rounding(size_, stage.gap_offset_rounding);
+    stage.gap_offset_rounding *= 8.0;
+    stage.eligible.resize(static_cast<std::size_t>(gap_.size()));
+    for (Index i = 0; i < gap_.size(); ++i) {
+      stage.eligible[static_cast<std::size_t>(i)] = gap_[i] <= problem.contact.gap_rounding[i] ? 1 : 0;
+    }
+    require_friction(problem, velocity_, obstacle_velocity_, 0.5 / h, stage);
+    if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
+  }
+
+  Vector now_, force_, supported_, gap_, velocity_, size_;
+  ObstacleMotion obstacle_velocity_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "ricochet/scheme/gap_condition.hpp"
+#include "ricochet/scheme/contact_conditions.hpp"
 #include "ricochet/scheme/scheme.hpp"
 
 namespace ricochet {
@@ -6,7 +6,7 @@ namespace ricochet {
 namespace {
 
 /// Newmark's scheme with contact at the end of the step (the source's section 5 with an equivalent mass):
-///   M A₁ + C V₁ + K U₁ = L₁ + Gᵀ r₁,   0 ≤ r₁ ⟂ g(U₁) ≥ 0,
+///   M A₁ + C V₁ + K U₁ = L₁ + Gᵀ r_N − B_Tᵀ r_T,   0 ≤ r_N ⟂ g(U₁) ≥ 0,   friction on the slip rate B_T (U₁−U₀)/h,
 ///   U₁ = U₀ + hV₀ + h²[(½−β)A₀ + βA₁],   V₁ = V₀ + h[(1−γ)A₀ + γA₁]   (textbook β and γ).
 /// Unknown x = U₁, base Ũ = U₀ + hV₀ + h²(½−β)A₀, so that A₁ = δ/(βh²).
 ///
@@ -42,7 +42,8 @@ class Newmark final : public Scheme {
     for (Index i = 0; i < problem.supports.size(); ++i) {
       stage.prescribed[i] = supported_[i] - base_[problem.supports.dofs()[static_cast<std::size_t>(i)]];
     }
-    require_no_penetration(problem, base_, stage);
+    require_no_penetration(problem, base_, state.time + h, stage);
+    require_friction_over_step(problem, state, stage);
   }
 
   void finish(const SemidiscreteProblem& problem, const std::vector<StageSolution>& solutions, State& state,
@@ -61,8 +62,7 @@ class Newmark final : public Scheme {
     state.velocity += h * ((1.0 - gamma_) * state.acceleration + gamma_ * acceleration_);
     state.acceleration = acceleration_;
     for (const Index dof : problem.massless_dofs) state.velocity[dof] = increment[dof] / h;
-    state.forces.normal_reaction = solution.normal_reaction;
-    state.forces.support_reaction = solution.support_reaction;
+    take_contact(solution, obstacle_velocity_, h, state);
     if (problem.loads.varies()) problem.loads.varying(state.time + h, state.forces.varying_load);
   }
 
@@ -85,6 +85,15 @@ class Newmark final : public Scheme {
     }
   }
 
+  void require_friction_over_step(const SemidiscreteProblem& problem, const State& state, Stage& stage) {
+    rate_ = predicted_increment_ / step();
+    if (problem.has_moving_obstacles()) {
+      middle_ = state.displacement + 0.5 * predicted_increment_;
+      problem.obstacle_velocity(middle_, state.time + 0.5 * step(), obstacle_velocity_);
+    }
+    require_friction(problem, rate_, obstacle_velocity_, 1.0 / step(), stage);
+  }
+
   void dissipate(const SemidiscreteProblem& problem, const State& state, const Vector& increment) {
     dissipation_ = 0.0;
     if (gamma_ == 0.5) return;
@@ -97,7 +106,8 @@ class Newmark final : public Scheme {
 
   double beta_, gamma_, alpha_;
   double dissipation_ = 0.0;
-  Vector base_, force_, supported_, predicted_increment_, acceleration_, velocity_, difference_;
+  Vector base_, force_, supported_, predicted_increment_, acceleration_, velocity_, difference_, rate_, middle_;
+  ObstacleMotion obstacle_velocity_;
   mutable Vector work_;
 };
 

@@ -4,14 +4,16 @@
 #include <vector>
 
 #include "ricochet/base/types.hpp"
+#include "ricochet/scheme/contact_status.hpp"
 
 /// @file What a time scheme and a step solver say to each other: a step is one or more contact problems.
 ///
 /// A stage asks for an increment δ (the unknown is x = base + δ) and reactions such that
 ///   A δ = b + Gᵀ r_N − B_Tᵀ r_T + support reactions,   A = αM + κK + ηC,   δ given on supported dofs,
-///   for each eligible contact point:  0 ≤ r_N,i ⟂ y_i = q_i + s (G δ)_i + c_i r_N,i ≥ 0.
-/// b is the residual force at the base and q the gap (or gap rate) there: written in increments, no digits are lost
-/// between large inertia terms that cancel, and the energy account closes to rounding.
+///   for each eligible contact point:  0 ≤ r_N,i ⟂ y_i = q_i + s (G δ)_i + c_i r_N,i ≥ 0,
+///     |r_T,i| ≤ F_i r_N,i,   r_T,i = F_i r_N,i w_i/|w_i| where the slip rate w_i = p_i + σ (B_T δ)_i is not zero.
+/// b is the residual force at the base, q the gap (or gap rate) and p the slip rate there: written in increments, no
+/// digits are lost between large inertia terms that cancel, and the energy account closes to rounding.
 /// A scheme knows nothing of how a stage is solved; a step solver knows nothing of time.
 namespace ricochet {
 
@@ -31,24 +33,25 @@ struct OperatorCoefficients {
 };
 
 struct Stage {
-  Vector right_hand_side;      ///< b, per dof
-  Vector prescribed;           ///< δ on supported dofs, in the order of Supports::dofs()
-  std::vector<char> eligible;  ///< per contact point
-  Vector gap_offset;           ///< q, per contact point
-  Vector gap_offset_rounding;  ///< size of the rounding error of q: a y above −(this + the solver's own) is zero
-  double gap_factor = 1.0;     ///< s
-  Vector compliance;           ///< c; empty: zero
-  // For friction (not used yet): slip rate w_i = slip_factor (B_T δ)_i + slip_offset_i.
-  double slip_factor = 1.0;  ///< σ
-  Vector slip_offset;        ///< p; empty: no friction in this stage
+  Vector right_hand_side;       ///< b, per dof
+  Vector prescribed;            ///< δ on supported dofs, in the order of Supports::dofs()
+  std::vector<char> eligible;   ///< per contact point
+  Vector gap_offset;            ///< q, per contact point
+  Vector gap_offset_rounding;   ///< size of the rounding error of q: a y above −(this + the solver's own) is zero
+  double gap_factor = 1.0;      ///< s
+  Vector compliance;            ///< c; empty: zero
+  double slip_factor = 1.0;     ///< σ
+  Vector slip_offset;           ///< p, (d−1) per contact point; empty: no friction in this stage
+  Vector slip_offset_rounding;  ///< size of the rounding error of p, per contact point
 };
 
 struct StageSolution {
-  Vector increment;            ///< δ
-  Vector normal_reaction;      ///< r_N, per contact point; zero where not eligible
-  Vector tangential_reaction;  ///< r_T, (d−1) per contact point; empty without friction
-  Vector support_reaction;     ///< on supported dofs
-  int iterations = 0;          ///< of the contact solver
+  Vector increment;                           ///< δ
+  Vector normal_reaction;                     ///< r_N, per contact point; zero where not eligible
+  Vector tangential_reaction;                 ///< r_T, (d−1) per contact point; empty without friction
+  Vector support_reaction;                    ///< on supported dofs
+  std::vector<ContactStatus> contact_status;  ///< per contact point
+  int iterations = 0;                         ///< of the contact solver
 };
 
 }  // namespace ricochet

@@ -2,8 +2,10 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
-#include "ricochet/base/types.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/contact_status.hpp"
 
 /// @file The state of a run between two steps: all that the next step depends on.
 namespace ricochet {
@@ -24,6 +26,9 @@ struct State {
   Vector velocity;      ///< V; on massless dofs the mean velocity of the last step
   Vector acceleration;  ///< A; 0 on massless dofs
   StepForces forces;
+  std::vector<ContactStatus> contact_status;  ///< per contact point, at the instant of the forces
+  /// Displacement of the obstacles at the contact points while the body made the increment of the last step.
+  ObstacleMotion obstacle_increment;
   int iterations = 0;  ///< of the contact solver in the last step
   /// What a scheme remembers besides, by name, so that a checkpoint can write it.
   std::map<std::string, Vector> memory;

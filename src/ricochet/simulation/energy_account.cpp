@@ -8,9 +8,17 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
   initial_ = start.total() + start.algorithmic;
 }
 
-EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const Vector& increment) {
+EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const Vector& increment,
+                                                 const ObstacleMotion& obstacle) {
   StepWorks result;
   result.contact = forces.normal_reaction.dot(gap_increment_);
+  if (forces.tangential_reaction.size() > 0) result.friction = -forces.tangential_reaction.dot(slip_increment_);
+  if (obstacle.normal.size() > 0) {
+    result.obstacle = forces.normal_reaction.dot(obstacle.normal);
+    if (forces.tangential_reaction.size() > 0) {
+      result.obstacle -= forces.tangential_reaction.dot(obstacle.tangential);
+    }
+  }
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
     result.support += forces.support_reaction[i] * increment[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
   }
@@ -20,11 +28,19 @@ EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const
 }
 
 void EnergyAccount::enter_step(const Vector& increment, const State& state) {
+  const ObstacleMotion& obstacle = state.obstacle_increment;
   gap_increment_.noalias() = problem_.contact.gap_operator * increment;
+  if (obstacle.normal.size() > 0) gap_increment_ -= obstacle.normal;
+  if (problem_.contact.has_friction()) {
+    slip_increment_.noalias() = problem_.contact.tangential_trace * increment;
+    if (obstacle.tangential.size() > 0) slip_increment_ -= obstacle.tangential;
+  }
   const auto enter = [&](const StepForces& forces, double weight) {
     if (weight == 0.0) return;
-    const StepWorks step = works_of(forces, increment);
+    const StepWorks step = works_of(forces, increment, obstacle);
     works_.contact += weight * step.contact;
+    works_.friction += weight * step.friction;
+    works_.obstacle += weight * step.obstacle;
     works_.support += weight * step.support;
     works_.load += weight * step.load;
     works_.damping += weight * step.damping;

@@ -7,11 +7,11 @@ namespace ricochet {
 
 /// Cumulative works since the start.
 struct Works {
-  double load = 0.0;     ///< of the time-dependent loads
-  double contact = 0.0;  ///< of normal reactions
-  double friction = 0.0;
+  double load = 0.0;      ///< of the time-dependent loads
+  double contact = 0.0;   ///< of normal reactions on the change of the gaps
+  double friction = 0.0;  ///< of tangential reactions on the slip relative to the obstacle
   double support = 0.0;
-  double obstacle = 0.0;  ///< done by moving obstacles
+  double obstacle = 0.0;  ///< of all reactions on the motion of the obstacles: what these put into the body
   double damping = 0.0;
   double numerical_dissipation = 0.0;  ///< taken away by the scheme, positive when energy is lost
 
@@ -46,9 +46,9 @@ class EnergyAccount {
 
  private:
   struct StepWorks {
-    double load = 0.0, contact = 0.0, support = 0.0, damping = 0.0;
+    double load = 0.0, contact = 0.0, friction = 0.0, support = 0.0, obstacle = 0.0, damping = 0.0;
   };
-  [[nodiscard]] StepWorks works_of(const StepForces& forces, const Vector& increment);
+  [[nodiscard]] StepWorks works_of(const StepForces& forces, const Vector& increment, const ObstacleMotion& obstacle);
 
   const SemidiscreteProblem& problem_;
   const Scheme& scheme_;
@@ -56,7 +56,7 @@ class EnergyAccount {
   Works works_;
   StepForces previous_;
   double initial_ = 0.0;
-  Vector displacement_, velocity_, momentum_, gap_increment_;
+  Vector displacement_, velocity_, momentum_, gap_increment_, slip_increment_;
 };
 
 }  // namespace ricochet

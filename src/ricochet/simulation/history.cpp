@@ -15,6 +15,17 @@ void add_vector_columns(std::vector<std::string>& columns, const std::string& na
   for (int k = 0; k < dimension; ++k) columns.push_back(name + axis_suffix[static_cast<std::size_t>(k)]);
 }
 
+/// The force of a contact point on the body: r_N n − t r_T.
+Vector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point) {
+  Vector force = forces.normal_reaction[point] * contact.normals.col(point);
+  const Index tangents = contact.dimension - 1;
+  if (forces.tangential_reaction.size() > 0) {
+    force -= contact.tangents[static_cast<std::size_t>(point)] *
+             forces.tangential_reaction.segment(point * tangents, tangents);
+  }
+  return force;
+}
+
 }  // namespace
 
 std::vector<std::string> HistoryRecorder::standard_columns(int dimension) {
@@ -42,11 +53,12 @@ HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const Rotat
     : problem_(problem),
       rotation_(rotation),
       probes_(std::move(probes)),
-      columns_(standard_columns(problem.dimension)) {
+      columns_(standard_columns(problem.dimension)),
+      trace_transposed_(problem.contact.trace.transpose()) {
   for (const Probe& probe : probes_) {
     add_vector_columns(columns_, probe.name + ".displacement", problem.dimension);
     add_vector_columns(columns_, probe.name + ".velocity", problem.dimension);
-    if (probe.contact_point < 0) continue;
+    if (probe.contact_node < 0) continue;
     for (const char* name : {".gap", ".pressure", ".reaction_normal"}) columns_.push_back(probe.name + name);
     add_vector_columns(columns_, probe.name + ".reaction_tangential", problem.dimension);
   }
@@ -69,7 +81,7 @@ void HistoryRecorder::add_force_and_momentum(const State& state, const Vector& m
   const int d = problem_.dimension;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (Index i = 0; i < problem_.contact.size(); ++i) {
-    force.head(d) += state.forces.normal_reaction[i] * problem_.contact.normals.col(i);
+    force.head(d) += contact_force(problem_.contact, state.forces, i);
   }
   add_vector(force.head(d));
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();
@@ -88,29 +100,42 @@ void HistoryRecorder::add_force_and_momentum(const State& state, const Vector& m
 
 void HistoryRecorder::add_contact_state(const State& state) {
   row_.push_back(rotation_.largest(state.displacement));
-  problem_.gaps(state.displacement, gap_);
+  problem_.node_gaps(state.displacement, state.time, gap_);
   pressure_.noalias() = problem_.contact.pressure_recovery * state.forces.normal_reaction;
-  double active = 0.0;
-  double penetration = 0.0;
-  for (Index i = 0; i < gap_.size(); ++i) {
-    active += state.forces.normal_reaction[i] > 0.0 ? 1.0 : 0.0;
-    penetration = std::max(penetration, -gap_[i]);
-  }
   // Points without friction neither stick nor slip.
-  for (const double value : {active, 0.0, 0.0, penetration, static_cast<double>(state.iterations)})
+  double active = 0.0;
+  double sticking = 0.0;
+  double slipping = 0.0;
+  for (const ContactStatus status : state.contact_status) {
+    active += status != ContactStatus::open ? 1.0 : 0.0;
+    sticking += status == ContactStatus::stick ? 1.0 : 0.0;
+    slipping += status == ContactStatus::slip ? 1.0 : 0.0;
+  }
+  const double penetration = gap_.size() > 0 ? std::max(0.0, -gap_.minCoeff()) : 0.0;
+  for (const double value : {active, sticking, slipping, penetration, static_cast<double>(state.iterations)})
     row_.push_back(value);
 }
 
 void HistoryRecorder::add_probe(const State& state, const Probe& probe) {
   const int d = problem_.dimension;
+  const ContactBoundary& contact = problem_.contact;
   add_vector(state.displacement.segment(probe.node * d, d));
   add_vector(state.velocity.segment(probe.node * d, d));
-  if (probe.contact_point < 0) return;
-  for (const double value :
-       {gap_[probe.contact_point], pressure_[probe.contact_point], state.forces.normal_reaction[probe.contact_point]}) {
+  if (probe.contact_node < 0) return;
+  // The force on the node, from all points of this obstacle whose trace reaches it.
+  const int pair = contact.node_pair[static_cast<std::size_t>(probe.contact_node)];
+  Vector force = Vector::Zero(d);
+  for (SparseRowMatrix::InnerIterator entry(trace_transposed_, probe.node); entry; ++entry) {
+    if (problem_.obstacle_of_point(entry.col()) != problem_.obstacles[static_cast<std::size_t>(pair)]) continue;
+    force += entry.value() * contact_force(contact, state.forces, entry.col());
+  }
+  const Vector normal = contact.node_normals.col(probe.contact_node);
+  const double normal_force = normal.dot(force);
+  for (const double value : {gap_[probe.contact_node], pressure_[probe.contact_node], normal_force}) {
     row_.push_back(value);
   }
-  row_.insert(row_.end(), static_cast<std::size_t>(d), 0.0);  // no friction
+  force -= normal_force * normal;
+  add_vector(force);
 }
 
 void HistoryDigest::add(const std::vector<double>& row) {

@@ -13,8 +13,8 @@ namespace ricochet {
 struct Probe {
   std::string name;
   Index node = 0;
-  double distance = 0.0;     ///< from the point asked for
-  Index contact_point = -1;  ///< its (first) contact point, or −1
+  double distance = 0.0;    ///< from the point asked for
+  Index contact_node = -1;  ///< its (first) entry among the nodes of the contact boundary, or −1
 };
 
 class HistoryRecorder {
@@ -43,6 +43,7 @@ class HistoryRecorder {
   std::vector<std::string> columns_;
   std::vector<double> row_;
   Vector gap_, pressure_;
+  SparseRowMatrix trace_transposed_;  ///< nodes × points
 };
 
 /// What a column did over a run.

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
-#include "ricochet/solver/active_set.hpp"
+#include "ricochet/solver/condensed_contact.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 namespace ricochet {
@@ -25,11 +24,7 @@ SparseMatrix combine(const SemidiscreteProblem& problem, const OperatorCoefficie
   return result;
 }
 
-/// Everything that is constant for the stages of one operator.
-///
-/// With A = 2⁻ᵏ Pᵀ L Lᵀ P and the contact dofs last, y = L⁻¹P 2ᵏ b has the trailing part y_c, on which the free contact
-/// displacement is L_c⁻ᵀ y_c. A reaction r adds L_c⁻¹ Gᵀ 2ᵏ r to y_c. So with Y = L_c⁻¹ Gᵀ and W = YᵀY the contact
-/// problem is 0 ≤ ρ ⟂ q/s + Yᵀy_c + W ρ ≥ 0 for ρ = 2ᵏ r, and one back solve of y + Yρ gives δ.
+/// Everything that is constant for the stages of one operator: forward solve, condensed contact, back solve.
 class DirectStage {
  public:
   DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients);
@@ -40,8 +35,6 @@ class DirectStage {
  private:
   void number_dofs(const OperatorCoefficients& coefficients);
   SparseCholesky factorize(const OperatorCoefficients& coefficients);
-  void condense();
-  void solve_contact(const Stage& stage, StageSolution& solution);
   void recover_support_reaction(const Stage& stage, StageSolution& solution);
 
   const SemidiscreteProblem& problem_;
@@ -52,19 +45,16 @@ class DirectStage {
   SparseMatrix free_supported_;        ///< A_fs: acts on prescribed increments
   SparseMatrix supported_supported_;   ///< A_ss
   std::unique_ptr<SparseCholesky> factor_;
-  SparseRowMatrix gap_supported_;  ///< G on supported dofs: points × supports
-  Matrix contact_columns_;         ///< Y, contact dofs × points
-  Matrix contact_operator_;        ///< W, points × points
-  ActiveSetSolver active_set_;
-  ComplementaritySolution contact_;
-  Vector free_right_, factor_vector_, free_increment_, offset_, offset_rounding_, supported_force_, contact_force_;
+  std::unique_ptr<CondensedContact> contact_;
+  Vector free_right_, factor_vector_, free_increment_, supported_force_, contact_force_;
 };
 
 DirectStage::DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients)
     : problem_(problem) {
   number_dofs(coefficients);
   factor_ = std::make_unique<SparseCholesky>(factorize(coefficients));
-  condense();
+  contact_ =
+      std::make_unique<CondensedContact>(problem, contact_position_, factor_->trailing_factor(), factor_->scale());
 }
 
 void DirectStage::number_dofs(const OperatorCoefficients& coefficients) {
@@ -121,57 +111,6 @@ SparseCholesky DirectStage::factorize(const OperatorCoefficients& coefficients) 
   return factor;
 }
 
-void DirectStage::condense() {
-  const Matrix trailing = factor_->trailing_factor();
-  contact_columns_.setZero(static_cast<Index>(contact_dofs_.size()), problem_.contact.size());
-  std::vector<Eigen::Triplet<double>> supported;
-  const std::vector<Index>& supported_dofs = problem_.supports.dofs();
-  for (Index point = 0; point < problem_.contact.size(); ++point) {
-    for (SparseRowMatrix::InnerIterator entry(problem_.contact.gap_operator, point); entry; ++entry) {
-      const int at = contact_position_[static_cast<std::size_t>(entry.col())];
-      if (at >= 0) contact_columns_(at, point) = entry.value();
-      const auto held = std::lower_bound(supported_dofs.begin(), supported_dofs.end(), static_cast<Index>(entry.col()));
-      if (held != supported_dofs.end() && *held == entry.col()) {
-        supported.emplace_back(static_cast<int>(point), static_cast<int>(held - supported_dofs.begin()), entry.value());
-      }
-    }
-  }
-  gap_supported_.resize(problem_.contact.size(), problem_.supports.size());
-  gap_supported_.setFromTriplets(supported.begin(), supported.end());
-  contact_operator_.setZero(problem_.contact.size(), problem_.contact.size());
-  if (contact_columns_.size() == 0) return;  // no contact, or none of its dofs in this stage
-  trailing.triangularView<Eigen::Lower>().solveInPlace(contact_columns_);
-  contact_operator_.selfadjointView<Eigen::Lower>().rankUpdate(contact_columns_.transpose());
-  contact_operator_.triangularView<Eigen::StrictlyUpper>() = contact_operator_.transpose();
-}
-
-void DirectStage::solve_contact(const Stage& stage, StageSolution& solution) {
-  const Index points = problem_.contact.size();
-  solution.normal_reaction.setZero(points);
-  solution.iterations = 0;
-  if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
-  if (stage.compliance.size() > 0)
-    throw Error(ErrorKind::invalid_input, "contact compliance is not available in this version");
-  offset_.noalias() = contact_columns_.transpose() * factor_vector_.tail(contact_columns_.rows());
-  offset_ += stage.gap_offset / stage.gap_factor;
-  if (gap_supported_.nonZeros() > 0) offset_.noalias() += gap_supported_ * stage.prescribed;
-  offset_rounding_ = stage.gap_offset_rounding / stage.gap_factor;
-  active_set_.solve({&contact_operator_, &offset_, &offset_rounding_, &stage.eligible}, contact_);
-  solution.iterations = contact_.iterations;
-  if (!contact_.solved) {
-    throw Error(ErrorKind::not_converged,
-                fmt::format("the contact problem of {} points was not solved in {} iterations: {}", points,
-                            contact_.iterations, contact_.reason));
-  }
-  bool any = false;
-  for (Index i = 0; i < points; ++i) {
-    if (contact_.reaction[i] == 0.0) continue;
-    factor_vector_.tail(contact_columns_.rows()) += contact_.reaction[i] * contact_columns_.col(i);
-    any = true;
-  }
-  if (any) solution.normal_reaction = contact_.reaction / factor_->scale();
-}
-
 void DirectStage::recover_support_reaction(const Stage& stage, StageSolution& solution) {
   const std::vector<Index>& dofs = problem_.supports.dofs();
   solution.support_reaction.resize(problem_.supports.size());
@@ -193,7 +132,7 @@ void DirectStage::solve(const Stage& stage, StageSolution& solution) {
   if (problem_.supports.size() > 0 && !stage.prescribed.isZero(0.0))
     free_right_.noalias() -= free_supported_ * stage.prescribed;
   factor_->forward(free_right_, factor_vector_);
-  solve_contact(stage, solution);
+  contact_->solve(stage, factor_vector_.tail(static_cast<Index>(contact_dofs_.size())), solution);
   factor_->backward(factor_vector_, free_increment_);
   solution.increment.setZero(problem_.dof_count());
   for (Index i = 0; i < free_increment_.size(); ++i)

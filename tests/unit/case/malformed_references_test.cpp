@@ -20,9 +20,27 @@ TEST(MalformedCase, References) {
        "18:12: there is no [obstacle.ceiling]; the obstacles are \"floor\""},
       {0,
        "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
-       "\"floor\"\nfriction = 0.3",
-       "19:12: \"friction\" is 0.3, but this version is frictionless (Coulomb friction is not available yet): set it "
-       "to 0"},
+       "\"floor\"\nfriction_bound = -1",
+       "19:18: \"friction_bound\" must be a number of at least 0 (unit: stress); found the integer -1"},
+      {0,
+       "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
+       "\"floor\"\nfriction = \"0.3\"",
+       "19:12: \"friction\" must be a number of at least 0; found the text \"0.3\""},
+      {0,
+       "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
+       "\"floor\"\nfrictoin = 0.3",
+       "19:1: unknown key \"frictoin\" in [[contact]]; did you mean \"friction\"?"},
+      {0,
+       "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
+       "\"floor\"\nunstable_multipliers = true",
+       "19:24: \"unstable_multipliers\" must be \"refuse\" or \"allow\"; found the boolean true"},
+      {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\nvelocity = 1.0",
+       "16:12: \"velocity\" must be a vector of 2 or 3 numbers (unit: length/time); found the number 1.0"},
+      {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\nvelocity = [1.0, 0, 0]",
+       "16:12: \"velocity\" of [obstacle.floor] has 3 entries, but \"point\" of [obstacle.floor] at 14:9 has 2: all "
+       "vectors must have as many as the mesh has dimensions"},
+      {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\nrotation_rate = [1.0]",
+       "16:17: \"rotation_rate\" must be a number (unit: angle/time); found a list of 1 value"},
       {0,
        "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
        "\"floor\"\nfriction = -0.3",
@@ -30,7 +48,7 @@ TEST(MalformedCase, References) {
       {0,
        "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
        "\"floor\"\nmultipliers = \"mortar\"",
-       "19:15: \"multipliers\" must be \"nodal\"; found the text \"mortar\""},
+       "19:15: \"multipliers\" must be one of \"nodal\", \"p0\", \"p1\" or \"dual\"; found the text \"mortar\""},
       {0,
        "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
        "\"floor\"\n[[contact]]\ngroup = \"low\"\nobstacle = \"floor\"",

@@ -79,8 +79,7 @@ TEST(Overrides, SayWhatIsWrongWithThem) {
       {"time.step=", "\"step\" must be a positive number (unit: time); found the text \"\""},
       {"time.step=nan", "\"step\" must be a positive number (unit: time); found the number nan, which is not finite"},
       {"time.step=1\nfoo=2", "\"step\" must be a positive number (unit: time); found the text \"1\nfoo=2\""},
-      {"contact.0.friction=0.3",
-       "\"friction\" is 0.3, but this version is frictionless (Coulomb friction is not available yet): set it to 0"},
+      {"contact.0.friction=-0.3", "\"friction\" must be a number of at least 0; found the number -0.3"},
       {"obstacle.wall.type=plane",
        "[obstacle.wall] has no \"point\": a vector of 2 or 3 numbers (unit: length). A point of "
        "the plane.\n--set obstacle.wall.type=plane: [obstacle.wall] has no \"normal\": a vector "

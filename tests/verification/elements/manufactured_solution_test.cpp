@@ -103,7 +103,7 @@ SemidiscreteProblem make_problem(const MeshedBody& test, const Wave& wave, bool 
     }
   }
   problem.supports.finish();
-  problem.contact = make_contact_boundary(test.body, {}, [](Index, const Vector&) { return true; });
+  problem.contact = make_contact_boundary(test.body, {}, [](Index, int) { return true; });
   finish_problem(problem, false);
   return problem;
 }

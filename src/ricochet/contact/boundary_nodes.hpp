@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "ricochet/contact/contact_boundary.hpp"
+
+/// @file The nodes of all contact pairs and the conditions they must meet.
+namespace ricochet {
+
+/// Each node once per obstacle.
+class BoundaryNodes {
+ public:
+  /// Throws Error(invalid_input) when pairs that share a node and an obstacle differ in multipliers or, where a
+  /// multiplier stands for both, in friction; and when obstacles that share a node have dependent normals there.
+  BoundaryNodes(const Body& body, const std::vector<ContactPair>& pairs, const FreeComponent& is_free);
+
+  /// Whether supports hold the node along the obstacle's normal.
+  [[nodiscard]] bool is_held(Index node, const Obstacle* obstacle) const;
+  [[nodiscard]] Index held_count() const { return held_count_; }
+  /// The first pair of this obstacle that names the node.
+  [[nodiscard]] int first_pair(Index node, const Obstacle* obstacle) const;
+
+ private:
+  struct Entry {
+    int first_pair = 0;
+    bool held = false;
+  };
+  using Key = std::pair<Index, const Obstacle*>;
+
+  void check_independence(const Body& body, const std::vector<ContactPair>& pairs) const;
+
+  std::map<Key, Entry> nodes_;
+  Index held_count_ = 0;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,62 @@
+#include "ricochet/contact/contact_directions.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet {
+
+namespace {
+
+/// d × (d−1) orthonormal directions that complete the normal; in 2D (1, 0) for the normal (0, 1).
+Points tangents_of(const Vector& normal) {
+  Points result(normal.size(), normal.size() - 1);
+  if (normal.size() == 2) {
+    result << normal[1], -normal[0];
+    return result;
+  }
+  // The axis least aligned with the normal gives a well-conditioned first tangent.
+  Index axis = 0;
+  normal.cwiseAbs().minCoeff(&axis);
+  const Eigen::Vector3d n = normal;
+  const Eigen::Vector3d first = Eigen::Vector3d::Unit(axis).cross(n).normalized();
+  result.col(0) = first;
+  result.col(1) = n.cross(first);
+  return result;
+}
+
+}  // namespace
+
+bool has_free_part(Index node, const Vector& normal, const FreeComponent& is_free) {
+  double free_part = 0.0;
+  for (int k = 0; k < normal.size(); ++k) {
+    if (is_free(node, k)) free_part = std::max(free_part, std::abs(normal[k]));
+  }
+  // A unit vector: the bound has no unit. Below it the remaining part of the normal is rounding.
+  return free_part > 1e-10;
+}
+
+ContactTangents tangents_at(Index node, const Vector& normal, const FreeComponent& is_free) {
+  ContactTangents result{tangents_of(normal), {false, false}};
+  int held = 0;
+  int axis = 0;
+  for (int k = 0; k < normal.size(); ++k) {
+    if (is_free(node, k)) continue;
+    ++held;
+    axis = k;
+  }
+  if (held == 0) {
+    result.slips = {true, true};
+  } else if (held == 1 && normal.size() == 3) {
+    const Eigen::Vector3d n = normal;
+    const Eigen::Vector3d slip = n.cross(Eigen::Vector3d::Unit(axis));
+    // A normal along the held axis belongs to a held node, which is no contact point.
+    if (slip.norm() == 0.0) return result;
+    result.directions.col(0) = slip.normalized();
+    result.directions.col(1) = n.cross(Eigen::Vector3d(result.directions.col(0)));
+    result.slips[0] = true;
+  }
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,115 @@
+#include "ricochet/contact/multiplier_space.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+namespace {
+
+struct Registration {
+  std::string name;
+  std::function<std::unique_ptr<MultiplierSpace>(const ContactPatch&)> make;
+};
+
+const std::vector<Registration>& registrations() {
+  static const std::vector<Registration> all{
+      {"nodal", make_nodal_multipliers},
+      {"p0", make_p0_multipliers},
+      {"p1", make_p1_multipliers},
+      {"dual", make_dual_multipliers},
+  };
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> multiplier_space_names() {
+  std::vector<std::string> names;
+  for (const Registration& entry : registrations()) names.push_back(entry.name);
+  return names;
+}
+
+std::unique_ptr<MultiplierSpace> make_multiplier_space(const std::string& name, const ContactPatch& patch) {
+  for (const Registration& entry : registrations()) {
+    if (entry.name == name) return entry.make(patch);
+  }
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("unknown multipliers \"{}\"; known: {}", name, join_names(multiplier_space_names())));
+}
+
+std::string instability(const std::string& multipliers, CellShape facet, int displacement_degree) {
+  if (multipliers != "p0") return {};
+  if (displacement_degree == 1) {
+    return "multipliers \"p0\" are not inf-sup stable with displacements of degree 1: pressures that alternate from "
+           "facet "
+           "to facet do next to no work on them; use degree 2, or \"p1\", \"dual\" or \"nodal\"";
+  }
+  if (facet == CellShape::triangle) {
+    return "multipliers \"p0\" are not inf-sup stable on triangular facets of degree 2, which have no node inside: "
+           "pressures that alternate from triangle to triangle do next to no work; use \"p1\", \"dual\" or \"nodal\"";
+  }
+  return {};
+}
+
+bool is_stable(const std::string& multipliers, CellShape facet, int displacement_degree) {
+  return instability(multipliers, facet, displacement_degree).empty();
+}
+
+bool only_presses_supports(const Multiplier& multiplier, const ContactPatch& patch) {
+  if (!patch.is_held) return false;
+  if (multiplier.node >= 0) return patch.is_held(multiplier.node);
+  return std::all_of(multiplier.trace.begin(), multiplier.trace.end(),
+                     [&](const auto& entry) { return patch.is_held(entry.first); });
+}
+
+std::vector<Multiplier> integrate_multipliers(const MultiplierSpace& space, MultiplierAnchor anchored) {
+  const bool at_facets = anchored == MultiplierAnchor::facet;
+  struct Sums {
+    Multiplier multiplier;
+    std::map<Index, double> integrals;  // ∫ψ_i φ_j
+  };
+  std::map<Index, Sums> by_anchor;
+  const FacetIntegration integration(*space.patch().body);
+  FacetQuadrature quadrature;
+  FacetMultipliers functions;
+  for (const ContactPatch::Part& part : space.patch().parts) {
+    for (const Index facet : part.facets) {
+      integration.evaluate(facet, quadrature);
+      space.evaluate(quadrature, functions);
+      const Matrix weighted = functions.values * quadrature.measure.asDiagonal();
+      const Matrix products = weighted * quadrature.displacement->transpose();
+      for (std::size_t k = 0; k < functions.anchors.size(); ++k) {
+        const Index anchor = functions.anchors[k];
+        const auto [entry, added] = by_anchor.try_emplace(anchor);
+        Sums& sums = entry->second;
+        if (added) sums.multiplier = {part.pair, at_facets ? -1 : anchor, at_facets ? anchor : -1, 0.0, {}};
+        sums.multiplier.weight += weighted.row(static_cast<Index>(k)).sum();
+        for (Index j = 0; j < quadrature.node_count(); ++j) {
+          sums.integrals[quadrature.nodes[j]] += products(static_cast<Index>(k), j);
+        }
+      }
+    }
+  }
+  std::vector<Multiplier> result;
+  for (auto& [anchor, sums] : by_anchor) {
+    double largest = 0.0;
+    for (const auto& [node, value] : sums.integrals) largest = std::max(largest, std::abs(value));
+    for (const auto& [node, value] : sums.integrals) {
+      const bool vanishes = std::abs(value) <= 64.0 * std::numeric_limits<double>::epsilon() * largest;
+      sums.multiplier.trace.emplace_back(node, vanishes ? 0.0 : value / sums.multiplier.weight);
+    }
+    result.push_back(std::move(sums.multiplier));
+  }
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/fem/facet_integration.hpp"
+
+/// @file Spaces of contact and friction multipliers on the contact boundary (Λ_N^h, Λ_T^h of the source's section 2).
+/// To add one: a file with a class, and one line in multiplier_space.cpp's registrations.
+namespace ricochet {
+
+/// What a space is built on: the facets of all contact pairs that share an obstacle and name the same space.
+struct ContactPatch {
+  struct Part {
+    int pair = 0;               ///< number of the ContactPair
+    std::vector<Index> facets;  ///< numbered through all blocks
+  };
+  const Body* body = nullptr;
+  std::vector<Part> parts;                       ///< pairs ascending
+  std::function<bool(Index node)> is_held = {};  ///< whether supports hold the node along the normal; empty: none is
+};
+
+enum class MultiplierAnchor { node, facet };
+
+/// One multiplier ψ_i of a space, anchored at a node or at a facet.
+struct Multiplier {
+  int pair = 0;                                 ///< the first pair whose facets it lives on
+  Index node = -1;                              ///< its anchor, or −1
+  Index facet = -1;                             ///< its anchor, or −1
+  double weight = 0.0;                          ///< D_i = ∫ψ_i
+  std::vector<std::pair<Index, double>> trace;  ///< (node j, c_ij = (1/D_i) ∫ψ_i φ_j)
+};
+
+/// The functions ψ_i on one facet.
+struct FacetMultipliers {
+  std::vector<Index> anchors;  ///< nodes, or the facet itself, as in Multiplier
+  Matrix values;               ///< anchors × quadrature points
+};
+
+class MultiplierSpace {
+ public:
+  explicit MultiplierSpace(const ContactPatch& patch) : patch_(&patch) {}
+  virtual ~MultiplierSpace() = default;
+  MultiplierSpace(const MultiplierSpace&) = delete;
+  MultiplierSpace& operator=(const MultiplierSpace&) = delete;
+
+  /// All multipliers of the patch, by ascending anchor. Those that could only press against supports may be left out.
+  [[nodiscard]] virtual std::vector<Multiplier> multipliers() const = 0;
+  /// Pressure at nodes from reactions: entries (node, number of the multiplier in `kept`, value) of the matrix P in
+  /// p = P r. `kept` are those of multipliers() that are in use: others are zero.
+  [[nodiscard]] virtual std::vector<Eigen::Triplet<double>> pressure_recovery(
+      const std::vector<Multiplier>& kept) const = 0;
+  /// False for nodal forces: they are conditions at nodes, not functions. `evaluate` then gives a basis of their L²
+  /// representatives.
+  [[nodiscard]] virtual bool has_functions() const { return true; }
+  /// ψ_i at the quadrature points of a facet of the patch.
+  virtual void evaluate(const FacetQuadrature& facet, FacetMultipliers& result) const = 0;
+
+  [[nodiscard]] const ContactPatch& patch() const { return *patch_; }
+  [[nodiscard]] bool is_held(Index node) const { return patch_->is_held && patch_->is_held(node); }
+
+ private:
+  const ContactPatch* patch_;
+};
+
+/// By the name used in a case file; throws Error(invalid_input) that lists the names. The patch must outlive the space.
+[[nodiscard]] std::unique_ptr<MultiplierSpace> make_multiplier_space(const std::string& name,
+                                                                     const ContactPatch& patch);
+[[nodiscard]] std::vector<std::string> multiplier_space_names();
+
+/// Whether a space is uniformly inf–sup stable with displacements of a degree on facets of a shape, as the numerical
+/// test of inf_sup.hpp finds it on families of meshes (docs/multipliers.md). Without stability, pressures that
+/// oscillate from facet to facet are not controlled, and there may be too many conditions for the displacements there
+/// are.
+[[nodiscard]] bool is_stable(const std::string& multipliers, CellShape facet, int displacement_degree);
+/// Why not, and what to use instead, as a sentence without its full stop; empty for a stable one.
+[[nodiscard]] std::string instability(const std::string& multipliers, CellShape facet, int displacement_degree);
+
+/// Whether supports hold a multiplier's node or, of one that is anchored at a facet, all nodes: then it is left out.
+[[nodiscard]] bool only_presses_supports(const Multiplier& multiplier, const ContactPatch& patch);
+
+/// D_i and c_ij of a space from integrals of its functions over the patch; c_ij that vanish to rounding are exact
+/// zeros.
+[[nodiscard]] std::vector<Multiplier> integrate_multipliers(const MultiplierSpace& space, MultiplierAnchor anchor);
+
+/// One constructor per file.
+[[nodiscard]] std::unique_ptr<MultiplierSpace> make_nodal_multipliers(const ContactPatch& patch);
+[[nodiscard]] std::unique_ptr<MultiplierSpace> make_p0_multipliers(const ContactPatch& patch);
+[[nodiscard]] std::unique_ptr<MultiplierSpace> make_p1_multipliers(const ContactPatch& patch);
+[[nodiscard]] std::unique_ptr<MultiplierSpace> make_dual_multipliers(const ContactPatch& patch);
+
+}  // namespace ricochet

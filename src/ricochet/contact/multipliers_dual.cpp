@@ -1,0 +1,128 @@
+#include <Eigen/Cholesky>
+#include <map>
+
+#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Biorthogonal multipliers, one per node. Facet by facet, with a basis φ̃ = T φ of the displacement's trace,
+///   ψ = D_e M_e⁻¹ φ̃,   M_e = ∫_e φ̃ φ̃ᵀ,   D_e = diag ∫_e φ̃,   so that ∫_e ψ_i φ̃_j = δ_ij ∫_e φ̃_i,
+/// with the area of the curved facet. Since Σφ̃ = 1, M_e 1 = D_e 1 and Σψ = 1: a uniform pressure is in the space. D_i =
+/// ∫φ̃_i, and the trace c is the inverse change of basis: for φ̃ = φ the identity.
+///
+/// On triangular facets of degree 2 ∫φ_v = 0 at vertices, so the basis is changed (Popp, Wohlmuth, Gee and Wall, Dual
+/// quadratic mortar finite element methods for 3D finite deformation contact, SIAM J. Sci. Comput. 34, 2012,
+/// B421–B446):
+///   φ̃_v = φ_v + α Σ_e φ_e over the edges e at v,   φ̃_e = (1 − 2α) φ_e,   α = 1/5,
+/// on every edge of a triangular facet, where another shape shares it, too. The coefficients of a trace with nodal
+/// values g are then g̃_v = g_v and g̃_e = (g_e − α (g_v1 + g_v2))/(1 − 2α).
+class DualMultipliers final : public MultiplierSpace {
+ public:
+  explicit DualMultipliers(const ContactPatch& patch) : MultiplierSpace(patch), integration_(*patch.body) {
+    if (patch.body->space->degree == 1) return;
+    FacetQuadrature quadrature;
+    for (const ContactPatch::Part& part : patch.parts) {
+      for (const Index facet : part.facets) {
+        integration_.evaluate(facet, quadrature);
+        if (quadrature.shape != CellShape::triangle) continue;
+        const auto& vertices_of = node_vertices(quadrature.shape, 2);
+        for (std::size_t k = 0; k < vertices_of.size(); ++k) {
+          if (vertices_of[k].size() != 2) continue;
+          transformed_[quadrature.nodes[k]] = {quadrature.nodes[vertices_of[k][0]],
+                                               quadrature.nodes[vertices_of[k][1]]};
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<Multiplier> multipliers() const override {
+    std::map<Index, Multiplier> by_node;
+    FacetQuadrature quadrature;
+    for (const ContactPatch::Part& part : patch().parts) {
+      for (const Index facet : part.facets) {
+        integration_.evaluate(facet, quadrature);
+        const Vector weights = basis_change(quadrature) * (*quadrature.displacement * quadrature.measure);
+        for (Index k = 0; k < weights.size(); ++k) {
+          const Index node = quadrature.nodes[k];
+          const auto [entry, added] = by_node.try_emplace(node);
+          if (added) entry->second = {part.pair, node, -1, 0.0, trace_of(node)};
+          entry->second.weight += weights[k];
+        }
+      }
+    }
+    std::vector<Multiplier> result;
+    for (const auto& [node, multiplier] : by_node) result.push_back(multiplier);
+    return result;
+  }
+
+  /// The continuous field Σ λ_i φ̃_i at the nodes; where supports have removed a vertex, the mean of what is left.
+  [[nodiscard]] std::vector<Eigen::Triplet<double>> pressure_recovery(
+      const std::vector<Multiplier>& kept) const override {
+    std::map<Index, int> number;
+    for (std::size_t i = 0; i < kept.size(); ++i) number[kept[i].node] = static_cast<int>(i);
+    std::vector<Eigen::Triplet<double>> result;
+    for (const Multiplier& multiplier : kept) {
+      std::vector<std::pair<Index, double>> shares{{multiplier.node, 1.0}};
+      const auto middle = transformed_.find(multiplier.node);
+      if (middle != transformed_.end()) {
+        shares.front().second = 1.0 - 2.0 * alpha;
+        for (const Index vertex : middle->second) shares.emplace_back(vertex, alpha);
+      }
+      std::erase_if(shares, [&](const auto& share) { return !number.contains(share.first); });  // held by supports
+      double sum = 0.0;
+      for (const auto& [anchor, share] : shares) sum += share;
+      for (const auto& [anchor, share] : shares) {
+        const int at = number.at(anchor);
+        result.emplace_back(static_cast<int>(multiplier.node), at,
+                            share / (sum * kept[static_cast<std::size_t>(at)].weight));
+      }
+    }
+    return result;
+  }
+
+  void evaluate(const FacetQuadrature& facet, FacetMultipliers& result) const override {
+    const Matrix basis = basis_change(facet) * *facet.displacement;
+    const Vector weights = basis * facet.measure;
+    const Matrix mass = basis * facet.measure.asDiagonal() * basis.transpose();
+    result.anchors.assign(facet.nodes, facet.nodes + facet.node_count());
+    result.values = weights.asDiagonal() * mass.llt().solve(basis);
+  }
+
+ private:
+  static constexpr double alpha = 0.2;
+
+  /// T on a facet.
+  [[nodiscard]] Matrix basis_change(const FacetQuadrature& facet) const {
+    Matrix result = Matrix::Identity(facet.node_count(), facet.node_count());
+    if (transformed_.empty()) return result;
+    const auto& vertices_of = node_vertices(facet.shape, 2);
+    for (std::size_t k = 0; k < vertices_of.size(); ++k) {
+      if (vertices_of[k].size() != 2 || !transformed_.contains(facet.nodes[k])) continue;
+      const auto column = static_cast<Index>(k);
+      result(column, column) = 1.0 - 2.0 * alpha;
+      for (const int v : vertices_of[k]) result(v, column) = alpha;
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::vector<std::pair<Index, double>> trace_of(Index node) const {
+    const auto middle = transformed_.find(node);
+    if (middle == transformed_.end()) return {{node, 1.0}};
+    const double scale = 1.0 / (1.0 - 2.0 * alpha);
+    return {{node, scale}, {middle->second[0], -alpha * scale}, {middle->second[1], -alpha * scale}};
+  }
+
+  FacetIntegration integration_;
+  std::map<Index, std::array<Index, 2>> transformed_;  ///< middle nodes of edges of triangles, with their vertices
+};
+
+}  // namespace
+
+std::unique_ptr<MultiplierSpace> make_dual_multipliers(const ContactPatch& patch) {
+  return std::make_unique<DualMultipliers>(patch);
+}
+
+}  // namespace ricochet

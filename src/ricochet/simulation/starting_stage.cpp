@@ -1,0 +1,34 @@
+#include "ricochet/simulation/starting_stage.hpp"
+
+#include "ricochet/scheme/contact_conditions.hpp"
+
+namespace ricochet {
+
+double largest(const Vector& values) {
+  return values.size() > 0 ? values.lpNorm<Eigen::Infinity>() : 0.0;
+}
+
+Vector residual_force(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {
+  Vector load, internal;
+  problem.loads.total(0.0, load);
+  problem.internal_force->evaluate(displacement, internal);
+  load -= internal;
+  if (problem.has_damping() && velocity.size() > 0) load -= problem.damping * velocity;
+  return load;
+}
+
+Stage contact_stage(const SemidiscreteProblem& problem, const Vector& displacement, Vector right_hand_side) {
+  Stage stage;
+  stage.right_hand_side = std::move(right_hand_side);
+  stage.prescribed.setZero(problem.supports.size());
+  require_no_penetration(problem, displacement, 0.0, stage);
+  return stage;
+}
+
+ObstacleMotion obstacle_at_start(const SemidiscreteProblem& problem, const Vector& displacement) {
+  ObstacleMotion velocity;
+  problem.obstacle_velocity(displacement, 0.0, velocity);
+  return velocity;
+}
+
+}  // namespace ricochet

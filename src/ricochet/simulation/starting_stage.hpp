@@ -1,0 +1,23 @@
+#pragma once
+
+#include "ricochet/scheme/stage.hpp"
+#include "ricochet/scheme/state.hpp"
+
+/// @file What the searches for a starting state have in common. Not part of the public interface.
+namespace ricochet {
+
+/// L(0) − K U − C V; an empty V is zero.
+[[nodiscard]] Vector residual_force(const SemidiscreteProblem& problem, const Vector& displacement,
+                                    const Vector& velocity);
+
+/// A stage in which every contact point is eligible by its gap at the given displacement.
+[[nodiscard]] Stage contact_stage(const SemidiscreteProblem& problem, const Vector& displacement,
+                                  Vector right_hand_side);
+
+/// Velocities of the obstacles at t = 0.
+[[nodiscard]] ObstacleMotion obstacle_at_start(const SemidiscreteProblem& problem, const Vector& displacement);
+
+/// The largest absolute value; 0 without entries.
+[[nodiscard]] double largest(const Vector& values);
+
+}  // namespace ricochet

@@ -1,0 +1,176 @@
+#include "ricochet/simulation/static_equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/scheme/contact_conditions.hpp"
+#include "ricochet/simulation/starting_stage.hpp"
+#include "ricochet/solver/step_solver.hpp"
+
+namespace ricochet {
+
+namespace {
+
+double lowest_local_frequency_squared(const SemidiscreteProblem& problem) {
+  const Vector stiffness = problem.internal_force->tangent().diagonal();
+  const Vector mass = problem.mass.diagonal();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < mass.size(); ++i) {
+    if (mass[i] > 0.0) lowest = std::min(lowest, stiffness[i] / mass[i]);
+  }
+  return lowest;
+}
+
+/// Tells rounding from a force that still moves the body.
+class EquilibriumTest {
+ public:
+  explicit EquilibriumTest(const SemidiscreteProblem& problem)
+      : magnitude_(problem.internal_force->tangent().cwiseAbs()), rigid_(problem.nodes, magnitude_) {
+    Vector load;
+    problem.loads.total(0.0, load);
+    load_ = largest(load);
+  }
+
+  /// True when what is left is rounding of the internal forces' terms, and small beside the loads that act.
+  [[nodiscard]] bool passed(const Vector& displacement, const Vector& left_over) const {
+    Vector deformation;
+    rigid_.remove(displacement, deformation);
+    const double terms = largest(magnitude_ * deformation.cwiseAbs()) + load_;
+    const double left = largest(left_over);
+    return left <= 1e-13 * terms && (load_ == 0.0 || left <= 1e-6 * load_);
+  }
+
+ private:
+  SparseMatrix magnitude_;  ///< |K|
+  RigidMotion rigid_;
+  double load_ = 0.0;  ///< the largest
+};
+
+/// Friction in a static equilibrium. Where a point is at rest relative to its obstacle, the slip is its displacement
+/// from the undeformed body, as if the loads had been applied in one increment. Where it slides, that displacement is
+/// added to a slide by the size of the body in the direction of the relative velocity.
+class StaticFriction {
+ public:
+  StaticFriction(const SemidiscreteProblem& problem, const Vector& velocity) : problem_(problem) {
+    if (!problem.contact.has_friction()) return;
+    Stage stage;
+    require_friction(problem, velocity, obstacle_at_start(problem, Vector::Zero(problem.dof_count())), 1.0, stage);
+    slide_.setZero(stage.slip_offset.size());
+    const Index tangents = problem.dimension - 1;
+    const double size = (problem.nodes.rowwise().maxCoeff() - problem.nodes.rowwise().minCoeff()).norm();
+    for (Index i = 0; i < problem.contact.size(); ++i) {
+      const Vector rate = stage.slip_offset.segment(i * tangents, tangents);
+      if (rate.lpNorm<1>() <= stage.slip_offset_rounding[i]) continue;
+      slide_.segment(i * tangents, tangents) = (size / rate.norm()) * rate;
+    }
+  }
+
+  void require(const Vector& displacement, Stage& stage) const {
+    if (!problem_.contact.has_friction()) return;
+    require_friction(problem_, displacement, {}, 1.0, stage);
+    stage.slip_offset += slide_;
+  }
+
+ private:
+  const SemidiscreteProblem& problem_;
+  Vector slide_;
+};
+
+/// Proximal point iterations: (εM + K) δ = L − K U + Gᵀr, then U += δ.
+class ProximalPoint {
+ public:
+  /// ε as a fraction of the least K_ii/M_ii: of the softest region, where stiffnesses differ.
+  ProximalPoint(const SemidiscreteProblem& problem, const StaticFriction& friction, double fraction)
+      : problem_(problem),
+        friction_(friction),
+        epsilon_(fraction * lowest_local_frequency_squared(problem)),
+        solver_(make_direct_step_solver(problem, {{epsilon_, 1.0, 0.0, StageDofs::all}})) {
+    problem.supports.values(0.0, supported_);
+  }
+
+  void iterate(StaticEquilibrium& at) {
+    Stage stage = contact_stage(problem_, at.displacement, residual_force(problem_, at.displacement, Vector()));
+    for (Index i = 0; i < problem_.supports.size(); ++i) {
+      stage.prescribed[i] = supported_[i] - at.displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+    }
+    friction_.require(at.displacement, stage);
+    solver_->solve(0, stage, solution_);
+    at.displacement += solution_.increment;
+    at.normal_reaction = solution_.normal_reaction;
+    left_over_ = epsilon_ * (problem_.mass * solution_.increment);
+    for (const Index dof : problem_.supports.dofs()) left_over_[dof] = 0.0;
+  }
+
+  /// The force that is not in equilibrium yet.
+  [[nodiscard]] const Vector& left_over() const { return left_over_; }
+
+ private:
+  const SemidiscreteProblem& problem_;
+  const StaticFriction& friction_;
+  double epsilon_;
+  std::unique_ptr<StepSolver> solver_;
+  StageSolution solution_;
+  Vector supported_, left_over_;
+};
+
+[[noreturn]] void refuse_static(const SemidiscreteProblem& problem, const Vector& left_over) {
+  Vector load;
+  problem.loads.total(0.0, load);
+  Vector resultant = Vector::Zero(problem.dimension);
+  for (Index node = 0; node < problem.nodes.cols(); ++node) {
+    resultant += left_over.segment(node * problem.dimension, problem.dimension);
+  }
+  const std::string force = fmt::format("({:.3g}, {:.3g}{})", resultant[0], resultant[1],
+                                        resultant.size() == 3 ? fmt::format(", {:.3g}", resultant[2]) : "");
+  if (largest(left_over) <= 1e-3 * largest(load)) {
+    throw Error(
+        ErrorKind::not_converged,
+        fmt::format("initial.displacement = \"static\": the equilibrium was not found to rounding; a force of {:.2g} "
+                    "of the largest load is left. Stiffnesses that differ by many orders of magnitude or very slender "
+                    "bodies are likely causes; give the displacement by expressions instead",
+                    largest(left_over) / largest(load)));
+  }
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: a resultant "
+                  "force of {} still moves the body{}; add a [[support]] in the direction in which it is free to move "
+                  "or turn, or give the displacement by expressions",
+                  force, problem.contact.has_friction() ? ", friction being too weak to hold it" : ""));
+}
+
+}  // namespace
+
+StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess, const Vector& velocity) {
+  StaticEquilibrium result{guess, Vector::Zero(problem.contact.size())};
+  // ε well below the lowest elastic frequency squared converges in a few iterations, wherever the body has to go.
+  // Slender or very uneven bodies have lower frequencies: ε is taken down while the iteration stalls. Friction starts
+  // with a larger one: where it is all that holds the body, a small ε leaves a condensed operator on which stick and
+  // slip of single points hardly show beside the rigid motion.
+  constexpr int rounds = 60;
+  const EquilibriumTest test(problem);
+  const StaticFriction friction(problem, velocity);
+  Vector left_over;
+  bool found = false;
+  for (const double fraction : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+    if (fraction > 1e-8 && !problem.contact.has_friction()) continue;
+    ProximalPoint point(problem, friction, fraction);
+    for (int k = 0; k < rounds && !found; ++k) {
+      point.iterate(result);
+      found = test.passed(result.displacement, point.left_over());
+    }
+    left_over = point.left_over();
+    if (found) break;
+  }
+  if (!found) refuse_static(problem, left_over);
+  // A small ε leaves rounding of the size of weight/ε in the gaps of a body that only contact holds. A large one, from
+  // where we are now, takes it away.
+  ProximalPoint near(problem, friction, 1e-2);
+  for (int polish = 0; polish < 3; ++polish) near.iterate(result);
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "ricochet/problem/semidiscrete_problem.hpp"
+
+/// @file Equilibrium with contact and friction.
+namespace ricochet {
+
+struct StaticEquilibrium {
+  Vector displacement;
+  Vector normal_reaction;  ///< r_N, per contact point
+};
+
+/// Equilibrium K U = L(0) + Gᵀ r with contact and supports, from a starting guess. Bodies that only contact holds are
+/// treated by the proximal point method: (εM + K)(U_{k+1} − U_k) = L − K U_k + Gᵀr, which converges to the equilibrium
+/// itself for any ε > 0 if there is one. With friction the equilibrium depends on how the loads came: it is the one in
+/// which friction opposes the whole displacement from the undeformed body, or, where `velocity` slides along the
+/// obstacle, that sliding. Throws Error(invalid_input) when there is none, with the force left over.
+[[nodiscard]] StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess,
+                                                   const Vector& velocity);
+
+}  // namespace ricochet

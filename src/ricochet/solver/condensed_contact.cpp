@@ -1,0 +1,147 @@
+#include "ricochet/solver/condensed_contact.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+CondensedContact::CondensedContact(const SemidiscreteProblem& problem, const std::vector<int>& position,
+                                   const Matrix& trailing_factor, double scale)
+    : problem_(problem), scale_(scale), friction_(problem.contact.has_friction()) {
+  number_rows();
+  fill_columns(position, trailing_factor);
+  coefficient_ = problem.contact.friction_coefficient;
+  bound_ = scale * problem.contact.friction_bound;
+  no_coefficient_.setZero(problem.contact.size());
+}
+
+void CondensedContact::number_rows() {
+  const ContactBoundary& contact = problem_.contact;
+  first_.assign(1, 0);
+  for (Index i = 0; i < contact.size(); ++i) {
+    const bool has_friction = contact.friction_coefficient[i] > 0.0 || contact.friction_bound[i] > 0.0;
+    first_.push_back(first_.back() + (has_friction ? problem_.dimension : 1));
+  }
+}
+
+void CondensedContact::fill_columns(const std::vector<int>& position, const Matrix& trailing_factor) {
+  const ContactBoundary& contact = problem_.contact;
+  columns_.setZero(trailing_factor.rows(), first_.back());
+  std::vector<Eigen::Triplet<double>> supported;
+  const std::vector<Index>& supported_dofs = problem_.supports.dofs();
+  const auto enter = [&](const SparseRowMatrix& matrix, Index row_of_matrix, Index row) {
+    for (SparseRowMatrix::InnerIterator entry(matrix, row_of_matrix); entry; ++entry) {
+      const int at = position[static_cast<std::size_t>(entry.col())];
+      if (at >= 0) columns_(at, row) = entry.value();
+      const auto held = std::lower_bound(supported_dofs.begin(), supported_dofs.end(), static_cast<Index>(entry.col()));
+      if (held == supported_dofs.end() || *held != entry.col()) continue;
+      supported.emplace_back(static_cast<int>(row), static_cast<int>(held - supported_dofs.begin()), entry.value());
+    }
+  };
+  for (Index i = 0; i < contact.size(); ++i) {
+    const Index row = first_[static_cast<std::size_t>(i)];
+    enter(contact.gap_operator, i, row);
+    for (Index k = 1; row + k < first_[static_cast<std::size_t>(i + 1)]; ++k) {
+      enter(contact.tangential_trace, i * (problem_.dimension - 1) + k - 1, row + k);
+    }
+  }
+  supported_.resize(first_.back(), problem_.supports.size());
+  supported_.setFromTriplets(supported.begin(), supported.end());
+  operator_.setZero(first_.back(), first_.back());
+  if (columns_.size() == 0) return;  // no contact, or none of its dofs in this stage
+  trailing_factor.triangularView<Eigen::Lower>().solveInPlace(columns_);
+  operator_.selfadjointView<Eigen::Lower>().rankUpdate(columns_.transpose());
+  operator_.triangularView<Eigen::StrictlyUpper>() = operator_.transpose();
+  hold_directions_without_trace();
+}
+
+/// Where B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
+/// makes the friction along it zero.
+void CondensedContact::hold_directions_without_trace() {
+  for (Index i = 0; i < problem_.contact.size(); ++i) {
+    const Index row = first_[static_cast<std::size_t>(i)];
+    for (Index k = row + 1; k < first_[static_cast<std::size_t>(i + 1)]; ++k) {
+      if (operator_(k, k) == 0.0) operator_(k, k) = operator_(row, row);
+    }
+  }
+}
+
+void CondensedContact::find_offsets(const Stage& stage, const Eigen::Ref<Vector>& trailing) {
+  offset_.noalias() = columns_.transpose() * trailing;
+  if (supported_.nonZeros() > 0) offset_.noalias() += supported_ * stage.prescribed;
+  offset_rounding_.resize(offset_.size());
+  const Index tangents = problem_.dimension - 1;
+  for (Index i = 0; i < problem_.contact.size(); ++i) {
+    const Index row = first_[static_cast<std::size_t>(i)];
+    const Index count = first_[static_cast<std::size_t>(i + 1)] - row - 1;
+    offset_[row] += stage.gap_offset[i] / stage.gap_factor;
+    offset_rounding_[row] = stage.gap_offset_rounding[i] / stage.gap_factor;
+    if (count == 0) continue;
+    if (stage.slip_offset.size() == 0) {
+      offset_rounding_.segment(row + 1, count).setZero();
+      continue;
+    }
+    offset_.segment(row + 1, count) += stage.slip_offset.segment(i * tangents, tangents) / stage.slip_factor;
+    offset_rounding_.segment(row + 1, count).setConstant(stage.slip_offset_rounding[i] / stage.slip_factor);
+  }
+}
+
+void CondensedContact::solve(const Stage& stage, Eigen::Ref<Vector> trailing, StageSolution& solution) {
+  const Index points = problem_.contact.size();
+  solution.normal_reaction.setZero(points);
+  if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
+  solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
+  solution.iterations = 0;
+  if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
+  if (stage.compliance.size() > 0)
+    throw Error(ErrorKind::invalid_input, "contact compliance is not available in this version");
+  find_offsets(stage, trailing);
+  friction_ ? solve_with_friction(stage, solution) : solve_frictionless(stage, solution);
+  const Vector& reaction = friction_ ? coulomb_solution_.reaction : frictionless_.reaction;
+  for (Index row = 0; row < reaction.size(); ++row) {
+    if (reaction[row] != 0.0) trailing += reaction[row] * columns_.col(row);
+  }
+}
+
+void CondensedContact::solve_frictionless(const Stage& stage, StageSolution& solution) {
+  active_set_.solve({&operator_, &offset_, &offset_rounding_, &stage.eligible}, frictionless_);
+  solution.iterations = frictionless_.iterations;
+  if (!frictionless_.solved) {
+    throw Error(ErrorKind::not_converged,
+                fmt::format("the contact problem of {} points was not solved in {} iterations: {}",
+                            problem_.contact.size(), frictionless_.iterations, frictionless_.reason));
+  }
+  solution.normal_reaction = frictionless_.reaction / scale_;
+  for (Index i = 0; i < problem_.contact.size(); ++i) {
+    if (solution.normal_reaction[i] > 0.0) solution.contact_status[static_cast<std::size_t>(i)] = ContactStatus::closed;
+  }
+}
+
+void CondensedContact::solve_with_friction(const Stage& stage, StageSolution& solution) {
+  const bool slips = stage.slip_offset.size() > 0;
+  coulomb_.solve({&operator_, &offset_, &offset_rounding_, &first_, &stage.eligible,
+                  slips ? &coefficient_ : &no_coefficient_, slips ? &bound_ : &no_coefficient_},
+                 coulomb_solution_);
+  solution.iterations = coulomb_solution_.iterations;
+  if (!coulomb_solution_.solved) {
+    throw Error(ErrorKind::not_converged,
+                fmt::format("the contact problem with friction of {} points was not solved in {} iterations (relative "
+                            "residual {:.3g}): {}",
+                            problem_.contact.size(), coulomb_solution_.iterations, coulomb_solution_.residual,
+                            coulomb_solution_.reason));
+  }
+  solution.contact_status = coulomb_solution_.status;
+  const Index tangents = problem_.dimension - 1;
+  for (Index i = 0; i < problem_.contact.size(); ++i) {
+    const Index row = first_[static_cast<std::size_t>(i)];
+    solution.normal_reaction[i] = coulomb_solution_.reaction[row] / scale_;
+    for (Index k = 1; row + k < first_[static_cast<std::size_t>(i + 1)]; ++k) {
+      solution.tangential_reaction[i * tangents + k - 1] = -coulomb_solution_.reaction[row + k] / scale_;
+    }
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,149 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "ricochet/solver/coulomb_solver.hpp"
+
+/// @file Contact problems with friction for tests, and a judge of solutions that shares no code with the solver.
+namespace ricochet::test {
+
+inline double uniform(std::mt19937& random) {
+  return static_cast<double>(random()) / 2147483648.0 - 1.0;
+}
+
+inline Vector uniform(Index size, std::mt19937& random) {
+  Vector result(size);
+  for (double& value : result) value = uniform(random);
+  return result;
+}
+
+/// A problem with its data in one place.
+struct FrictionProblem {
+  Matrix w;
+  Vector q, rounding, coefficient, bound;
+  std::vector<Index> first{0};
+  std::vector<char> eligible;
+
+  /// Points of these sizes; W and q are for the caller to fill.
+  FrictionProblem(const std::vector<Index>& sizes, double friction) {
+    for (const Index size : sizes) first.push_back(first.back() + size);
+    q.setZero(first.back());
+    rounding.setZero(first.back());
+    w.setIdentity(first.back(), first.back());
+    coefficient.setConstant(points(), friction);
+    bound.setZero(points());
+    eligible.assign(sizes.size(), 1);
+  }
+  [[nodiscard]] Index points() const { return static_cast<Index>(first.size()) - 1; }
+  [[nodiscard]] CoulombProblem view() const { return {&w, &q, &rounding, &first, &eligible, &coefficient, &bound}; }
+};
+
+/// V diag(10^(−digits·k)) Vᵀ with k from 0 to 1 and random V.
+inline Matrix random_operator(Index size, double digits, std::mt19937& random) {
+  Matrix square(size, size);
+  for (Index j = 0; j < size; ++j) square.col(j) = uniform(size, random);
+  const Matrix basis = Eigen::HouseholderQR<Matrix>(square).householderQ();
+  Vector values(size);
+  for (Index i = 0; i < size; ++i)
+    values[i] = std::pow(10.0, -digits * static_cast<double>(i) / static_cast<double>(std::max<Index>(size - 1, 1)));
+  Matrix w = basis * values.asDiagonal() * basis.transpose();
+  w.triangularView<Eigen::StrictlyUpper>() = w.transpose();
+  return w;
+}
+
+/// Points of one row and of `dimension` rows, mixed.
+inline FrictionProblem random_problem(Index points, Index dimension, double friction, unsigned seed,
+                                      double digits = 1.0) {
+  std::mt19937 random(seed);
+  std::vector<Index> sizes;
+  for (Index i = 0; i < points; ++i) sizes.push_back(random() % 5 == 0 ? 1 : dimension);
+  FrictionProblem problem(sizes, friction);
+  problem.w = random_operator(problem.first.back(), digits, random);
+  problem.q = uniform(problem.first.back(), random);
+  return problem;
+}
+
+/// Points on a square, coupled as on an elastic half-space: a decaying normal and tangential influence, and the
+/// antisymmetric one of normal on tangential. Pressed by a punch and drawn sideways with a twist.
+inline FrictionProblem half_space_problem(Index side, double friction) {
+  FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(side * side), 3), friction);
+  const double spacing = 1.0 / static_cast<double>(side);
+  const auto place = [&](Index i) -> Eigen::Vector2d {
+    return {(0.5 + static_cast<double>(i % side)) * spacing - 0.5,
+            (0.5 + static_cast<double>(i / side)) * spacing - 0.5};
+  };
+  for (Index i = 0; i < side * side; ++i) {
+    for (Index j = 0; j < side * side; ++j) {
+      const Eigen::Vector2d apart = place(i) - place(j);
+      const double kernel = std::exp(-4.0 * apart.norm());
+      Eigen::Matrix3d block = Eigen::Vector3d(1.0, 1.3, 1.3).asDiagonal();
+      block *= kernel;
+      block.block<1, 2>(0, 1) += 0.6 * kernel * apart.transpose();
+      block.block<2, 1>(1, 0) -= 0.6 * kernel * apart;
+      problem.w.block<3, 3>(3 * i, 3 * j) = block;
+    }
+    const Eigen::Vector2d x = place(i);
+    problem.q[3 * i] = 2.5 * x.squaredNorm() - 0.4;
+    problem.q[3 * i + 1] = 0.08 - 0.1 * x[1];
+    problem.q[3 * i + 2] = 0.02 + 0.1 * x[0];
+  }
+  return problem;
+}
+
+/// The law, point by point, with u computed afresh: cone and signs exactly, alignment and complementarity in u to
+/// `tolerance` times the size of the terms of u (W's diagonal is of order one in these problems).
+inline void expect_law(const FrictionProblem& problem, const CoulombSolution& solution, double tolerance = 1e-12) {
+  ASSERT_TRUE(solution.solved) << solution.reason << ", residual " << solution.residual;
+  EXPECT_LE(solution.residual, 1e-11);
+  const Vector& rho = solution.reaction;
+  ASSERT_EQ(rho.size(), problem.q.size());
+  const Vector u = problem.q + problem.w * rho;
+  const Vector size = problem.q.cwiseAbs() + problem.w.cwiseAbs() * rho.cwiseAbs();
+  for (Index i = 0; i < problem.points(); ++i) {
+    SCOPED_TRACE(testing::Message() << "point " << i);
+    const auto at = static_cast<std::size_t>(i);
+    const Index row = problem.first[at];
+    const Index tangents = problem.first[at + 1] - row - 1;
+    const ContactStatus status = solution.status[at];
+    const auto force = rho.segment(row + 1, tangents);
+    const auto slip = u.segment(row + 1, tangents);
+    const double rounding = tolerance * (size.segment(row, tangents + 1).maxCoeff() + problem.q.cwiseAbs().maxCoeff());
+    if (problem.eligible[at] == 0 || status == ContactStatus::open) {
+      EXPECT_EQ(rho.segment(row, tangents + 1).cwiseAbs().sum(), 0.0);
+      EXPECT_EQ(status, ContactStatus::open);
+      if (problem.eligible[at] != 0) {
+        EXPECT_GE(u[row], -rounding);
+      }
+      continue;
+    }
+    EXPECT_GE(rho[row], 0.0);
+    EXPECT_LE(std::abs(u[row]), rounding);
+    double limit = tangents == 0 ? 0.0 : problem.coefficient[i] * rho[row];
+    if (tangents > 0 && problem.bound[i] > 0.0) {
+      limit = problem.coefficient[i] > 0.0 ? std::min(limit, problem.bound[i]) : problem.bound[i];
+    }
+    EXPECT_LE(force.norm(), limit * (1.0 + 4.0 * std::numeric_limits<double>::epsilon()));
+    if (limit == 0.0) {
+      EXPECT_EQ(status, ContactStatus::closed);
+    } else if (status == ContactStatus::stick) {
+      EXPECT_LE(slip.norm(), rounding);
+    } else {
+      EXPECT_EQ(status, ContactStatus::slip);
+      if (problem.bound[i] == 0.0 || rho[row] > 0.0) {
+        EXPECT_GE(force.norm(), limit * (1.0 - 4.0 * std::numeric_limits<double>::epsilon()));
+      }
+      // |ρ_T| u_T + |u_T| ρ_T = 0, per unit of force.
+      EXPECT_LE((slip + slip.norm() / force.norm() * force).norm(), 2.0 * rounding);
+      EXPECT_LE(force.dot(slip), 0.0);
+    }
+  }
+}
+
+}  // namespace ricochet::test

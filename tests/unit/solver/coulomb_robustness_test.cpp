@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ricochet/solver/coulomb_solver.hpp"
+#include "support/coulomb_problems.hpp"
+
+/// @file The Coulomb solver in a time loop, and on operators that are not definite.
+namespace ricochet {
+namespace {
+
+using test::expect_law;
+using test::FrictionProblem;
+using test::half_space_problem;
+using test::random_problem;
+
+CoulombSolution solve(const FrictionProblem& problem) {
+  CoulombSolver solver;
+  CoulombSolution solution;
+  solver.solve(problem.view(), solution);
+  return solution;
+}
+
+/// The next time step of a half-space problem: pressed harder and drawn further.
+void advance(FrictionProblem& problem) {
+  for (Index i = 0; i < problem.points(); ++i) {
+    problem.q[3 * i] -= 0.002;
+    problem.q[3 * i + 1] += 0.001;
+  }
+}
+
+TEST(CoulombInTime, TakesFewNewtonSteps) {
+  FrictionProblem problem = half_space_problem(10, 0.3);
+  CoulombSolver solver;
+  CoulombSolution solution;
+  solver.solve(problem.view(), solution);
+  expect_law(problem, solution);
+  EXPECT_LE(solution.newton_steps, 15);
+  for (int step = 0; step < 10; ++step) {
+    advance(problem);
+    solver.solve(problem.view(), solution);
+    expect_law(problem, solution);
+    EXPECT_LE(solution.newton_steps, 4);
+    EXPECT_LE((solution.reaction - solve(problem).reaction).lpNorm<Eigen::Infinity>(),
+              1e-11 * solution.reaction.lpNorm<Eigen::Infinity>());
+  }
+  // The same problem once more: already solved.
+  solver.solve(problem.view(), solution);
+  EXPECT_TRUE(solution.solved);
+  EXPECT_EQ(solution.newton_steps, 0);
+}
+
+TEST(CoulombInTime, UsesTheFactorAgainInTwoDimensions) {
+  FrictionProblem problem = random_problem(40, 2, 0.3, 4);
+  CoulombSolver solver;
+  CoulombSolution solution;
+  solver.solve(problem.view(), solution);
+  problem.q *= 1.0 + 1e-6;
+  solver.solve(problem.view(), solution);
+  expect_law(problem, solution);
+  EXPECT_EQ(solution.newton_steps, 1);
+  EXPECT_EQ(solution.factorizations, 0);
+}
+
+TEST(CoulombInTime, ResumesFromItsWarmStartWithTheSameBits) {
+  for (const Index dimension : {2, 3}) {
+    FrictionProblem problem = dimension == 2 ? random_problem(40, 2, 0.3, 4) : half_space_problem(8, 0.3);
+    CoulombSolver solver;
+    CoulombSolution solution;
+    for (int step = 0; step < 3; ++step) {
+      solver.solve(problem.view(), solution);
+      problem.q *= 1.001;
+    }
+    CoulombSolver resumed;
+    resumed.set_warm_start(solver.warm_start());
+    CoulombSolution other;
+    solver.solve(problem.view(), solution);
+    resumed.solve(problem.view(), other);
+    EXPECT_EQ(other.reaction, solution.reaction);
+    EXPECT_EQ(other.iterations, solution.iterations);
+  }
+}
+
+TEST(CoulombInTime, ForgetsAnotherProblem) {
+  const FrictionProblem first = random_problem(30, 3, 0.5, 1);
+  const FrictionProblem second = random_problem(30, 3, 0.5, 2);
+  CoulombSolver solver;
+  CoulombSolution solution;
+  solver.solve(first.view(), solution);
+  solver.reset();
+  solver.solve(second.view(), solution);
+  EXPECT_EQ(solution.reaction, solve(second).reaction);
+}
+
+/// Every point twice: W has half its rank, u stays what it was.
+TEST(CoulombSingular, FindsTheMotionOfPointsThatAreThereTwice) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    for (const double friction : {0.0, 0.3, 1.0}) {
+      SCOPED_TRACE(testing::Message() << "F = " << friction << ", " << seed);
+      const FrictionProblem single = random_problem(15, 3, friction, seed);
+      std::vector<Index> sizes;
+      std::vector<Index> rows;
+      for (std::size_t i = 0; i + 1 < single.first.size(); ++i) {
+        for (int copy = 0; copy < 2; ++copy) {
+          sizes.push_back(single.first[i + 1] - single.first[i]);
+          for (Index row = single.first[i]; row < single.first[i + 1]; ++row) rows.push_back(row);
+        }
+      }
+      FrictionProblem twice(sizes, friction);
+      twice.w = single.w(rows, rows);
+      twice.q = single.q(rows);
+      const CoulombSolution solution = solve(twice);
+      expect_law(twice, solution);
+      const CoulombSolution expected = solve(single);
+      const Vector u = twice.q + twice.w * solution.reaction;
+      const Vector expected_u = single.q + single.w * expected.reaction;
+      EXPECT_LE((u - expected_u(rows)).lpNorm<Eigen::Infinity>(), 1e-11);
+    }
+  }
+}
+
+/// More rows than degrees of freedom, and motions that satisfy all conditions strictly: solutions exist.
+TEST(CoulombSingular, SolvesProblemsWithMoreConditionsThanFreedom) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    FrictionProblem problem(std::vector<Index>(12, 3), 0.3);
+    Matrix trace(36, 20);
+    for (double& value : trace.reshaped()) value = test::uniform(random);
+    problem.w = trace * trace.transpose();
+    problem.q = trace * test::uniform(20, random);
+    for (Index i = 0; i < 12; ++i) problem.q[3 * i] += 0.1;
+    expect_law(problem, solve(problem), 4e-12);
+  }
+}
+
+TEST(CoulombFailure, IsSaid) {
+  constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  const auto expect_unsolved = [](const FrictionProblem& problem) {
+    const CoulombSolution solution = solve(problem);
+    EXPECT_FALSE(solution.solved);
+    EXPECT_STRNE(solution.reason, "");
+  };
+  FrictionProblem problem = half_space_problem(4, 0.3);
+  problem.q[7] = not_a_number;
+  expect_unsolved(problem);
+  problem = half_space_problem(4, 0.3);
+  problem.w(20, 18) = problem.w(18, 20) = not_a_number;
+  expect_unsolved(problem);
+  // Indefinite, without a solution.
+  problem = FrictionProblem({1, 1}, 0.0);
+  problem.w << 1.0, -2.0, -2.0, 1.0;
+  problem.q << -1.0, -1.0;
+  expect_unsolved(problem);
+  // A point that penetrates and that no reaction moves.
+  problem = FrictionProblem({2}, 0.3);
+  problem.w.setZero();
+  problem.q << -1.0, 0.5;
+  expect_unsolved(problem);
+  problem.w << -1.0, 0.0, 0.0, 1.0;
+  expect_unsolved(problem);
+}
+
+TEST(CoulombFailure, DoesNotSpoilTheNextProblem) {
+  FrictionProblem problem = half_space_problem(4, 0.3);
+  const double kept = problem.q[7];
+  CoulombSolver solver;
+  CoulombSolution solution;
+  problem.q[7] = std::numeric_limits<double>::infinity();
+  solver.solve(problem.view(), solution);
+  EXPECT_FALSE(solution.solved);
+  problem.q[7] = kept;
+  solver.solve(problem.view(), solution);
+  expect_law(problem, solution);
+}
+
+}  // namespace
+}  // namespace ricochet
