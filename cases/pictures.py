@@ -2,7 +2,7 @@
 """Draws the pictures of the cases' READMEs: runs the cases into out/pictures and plots their history.csv beside the
 closed forms. From the repository root, with python3-matplotlib installed:
 
-    /usr/bin/python3 cases/pictures.py [disc rod bar ball]
+    /usr/bin/python3 cases/pictures.py [disc rod bar ball hertz layer incline conveyor oblique ball-spin]
 """
 import csv
 import subprocess
@@ -135,7 +135,142 @@ def ball():
     save(figure, "cases/ball/ball.png")
 
 
+def layer():
+    """Base velocity and traction of the sliding layer, relative to V and rho c_s V, for three coefficients."""
+    figure, axes = plt.subplots(2, 3, figsize=(12, 5.4), sharex=True)
+    for column, friction in enumerate((0.15, 0.3, 0.45)):
+        history = run("layer/layer", f"layer-{friction}", f"contact.0.friction={friction}")
+        time = np.arange(0, 8, 0.005)
+        phase = np.floor(time / 2)
+        sliding = np.ceil((1 / friction - 1) / 2)  # phases
+        arriving = np.where(phase < sliding, 1 - 2 * friction * phase, (1 - 2 * friction * sliding) * (-1) ** (phase - sliding))
+        axes[0, column].plot(time, np.where(phase < sliding, arriving - friction, 0), **EXACT)
+        axes[1, column].plot(time, np.where(phase < sliding, -friction, -arriving), label="closed form", **EXACT)
+        base = 0.5 * (history["left.displacement_x"] + history["right.displacement_x"])
+        middle = 0.5 * (history["time"][1:] + history["time"][:-1])
+        axes[0, column].plot(middle, np.diff(base) / np.diff(history["time"]) / 0.01, linewidth=1)
+        axes[1, column].plot(history["time"], history["contact_force_x"] / 0.5 / 0.01, linewidth=1, label="computed")
+        axes[0, column].set(title=f"F = {friction}: velocity of the base / V", ylim=(-0.2, 1.1))
+        axes[1, column].set(title="traction on the base / ρ c V", xlabel="time", ylim=(-0.6, 0.4))
+    axes[1, 0].legend(loc="upper left")
+    save(figure, "cases/layer/layer.png")
+
+
+def incline():
+    figure, (velocity, force) = plt.subplots(1, 2, figsize=(10, 3.6))
+    angle, mass = np.radians(20), 20.0
+    for color, friction in enumerate((0.0, 0.2, 0.3, 0.4)):
+        history = run("incline/incline", f"incline-{friction}", f"contact.0.friction={friction}")
+        acceleration = max(0.0, 9.81 * (np.sin(angle) - friction * np.cos(angle)))
+        velocity.plot(history["time"], acceleration * history["time"], **EXACT)
+        velocity.plot(history["time"], history["momentum_x"] / mass, f"C{color}", linewidth=1, label=f"F = {friction}")
+        force.plot(1e3 * history["time"], -history["contact_force_x"], f"C{color}", linewidth=1)
+        force.axhline(mass * min(friction * 9.81 * np.cos(angle), 9.81 * np.sin(angle)), color="0.8", linewidth=4, zorder=0)
+    velocity.set(xlabel="time, s", title="velocity down the slope, m/s (grey: rigid)")
+    force.set(xlabel="time, ms", title="friction force, N", xlim=(0, 40))
+    velocity.legend(loc="upper left")
+    save(figure, "cases/incline/incline.png")
+
+
+def conveyor():
+    history = run("conveyor/conveyor", "conveyor")
+    figure, (velocity, work) = plt.subplots(1, 2, figsize=(10, 3.6))
+    time, mass, speed, drag = history["time"], 20.0, 0.5, 0.3 * 9.81
+    velocity.plot(time, np.minimum(drag * time, speed), label="rigid block", **EXACT)
+    velocity.plot(time, history["momentum_x"] / mass, linewidth=1, label="centre of the block")
+    velocity.axhline(speed, linestyle=":", color="k", linewidth=1, label="belt")
+    velocity.set(xlabel="time, s", title="velocity, m/s", ylim=(0, 0.6))
+    velocity.legend(loc="lower right")
+    for name, label in (("obstacle_work", "work of the belt"), ("kinetic_energy", "kinetic energy"), ("friction_work", "friction work")):
+        work.plot(time, history[name], linewidth=1.4, label=label)
+    work.set(xlabel="time, s", title="works and energy, J", ylim=(-3.2, 6))
+    work.legend(loc="upper left")
+    save(figure, "cases/conveyor/conveyor.png")
+
+
+def oblique():
+    figure, axes = plt.subplots(1, 3, figsize=(13, 3.8), sharex=True)
+    for color, speed in enumerate((0.03, 0.1, 0.3)):
+        history = run("oblique/oblique", f"oblique-{speed}", f"initial.velocity=[{speed},-0.1]")
+        milliseconds, pressing = 1e3 * history["time"], history["contact_force_y"]
+        axes[0].plot(milliseconds, history["contact_force_x"], f"C{color}", linewidth=1, label=f"thrown at ({speed}, −0.1) m/s")
+        if speed != 0.1:
+            continue
+        axes[0].plot(milliseconds, 0.3 * pressing, "0.7", linewidth=1, label="± F × normal force")
+        axes[0].plot(milliseconds, -0.3 * pressing, "0.7", linewidth=1)
+        axes[1].stackplot(milliseconds, history["sticking"], history["slipping"], labels=("sticking", "slipping"), step="mid")
+        axes[2].plot(milliseconds, history["total_energy"] - history["total_energy"][0], label="energy − its value at the start")
+        axes[2].plot(milliseconds, history["friction_work"], "--", label="friction work")
+    axes[0].set(xlabel="time, ms", title="friction force, N/m", xlim=(4.5, 15.5), ylim=(-165, 90))
+    axes[1].set(xlabel="time, ms", title="nodes in contact, thrown at (0.1, −0.1) m/s")
+    axes[2].set(xlabel="time, ms", title="J/m, thrown at (0.1, −0.1) m/s")
+    axes[0].legend(loc="lower left")
+    axes[1].legend(loc="upper left")
+    axes[2].legend(loc="lower left")
+    save(figure, "cases/oblique/oblique.png")
+
+
+def ball_spin():
+    history = run("ball-spin/ball-spin", "ball-spin")
+    figure, (force, rotation) = plt.subplots(1, 2, figsize=(10, 3.6))
+    milliseconds = 1e3 * history["time"]
+    friction = np.hypot(history["contact_force_x"], history["contact_force_y"])
+    force.plot(milliseconds, 0.3 * history["contact_force_z"], label="F × normal force", **EXACT)
+    force.plot(milliseconds, friction, linewidth=1, label="friction")
+    rotation.plot(milliseconds, history["max_rotation"])
+    rotation.axhline(0.1, linestyle=":", color="k", label="the program warns")
+    force.set(xlabel="time, ms", title="force, N", xlim=(31, 41))
+    rotation.set(xlabel="time, ms", title="largest rotation of a cell, rad")
+    force.legend(loc="upper right")
+    rotation.legend(loc="upper left")
+    save(figure, "cases/ball-spin/ball-spin.png")
+
+
+def hertz_pressure():
+    """Pressure over the radius of the pressed cylinder and ball, in every multiplier space that is stable there."""
+    import meshio  # python3-meshio, for this picture only
+
+    figure, axes = plt.subplots(2, 2, figsize=(10, 6.4), sharex=True, sharey=True)
+    modulus = 1 / (1 - 0.3**2)
+    for row, (body, parts) in enumerate((("cylinder", 2), ("sphere", 4))):
+        for degree in (1, 2):
+            axis = axes[row, degree - 1]
+            radius = np.linspace(0, 1, 400)
+            axis.plot(radius, np.sqrt(1 - radius**2), label="Hertz", **EXACT)
+            for space, marker in (("nodal", "o"), ("dual", "x"), ("p1", "+"), ("p0", "s")):
+                if space == "p0" and (body == "sphere" or degree == 1):
+                    continue  # not stable
+                mesh = f"{body}.msh" if degree == 1 else f"{body}-degree2.msh"
+                name = f"hertz-{body}-{degree}-{space}"
+                settings = (f"mesh.file={mesh}", f"mesh.degree={degree}", f"contact.0.multipliers={space}")
+                history = run(f"hertz/{body}", name, *settings)
+                load = parts * history["contact_force_y" if body == "cylinder" else "contact_force_z"][-1]
+                if body == "cylinder":
+                    width = (4 * load / (np.pi * modulus)) ** 0.5
+                    peak = 2 * load / (np.pi * width)
+                else:
+                    width = (0.75 * load / modulus) ** (1 / 3)
+                    peak = 1.5 * load / (np.pi * width**2)
+                with meshio.xdmf.TimeSeriesReader(f"out/pictures/{name}/results.xdmf") as reader:
+                    points, cells = reader.read_points_cells()
+                    fields = reader.read_data(reader.num_steps - 1)[1]
+                corners = 3 if body == "cylinder" else 4
+                vertices = np.unique(cells[0].data[:, :corners])
+                vertices = vertices[fields["contact_status"][vertices] >= 0]
+                distance = np.linalg.norm(points[vertices, : corners - 2], axis=1)
+                pressure = fields["contact_pressure"][vertices]
+                axis.plot(distance / width, pressure / peak, marker, markersize=3.5, fillstyle="none", label=space)
+            axis.set(title=f"{body}, degree {degree}", xlim=(0, 1.2), ylim=(-0.05, 1.35))
+    for axis in axes[1]:
+        axis.set(xlabel="distance from the axis / a")
+    for axis in axes[:, 0]:
+        axis.set(ylabel="pressure / largest of Hertz")
+    axes[0, 1].legend(loc="upper right", ncol=2)
+    save(figure, "cases/hertz/hertz.png")
+
+
 if __name__ == "__main__":
-    known = {"disc": disc, "rod": rod, "bar": bar, "ball": ball}
+    known = {"disc": disc, "rod": rod, "bar": bar, "ball": ball, "hertz": hertz_pressure, "layer": layer, "incline": incline,
+             "conveyor": conveyor, "oblique": oblique, "ball-spin": ball_spin}
     for wanted in sys.argv[1:] or known:
         known[wanted]()
