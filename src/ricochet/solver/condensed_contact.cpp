@@ -108,31 +108,38 @@ void CondensedContact::solve(const Stage& stage, Eigen::Ref<Vector> trailing, St
 
 void CondensedContact::solve_frictionless(const Stage& stage, StageSolution& solution) {
   active_set_.solve({&operator_, &offset_, &offset_rounding_, &stage.eligible}, frictionless_);
-  solution.iterations = frictionless_.iterations;
   if (!frictionless_.solved) {
-    throw Error(ErrorKind::not_converged,
-                fmt::format("the contact problem of {} points was not solved in {} iterations: {}",
-                            problem_.contact.size(), frictionless_.iterations, frictionless_.reason));
+    // Conditions that depend on one another (an unstable space of multipliers) leave W singular: reactions are then not
+    // unique, and Gauss-Seidel still finds some.
+    solve_coulomb(stage);
+    frictionless_.reaction = coulomb_solution_.reaction;
+    frictionless_.iterations += coulomb_solution_.iterations;
   }
+  solution.iterations = frictionless_.iterations;
   solution.normal_reaction = frictionless_.reaction / scale_;
   for (Index i = 0; i < problem_.contact.size(); ++i) {
     if (solution.normal_reaction[i] > 0.0) solution.contact_status[static_cast<std::size_t>(i)] = ContactStatus::closed;
   }
 }
 
-void CondensedContact::solve_with_friction(const Stage& stage, StageSolution& solution) {
+/// With friction in stages that have a slip rate.
+void CondensedContact::solve_coulomb(const Stage& stage) {
   const bool slips = stage.slip_offset.size() > 0;
   coulomb_.solve({&operator_, &offset_, &offset_rounding_, &first_, &stage.eligible,
                   slips ? &coefficient_ : &no_coefficient_, slips ? &bound_ : &no_coefficient_},
                  coulomb_solution_);
+  if (coulomb_solution_.solved) return;
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format("the contact problem{} of {} points was not solved in {} iterations (relative residual {:.3g}): "
+                  "{}",
+                  friction_ ? " with friction" : "", problem_.contact.size(), coulomb_solution_.iterations,
+                  coulomb_solution_.residual, coulomb_solution_.reason));
+}
+
+void CondensedContact::solve_with_friction(const Stage& stage, StageSolution& solution) {
+  solve_coulomb(stage);
   solution.iterations = coulomb_solution_.iterations;
-  if (!coulomb_solution_.solved) {
-    throw Error(ErrorKind::not_converged,
-                fmt::format("the contact problem with friction of {} points was not solved in {} iterations (relative "
-                            "residual {:.3g}): {}",
-                            problem_.contact.size(), coulomb_solution_.iterations, coulomb_solution_.residual,
-                            coulomb_solution_.reason));
-  }
   solution.contact_status = coulomb_solution_.status;
   const Index tangents = problem_.dimension - 1;
   for (Index i = 0; i < problem_.contact.size(); ++i) {

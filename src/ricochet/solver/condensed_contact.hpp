@@ -31,6 +31,7 @@ class CondensedContact {
   void hold_directions_without_trace();
   void find_offsets(const Stage& stage, const Eigen::Ref<Vector>& trailing);
   void solve_frictionless(const Stage& stage, StageSolution& solution);
+  void solve_coulomb(const Stage& stage);
   void solve_with_friction(const Stage& stage, StageSolution& solution);
 
   const SemidiscreteProblem& problem_;
