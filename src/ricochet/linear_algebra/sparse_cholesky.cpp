@@ -6,7 +6,7 @@
 #include <new>
 #include <stdexcept>
 
-extern "C" void openblas_set_num_threads(int count);
+#include "ricochet/linear_algebra/blas_threads.hpp"
 
 namespace ricochet {
 
@@ -48,7 +48,7 @@ struct SparseCholesky::Implementation {
   cholmod_dense* work_e = nullptr;
 
   Implementation() {
-    openblas_set_num_threads(1);  // with two its bits change and nothing is gained
+    use_one_blas_thread();
     cholmod_start(&common);
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.print = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/linear_algebra/dense_factor.hpp"
 
 namespace ricochet {
 
@@ -52,9 +53,8 @@ void CondensedContact::fill_columns(const std::vector<int>& position, const Matr
   supported_.setFromTriplets(supported.begin(), supported.end());
   operator_.setZero(first_.back(), first_.back());
   if (columns_.size() == 0) return;  // no contact, or none of its dofs in this stage
-  trailing_factor.triangularView<Eigen::Lower>().solveInPlace(columns_);
-  operator_.selfadjointView<Eigen::Lower>().rankUpdate(columns_.transpose());
-  operator_.triangularView<Eigen::StrictlyUpper>() = operator_.transpose();
+  solve_lower_triangular(trailing_factor, columns_);
+  operator_ = gram_matrix(columns_);
   hold_directions_without_trace();
 }
 

@@ -97,10 +97,9 @@ void CoulombNewton::assemble(const Matrix& w) {
 /// A matrix singular to rounding belongs to conditions that depend on one another. With a small multiple of x −
 /// x_present added, whole steps stay defined and their limits are the solutions of the problem itself.
 void CoulombNewton::add_proximal_term() {
-  const auto pivots = factor_.matrixLU().diagonal().cwiseAbs();
   proximal_ = 0.0;
   const double count = static_cast<double>(unknowns_.size());
-  if (pivots.minCoeff() > 4.0 * count * epsilon) return;
+  if (factor_.smallest_pivot() > 4.0 * count * epsilon) return;
   proximal_ = proximal_size;
   matrix_.diagonal().array() += proximal_;
   factor_.compute(matrix_);
@@ -146,7 +145,7 @@ bool CoulombNewton::step(const CoulombProblem& problem, const std::vector<Coulom
     right_[i] = -operator_scale_ * unknown.weight * test(unknown, fixed_motion_);
     right_[i] += proximal_ * (present_[i] / unknown.weight);
   }
-  solution_ = factor_.solve(right_);
+  factor_.solve(right_, solution_);
   if (!solution_.allFinite()) {
     factored_.clear();
     return false;
@@ -169,7 +168,7 @@ bool CoulombNewton::refine(const CoulombIterate& full, Vector& reaction) {
     right_[i] = -operator_scale_ * unknown.weight * left;
   }
   if (rounding_only) return false;
-  solution_ = factor_.solve(right_);
+  factor_.solve(right_, solution_);
   if (!solution_.allFinite()) return false;
   expand(reaction);
   return true;

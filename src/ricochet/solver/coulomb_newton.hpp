@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/LU>
 #include <array>
 #include <vector>
 
 #include "ricochet/base/types.hpp"
+#include "ricochet/linear_algebra/dense_factor.hpp"
 #include "ricochet/solver/coulomb_point.hpp"
 
 /// @file A Newton step of the contact problem with Coulomb friction.
@@ -68,7 +68,7 @@ class CoulombNewton {
   bool has_fixed_ = false;
   Vector right_, solution_, fixed_motion_, column_;
   Matrix matrix_;
-  Eigen::PartialPivLU<Matrix> factor_;
+  DenseLu factor_;
   double operator_scale_ = 1.0;
   double proximal_ = 0.0;  ///< added to the diagonal of a matrix singular to rounding
   bool has_factored_ = false;
