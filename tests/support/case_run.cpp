@@ -59,4 +59,11 @@ double total_energy(const SemidiscreteProblem& problem, const Vector& displaceme
          problem.loads.constant().dot(displacement);
 }
 
+double size_of_energy_terms(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {
+  const Vector u = displacement.cwiseAbs();
+  const Vector v = velocity.cwiseAbs();
+  return u.dot(problem.internal_force->tangent().cwiseAbs() * u) + v.dot(problem.mass.cwiseAbs() * v) +
+         u.dot(problem.loads.constant().cwiseAbs());
+}
+
 }  // namespace ricochet::test_support

@@ -45,4 +45,8 @@ class CaseRun {
 /// J(U, V) = ½VᵀMV + ½UᵀKU − LᵀU with the constant loads, computed here and not by the energy account.
 double total_energy(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity);
 
+/// Size of the terms whose sum is that energy: what its rounding is relative to. A body that has moved by u as a whole
+/// has the elastic energy of its strain alone, but ½uᵀKu sums terms of the size of |u|ᵀ|K||u|.
+double size_of_energy_terms(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity);
+
 }  // namespace ricochet::test_support

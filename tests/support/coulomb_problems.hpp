@@ -97,6 +97,14 @@ inline FrictionProblem half_space_problem(Index side, double friction) {
   return problem;
 }
 
+/// From a cold start.
+inline CoulombSolution solve(const FrictionProblem& problem) {
+  CoulombSolver solver;
+  CoulombSolution solution;
+  solver.solve(problem.view(), solution);
+  return solution;
+}
+
 /// The law, point by point, with u computed afresh: cone and signs exactly, alignment and complementarity in u to
 /// `tolerance` times the size of the terms of u (W's diagonal is of order one in these problems).
 inline void expect_law(const FrictionProblem& problem, const CoulombSolution& solution, double tolerance = 1e-12) {

@@ -14,6 +14,7 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::size_of_energy_terms;
 using test_support::thrown_bodies;
 using test_support::thrown_case;
 using test_support::ThrownBody;
@@ -34,15 +35,6 @@ struct End {
   }
 };
 
-/// Size of the terms whose sum is the energy: what rounding is relative to. A body that has moved by u as a whole has
-/// the elastic energy of its strain alone, but ½uᵀKu sums terms of the size of |u|ᵀ|K||u|.
-double size_of_terms(const SemidiscreteProblem& problem, const End& end) {
-  const Vector u = end.displacement.cwiseAbs();
-  const Vector v = end.velocity.cwiseAbs();
-  return u.dot(problem.internal_force->tangent().cwiseAbs() * u) + v.dot(problem.mass.cwiseAbs() * v) +
-         u.dot(problem.loads.constant().cwiseAbs());
-}
-
 /// Runs a case and compares the energy change of every step with `identity(before, after)`.
 void expect_identity(CaseRun& run, const std::string& name,
                      const std::function<double(const End&, const End&)>& identity) {
@@ -52,7 +44,8 @@ void expect_identity(CaseRun& run, const std::string& name,
   run.run(
       [&] {
         const End after(run);
-        const double size = std::max(size_of_terms(run.problem(), before), size_of_terms(run.problem(), after));
+        const double size = std::max(size_of_energy_terms(run.problem(), before.displacement, before.velocity),
+                                     size_of_energy_terms(run.problem(), after.displacement, after.velocity));
         worst = std::max(worst, std::abs(after.energy - before.energy - identity(before, after)) / size);
         touched = std::max(touched, after.force.maxCoeff());
         before = after;

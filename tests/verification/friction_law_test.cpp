@@ -201,13 +201,6 @@ struct End {
   }
 };
 
-double size_of_terms(const SemidiscreteProblem& problem, const End& end, const Vector& velocity) {
-  const Vector u = end.displacement.cwiseAbs();
-  const Vector v = velocity.cwiseAbs();
-  return u.dot(problem.internal_force->tangent().cwiseAbs() * u) + v.dot(problem.mass.cwiseAbs() * v) +
-         u.dot(problem.loads.constant().cwiseAbs());
-}
-
 // The frictionless identities with the friction work −[(1−γ) r_T0 + γ r_T1]·B_T ΔU added.
 TEST(FrictionEnergy, MidpointAndNewmarkIdentitiesWithFriction) {
   for (const ThrownBody& body : thrown_bodies()) {
@@ -227,7 +220,8 @@ TEST(FrictionEnergy, MidpointAndNewmarkIdentitiesWithFriction) {
             const double friction =
                 midpoint ? -after.tangential.dot(slip) : -0.5 * (before.tangential + after.tangential).dot(slip);
             friction_total += friction;
-            const double size = size_of_terms(run.problem(), after, run.state().velocity);
+            const double size =
+                test_support::size_of_energy_terms(run.problem(), after.displacement, run.state().velocity);
             if (midpoint) largest_gain = std::max(largest_gain, friction / size);
             worst = std::max(worst, std::abs(after.energy - before.energy - contact - friction) / size);
             before = after;

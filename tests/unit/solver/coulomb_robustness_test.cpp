@@ -14,13 +14,7 @@ using test::expect_law;
 using test::FrictionProblem;
 using test::half_space_problem;
 using test::random_problem;
-
-CoulombSolution solve(const FrictionProblem& problem) {
-  CoulombSolver solver;
-  CoulombSolution solution;
-  solver.solve(problem.view(), solution);
-  return solution;
-}
+using test::solve;
 
 /// The next time step of a half-space problem: pressed harder and drawn further.
 void advance(FrictionProblem& problem) {

@@ -16,13 +16,7 @@ using test::expect_law;
 using test::FrictionProblem;
 using test::half_space_problem;
 using test::random_problem;
-
-CoulombSolution solve(const FrictionProblem& problem) {
-  CoulombSolver solver;
-  CoulombSolution solution;
-  solver.solve(problem.view(), solution);
-  return solution;
-}
+using test::solve;
 
 TEST(Coulomb, SolvesRandomProblemsOfManySizes) {
   for (const Index dimension : {2, 3}) {
