@@ -173,8 +173,8 @@ Section contact_section() {
            .unit = "stress",
            .standard = "0",
            .range = nonnegative,
-           .doc = "Tresca's law instead of Coulomb's: the friction traction is at most this where the body is "
-                  "pressed. 0: Coulomb's law."},
+           .doc = "Largest friction traction; 0: no bound. With `friction`, Coulomb's law holds up to this bound. "
+                  "Alone it is Tresca's law: the friction traction is at most this wherever the body is pressed."},
           {.name = "multipliers",
            .type = KeyType::choice,
            .standard = "nodal",
@@ -255,8 +255,9 @@ Section initial_section() {
            .choices = {"static"},
            .variables = position,
            .doc =
-               "Displacement at t = 0; \"static\" is the equilibrium under the loads at t = 0, contact included. Zero "
-               "if absent."},
+               "Displacement at t = 0; \"static\" is the equilibrium under the loads at t = 0, contact and friction "
+               "included. Where the velocity or a moving obstacle makes the body slide, friction has that direction if "
+               "such an equilibrium exists, and else acts from t = 0 on only. Zero if absent."},
           {.name = "velocity",
            .type = KeyType::formulas,
            .unit = "length/time",

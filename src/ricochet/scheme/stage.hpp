@@ -33,16 +33,17 @@ struct OperatorCoefficients {
 };
 
 struct Stage {
-  Vector right_hand_side;       ///< b, per dof
-  Vector prescribed;            ///< δ on supported dofs, in the order of Supports::dofs()
-  std::vector<char> eligible;   ///< per contact point
-  Vector gap_offset;            ///< q, per contact point
-  Vector gap_offset_rounding;   ///< size of the rounding error of q: a y above −(this + the solver's own) is zero
-  double gap_factor = 1.0;      ///< s
-  Vector compliance;            ///< c; empty: zero
-  double slip_factor = 1.0;     ///< σ
-  Vector slip_offset;           ///< p, (d−1) per contact point; empty: no friction in this stage
-  Vector slip_offset_rounding;  ///< size of the rounding error of p, per contact point
+  Vector right_hand_side;          ///< b, per dof
+  Vector prescribed;               ///< δ on supported dofs, in the order of Supports::dofs()
+  std::vector<char> eligible;      ///< per contact point
+  Vector gap_offset;               ///< q, per contact point
+  Vector gap_offset_rounding;      ///< size of the rounding error of q: a y above −(this + the solver's own) is zero
+  double gap_factor = 1.0;         ///< s
+  Vector compliance;               ///< c; empty: zero
+  double slip_factor = 1.0;        ///< σ
+  Vector slip_offset;              ///< p, (d−1) per contact point; empty: no friction in this stage
+  Vector slip_offset_rounding;     ///< size of the rounding error of p, per contact point
+  std::vector<char> frictionless;  ///< per contact point: 1 where this stage leaves friction out; empty: nowhere
 };
 
 struct StageSolution {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/scheme/contact_conditions.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 #include "ricochet/solver/step_solver.hpp"
@@ -51,8 +52,8 @@ class EquilibriumTest {
 };
 
 /// Friction in a static equilibrium. Where a point is at rest relative to its obstacle, the slip is its displacement
-/// from the undeformed body, as if the loads had been applied in one increment. Where it slides, that displacement is
-/// added to a slide by the size of the body in the direction of the relative velocity.
+/// from the undeformed body, as if the loads had been applied in one increment. Where it slides, friction has the
+/// direction of that sliding; a body that friction would then accelerate has no equilibrium but one without it.
 class StaticFriction {
  public:
   StaticFriction(const SemidiscreteProblem& problem, const Vector& velocity) : problem_(problem) {
@@ -60,24 +61,37 @@ class StaticFriction {
     Stage stage;
     require_friction(problem, velocity, obstacle_at_start(problem, Vector::Zero(problem.dof_count())), 1.0, stage);
     slide_.setZero(stage.slip_offset.size());
-    const Index tangents = problem.dimension - 1;
+    sliding_.assign(static_cast<std::size_t>(problem.contact.size()), 0);
     const double size = (problem.nodes.rowwise().maxCoeff() - problem.nodes.rowwise().minCoeff()).norm();
     for (Index i = 0; i < problem.contact.size(); ++i) {
-      const Vector rate = stage.slip_offset.segment(i * tangents, tangents);
+      const Vector rate = stage.slip_offset.segment(i * tangents(), tangents());
       if (rate.lpNorm<1>() <= stage.slip_offset_rounding[i]) continue;
-      slide_.segment(i * tangents, tangents) = (size / rate.norm()) * rate;
+      slide_.segment(i * tangents(), tangents()) = (size / rate.norm()) * rate;
+      sliding_[static_cast<std::size_t>(i)] = 1;
     }
   }
+
+  [[nodiscard]] Index sliding_points() const { return std::count(sliding_.begin(), sliding_.end(), 1); }
+  void leave_out_sliding() { left_out_ = true; }
 
   void require(const Vector& displacement, Stage& stage) const {
     if (!problem_.contact.has_friction()) return;
     require_friction(problem_, displacement, {}, 1.0, stage);
-    stage.slip_offset += slide_;
+    if (left_out_) stage.frictionless = sliding_;
+    // Increments vanish at the equilibrium, and beside them only the slide is left: its direction is that of friction.
+    for (std::size_t i = 0; i < sliding_.size(); ++i) {
+      const Index first = static_cast<Index>(i) * tangents();
+      if (sliding_[i] != 0) stage.slip_offset.segment(first, tangents()) = slide_.segment(first, tangents());
+    }
   }
 
  private:
+  [[nodiscard]] Index tangents() const { return problem_.dimension - 1; }
+
   const SemidiscreteProblem& problem_;
-  Vector slide_;
+  std::vector<char> sliding_;  ///< per contact point
+  Vector slide_;               ///< by the size of the body, where it slides
+  bool left_out_ = false;
 };
 
 /// Proximal point iterations: (εM + K) δ = L − K U + Gᵀr, then U += δ.
@@ -117,7 +131,14 @@ class ProximalPoint {
   Vector supported_, left_over_;
 };
 
-[[noreturn]] void refuse_static(const SemidiscreteProblem& problem, const Vector& left_over) {
+/// What to think of first where friction is involved.
+std::string role_of_friction(const SemidiscreteProblem& problem, const StaticFriction& friction) {
+  if (friction.sliding_points() > 0) return ", and friction does not hold points that slide at t = 0";
+  return problem.contact.has_friction() ? ", friction being too weak to hold it" : "";
+}
+
+[[noreturn]] void refuse_static(const SemidiscreteProblem& problem, const StaticFriction& friction,
+                                const Vector& left_over) {
   Vector load;
   problem.loads.total(0.0, load);
   Vector resultant = Vector::Zero(problem.dimension);
@@ -130,42 +151,87 @@ class ProximalPoint {
     throw Error(
         ErrorKind::not_converged,
         fmt::format("initial.displacement = \"static\": the equilibrium was not found to rounding; a force of {:.2g} "
-                    "of the largest load is left. Stiffnesses that differ by many orders of magnitude or very slender "
+                    "of the largest load is left. {}tiffnesses that differ by many orders of magnitude or very slender "
                     "bodies are likely causes; give the displacement by expressions instead",
-                    largest(left_over) / largest(load)));
+                    largest(left_over) / largest(load),
+                    problem.contact.has_friction() ? "Friction just too weak to hold the body, s" : "S"));
   }
   throw Error(
       ErrorKind::invalid_input,
       fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: a resultant "
                   "force of {} still moves the body{}; add a [[support]] in the direction in which it is free to move "
                   "or turn, or give the displacement by expressions",
-                  force, problem.contact.has_friction() ? ", friction being too weak to hold it" : ""));
+                  force, role_of_friction(problem, friction)));
+}
+
+/// The equilibrium by proximal point iterations. ε well below the lowest elastic frequency squared converges in a few
+/// of them, wherever the body has to go. Slender or very uneven bodies have lower frequencies: ε is taken down while
+/// the iteration stalls. Friction starts with a larger one: where it is all that holds the body, a small ε leaves a
+/// condensed operator on which stick and slip of single points hardly show beside the rigid motion.
+bool find_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction, StaticEquilibrium& at,
+                      Vector& left_over) {
+  constexpr int rounds = 60;
+  const EquilibriumTest test(problem);
+  for (const double fraction : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+    if (fraction > 1e-8 && !problem.contact.has_friction()) continue;
+    ProximalPoint point(problem, friction, fraction);
+    for (int k = 0; k < rounds; ++k) {
+      point.iterate(at);
+      left_over = point.left_over();
+      if (test.passed(at.displacement, left_over)) return true;
+    }
+  }
+  return false;
+}
+
+/// As find_equilibrium, for a body that slides: gives up as soon as the force left over is no longer reduced.
+bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction,
+                              StaticEquilibrium& at) {
+  constexpr int rounds = 60;
+  const EquilibriumTest test(problem);
+  ProximalPoint point(problem, friction, 1e-4);
+  double before = std::numeric_limits<double>::infinity();
+  try {
+    for (int k = 0; k < rounds; ++k) {
+      point.iterate(at);
+      if (test.passed(at.displacement, point.left_over())) return true;
+      const double now = largest(point.left_over());
+      if (k >= 5 && now > 0.95 * before) return false;
+      before = now;
+    }
+  } catch (const Error& problem_of_contact) {
+    if (problem_of_contact.kind() != ErrorKind::not_converged) throw;
+  }
+  return false;
 }
 
 }  // namespace
 
 StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess, const Vector& velocity) {
-  StaticEquilibrium result{guess, Vector::Zero(problem.contact.size())};
-  // ε well below the lowest elastic frequency squared converges in a few iterations, wherever the body has to go.
-  // Slender or very uneven bodies have lower frequencies: ε is taken down while the iteration stalls. Friction starts
-  // with a larger one: where it is all that holds the body, a small ε leaves a condensed operator on which stick and
-  // slip of single points hardly show beside the rigid motion.
-  constexpr int rounds = 60;
-  const EquilibriumTest test(problem);
-  const StaticFriction friction(problem, velocity);
-  Vector left_over;
-  bool found = false;
-  for (const double fraction : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
-    if (fraction > 1e-8 && !problem.contact.has_friction()) continue;
-    ProximalPoint point(problem, friction, fraction);
-    for (int k = 0; k < rounds && !found; ++k) {
-      point.iterate(result);
-      found = test.passed(result.displacement, point.left_over());
+  const StaticEquilibrium start{guess, Vector::Zero(problem.contact.size())};
+  StaticEquilibrium result = start;
+  StaticFriction friction(problem, velocity);
+  bool found = friction.sliding_points() > 0 && find_sliding_equilibrium(problem, friction, result);
+  if (!found) {
+    result = start;
+    friction.leave_out_sliding();
+    Vector left_over;
+    try {
+      found = find_equilibrium(problem, friction, result, left_over);
+    } catch (const Error& problem_of_contact) {
+      if (problem_of_contact.kind() != ErrorKind::not_converged) throw;
+      throw Error(ErrorKind::not_converged,
+                  fmt::format("initial.displacement = \"static\": {}; there may be no equilibrium{}",
+                              problem_of_contact.what(), role_of_friction(problem, friction)));
     }
-    left_over = point.left_over();
-    if (found) break;
+    if (!found) refuse_static(problem, friction, left_over);
+    if (friction.sliding_points() > 0) {
+      log::info(
+          fmt::format("initial.displacement = \"static\": {} contact points slide at t = 0, and no equilibrium holds "
+                      "their friction: it is left out of the static start there and acts from t = 0 on",
+                      friction.sliding_points()));
+    }
   }
-  if (!found) refuse_static(problem, left_over);
   // A small ε leaves rounding of the size of weight/ε in the gaps of a body that only contact holds. A large one, from
   // where we are now, takes it away.
   ProximalPoint near(problem, friction, 1e-2);

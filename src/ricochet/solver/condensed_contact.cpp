@@ -16,7 +16,6 @@ CondensedContact::CondensedContact(const SemidiscreteProblem& problem, const std
   fill_columns(position, trailing_factor);
   coefficient_ = problem.contact.friction_coefficient;
   bound_ = scale * problem.contact.friction_bound;
-  no_coefficient_.setZero(problem.contact.size());
 }
 
 void CondensedContact::number_rows() {
@@ -122,19 +121,30 @@ void CondensedContact::solve_frictionless(const Stage& stage, StageSolution& sol
   }
 }
 
-/// With friction in stages that have a slip rate.
+/// With friction in stages that have a slip rate, and at points where they do not leave it out.
 void CondensedContact::solve_coulomb(const Stage& stage) {
-  const bool slips = stage.slip_offset.size() > 0;
-  coulomb_.solve({&operator_, &offset_, &offset_rounding_, &first_, &stage.eligible,
-                  slips ? &coefficient_ : &no_coefficient_, slips ? &bound_ : &no_coefficient_},
-                 coulomb_solution_);
+  stage_coefficient_ = coefficient_;
+  stage_bound_ = bound_;
+  for (Index i = 0; i < coefficient_.size(); ++i) {
+    const bool left_out = !stage.frictionless.empty() && stage.frictionless[static_cast<std::size_t>(i)] != 0;
+    if (stage.slip_offset.size() > 0 && !left_out) continue;
+    stage_coefficient_[i] = 0.0;
+    stage_bound_[i] = 0.0;
+  }
+  coulomb_.solve(
+      {&operator_, &offset_, &offset_rounding_, &first_, &stage.eligible, &stage_coefficient_, &stage_bound_},
+      coulomb_solution_);
   if (coulomb_solution_.solved) return;
+  const bool tresca = ((bound_.array() > 0.0) && (coefficient_.array() == 0.0)).any();
+  const char* const advice = tresca ? "; with a friction_bound alone a step need not have a solution: give a friction "
+                                      "coefficient beside it"
+                                    : "";
   throw Error(
       ErrorKind::not_converged,
       fmt::format("the contact problem{} of {} points was not solved in {} iterations (relative residual {:.3g}): "
-                  "{}",
+                  "{}{}",
                   friction_ ? " with friction" : "", problem_.contact.size(), coulomb_solution_.iterations,
-                  coulomb_solution_.residual, coulomb_solution_.reason));
+                  coulomb_solution_.residual, coulomb_solution_.reason, advice));
 }
 
 void CondensedContact::solve_with_friction(const Stage& stage, StageSolution& solution) {

@@ -37,12 +37,12 @@ class CondensedContact {
   const SemidiscreteProblem& problem_;
   double scale_;
   bool friction_;
-  std::vector<Index> first_;    ///< per point its first row; points + 1
-  SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
-  Matrix columns_;              ///< Y, contact dofs × rows
-  Matrix operator_;             ///< W, rows × rows
-  Vector coefficient_, bound_;  ///< of friction, per point; the bound in units of ρ
-  Vector no_coefficient_;       ///< zeros, for stages without friction
+  std::vector<Index> first_;                ///< per point its first row; points + 1
+  SparseRowMatrix supported_;               ///< H on supported dofs: rows × supports
+  Matrix columns_;                          ///< Y, contact dofs × rows
+  Matrix operator_;                         ///< W, rows × rows
+  Vector coefficient_, bound_;              ///< of friction, per point; the bound in units of ρ
+  Vector stage_coefficient_, stage_bound_;  ///< the same, zero where a stage leaves friction out
   ActiveSetSolver active_set_;
   CoulombSolver coulomb_;
   ComplementaritySolution frictionless_;
