@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "commands.hpp"
+#include "contact_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
@@ -50,8 +51,7 @@ void describe_case(const std::string& path) {
   for (const MaterialSection& m : input.materials) {
     fmt::print("  material \"{}\": density {:g}, lambda {:g}, mu {:g}\n", m.group, m.density, m.lambda, m.mu);
   }
-  for (const ContactSection& c : input.contacts)
-    fmt::print("  contact of \"{}\" with obstacle \"{}\"\n", c.group, c.obstacle);
+  print_contacts(describe_contacts(input));
   fmt::print("  scheme {}, mass {}, {} steps of {:g} to {:g}\n", input.time.scheme, input.mass.type,
              step_count(input.time), input.time.step, input.time.end);
 }
@@ -69,16 +69,12 @@ void describe_result(const std::string& directory) {
   fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass, s.dimension, s.degree);
   fmt::print("  {} nodes, {} cells, {} contact points, {} steps of {:g}, {} frames\n", s.nodes, s.cells,
              s.contact_points, s.steps, s.step, s.frames);
-  for (const ContactDescription& c : s.contacts) {
-    const std::string law = c.friction_bound > 0.0 ? fmt::format("friction bound {:g}", c.friction_bound)
-                            : c.friction > 0.0     ? fmt::format("friction {:g}", c.friction)
-                                                   : "no friction";
-    fmt::print("  contact of \"{}\" with \"{}\": {}, {} multipliers\n", c.group, c.obstacle, law, c.multipliers);
-  }
+  print_contacts(s.contacts);
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
              energy.maximum);
   fmt::print("  energy account closes to {:.1e} of the largest energy\n",
              ratio(std::max(std::abs(residual.minimum), std::abs(residual.maximum)), s.energy_scale()));
+  print_friction(s);
   fmt::print("  deepest interpenetration {:.3g}, largest rotation {:.3g} rad\n", s.digest("max_penetration").maximum,
              s.digest("max_rotation").maximum);
   for (std::size_t i = 0; i < s.probes.size(); ++i) {

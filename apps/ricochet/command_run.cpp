@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "commands.hpp"
+#include "contact_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
@@ -43,6 +44,7 @@ void print_summary(const RunSummary& s, const std::string& directory) {
              energy.maximum);
   fmt::print("  energy account closes to {:.1e} of the largest energy\n",
              scale > 0.0 ? largest_residual / scale : largest_residual);
+  print_friction(s);
   fmt::print("  deepest interpenetration {:.3g}, largest rotation of a cell {:.3g} rad\n",
              s.digest("max_penetration").maximum, s.digest("max_rotation").maximum);
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,

@@ -232,6 +232,31 @@ class ResultsFiles(TestCase):
             os.kill(process.pid, signal.SIGCONT)
         self.assertGreaterEqual(len(counts), 20)
 
+    def test_friction(self):
+        """Tractions stay in the cone, on it where nodes slip, and agree with the probe's reactions."""
+        values = {"contact.0.friction": 0.3, "initial.velocity": "[0.08,-0.1]", "time.end": 0.05,
+                  "output.fields_every": 1, "time.beta": 0.25}
+        results = self.simulate(DISC, values=values)
+        history = History(results / "history.csv")
+        points, _, read = frames(results)
+        lowest = int(numpy.argmin(numpy.linalg.norm(points[:, :2] - [0.0, 0.001], axis=1)))
+        seen = set()
+        for row, (_, fields) in enumerate(read):
+            pressure, traction = fields["contact_pressure"], fields["friction_traction"]
+            status = fields["contact_status"]
+            scale = max(pressure.max(), 1e-300)
+            size = numpy.linalg.norm(traction, axis=1)
+            self.assertTrue((size <= 0.3 * pressure * (1 + 1e-12)).all(), row)
+            self.assertTrue((size[status < 2] == 0.0).all(), row)
+            self.assertLessEqual(numpy.abs(size - 0.3 * pressure)[status == 3].max(initial=0.0), 1e-12 * scale, row)
+            self.assertEqual(numpy.count_nonzero(status == 2), history["sticking"][row])
+            self.assertEqual(numpy.count_nonzero(status == 3), history["slipping"][row])
+            seen |= set(status)
+            if history["lowest.reaction_normal"][row] > 0.0:
+                ratio = history["lowest.reaction_tangential_x"][row] / history["lowest.reaction_normal"][row]
+                self.assertAlmostEqual(traction[lowest, 0] / pressure[lowest], ratio, delta=1e-12)
+        self.assertEqual(seen, {-1, 0, 2, 3}, "open, sticking and slipping nodes are seen")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -192,8 +192,7 @@ TEST(Incline, ApproachesTheRigidBlockAsStiffnessGrows) {
 TEST(Incline, StaticEquilibriumExistsBelowTheThresholdOnly) {
   const double weight = block_mass * gravity;
   for (const double factor : {1.001, 1.01, 1.1, 1.5, 2.0, 5.0}) {
-    CaseRun run =
-        run_case_file("incline/static.toml", {fmt::format("contact.0.friction={}", factor * std::tan(slope))});
+    CaseRun run = run_case_file("incline/held.toml", {fmt::format("contact.0.friction={}", factor * std::tan(slope))});
     const Vector at_rest = run.state().displacement;
     double moved = 0.0;
     run.run([&] { moved = std::max(moved, (run.state().displacement - at_rest).lpNorm<Eigen::Infinity>()); });
@@ -203,7 +202,7 @@ TEST(Incline, StaticEquilibriumExistsBelowTheThresholdOnly) {
   }
   for (const double factor : {0.0, 0.5, 0.9, 0.99}) {
     try {
-      run_case_file("incline/static.toml", {fmt::format("contact.0.friction={}", factor * std::tan(slope))});
+      run_case_file("incline/held.toml", {fmt::format("contact.0.friction={}", factor * std::tan(slope))});
       ADD_FAILURE() << "an equilibrium for F = " << factor << " tan(slope)";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::invalid_input) << error.what();

@@ -34,6 +34,27 @@ void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
   }
 }
 
+/// Nodal forces have no share of the area at the vertices of flat six-node triangles, and so no friction under a bound.
+void warn_of_bound_without_area(const ContactSection& section, const Model& model) {
+  if (section.friction_bound == 0.0 || section.multipliers != "nodal" || model.space.degree != 2) return;
+  if (model.mesh.dimension != 3) return;
+  log::warning(fmt::format(
+      "contact of group \"{}\": with nodal multipliers and a friction_bound no friction acts at the vertices of "
+      "triangles of degree 2, whose share of the area is zero; use multipliers \"dual\" or \"p1\"",
+      section.group));
+}
+
+/// A stuck node that has inertia keeps ±V from step to step under the trapezoidal rule, and creeps.
+void warn_of_creep(const Case& input, const SemidiscreteProblem& problem) {
+  const TimeSection& time = input.time;
+  const bool trapezoidal = time.scheme == "newmark" && time.beta == 0.25 && time.gamma == 0.5;
+  if (!trapezoidal || problem.has_singular_mass() || !problem.contact.has_friction()) return;
+  log::warning(fmt::format(
+      "newmark with beta = 1/4, gamma = 1/2, friction and mass \"{}\": nodes that stick keep their velocity with "
+      "alternating sign, their forces rattle and slips come out wrong; use mass \"equivalent\"",
+      input.mass.type));
+}
+
 /// Multipliers that do not go together with the displacement's degree on the facets of a group are refused, or warned
 /// of.
 void check_stability(const Case& input, std::size_t number, const Model& model) {
@@ -79,6 +100,7 @@ void add_contacts(const Case& input, Model& model) {
                                    section.multipliers});
     model.problem.obstacles.push_back(model.contact_pairs.back().obstacle);
     check_stability(input, i, model);
+    warn_of_bound_without_area(section, model);
   }
   check_overlap(input, model.contact_pairs);
   const int d = model.mesh.dimension;
@@ -131,6 +153,7 @@ void assemble_operators(const Case& input, Model& model) {
     model.problem.damping = model.problem.has_damping() ? SparseMatrix(model.problem.damping + part) : part;
   }
   finish_problem(model.problem, construction->removes_contact_inertia());
+  warn_of_creep(input, model.problem);
 }
 
 namespace {

@@ -37,6 +37,8 @@ normal = [0.0, 1.0]
 [[contact]]
 group = "lower"
 obstacle = "floor"
+friction = 0.3
+multipliers = "nodal"
 
 [[support]]
 group = "left"

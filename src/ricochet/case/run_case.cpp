@@ -80,10 +80,7 @@ RunSummary describe(const Case& input, const Model& model, const Scheme& scheme,
   summary.end_time = input.time.end;
   summary.energy_instant = scheme.energy_instant();
   summary.force_instant = scheme.force_instant();
-  for (const ContactSection& contact : input.contacts) {
-    summary.contacts.push_back(
-        {contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound});
-  }
+  summary.contacts = describe_contacts(input);
   summary.probes = model.probes;
   for (const Probe& probe : model.probes) {
     const Vector at = model.space.nodes.col(probe.node);
@@ -233,6 +230,17 @@ std::optional<Error> take_steps(Simulation& simulation, Recording& recording, lo
 }
 
 }  // namespace
+
+std::vector<ContactDescription> describe_contacts(const Case& input) {
+  std::vector<ContactDescription> result;
+  for (const ContactSection& contact : input.contacts) {
+    const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
+                                       [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
+    result.push_back({contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound,
+                      obstacle->velocity, obstacle->rotation_rate});
+  }
+  return result;
+}
 
 long step_count(const TimeSection& time) {
   // An end that is a whole number of steps to rounding is that number of steps.

@@ -8,6 +8,9 @@
 /// @file Running a case: everything between a case file and an output directory.
 namespace ricochet {
 
+/// The contacts of a case as a summary lists them.
+[[nodiscard]] std::vector<ContactDescription> describe_contacts(const Case& input);
+
 struct RunOptions {
   std::string output_directory;
   bool force = false;  ///< overwrite a run that is there

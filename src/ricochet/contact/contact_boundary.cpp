@@ -242,8 +242,15 @@ void fill_nodes(const std::vector<Patch>& patches, const BoundaryNodes& all, con
     boundary.node_normals.col(row) = obstacle.normal(position);
     boundary.node_initial_gap[row] = obstacle.gap(position);
   }
+  boundary.own_point.assign(static_cast<std::size_t>(count), -1);
   std::vector<Eigen::Triplet<double>> recovery;
   for (const Patch& patch : patches) {
+    for (std::size_t i = 0; i < patch.kept.size(); ++i) {
+      const Index node = patch.kept[i].node;
+      if (node < 0) continue;
+      const int row = rows.at({node, all.first_pair(node, patch.obstacle)});
+      boundary.own_point[static_cast<std::size_t>(row)] = patch.numbers[i];
+    }
     for (const auto& entry : patch.space->pressure_recovery(patch.kept)) {
       const auto row = rows.find({entry.row(), all.first_pair(entry.row(), patch.obstacle)});
       if (row == rows.end()) continue;  // no multiplier in use reaches the node

@@ -65,9 +65,10 @@ struct ContactBoundary {
                                      ///< in that direction: no friction acts along it
 
   // Per node of the contact boundary (once per obstacle), for what is reported node by node:
-  std::vector<Index> nodes;    ///< ascending; all nodes that the trace of some point reaches
-  std::vector<int> node_pair;  ///< index of the (first) ContactPair
-  Points node_normals;         ///< d × nodes
+  std::vector<Index> nodes;      ///< ascending; all nodes that the trace of some point reaches
+  std::vector<int> node_pair;    ///< index of the (first) ContactPair
+  std::vector<Index> own_point;  ///< the contact point anchored at the node, or −1
+  Points node_normals;           ///< d × nodes
   Vector node_initial_gap;
   SparseRowMatrix pressure_recovery;  ///< contact nodes × points: pressure at the nodes = this · r_N, in stress units;
                                       ///< any component of the friction traction likewise from that of the reaction

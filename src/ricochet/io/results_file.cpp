@@ -121,11 +121,19 @@ void ResultsWriter::Implementation::contact_fields(const State& state) {
     pressure[node] = std::max(pressure[node], node_pressure[i]);
     gap[node] = status[node] < 0 ? node_gap[i] : std::min(gap[node], node_gap[i]);
     status[node] = std::max(status[node], 0);
-    // A node does what the contact points do that its pressure comes from.
+    // A node does what its own contact point does, or, without one, what those do that its pressure comes from.
+    const auto take = [&](Index point) {
+      const auto at = static_cast<std::size_t>(point);
+      if (at < state.contact_status.size())
+        status[node] = std::max(status[node], static_cast<int>(state.contact_status[at]));
+    };
+    const Index own = contact.own_point[static_cast<std::size_t>(i)];
+    if (own >= 0) {
+      take(own);
+      continue;
+    }
     for (SparseRowMatrix::InnerIterator entry(contact.pressure_recovery, i); entry; ++entry) {
-      if (state.contact_status.empty() || entry.value() == 0.0) continue;
-      status[node] =
-          std::max(status[node], static_cast<int>(state.contact_status[static_cast<std::size_t>(entry.col())]));
+      if (entry.value() != 0.0) take(entry.col());
     }
   }
 }

@@ -64,7 +64,9 @@ Json contacts_to_json(const RunSummary& summary) {
                       {"obstacle", c.obstacle},
                       {"multipliers", c.multipliers},
                       {"friction", c.friction},
-                      {"friction_bound", c.friction_bound}});
+                      {"friction_bound", c.friction_bound},
+                      {"obstacle_velocity", c.obstacle_velocity},
+                      {"obstacle_rotation_rate", c.obstacle_rotation_rate}});
   }
   return result;
 }
@@ -177,7 +179,8 @@ RunSummary read_summary(const std::string& path) {
     for (const auto& [phase, seconds] : json.at("timings_seconds").items()) s.timings.emplace_back(phase, seconds);
     for (const auto& contact : json.at("contacts")) {
       s.contacts.push_back({contact.at("group"), contact.at("obstacle"), contact.at("multipliers"),
-                            contact.at("friction"), contact.at("friction_bound")});
+                            contact.at("friction"), contact.at("friction_bound"), contact.at("obstacle_velocity"),
+                            contact.at("obstacle_rotation_rate")});
     }
     for (const auto& probe : json.at("probes")) {
       s.probes.push_back({probe.at("name"), probe.at("node"), probe.at("distance"),

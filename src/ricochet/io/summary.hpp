@@ -24,6 +24,8 @@ struct ExpectationResult {
 struct ContactDescription {
   std::string group, obstacle, multipliers;
   double friction = 0.0, friction_bound = 0.0;
+  std::vector<double> obstacle_velocity = {};  ///< empty: at rest
+  double obstacle_rotation_rate = 0.0;
 };
 
 struct RunSummary {

@@ -134,7 +134,7 @@ class ProximalPoint {
 /// What to think of first where friction is involved.
 std::string role_of_friction(const SemidiscreteProblem& problem, const StaticFriction& friction) {
   if (friction.sliding_points() > 0) return ", and friction does not hold points that slide at t = 0";
-  return problem.contact.has_friction() ? ", friction being too weak to hold it" : "";
+  return problem.contact.has_friction() ? ", and contact with friction does not hold it (it slides or tips)" : "";
 }
 
 [[noreturn]] void refuse_static(const SemidiscreteProblem& problem, const StaticFriction& friction,
@@ -154,7 +154,7 @@ std::string role_of_friction(const SemidiscreteProblem& problem, const StaticFri
                     "of the largest load is left. {}tiffnesses that differ by many orders of magnitude or very slender "
                     "bodies are likely causes; give the displacement by expressions instead",
                     largest(left_over) / largest(load),
-                    problem.contact.has_friction() ? "Friction just too weak to hold the body, s" : "S"));
+                    problem.contact.has_friction() ? "Friction that just does not hold the body, s" : "S"));
   }
   throw Error(
       ErrorKind::invalid_input,

@@ -21,6 +21,9 @@ constexpr int newton_limit = 30;
 constexpr int round_limit = 6;
 /// Part of a point's correction that is taken.
 constexpr double smallest_damping = 0.125;
+/// Of long runs of sweeps at the very end, and their length in entries of W.
+constexpr int last_rounds = 20;
+constexpr double last_work = 2e7;
 /// Halvings of a Newton step.
 constexpr int cut_limit = 8;
 
@@ -294,7 +297,30 @@ bool CoulombSolver::iterate(const CoulombProblem& problem, CoulombSolution& solu
     evaluate(problem, current_);
     if (alternate(problem, 2 * cold_sweeps, round_limit, solution)) return true;
   }
+  if (!std::isfinite(fallback_.merit)) {
+    std::swap(current_, fallback_);
+    return false;
+  }
+  return sweep_on(problem, solution);
+}
+
+/// The last resort: Gauss–Seidel for as long as it comes closer, with Newton tried now and then. Where conditions
+/// depend on one another it may creep, and still arrive.
+bool CoulombSolver::sweep_on(const CoulombProblem& problem, CoulombSolution& solution) {
+  damping_ = 1.0;
   std::swap(current_, fallback_);
+  const double rows = static_cast<double>(problem.offset->size());
+  const int sweeps = static_cast<int>(std::clamp(last_work / (rows * rows), 100.0, 4000.0));
+  for (int k = 0; k < last_rounds; ++k) {
+    const double merit = current_.merit;
+    best_ = current_;
+    if (sweep(problem, sweeps, solution) && polish(problem, solution)) return true;
+    if (!(current_.merit < 0.5 * merit)) break;
+    fallback_ = current_;
+    if (newton(problem, false, solution) && finish(problem, solution)) return true;
+    current_ = fallback_;
+  }
+  std::swap(current_, best_);
   return false;
 }
 

@@ -52,7 +52,8 @@ struct CoulombSolution {
 /// 3. Newton on the Alart–Curnier equations, see CoulombNewton, each step cut back until the natural map decreases
 ///    (sum of squares over points); where no part of a step does, a run of whole steps from the best ρ so far.
 /// 4. Where Newton stalls, more sweeps from the best ρ so far, then Newton again, twice as many sweeps every time.
-///    At last the same from ρ = 0, with sweeps that take a half, a quarter, an eighth of each point's correction.
+///    At last the same from ρ = 0, with sweeps that take a half, a quarter, an eighth of each point's correction, and
+///    whole ones for as long as they come closer.
 ///
 /// Stopping test, the only one: at each point the natural map
 ///   e_N = min(u_N, r_N/c),  e_T = (ρ_T − P_b(ρ_T − c u_T))/c,  c ≈ 1/W_ii,  P_b the projection on the disc |·| ≤ b,
@@ -89,6 +90,7 @@ class CoulombSolver {
   void evaluate(const CoulombProblem& problem, CoulombIterate& iterate) const;
   void measure(const CoulombProblem& problem, CoulombIterate& iterate) const;
   bool iterate(const CoulombProblem& problem, CoulombSolution& solution);
+  bool sweep_on(const CoulombProblem& problem, CoulombSolution& solution);
   bool alternate(const CoulombProblem& problem, int sweeps, int rounds, CoulombSolution& solution);
   bool sweep(const CoulombProblem& problem, int sweeps, CoulombSolution& solution);
   bool newton(const CoulombProblem& problem, bool line_search, CoulombSolution& solution);

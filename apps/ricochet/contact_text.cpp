@@ -1,0 +1,46 @@
+#include "contact_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace ricochet::program {
+
+namespace {
+
+std::string law_text(const ContactDescription& c) {
+  if (c.friction == 0.0 && c.friction_bound == 0.0) return "no friction";
+  if (c.friction_bound == 0.0) return fmt::format("friction {:g}", c.friction);
+  if (c.friction == 0.0) return fmt::format("friction bound {:g}", c.friction_bound);
+  return fmt::format("friction {:g} up to {:g}", c.friction, c.friction_bound);
+}
+
+std::string motion_text(const ContactDescription& c) {
+  std::string text;
+  if (!c.obstacle_velocity.empty()) text += fmt::format(", moving with ({:g})", fmt::join(c.obstacle_velocity, ", "));
+  if (c.obstacle_rotation_rate != 0.0) text += fmt::format(", turning at {:g}", c.obstacle_rotation_rate);
+  return text;
+}
+
+}  // namespace
+
+void print_contacts(const std::vector<ContactDescription>& contacts) {
+  for (const ContactDescription& c : contacts) {
+    fmt::print("  contact of \"{}\" with \"{}\"{}: {}, {} multipliers\n", c.group, c.obstacle, motion_text(c),
+               law_text(c), c.multipliers);
+  }
+}
+
+void print_friction(const RunSummary& summary) {
+  const bool any = std::any_of(summary.contacts.begin(), summary.contacts.end(), [](const ContactDescription& c) {
+    return c.friction > 0.0 || c.friction_bound > 0.0 || !c.obstacle_velocity.empty() ||
+           c.obstacle_rotation_rate != 0.0;
+  });
+  if (!any) return;
+  fmt::print("  friction work {:.6g}, obstacle work {:.6g}; at most {:.0f} points stick and {:.0f} slip at a time\n",
+             summary.digest("friction_work").last, summary.digest("obstacle_work").last,
+             summary.digest("sticking").maximum, summary.digest("slipping").maximum);
+}
+
+}  // namespace ricochet::program
