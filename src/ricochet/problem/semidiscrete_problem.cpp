@@ -64,14 +64,14 @@ void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double t
   }
 }
 
-void SemidiscreteProblem::trace_rounding(const Vector& size, Vector& rounding) const {
+void SemidiscreteProblem::trace_rounding(const Vector& values, Vector& rounding) const {
   rounding.resize(contact.size());
   for (Index i = 0; i < contact.size(); ++i) {
     double sum = 0.0;
     for (SparseRowMatrix::InnerIterator entry(contact.trace, i); entry; ++entry) {
-      sum += std::abs(entry.value()) * size.segment(entry.col() * dimension, dimension).lpNorm<1>();
+      sum += std::abs(entry.value()) * values.segment(entry.col() * dimension, dimension).lpNorm<1>();
     }
-    rounding[i] = std::numeric_limits<double>::epsilon() * sum;
+    rounding[i] = 8.0 * std::numeric_limits<double>::epsilon() * sum;
   }
 }
 

@@ -49,8 +49,9 @@ struct SemidiscreteProblem {
   void node_gaps(const Vector& displacement, double time, Vector& gap) const;
   /// Velocities of the obstacles where the contact points are at this displacement and time.
   void obstacle_velocity(const Vector& displacement, double time, ObstacleMotion& velocity) const;
-  /// Size of the rounding errors of a trace c·v, per point: ε Σ_j |c_ij| |v_j| for nodal vectors of that size.
-  void trace_rounding(const Vector& size, Vector& rounding) const;
+  /// Size of the rounding errors of a trace c·v, per point: 8 ε Σ_j |c_ij| |v_j|, a few roundings of v and of the
+  /// products.
+  void trace_rounding(const Vector& values, Vector& rounding) const;
   /// Adds Gᵀ r_N − B_Tᵀ r_T to a force vector. `tangential` may be empty (frictionless).
   void add_contact_force(const Vector& normal, const Vector& tangential, Vector& force) const;
 };

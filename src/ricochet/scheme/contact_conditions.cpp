@@ -16,9 +16,7 @@ void require_friction(const SemidiscreteProblem& problem, const Vector& velocity
   if (!problem.contact.has_friction()) return;
   stage.slip_factor = slip_factor;
   stage.slip_offset.noalias() = problem.contact.tangential_trace * velocity;
-  // A few roundings of the velocity and of the products.
   problem.trace_rounding(velocity, stage.slip_offset_rounding);
-  stage.slip_offset_rounding *= 8.0;
   if (obstacle.tangential.size() == 0) return;
   stage.slip_offset -= obstacle.tangential;
   const int tangents = problem.dimension - 1;

@@ -1,5 +1,3 @@
-#include <limits>
-
 #include "ricochet/base/error.hpp"
 #include "ricochet/scheme/contact_conditions.hpp"
 #include "ricochet/scheme/scheme.hpp"
@@ -100,9 +98,9 @@ class KlrConserving final : public Scheme {
     if (obstacle_velocity_.normal.size() > 0) stage.gap_offset -= obstacle_velocity_.normal;
     stage.gap_factor = 0.5 / h;
     // The velocity is a difference of displacements.
-    size_ = (now_.cwiseAbs() + velocity_.cwiseAbs() * h) / h;
-    problem.trace_rounding(size_, stage.gap_offset_rounding);
-    stage.gap_offset_rounding *= 8.0;
+    problem.trace_rounding(now_, stage.gap_offset_rounding);
+    problem.trace_rounding(velocity_, velocity_rounding_);
+    stage.gap_offset_rounding = stage.gap_offset_rounding / h + velocity_rounding_;
     stage.eligible.resize(static_cast<std::size_t>(gap_.size()));
     for (Index i = 0; i < gap_.size(); ++i) {
       stage.eligible[static_cast<std::size_t>(i)] = gap_[i] <= problem.contact.gap_rounding[i] ? 1 : 0;
@@ -111,7 +109,7 @@ class KlrConserving final : public Scheme {
     if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
   }
 
-  Vector now_, force_, supported_, gap_, velocity_, size_;
+  Vector now_, force_, supported_, gap_, velocity_, velocity_rounding_;
   ObstacleMotion obstacle_velocity_;
 };
 

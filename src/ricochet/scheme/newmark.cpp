@@ -86,11 +86,12 @@ class Newmark final : public Scheme {
   }
 
   void require_friction_over_step(const SemidiscreteProblem& problem, const State& state, Stage& stage) {
-    rate_ = predicted_increment_ / step();
     if (problem.has_moving_obstacles()) {
       middle_ = state.displacement + 0.5 * predicted_increment_;
       problem.obstacle_velocity(middle_, state.time + 0.5 * step(), obstacle_velocity_);
     }
+    if (!problem.contact.has_friction()) return;
+    rate_ = predicted_increment_ / step();
     require_friction(problem, rate_, obstacle_velocity_, 1.0 / step(), stage);
   }
 

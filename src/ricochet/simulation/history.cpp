@@ -15,13 +15,16 @@ void add_vector_columns(std::vector<std::string>& columns, const std::string& na
   for (int k = 0; k < dimension; ++k) columns.push_back(name + axis_suffix[static_cast<std::size_t>(k)]);
 }
 
+/// A vector of space, never on the heap.
+using SpaceVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+
 /// The force of a contact point on the body: r_N n − t r_T.
-Vector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point) {
-  Vector force = forces.normal_reaction[point] * contact.normals.col(point);
+SpaceVector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point) {
+  SpaceVector force = forces.normal_reaction[point] * contact.normals.col(point);
   const Index tangents = contact.dimension - 1;
   if (forces.tangential_reaction.size() > 0) {
-    force -= contact.tangents[static_cast<std::size_t>(point)] *
-             forces.tangential_reaction.segment(point * tangents, tangents);
+    force.noalias() -= contact.tangents[static_cast<std::size_t>(point)] *
+                       forces.tangential_reaction.segment(point * tangents, tangents);
   }
   return force;
 }
@@ -124,12 +127,12 @@ void HistoryRecorder::add_probe(const State& state, const Probe& probe) {
   if (probe.contact_node < 0) return;
   // The force on the node, from all points of this obstacle whose trace reaches it.
   const int pair = contact.node_pair[static_cast<std::size_t>(probe.contact_node)];
-  Vector force = Vector::Zero(d);
+  SpaceVector force = SpaceVector::Zero(d);
   for (SparseRowMatrix::InnerIterator entry(trace_transposed_, probe.node); entry; ++entry) {
     if (problem_.obstacle_of_point(entry.col()) != problem_.obstacles[static_cast<std::size_t>(pair)]) continue;
     force += entry.value() * contact_force(contact, state.forces, entry.col());
   }
-  const Vector normal = contact.node_normals.col(probe.contact_node);
+  const SpaceVector normal = contact.node_normals.col(probe.contact_node);
   const double normal_force = normal.dot(force);
   for (const double value : {gap_[probe.contact_node], pressure_[probe.contact_node], normal_force}) {
     row_.push_back(value);

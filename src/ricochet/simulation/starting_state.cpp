@@ -75,7 +75,6 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
   Vector rate = problem.contact.gap_operator * state.velocity;
   const ObstacleMotion obstacle = obstacle_at_start(problem, state.displacement);
   problem.trace_rounding(state.velocity, rate_rounding);
-  rate_rounding *= 8.0;
   if (obstacle.normal.size() > 0) {
     rate -= obstacle.normal;
     rate_rounding += 8.0 * std::numeric_limits<double>::epsilon() * obstacle.normal.cwiseAbs();
