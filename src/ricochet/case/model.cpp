@@ -196,7 +196,7 @@ void add_probes(const Case& input, Model& model) {
                       "those of obstacle \"{}\"",
                       probe.name, entries, model.contact_pairs[pair].obstacle_name));
     }
-    const double body_size = extent(model.space);
+    const double body_size = extent(model.space.nodes);
     const std::string message =
         fmt::format("probe \"{}\": the nearest node is {:.3g} away", probe.name, probe.distance);
     if (probe.distance > 0.1 * body_size) {

@@ -7,6 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/contact/contact_directions.hpp"
+#include "ricochet/contact/multiplier_space.hpp"
 
 namespace ricochet {
 
@@ -21,7 +22,8 @@ void check_agreement(const ContactPair& first, const ContactPair& second, bool h
                             "same",
                             first.group, second.group, first.obstacle_name, first.multipliers, second.multipliers));
   }
-  if (held || first.multipliers == "p0" || first.friction == second.friction) return;
+  if (held || first.friction == second.friction) return;
+  if (anchor_of(first.multipliers) == MultiplierAnchor::facet) return;  // each facet has its own
   throw Error(ErrorKind::invalid_input,
               fmt::format("contact groups \"{}\" and \"{}\" share a node against obstacle \"{}\" with different "
                           "friction coefficients or bounds; separate them by at least one facet, give them the same, "

@@ -134,7 +134,7 @@ std::map<Index, double> mean_gaps(const Patch& patch) {
 /// gap against planes, exactly.
 void fill_gaps(const Patch& patch, const Body& body, ContactBoundary& boundary) {
   // Displacements come from solves over the whole body, so their rounding is relative to its size, wherever a node is.
-  const double body_size = extent(*body.space);
+  const double body_size = extent(body.space->nodes);
   const double body_rounding = 8.0 * std::numeric_limits<double>::epsilon() * body_size;
   const bool by_quadrature = patch.space->has_functions() && body.mesh->degree > body.space->degree;
   const std::map<Index, double> means = by_quadrature ? mean_gaps(patch) : std::map<Index, double>{};

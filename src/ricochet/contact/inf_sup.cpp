@@ -27,7 +27,7 @@ SparseMatrix norm_matrix(const Body& body, const std::function<bool(Index)>& is_
   const NodeGraph graph = node_graph(*body.space);
   const SparseMatrix stiffness = assemble_stiffness(scalar, graph);
   const SparseMatrix mass = assemble_scalar_mass(scalar, graph);
-  const double length = extent(*body.space);
+  const double length = extent(body.space->nodes);
   int count = 0;
   number.assign(static_cast<std::size_t>(body.space->node_count()), -1);
   for (Index node = 0; node < body.space->node_count(); ++node) {

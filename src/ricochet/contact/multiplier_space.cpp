@@ -18,16 +18,26 @@ namespace {
 struct Registration {
   std::string name;
   std::function<std::unique_ptr<MultiplierSpace>(const ContactPatch&)> make;
+  MultiplierAnchor anchor = MultiplierAnchor::node;
+  std::function<std::string(CellShape, int)> instability = {};  ///< as the function of that name; empty: stable
 };
 
 const std::vector<Registration>& registrations() {
   static const std::vector<Registration> all{
       {"nodal", make_nodal_multipliers},
-      {"p0", make_p0_multipliers},
+      {"p0", make_p0_multipliers, MultiplierAnchor::facet, p0_instability},
       {"p1", make_p1_multipliers},
       {"dual", make_dual_multipliers},
   };
   return all;
+}
+
+const Registration& registration(const std::string& name) {
+  for (const Registration& entry : registrations()) {
+    if (entry.name == name) return entry;
+  }
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("unknown multipliers \"{}\"; known: {}", name, join_names(multiplier_space_names())));
 }
 
 }  // namespace
@@ -39,25 +49,16 @@ std::vector<std::string> multiplier_space_names() {
 }
 
 std::unique_ptr<MultiplierSpace> make_multiplier_space(const std::string& name, const ContactPatch& patch) {
-  for (const Registration& entry : registrations()) {
-    if (entry.name == name) return entry.make(patch);
-  }
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("unknown multipliers \"{}\"; known: {}", name, join_names(multiplier_space_names())));
+  return registration(name).make(patch);
+}
+
+MultiplierAnchor anchor_of(const std::string& multipliers) {
+  return registration(multipliers).anchor;
 }
 
 std::string instability(const std::string& multipliers, CellShape facet, int displacement_degree) {
-  if (multipliers != "p0") return {};
-  if (displacement_degree == 1) {
-    return "multipliers \"p0\" are not inf-sup stable with displacements of degree 1: pressures that alternate from "
-           "facet "
-           "to facet do next to no work on them; use degree 2, or \"p1\", \"dual\" or \"nodal\"";
-  }
-  if (facet == CellShape::triangle) {
-    return "multipliers \"p0\" are not inf-sup stable on triangular facets of degree 2, which have no node inside: "
-           "pressures that alternate from triangle to triangle do next to no work; use \"p1\", \"dual\" or \"nodal\"";
-  }
-  return {};
+  const Registration& space = registration(multipliers);
+  return space.instability ? space.instability(facet, displacement_degree) : std::string();
 }
 
 bool is_stable(const std::string& multipliers, CellShape facet, int displacement_degree) {

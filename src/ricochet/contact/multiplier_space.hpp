@@ -71,6 +71,8 @@ class MultiplierSpace {
 [[nodiscard]] std::unique_ptr<MultiplierSpace> make_multiplier_space(const std::string& name,
                                                                      const ContactPatch& patch);
 [[nodiscard]] std::vector<std::string> multiplier_space_names();
+/// What the multipliers of a space are anchored at; throws like make_multiplier_space.
+[[nodiscard]] MultiplierAnchor anchor_of(const std::string& multipliers);
 
 /// Whether a space is uniformly inf–sup stable with displacements of a degree on facets of a shape, as the numerical
 /// test of inf_sup.hpp finds it on families of meshes (docs/multipliers.md). Without stability, pressures that
@@ -86,6 +88,9 @@ class MultiplierSpace {
 /// D_i and c_ij of a space from integrals of its functions over the patch; c_ij that vanish to rounding are exact
 /// zeros.
 [[nodiscard]] std::vector<Multiplier> integrate_multipliers(const MultiplierSpace& space, MultiplierAnchor anchor);
+
+/// Why p0 is not stable, where it is not: see instability.
+[[nodiscard]] std::string p0_instability(CellShape facet, int displacement_degree);
 
 /// One constructor per file.
 [[nodiscard]] std::unique_ptr<MultiplierSpace> make_nodal_multipliers(const ContactPatch& patch);

@@ -22,17 +22,18 @@ namespace {
 class DualMultipliers final : public MultiplierSpace {
  public:
   explicit DualMultipliers(const ContactPatch& patch) : MultiplierSpace(patch), integration_(*patch.body) {
-    if (patch.body->space->degree == 1) return;
-    FacetQuadrature quadrature;
+    const DisplacementSpace& space = *patch.body->space;
+    if (space.degree == 1) return;
     for (const ContactPatch::Part& part : patch.parts) {
       for (const Index facet : part.facets) {
-        integration_.evaluate(facet, quadrature);
-        if (quadrature.shape != CellShape::triangle) continue;
-        const auto& vertices_of = node_vertices(quadrature.shape, 2);
+        const FacetPlace place = locate_facet(space, facet);
+        const CellBlock& block = space.facets[place.block];
+        if (block.shape != CellShape::triangle) continue;
+        const Index* nodes = block.cell(place.local);
+        const auto& vertices_of = node_vertices(block.shape, 2);
         for (std::size_t k = 0; k < vertices_of.size(); ++k) {
           if (vertices_of[k].size() != 2) continue;
-          transformed_[quadrature.nodes[k]] = {quadrature.nodes[vertices_of[k][0]],
-                                               quadrature.nodes[vertices_of[k][1]]};
+          transformed_[nodes[k]] = {nodes[vertices_of[k][0]], nodes[vertices_of[k][1]]};
         }
       }
     }

@@ -10,31 +10,33 @@ namespace {
 
 /// ∫ φ_i over facets, for all nodes of the space.
 Vector nodal_weights(const Body& body, const std::vector<Index>& facets) {
-  const int d = body.space->dimension;
-  Vector load = Vector::Zero(body.space->dof_count());
-  add_facet_load(
-      body, facets, [](const Vector&, Vector& force) { force = Vector::Unit(force.size(), 0); }, load);
-  return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(load.data(), body.space->node_count(),
-                                                           Eigen::InnerStride<>(d));
+  Vector weights = Vector::Zero(body.space->node_count());
+  const FacetIntegration integration(body);
+  FacetQuadrature quadrature;
+  for (const Index facet : facets) {
+    integration.evaluate(facet, quadrature);
+    for (Index q = 0; q < quadrature.measure.size(); ++q) {
+      for (Index k = 0; k < quadrature.node_count(); ++k)
+        weights[quadrature.nodes[k]] += quadrature.measure[q] * (*quadrature.displacement)(k, q);
+    }
+  }
+  return weights;
 }
 
 /// For each non-vertex node of the facets, the vertices it lies between.
 std::map<Index, std::vector<Index>> middle_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::map<Index, std::vector<Index>> middles;
-  Index first = 0;
-  for (const CellBlock& block : space.facets) {
+  for (const Index facet : facets) {
+    const FacetPlace place = locate_facet(space, facet);
+    const CellBlock& block = space.facets[place.block];
+    const Index* nodes = block.cell(place.local);
     const auto& support = node_vertices(block.shape, space.degree);
-    for (const Index facet : facets) {
-      const Index local = facet - first;
-      if (local < 0 || local >= block.size()) continue;
-      for (std::size_t k = 0; k < support.size(); ++k) {
-        if (support[k].size() == 1) continue;
-        std::vector<Index>& vertices = middles[block.cell(local)[k]];
-        vertices.clear();
-        for (const int v : support[k]) vertices.push_back(block.cell(local)[v]);
-      }
+    for (std::size_t k = 0; k < support.size(); ++k) {
+      if (support[k].size() == 1) continue;
+      std::vector<Index>& vertices = middles[nodes[k]];
+      vertices.clear();
+      for (const int v : support[k]) vertices.push_back(nodes[v]);
     }
-    first += block.size();
   }
   return middles;
 }

@@ -39,6 +39,18 @@ class P0Multipliers final : public MultiplierSpace {
 
 }  // namespace
 
+std::string p0_instability(CellShape facet, int displacement_degree) {
+  if (displacement_degree == 1) {
+    return "multipliers \"p0\" are not inf-sup stable with displacements of degree 1: pressures that alternate from "
+           "facet to facet do next to no work on them; use degree 2, or \"p1\", \"dual\" or \"nodal\"";
+  }
+  if (facet == CellShape::triangle) {
+    return "multipliers \"p0\" are not inf-sup stable on triangular facets of degree 2, which have no node inside: "
+           "pressures that alternate from triangle to triangle do next to no work; use \"p1\", \"dual\" or \"nodal\"";
+  }
+  return {};
+}
+
 std::unique_ptr<MultiplierSpace> make_p0_multipliers(const ContactPatch& patch) {
   return std::make_unique<P0Multipliers>(patch);
 }

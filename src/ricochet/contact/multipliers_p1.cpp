@@ -25,20 +25,20 @@ class P1Multipliers final : public MultiplierSpace {
     std::map<Index, int> number;
     for (std::size_t i = 0; i < kept.size(); ++i) number[kept[i].node] = static_cast<int>(i);
     const DisplacementSpace& space = *patch().body->space;
-    const FacetIntegration integration(*patch().body);
-    FacetQuadrature quadrature;
     std::set<Index> done;
     std::vector<Eigen::Triplet<double>> result;
     for (const ContactPatch::Part& part : patch().parts) {
       for (const Index facet : part.facets) {
-        integration.evaluate(facet, quadrature);
-        const auto& vertices_of = node_vertices(quadrature.shape, space.degree);
+        const FacetPlace place = locate_facet(space, facet);
+        const CellBlock& block = space.facets[place.block];
+        const Index* nodes = block.cell(place.local);
+        const auto& vertices_of = node_vertices(block.shape, space.degree);
         for (std::size_t k = 0; k < vertices_of.size(); ++k) {
-          const Index node = quadrature.nodes[k];
+          const Index node = nodes[k];
           if (!done.insert(node).second) continue;
           std::vector<int> known;
           for (const int v : vertices_of[k]) {
-            const auto vertex = number.find(quadrature.nodes[v]);
+            const auto vertex = number.find(nodes[v]);
             if (vertex != number.end()) known.push_back(vertex->second);
           }
           for (const int vertex : known) {

@@ -4,6 +4,7 @@
 
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/cell_integration.hpp"
+#include "ricochet/fem/facet_integration.hpp"
 
 namespace ricochet {
 
@@ -207,36 +208,6 @@ void cell_load(const Body& body, const ForceDensity& force, Vector& load) {
   }
 }
 
-template <int d>
-void facet_load(const Body& body, const std::vector<Index>& facets, const ForceDensity& force, Vector& load) {
-  Vector position(d), density(d);
-  Index first = 0;
-  for (std::size_t b = 0; b < body.mesh->facets.size(); first += body.mesh->facets[b].size(), ++b) {
-    const CellBlock& block = body.mesh->facets[b];
-    const BlockIntegration integration(
-        block.shape, body.mesh->degree, body.space->degree,
-        product_quadrature_degree(block.shape, body.mesh->degree, body.space->degree) + 1);
-    for (const Index facet : facets) {
-      const Index local = facet - first;
-      if (local < 0 || local >= block.size()) continue;
-      for (Index q = 0; q < integration.rule.weights.size(); ++q) {
-        const auto map = jacobian<d, d - 1>(body.mesh->nodes, block.cell(local),
-                                            integration.geometry.gradients[static_cast<std::size_t>(q)]);
-        position.setZero();
-        for (int k = 0; k < block.nodes_per_cell; ++k) {
-          position += body.mesh->nodes.col(block.cell(local)[k]) * integration.geometry.values(k, q);
-        }
-        force(position, density);
-        const double measure = integration.rule.weights[q] * facet_measure<d>(map);
-        for (int k = 0; k < body.space->facets[b].nodes_per_cell; ++k) {
-          load.segment<d>(body.space->facets[b].cell(local)[k] * d) +=
-              (measure * integration.displacement.values(k, q)) * density;
-        }
-      }
-    }
-  }
-}
-
 }  // namespace
 
 SparseMatrix assemble_scalar_mass(const Body& body, const NodeGraph& graph, const std::vector<double>& weight) {
@@ -252,7 +223,21 @@ void add_body_load(const Body& body, const ForceDensity& force, Vector& load) {
 }
 
 void add_facet_load(const Body& body, const std::vector<Index>& facets, const ForceDensity& force, Vector& load) {
-  body.mesh->dimension == 2 ? facet_load<2>(body, facets, force, load) : facet_load<3>(body, facets, force, load);
+  const int d = body.space->dimension;
+  const FacetIntegration integration(body);
+  FacetQuadrature quadrature;
+  Vector position(d), density(d);
+  for (const Index facet : facets) {
+    integration.evaluate(facet, quadrature);
+    for (Index q = 0; q < quadrature.measure.size(); ++q) {
+      position = quadrature.positions.col(q);
+      force(position, density);
+      for (Index k = 0; k < quadrature.node_count(); ++k) {
+        load.segment(quadrature.nodes[k] * d, d) +=
+            (quadrature.measure[q] * (*quadrature.displacement)(k, q)) * density;
+      }
+    }
+  }
 }
 
 SparseMatrix expand_to_components(const SparseMatrix& scalar, int dimension) {

@@ -115,21 +115,22 @@ DisplacementSpace make_displacement_space(const Mesh& mesh, int degree) {
   return space;
 }
 
-double extent(const DisplacementSpace& space) {
-  return (space.nodes.rowwise().maxCoeff() - space.nodes.rowwise().minCoeff()).norm();
+double extent(const Points& nodes) {
+  return (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
+}
+
+FacetPlace locate_facet(const DisplacementSpace& space, Index facet) {
+  FacetPlace place{0, facet};
+  while (place.local >= space.facets[place.block].size()) place.local -= space.facets[place.block++].size();
+  return place;
 }
 
 std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::vector<Index> nodes;
   for (const Index facet : facets) {
-    Index local = facet;
-    for (const CellBlock& block : space.facets) {
-      if (local < block.size()) {
-        nodes.insert(nodes.end(), block.cell(local), block.cell(local) + block.nodes_per_cell);
-        break;
-      }
-      local -= block.size();
-    }
+    const FacetPlace place = locate_facet(space, facet);
+    const CellBlock& block = space.facets[place.block];
+    nodes.insert(nodes.end(), block.cell(place.local), block.cell(place.local) + block.nodes_per_cell);
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());

@@ -21,10 +21,17 @@ struct DisplacementSpace {
 };
 
 /// Diagonal of the box around all nodes: the length that "small" is measured against.
-[[nodiscard]] double extent(const DisplacementSpace& space);
+[[nodiscard]] double extent(const Points& nodes);
 
 /// Builds the space on a mesh whose geometry is of degree 1 or 2, independently of `degree`.
 [[nodiscard]] DisplacementSpace make_displacement_space(const Mesh& mesh, int degree);
+
+/// Where a facet, numbered through all blocks, is kept.
+struct FacetPlace {
+  std::size_t block = 0;
+  Index local = 0;
+};
+[[nodiscard]] FacetPlace locate_facet(const DisplacementSpace& space, Index facet);
 
 /// The nodes of the given facets (numbered through all blocks), ascending, each once.
 [[nodiscard]] std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets);

@@ -38,9 +38,9 @@ class FacetIntegration {
 
   /// `facet` is numbered through all blocks. What `result` points to lives as long as this object.
   void evaluate(Index facet, FacetQuadrature& result) const {
-    std::size_t b = 0;
-    Index local = facet;
-    while (local >= body_->mesh->facets[b].size()) local -= body_->mesh->facets[b++].size();
+    const FacetPlace place = locate_facet(*body_->space, facet);
+    const std::size_t b = place.block;
+    const Index local = place.local;
     const CellBlock& geometry = body_->mesh->facets[b];
     const BlockIntegration& integration = rules_[b];
     result.facet = facet;

@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/fem/displacement_space.hpp"
 #include "ricochet/scheme/contact_conditions.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 #include "ricochet/solver/step_solver.hpp"
@@ -62,7 +63,7 @@ class StaticFriction {
     require_friction(problem, velocity, obstacle_at_start(problem, Vector::Zero(problem.dof_count())), 1.0, stage);
     slide_.setZero(stage.slip_offset.size());
     sliding_.assign(static_cast<std::size_t>(problem.contact.size()), 0);
-    const double size = (problem.nodes.rowwise().maxCoeff() - problem.nodes.rowwise().minCoeff()).norm();
+    const double size = extent(problem.nodes);
     for (Index i = 0; i < problem.contact.size(); ++i) {
       const Vector rate = stage.slip_offset.segment(i * tangents(), tangents());
       if (rate.lpNorm<1>() <= stage.slip_offset_rounding[i]) continue;
@@ -164,45 +165,46 @@ std::string role_of_friction(const SemidiscreteProblem& problem, const StaticFri
                   force, role_of_friction(problem, friction)));
 }
 
-/// The equilibrium by proximal point iterations. ε well below the lowest elastic frequency squared converges in a few
-/// of them, wherever the body has to go. Slender or very uneven bodies have lower frequencies: ε is taken down while
-/// the iteration stalls. Friction starts with a larger one: where it is all that holds the body, a small ε leaves a
-/// condensed operator on which stick and slip of single points hardly show beside the rigid motion.
-bool find_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction, StaticEquilibrium& at,
-                      Vector& left_over) {
+/// Iterates until the test is passed. False after many iterations or, with `give_up_early`, as soon as the force left
+/// over is no longer reduced.
+bool converges(ProximalPoint& point, const EquilibriumTest& test, bool give_up_early, StaticEquilibrium& at) {
   constexpr int rounds = 60;
-  const EquilibriumTest test(problem);
-  for (const double fraction : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
-    if (fraction > 1e-8 && !problem.contact.has_friction()) continue;
-    ProximalPoint point(problem, friction, fraction);
-    for (int k = 0; k < rounds; ++k) {
-      point.iterate(at);
-      left_over = point.left_over();
-      if (test.passed(at.displacement, left_over)) return true;
-    }
+  double before = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < rounds; ++k) {
+    point.iterate(at);
+    if (test.passed(at.displacement, point.left_over())) return true;
+    const double now = largest(point.left_over());
+    if (give_up_early && k >= 5 && now > 0.95 * before) return false;
+    before = now;
   }
   return false;
 }
 
-/// As find_equilibrium, for a body that slides: gives up as soon as the force left over is no longer reduced.
-bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction,
-                              StaticEquilibrium& at) {
-  constexpr int rounds = 60;
-  const EquilibriumTest test(problem);
-  ProximalPoint point(problem, friction, 1e-4);
-  double before = std::numeric_limits<double>::infinity();
-  try {
-    for (int k = 0; k < rounds; ++k) {
-      point.iterate(at);
-      if (test.passed(at.displacement, point.left_over())) return true;
-      const double now = largest(point.left_over());
-      if (k >= 5 && now > 0.95 * before) return false;
-      before = now;
-    }
-  } catch (const Error& problem_of_contact) {
-    if (problem_of_contact.kind() != ErrorKind::not_converged) throw;
+/// The equilibrium by proximal point iterations. ε well below the lowest elastic frequency squared converges in a few
+/// of them, wherever the body has to go. Slender or very uneven bodies have lower frequencies: ε is taken down while
+/// the iteration stalls. Friction starts with a larger one: where it is all that holds the body, a small ε leaves a
+/// condensed operator on which stick and slip of single points hardly show beside the rigid motion.
+bool find_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction, const EquilibriumTest& test,
+                      StaticEquilibrium& at, Vector& left_over) {
+  for (const double fraction : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+    if (fraction > 1e-8 && !problem.contact.has_friction()) continue;
+    ProximalPoint point(problem, friction, fraction);
+    if (converges(point, test, false, at)) return true;
+    left_over = point.left_over();
   }
   return false;
+}
+
+/// As find_equilibrium, for a body that slides: most have none.
+bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction,
+                              const EquilibriumTest& test, StaticEquilibrium& at) {
+  ProximalPoint point(problem, friction, 1e-4);
+  try {
+    return converges(point, test, true, at);
+  } catch (const Error& problem_of_contact) {
+    if (problem_of_contact.kind() != ErrorKind::not_converged) throw;
+    return false;
+  }
 }
 
 }  // namespace
@@ -211,13 +213,14 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
   const StaticEquilibrium start{guess, Vector::Zero(problem.contact.size())};
   StaticEquilibrium result = start;
   StaticFriction friction(problem, velocity);
-  bool found = friction.sliding_points() > 0 && find_sliding_equilibrium(problem, friction, result);
+  const EquilibriumTest test(problem);
+  bool found = friction.sliding_points() > 0 && find_sliding_equilibrium(problem, friction, test, result);
   if (!found) {
     result = start;
     friction.leave_out_sliding();
     Vector left_over;
     try {
-      found = find_equilibrium(problem, friction, result, left_over);
+      found = find_equilibrium(problem, friction, test, result, left_over);
     } catch (const Error& problem_of_contact) {
       if (problem_of_contact.kind() != ErrorKind::not_converged) throw;
       throw Error(ErrorKind::not_converged,
