@@ -66,4 +66,15 @@ double size_of_energy_terms(const SemidiscreteProblem& problem, const Vector& di
          u.dot(problem.loads.constant().cwiseAbs());
 }
 
+StepEnd::StepEnd(const CaseRun& run)
+    : displacement(run.state().displacement),
+      velocity(run.state().velocity),
+      acceleration(run.state().acceleration),
+      normal(run.state().forces.normal_reaction),
+      tangential(run.state().forces.tangential_reaction),
+      energy(total_energy(run.problem(), displacement, velocity)),
+      size_of_energy_terms(test_support::size_of_energy_terms(run.problem(), displacement, velocity)) {
+  run.problem().gaps(displacement, run.state().time, gap);
+}
+
 }  // namespace ricochet::test_support

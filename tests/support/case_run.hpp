@@ -49,4 +49,13 @@ double total_energy(const SemidiscreteProblem& problem, const Vector& displaceme
 /// has the elastic energy of its strain alone, but ½uᵀKu sums terms of the size of |u|ᵀ|K||u|.
 double size_of_energy_terms(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity);
 
+/// Everything an identity needs of one end of a step.
+struct StepEnd {
+  Vector displacement, velocity, acceleration, gap, normal, tangential;  ///< gaps and reactions per contact point
+  double energy = 0.0;
+  double size_of_energy_terms = 0.0;
+
+  explicit StepEnd(const CaseRun& run);
+};
+
 }  // namespace ricochet::test_support

@@ -14,40 +14,23 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
-using test_support::size_of_energy_terms;
+using test_support::StepEnd;
 using test_support::thrown_bodies;
 using test_support::thrown_case;
 using test_support::ThrownBody;
 
-/// Everything an identity needs of one end of a step.
-struct End {
-  Vector displacement, velocity, acceleration, gap, force;
-  double energy = 0.0;
-
-  explicit End(CaseRun& run) {
-    const State& state = run.state();
-    displacement = state.displacement;
-    velocity = state.velocity;
-    acceleration = state.acceleration;
-    force = state.forces.normal_reaction;
-    run.problem().gaps(displacement, state.time, gap);
-    energy = test_support::total_energy(run.problem(), displacement, velocity);
-  }
-};
-
 /// Runs a case and compares the energy change of every step with `identity(before, after)`.
 void expect_identity(CaseRun& run, const std::string& name,
-                     const std::function<double(const End&, const End&)>& identity) {
-  End before(run);
+                     const std::function<double(const StepEnd&, const StepEnd&)>& identity) {
+  StepEnd before(run);
   double worst = 0.0;
   double touched = 0.0;
   run.run(
       [&] {
-        const End after(run);
-        const double size = std::max(size_of_energy_terms(run.problem(), before.displacement, before.velocity),
-                                     size_of_energy_terms(run.problem(), after.displacement, after.velocity));
+        const StepEnd after(run);
+        const double size = std::max(before.size_of_energy_terms, after.size_of_energy_terms);
         worst = std::max(worst, std::abs(after.energy - before.energy - identity(before, after)) / size);
-        touched = std::max(touched, after.force.maxCoeff());
+        touched = std::max(touched, after.normal.maxCoeff());
         before = after;
       },
       false);
@@ -60,7 +43,7 @@ TEST(EnergyIdentity, MidpointChangesByMinusTwiceForceTimesFirstGap) {
     for (const char* mass : {"consistent", "lumped"}) {
       CaseRun run(thrown_case(body, mass, "scheme = \"midpoint\"\n"));
       expect_identity(run, body.name + ", " + mass,
-                      [](const End& a, const End& b) { return -2.0 * b.force.dot(a.gap); });
+                      [](const StepEnd& a, const StepEnd& b) { return -2.0 * b.normal.dot(a.gap); });
     }
   }
 }
@@ -69,8 +52,9 @@ TEST(EnergyIdentity, TrapezoidalNewmarkWithAnyMass) {
   for (const ThrownBody& body : thrown_bodies()) {
     for (const char* mass : {"consistent", "lumped", "equivalent"}) {
       CaseRun run(thrown_case(body, mass, "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
-      expect_identity(run, body.name + ", " + mass,
-                      [](const End& a, const End& b) { return 0.5 * (a.force.dot(b.gap) - b.force.dot(a.gap)); });
+      expect_identity(run, body.name + ", " + mass, [](const StepEnd& a, const StepEnd& b) {
+        return 0.5 * (a.normal.dot(b.gap) - b.normal.dot(a.gap));
+      });
     }
   }
 }
@@ -85,16 +69,17 @@ TEST(EnergyIdentity, NewmarkWithAnyParametersAndMass) {
             "scheme = \"newmark\"\nbeta = " + std::to_string(beta) + "\ngamma = " + std::to_string(gamma) + "\n"));
         const SparseMatrix& m = run.problem().mass;
         const SparseMatrix& k = run.problem().internal_force->tangent();
-        expect_identity(
-            run, body.name + ", " + mass + ", beta " + std::to_string(beta),
-            [&, beta, gamma](const End& a, const End& b) {
-              const Vector du = b.displacement - a.displacement;
-              const Vector da = b.acceleration - a.acceleration;
-              const double algorithmic =
-                  b.acceleration.dot(m * b.acceleration) - a.acceleration.dot(m * a.acceleration);
-              return (1.0 - gamma) * a.force.dot(b.gap) - gamma * b.force.dot(a.gap) - (gamma - 0.5) * du.dot(k * du) -
-                     0.5 * h * h * (beta - 0.5 * gamma) * (algorithmic + (2.0 * gamma - 1.0) * da.dot(m * da));
-            });
+        expect_identity(run, body.name + ", " + mass + ", beta " + std::to_string(beta),
+                        [&, beta, gamma](const StepEnd& a, const StepEnd& b) {
+                          const Vector du = b.displacement - a.displacement;
+                          const Vector da = b.acceleration - a.acceleration;
+                          const double algorithmic =
+                              b.acceleration.dot(m * b.acceleration) - a.acceleration.dot(m * a.acceleration);
+                          return (1.0 - gamma) * a.normal.dot(b.gap) - gamma * b.normal.dot(a.gap) -
+                                 (gamma - 0.5) * du.dot(k * du) -
+                                 0.5 * h * h * (beta - 0.5 * gamma) *
+                                     (algorithmic + (2.0 * gamma - 1.0) * da.dot(m * da));
+                        });
       }
     }
   }
@@ -111,8 +96,8 @@ TEST(EnergyIdentity, KlrConservesTheHalfStepEnergy) {
         const double energy = test_support::total_energy(run.problem(), displacement, velocity);
         if (run.state().step == 0) first = energy;
         worst = std::max(worst, std::abs(energy / first - 1.0));
-        const End end(run);
-        touched = std::max(touched, end.force.maxCoeff());
+        const StepEnd end(run);
+        touched = std::max(touched, end.normal.maxCoeff());
         penetration = std::max(penetration, -end.gap.minCoeff());
       });
       EXPECT_LT(worst, 1e-11) << body.name << ", " << mass;

@@ -14,6 +14,7 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::StepEnd;
 using test_support::thrown_bodies;
 using test_support::thrown_case;
 using test_support::ThrownBody;
@@ -185,22 +186,6 @@ TEST(FrictionLaw, HoldsInACornerBetweenTwoObstacles) {
   }
 }
 
-/// One end of a step.
-struct End {
-  Vector displacement, acceleration, gap, normal, tangential;
-  double energy = 0.0;
-
-  explicit End(CaseRun& run) {
-    const State& state = run.state();
-    displacement = state.displacement;
-    acceleration = state.acceleration;
-    normal = state.forces.normal_reaction;
-    tangential = state.forces.tangential_reaction;
-    run.problem().gaps(displacement, state.time, gap);
-    energy = test_support::total_energy(run.problem(), displacement, state.velocity);
-  }
-};
-
 // The frictionless identities with the friction work −[(1−γ) r_T0 + γ r_T1]·B_T ΔU added.
 TEST(FrictionEnergy, MidpointAndNewmarkIdentitiesWithFriction) {
   for (const ThrownBody& body : thrown_bodies()) {
@@ -209,19 +194,18 @@ TEST(FrictionEnergy, MidpointAndNewmarkIdentitiesWithFriction) {
       const bool midpoint = method.gamma == 1.0;
       CaseRun run(thrown_case(body, method.mass, method.scheme, "friction = 0.3\n"));
       const std::string name = body.name + ", " + method.mass + ", " + method.scheme;
-      End before(run);
+      StepEnd before(run);
       double worst = 0.0, friction_total = 0.0, largest_gain = 0.0;
       run.run(
           [&] {
-            const End after(run);
+            const StepEnd after(run);
             const Vector slip = run.problem().contact.tangential_trace * (after.displacement - before.displacement);
             const double contact = midpoint ? -2.0 * after.normal.dot(before.gap)
                                             : 0.5 * (before.normal.dot(after.gap) - after.normal.dot(before.gap));
             const double friction =
                 midpoint ? -after.tangential.dot(slip) : -0.5 * (before.tangential + after.tangential).dot(slip);
             friction_total += friction;
-            const double size =
-                test_support::size_of_energy_terms(run.problem(), after.displacement, run.state().velocity);
+            const double size = after.size_of_energy_terms;
             if (midpoint) largest_gain = std::max(largest_gain, friction / size);
             worst = std::max(worst, std::abs(after.energy - before.energy - contact - friction) / size);
             before = after;

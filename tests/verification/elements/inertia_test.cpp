@@ -7,6 +7,7 @@
 
 #include "ricochet/mass/mass.hpp"
 #include "support/box_mesh.hpp"
+#include "support/convergence.hpp"
 
 /// @file Total mass, centre of gravity and second moments, PᵀMP with P = (1, x, y[, z]), against exact values.
 namespace ricochet::test_support {
@@ -93,19 +94,13 @@ TEST_P(Inertia, OfADiscOrBallConverges) {
   const int d = kind.dimension();
   const Vector centre = Vector::LinSpaced(d, 0.3, -0.2);
   const Matrix exact = exact_ball_moments(centre);
-  std::vector<double> errors;
-  std::printf("%-42s", kind.label().c_str());
+  test_support::Convergence errors(kind.label());
   for (const int count : d == 2 ? std::vector<int>{4, 8, 16, 32} : std::vector<int>{2, 4, 8}) {
     const auto test = make_body(counts_of(d, count), ball_map(centre));
-    errors.push_back(relative_error(mass_moments(consistent_mass(*test), test->space.nodes), exact));
-    const std::size_t n = errors.size();
-    std::printf("  %.2e", errors.back());
-    if (n > 1) std::printf(" (%.2f)", std::log2(errors[n - 2] / errors[n - 1]));
+    errors.add(relative_error(mass_moments(consistent_mass(*test), test->space.nodes), exact));
   }
-  std::printf("\n");
-  const std::size_t n = errors.size();
   const double expected = kind.geometry_degree == 2 && kind.displacement_degree == 2 ? 3.0 : 2.0;
-  EXPECT_GE(std::log2(errors[n - 2] / errors[n - 1]), expected - 0.25);
+  EXPECT_GE(errors.last_order(), expected - 0.25);
 }
 
 /// Every construction against the consistent mass, on the same discrete body, with a side as contact boundary.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "support/box_mesh.hpp"
+#include "support/convergence.hpp"
 
 /// @file Nodal loads of body forces and tractions: their resultant and moment about the origin.
 namespace ricochet::test_support {
@@ -132,8 +133,7 @@ TEST_P(NodalLoads, OnACircleOrSphereConverge) {
   const ElementKind& kind = GetParam();
   const int d = kind.dimension();
   const double area = d == 2 ? 2.0 * M_PI : 4.0 * M_PI;
-  std::vector<double> errors;
-  std::printf("%-42s", kind.label().c_str());
+  test_support::Convergence errors(kind.label());
   for (const int count : d == 2 ? std::vector<int>{4, 8, 16, 32} : std::vector<int>{2, 4, 8, 16}) {
     const auto test = make_meshed_body(make_box_mesh({kind.shape, std::vector<int>(static_cast<std::size_t>(d), count),
                                                       kind.geometry_degree, 0.15, ball_map(Vector::Zero(d))}),
@@ -146,16 +146,11 @@ TEST_P(NodalLoads, OnACircleOrSphereConverge) {
     add_facet_load(
         test->body, all, [](const Vector& x, Vector& force) { force = x; }, linear);
     const Matrix moment = resultant(test->space, linear).first_moment;
-    errors.push_back(std::max((resultant(test->space, constant).force / area - Vector::Ones(d)).cwiseAbs().maxCoeff(),
-                              (d * moment / area - Matrix::Identity(d, d)).cwiseAbs().maxCoeff()));
-    const std::size_t n = errors.size();
-    std::printf("  %.2e", errors.back());
-    if (n > 1) std::printf(" (%.2f)", std::log2(errors[n - 2] / errors[n - 1]));
+    errors.add(std::max((resultant(test->space, constant).force / area - Vector::Ones(d)).cwiseAbs().maxCoeff(),
+                        (d * moment / area - Matrix::Identity(d, d)).cwiseAbs().maxCoeff()));
   }
-  std::printf("\n");
-  const std::size_t n = errors.size();
   const double expected = kind.geometry_degree == 2 && kind.displacement_degree == 2 ? 3.0 : 2.0;
-  EXPECT_GE(std::log2(errors[n - 2] / errors[n - 1]), expected - 0.25);
+  EXPECT_GE(errors.last_order(), expected - 0.25);
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, NodalLoads, testing::ValuesIn(all_element_kinds()),
