@@ -2,6 +2,10 @@
 
 #include "ricochet/linear_algebra/blas_threads.hpp"
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 // Fortran interfaces of BLAS and LAPACK, both in OpenBLAS; matrices by columns.
 extern "C" {
 void dtrsm_(const char* side, const char* part, const char* transposed, const char* unit, const int* rows,
@@ -12,6 +16,12 @@ void dsyrk_(const char* part, const char* transposed, const int* size, const int
 void dgetrf_(const int* rows, const int* columns, double* a, const int* a_stride, int* pivots, int* info);
 void dgetrs_(const char* transposed, const int* size, const int* columns, const double* a, const int* a_stride,
              const int* pivots, double* b, const int* b_stride, int* info);
+void sgetrf_(const int* rows, const int* columns, float* a, const int* a_stride, int* pivots, int* info);
+void sgetrs_(const char* transposed, const int* size, const int* columns, const float* a, const int* a_stride,
+             const int* pivots, float* b, const int* b_stride, int* info);
+void dgemv_(const char* transposed, const int* rows, const int* columns, const double* factor, const double* a,
+            const int* a_stride, const double* x, const int* x_stride, const double* y_factor, double* y,
+            const int* y_stride);
 }
 
 namespace ricochet {
@@ -19,6 +29,28 @@ namespace ricochet {
 namespace {
 constexpr double one = 1.0;
 constexpr double zero = 0.0;
+
+/// Entries that decay with distance fall below the normal range of single precision, where arithmetic is a hundred
+/// times slower. They are zero to what is asked of that precision.
+class TinyIsZero {
+ public:
+  TinyIsZero(const TinyIsZero&) = delete;
+  TinyIsZero& operator=(const TinyIsZero&) = delete;
+#if defined(__SSE__)
+  TinyIsZero() : before_(_mm_getcsr()) {
+    _mm_setcsr(before_ | flush_results | flush_operands);
+  }
+  ~TinyIsZero() {
+    _mm_setcsr(before_);
+  }
+
+ private:
+  static constexpr unsigned flush_results = 0x8000, flush_operands = 0x0040;
+  unsigned before_;
+#else
+  TinyIsZero() = default;
+#endif
+};
 }  // namespace
 
 void solve_lower_triangular(const Matrix& factor, Matrix& columns) {
@@ -59,6 +91,37 @@ void DenseLu::solve(const Vector& right, Vector& x) const {
 
 double DenseLu::smallest_pivot() const {
   return factors_.size() > 0 ? factors_.diagonal().cwiseAbs().minCoeff() : 1.0;
+}
+
+bool SingleLu::compute(const Matrix& matrix) {
+  use_one_blas_thread();
+  const TinyIsZero mode;
+  factors_ = matrix.cast<float>();
+  const int size = static_cast<int>(matrix.rows());
+  permutation_.resize(static_cast<std::size_t>(size));
+  int info = 0;
+  if (size > 0) sgetrf_(&size, &size, factors_.data(), &size, permutation_.data(), &info);
+  return info == 0 && factors_.diagonal().allFinite();
+}
+
+void SingleLu::solve(const Vector& right, Vector& x) const {
+  const int size = static_cast<int>(right.size());
+  const int single = 1;
+  int info = 0;
+  const TinyIsZero mode;
+  solution_ = right.cast<float>();
+  if (size > 0)
+    sgetrs_("N", &size, &single, factors_.data(), &size, permutation_.data(), solution_.data(), &size, &info);
+  x = solution_.cast<double>();
+}
+
+void multiply_dense(const Matrix& matrix, const Vector& x, Vector& y) {
+  use_one_blas_thread();
+  y.resize(matrix.rows());
+  const int rows = static_cast<int>(matrix.rows());
+  const int columns = static_cast<int>(matrix.cols());
+  const int stride = 1;
+  if (rows > 0) dgemv_("N", &rows, &columns, &one, matrix.data(), &rows, x.data(), &stride, &zero, y.data(), &stride);
 }
 
 }  // namespace ricochet

@@ -29,4 +29,22 @@ class DenseLu {
   std::vector<int> permutation_;
 };
 
+/// The same in single precision: twice as fast, and good for the first six digits. A preconditioner.
+class SingleLu {
+ public:
+  /// Rounds A and factorizes it. False: not finite, or singular in single precision.
+  bool compute(const Matrix& matrix);
+  /// x ≈ A⁻¹ b.
+  void solve(const Vector& right, Vector& x) const;
+  [[nodiscard]] Index size() const { return factors_.rows(); }
+
+ private:
+  Eigen::MatrixXf factors_;
+  std::vector<int> permutation_;
+  mutable Eigen::VectorXf solution_;
+};
+
+/// y = A x.
+void multiply_dense(const Matrix& matrix, const Vector& x, Vector& y);
+
 }  // namespace ricochet

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/base/contact_status.hpp"
 #include "ricochet/base/types.hpp"
-#include "ricochet/scheme/contact_status.hpp"
 
 /// @file What a time scheme and a step solver say to each other: a step is one or more contact problems.
 ///

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/base/contact_status.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/contact_status.hpp"
 
 /// @file The state of a run between two steps: all that the next step depends on.
 namespace ricochet {

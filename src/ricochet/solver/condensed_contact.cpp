@@ -16,20 +16,26 @@ CondensedContact::CondensedContact(const SemidiscreteProblem& problem, const std
   fill_columns(position, trailing_factor);
   coefficient_ = problem.contact.friction_coefficient;
   bound_ = scale * problem.contact.friction_bound;
+  contact_.friction_coefficient = coefficient_;
+  contact_.friction_bound = bound_;
+  contact_.reaction_scale = scale;
+  contact_.offset.setZero(contact_.first.back());
+  solver_ = make_contact_solver();
+  solver_->analyse(contact_);
 }
 
 void CondensedContact::number_rows() {
   const ContactBoundary& contact = problem_.contact;
-  first_.assign(1, 0);
+  contact_.first.assign(1, 0);
   for (Index i = 0; i < contact.size(); ++i) {
     const bool has_friction = contact.friction_coefficient[i] > 0.0 || contact.friction_bound[i] > 0.0;
-    first_.push_back(first_.back() + (has_friction ? problem_.dimension : 1));
+    contact_.first.push_back(contact_.first.back() + (has_friction ? problem_.dimension : 1));
   }
 }
 
 void CondensedContact::fill_columns(const std::vector<int>& position, const Matrix& trailing_factor) {
   const ContactBoundary& contact = problem_.contact;
-  columns_.setZero(trailing_factor.rows(), first_.back());
+  columns_.setZero(trailing_factor.rows(), contact_.first.back());
   std::vector<Eigen::Triplet<double>> supported;
   const std::vector<Index>& supported_dofs = problem_.supports.dofs();
   const auto enter = [&](const SparseRowMatrix& matrix, Index row_of_matrix, Index row) {
@@ -42,49 +48,48 @@ void CondensedContact::fill_columns(const std::vector<int>& position, const Matr
     }
   };
   for (Index i = 0; i < contact.size(); ++i) {
-    const Index row = first_[static_cast<std::size_t>(i)];
+    const Index row = contact_.first[static_cast<std::size_t>(i)];
     enter(contact.gap_operator, i, row);
-    for (Index k = 1; row + k < first_[static_cast<std::size_t>(i + 1)]; ++k) {
+    for (Index k = 1; row + k < contact_.first[static_cast<std::size_t>(i + 1)]; ++k) {
       enter(contact.tangential_trace, i * (problem_.dimension - 1) + k - 1, row + k);
     }
   }
-  supported_.resize(first_.back(), problem_.supports.size());
+  supported_.resize(contact_.first.back(), problem_.supports.size());
   supported_.setFromTriplets(supported.begin(), supported.end());
-  operator_.setZero(first_.back(), first_.back());
-  if (columns_.size() == 0) return;  // no contact, or none of its dofs in this stage
-  solve_lower_triangular(trailing_factor, columns_);
-  operator_ = gram_matrix(columns_);
-  hold_directions_without_trace();
+  if (columns_.size() > 0) solve_lower_triangular(trailing_factor, columns_);
+  Matrix w = gram_matrix(columns_);
+  hold_directions_without_trace(w);
+  contact_.contact_operator = make_dense_operator(std::move(w));
 }
 
 /// Where B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
 /// makes the friction along it zero.
-void CondensedContact::hold_directions_without_trace() {
+void CondensedContact::hold_directions_without_trace(Matrix& w) const {
   for (Index i = 0; i < problem_.contact.size(); ++i) {
-    const Index row = first_[static_cast<std::size_t>(i)];
-    for (Index k = row + 1; k < first_[static_cast<std::size_t>(i + 1)]; ++k) {
-      if (operator_(k, k) == 0.0) operator_(k, k) = operator_(row, row);
+    const Index row = contact_.first[static_cast<std::size_t>(i)];
+    for (Index k = row + 1; k < contact_.first[static_cast<std::size_t>(i + 1)]; ++k) {
+      if (w(k, k) == 0.0) w(k, k) = w(row, row);
     }
   }
 }
 
 void CondensedContact::find_offsets(const Stage& stage, const Eigen::Ref<Vector>& trailing) {
-  offset_.noalias() = columns_.transpose() * trailing;
-  if (supported_.nonZeros() > 0) offset_.noalias() += supported_ * stage.prescribed;
-  offset_rounding_.resize(offset_.size());
+  contact_.offset.noalias() = columns_.transpose() * trailing;
+  if (supported_.nonZeros() > 0) contact_.offset.noalias() += supported_ * stage.prescribed;
+  contact_.offset_rounding.resize(contact_.offset.size());
   const Index tangents = problem_.dimension - 1;
   for (Index i = 0; i < problem_.contact.size(); ++i) {
-    const Index row = first_[static_cast<std::size_t>(i)];
-    const Index count = first_[static_cast<std::size_t>(i + 1)] - row - 1;
-    offset_[row] += stage.gap_offset[i] / stage.gap_factor;
-    offset_rounding_[row] = stage.gap_offset_rounding[i] / stage.gap_factor;
+    const Index row = contact_.first[static_cast<std::size_t>(i)];
+    const Index count = contact_.first[static_cast<std::size_t>(i + 1)] - row - 1;
+    contact_.offset[row] += stage.gap_offset[i] / stage.gap_factor;
+    contact_.offset_rounding[row] = stage.gap_offset_rounding[i] / stage.gap_factor;
     if (count == 0) continue;
     if (stage.slip_offset.size() == 0) {
-      offset_rounding_.segment(row + 1, count).setZero();
+      contact_.offset_rounding.segment(row + 1, count).setZero();
       continue;
     }
-    offset_.segment(row + 1, count) += stage.slip_offset.segment(i * tangents, tangents) / stage.slip_factor;
-    offset_rounding_.segment(row + 1, count).setConstant(stage.slip_offset_rounding[i] / stage.slip_factor);
+    contact_.offset.segment(row + 1, count) += stage.slip_offset.segment(i * tangents, tangents) / stage.slip_factor;
+    contact_.offset_rounding.segment(row + 1, count).setConstant(stage.slip_offset_rounding[i] / stage.slip_factor);
   }
 }
 
@@ -98,43 +103,44 @@ void CondensedContact::solve(const Stage& stage, Eigen::Ref<Vector> trailing, St
   if (stage.compliance.size() > 0)
     throw Error(ErrorKind::invalid_input, "contact compliance is not available in this version");
   find_offsets(stage, trailing);
-  friction_ ? solve_with_friction(stage, solution) : solve_frictionless(stage, solution);
-  const Vector& reaction = friction_ ? coulomb_solution_.reaction : frictionless_.reaction;
+  choose_friction(stage);
+  solve_contact();
+  const Vector& reaction = contact_solution_.reaction;
   for (Index row = 0; row < reaction.size(); ++row) {
     if (reaction[row] != 0.0) trailing += reaction[row] * columns_.col(row);
   }
-}
-
-void CondensedContact::solve_frictionless(const Stage& stage, StageSolution& solution) {
-  active_set_.solve({&operator_, &offset_, &offset_rounding_, &stage.eligible}, frictionless_);
-  if (!frictionless_.solved) {
-    // Conditions that depend on one another (an unstable space of multipliers) leave W singular: reactions are then not
-    // unique, and Gauss-Seidel still finds some.
-    solve_coulomb(stage);
-    frictionless_.reaction = coulomb_solution_.reaction;
-    frictionless_.iterations += coulomb_solution_.iterations;
-  }
-  solution.iterations = frictionless_.iterations;
-  solution.normal_reaction = frictionless_.reaction / scale_;
-  for (Index i = 0; i < problem_.contact.size(); ++i) {
-    if (solution.normal_reaction[i] > 0.0) solution.contact_status[static_cast<std::size_t>(i)] = ContactStatus::closed;
+  solution.iterations = contact_solution_.iterations;
+  solution.contact_status = contact_solution_.status;
+  const Index tangents = problem_.dimension - 1;
+  for (Index i = 0; i < points; ++i) {
+    const Index row = contact_.first[static_cast<std::size_t>(i)];
+    solution.normal_reaction[i] = reaction[row] / scale_;
+    for (Index k = 1; row + k < contact_.first[static_cast<std::size_t>(i + 1)]; ++k)
+      solution.tangential_reaction[i * tangents + k - 1] = -reaction[row + k] / scale_;
   }
 }
 
 /// With friction in stages that have a slip rate, and at points where they do not leave it out.
-void CondensedContact::solve_coulomb(const Stage& stage) {
-  stage_coefficient_ = coefficient_;
-  stage_bound_ = bound_;
+void CondensedContact::choose_friction(const Stage& stage) {
+  contact_.eligible = stage.eligible;
+  if (!friction_) return;
+  contact_.friction_coefficient = coefficient_;
+  contact_.friction_bound = bound_;
   for (Index i = 0; i < coefficient_.size(); ++i) {
     const bool left_out = !stage.frictionless.empty() && stage.frictionless[static_cast<std::size_t>(i)] != 0;
     if (stage.slip_offset.size() > 0 && !left_out) continue;
-    stage_coefficient_[i] = 0.0;
-    stage_bound_[i] = 0.0;
+    contact_.friction_coefficient[i] = 0.0;
+    contact_.friction_bound[i] = 0.0;
   }
-  coulomb_.solve(
-      {&operator_, &offset_, &offset_rounding_, &first_, &stage.eligible, &stage_coefficient_, &stage_bound_},
-      coulomb_solution_);
-  if (coulomb_solution_.solved) return;
+}
+
+void CondensedContact::solve_contact() {
+  solver_->solve(contact_, {}, contact_solution_);
+  if (!contact_solution_.solved()) throw_not_solved();
+  if (observer_) observer_(contact_, contact_solution_);
+}
+
+void CondensedContact::throw_not_solved() const {
   const bool tresca = ((bound_.array() > 0.0) && (coefficient_.array() == 0.0)).any();
   const char* const advice = tresca ? "; with a friction_bound alone a step need not have a solution: give a friction "
                                       "coefficient beside it"
@@ -143,22 +149,8 @@ void CondensedContact::solve_coulomb(const Stage& stage) {
       ErrorKind::not_converged,
       fmt::format("the contact problem{} of {} points was not solved in {} iterations (relative residual {:.3g}): "
                   "{}{}",
-                  friction_ ? " with friction" : "", problem_.contact.size(), coulomb_solution_.iterations,
-                  coulomb_solution_.residual, coulomb_solution_.reason, advice));
-}
-
-void CondensedContact::solve_with_friction(const Stage& stage, StageSolution& solution) {
-  solve_coulomb(stage);
-  solution.iterations = coulomb_solution_.iterations;
-  solution.contact_status = coulomb_solution_.status;
-  const Index tangents = problem_.dimension - 1;
-  for (Index i = 0; i < problem_.contact.size(); ++i) {
-    const Index row = first_[static_cast<std::size_t>(i)];
-    solution.normal_reaction[i] = coulomb_solution_.reaction[row] / scale_;
-    for (Index k = 1; row + k < first_[static_cast<std::size_t>(i + 1)]; ++k) {
-      solution.tangential_reaction[i * tangents + k - 1] = -coulomb_solution_.reaction[row + k] / scale_;
-    }
-  }
+                  friction_ ? " with friction" : "", problem_.contact.size(), contact_solution_.iterations,
+                  contact_solution_.residual, contact_solution_.reason, advice));
 }
 
 }  // namespace ricochet

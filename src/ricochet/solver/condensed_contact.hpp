@@ -1,11 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/stage.hpp"
-#include "ricochet/solver/active_set.hpp"
-#include "ricochet/solver/coulomb_solver.hpp"
+#include "ricochet/solver/contact/contact_solver.hpp"
 
 /// @file The contact conditions of a stage, condensed on the contact dofs.
 ///
@@ -24,30 +24,28 @@ class CondensedContact {
 
   /// Finds the reactions and adds Y ρ to y_c. Throws Error(not_converged).
   void solve(const Stage& stage, Eigen::Ref<Vector> trailing, StageSolution& solution);
+  /// Called after every contact problem that has been solved; none if empty.
+  void observe(ContactObserver observer) { observer_ = std::move(observer); }
 
  private:
   void number_rows();
   void fill_columns(const std::vector<int>& position, const Matrix& trailing_factor);
-  void hold_directions_without_trace();
+  void hold_directions_without_trace(Matrix& w) const;
   void find_offsets(const Stage& stage, const Eigen::Ref<Vector>& trailing);
-  void solve_frictionless(const Stage& stage, StageSolution& solution);
-  void solve_coulomb(const Stage& stage);
-  void solve_with_friction(const Stage& stage, StageSolution& solution);
+  void choose_friction(const Stage& stage);
+  void solve_contact();
+  [[noreturn]] void throw_not_solved() const;
 
   const SemidiscreteProblem& problem_;
   double scale_;
   bool friction_;
-  std::vector<Index> first_;                ///< per point its first row; points + 1
-  SparseRowMatrix supported_;               ///< H on supported dofs: rows × supports
-  Matrix columns_;                          ///< Y, contact dofs × rows
-  Matrix operator_;                         ///< W, rows × rows
-  Vector coefficient_, bound_;              ///< of friction, per point; the bound in units of ρ
-  Vector stage_coefficient_, stage_bound_;  ///< the same, zero where a stage leaves friction out
-  ActiveSetSolver active_set_;
-  CoulombSolver coulomb_;
-  ComplementaritySolution frictionless_;
-  CoulombSolution coulomb_solution_;
-  Vector offset_, offset_rounding_;
+  SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
+  Matrix columns_;              ///< Y, contact dofs × rows
+  Vector coefficient_, bound_;  ///< of friction, per point; the bound in units of r
+  ContactProblem contact_;      ///< W, q, and the friction of the stage
+  std::unique_ptr<ContactSolver> solver_;
+  ContactSolution contact_solution_;
+  ContactObserver observer_;
 };
 
 }  // namespace ricochet

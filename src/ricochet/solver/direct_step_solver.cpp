@@ -30,6 +30,7 @@ class DirectStage {
   DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients);
 
   void solve(const Stage& stage, StageSolution& solution);
+  void observe_contact(const ContactObserver& observer) { contact_->observe(observer); }
   [[nodiscard]] std::size_t factor_entries() const { return factor_->factor_entries(); }
 
  private:
@@ -152,6 +153,9 @@ class DirectStepSolver final : public StepSolver {
   }
   void solve(std::size_t number, const Stage& stage, StageSolution& solution) override {
     stages_.at(number)->solve(stage, solution);
+  }
+  void observe_contact(const ContactObserver& observer) override {
+    for (const auto& stage : stages_) stage->observe_contact(observer);
   }
   [[nodiscard]] std::size_t factor_entries() const override {
     std::size_t sum = 0;

@@ -5,6 +5,7 @@
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/stage.hpp"
+#include "ricochet/solver/contact/contact_solver.hpp"
 
 /// @file Solving the stages of a step. A step solver knows nothing of time.
 namespace ricochet {
@@ -14,6 +15,8 @@ class StepSolver {
   virtual ~StepSolver() = default;
   /// Solves stage `number` (of the operators given at the start). Throws Error(not_converged) which says what failed.
   virtual void solve(std::size_t number, const Stage& stage, StageSolution& solution) = 0;
+  /// Shows every contact problem that is solved from now on, and its solution, to the observer; none if it is empty.
+  virtual void observe_contact(const ContactObserver& observer) = 0;
   /// Entries of all factors, for the summary.
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
 };

@@ -1,4 +1,4 @@
-#include "ricochet/solver/coulomb_point.hpp"
+#include "ricochet/solver/contact/contact_point.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,13 +6,13 @@
 #include <cmath>
 #include <random>
 
-#include "support/coulomb_problems.hpp"
+#include "support/contact_problems.hpp"
 
 namespace ricochet {
 namespace {
 
-CoulombPoint make_point(Index size, double coefficient, double bound = 0.0) {
-  CoulombPoint point;
+ContactPoint make_point(Index size, double coefficient, double bound = 0.0) {
+  ContactPoint point;
   point.size = size;
   point.coefficient = coefficient;
   point.bound = bound;
@@ -31,23 +31,33 @@ void expect_near(const PointVector& found, const PointVector& expected, double t
       << "found " << found.transpose() << ", expected " << expected.transpose();
 }
 
-TEST(CoulombPoint, IsOpenWhereNothingPressesIt) {
+PaddedVector pad(const PointVector& rows) {
+  PaddedVector result = PaddedVector::Zero();
+  result.head(rows.size()) = rows;
+  return result;
+}
+
+PointVector solve_point(const ContactPoint& point, const PointMatrix& w, const PointVector& q) {
+  return ricochet::solve_point(point, make_point_operator(w), pad(q)).head(point.size);
+}
+
+TEST(ContactPoint, IsOpenWhereNothingPressesIt) {
   const PointMatrix w = Eigen::Matrix3d::Identity();
   EXPECT_EQ(solve_point(make_point(3, 0.5), w, vector({0.1, 1.0, -1.0})), vector({0.0, 0.0, 0.0}));
   EXPECT_EQ(solve_point(make_point(3, 0.5), w, vector({0.0, 1.0, -1.0})), vector({0.0, 0.0, 0.0}));
 }
 
-TEST(CoulombPoint, IsFrictionlessWithoutTangentsOrWithoutCoefficient) {
+TEST(ContactPoint, IsFrictionlessWithoutTangentsOrWithoutCoefficient) {
   EXPECT_EQ(solve_point(make_point(1, 0.5), PointMatrix::Constant(1, 1, 4.0), vector({-2.0})), vector({0.5}));
   PointMatrix w(2, 2);
   w << 4.0, 1.0, 1.0, 3.0;
   EXPECT_EQ(solve_point(make_point(2, 0.0), w, vector({-2.0, 7.0})), vector({0.5, 0.0}));
 }
 
-TEST(CoulombPoint, SticksAndSlipsInClosedFormInTwoDimensions) {
+TEST(ContactPoint, SticksAndSlipsInClosedFormInTwoDimensions) {
   PointMatrix w(2, 2);
   w << 2.0, 0.5, 0.5, 1.0;
-  const CoulombPoint point = make_point(2, 0.4);
+  const ContactPoint point = make_point(2, 0.4);
   // W (1, 0.3) = (2.15, 0.8): stick, 0.3 < 0.4.
   expect_near(solve_point(point, w, vector({-2.15, -0.8})), vector({1.0, 0.3}));
   // Slip: r_N = −q_N/(W_NN ± F W_NT), u_T against ρ_T.
@@ -59,14 +69,14 @@ TEST(CoulombPoint, SticksAndSlipsInClosedFormInTwoDimensions) {
   expect_near(solve_point(point, w, vector({-2.2, -0.9 + 1e-13})), vector({1.0, 0.4}), 1e-12);
 }
 
-TEST(CoulombPoint, SlipsAgainstTheSlipOfAnIsotropicPoint) {
+TEST(ContactPoint, SlipsAgainstTheSlipOfAnIsotropicPoint) {
   const PointMatrix w = PointMatrix(Eigen::Vector3d(2.0, 3.0, 3.0).asDiagonal());
   const PointVector rho = solve_point(make_point(3, 0.5), w, vector({-4.0, 9.0, -12.0}));
   expect_near(rho, vector({2.0, -0.6, 0.8}));
 }
 
 /// q from a chosen ρ on the cone and a chosen κ, for W as oblique as a definite matrix can be.
-TEST(CoulombPoint, FindsTheSlipItWasMadeFrom) {
+TEST(ContactPoint, FindsTheSlipItWasMadeFrom) {
   std::mt19937 random(5);
   int sticking = 0;
   for (int k = 0; k < 2000; ++k) {
@@ -100,7 +110,7 @@ TEST(CoulombPoint, FindsTheSlipItWasMadeFrom) {
   EXPECT_LE(sticking, 20);
 }
 
-TEST(CoulombPoint, SlipsWithTrescasBound) {
+TEST(ContactPoint, SlipsWithTrescasBound) {
   PointMatrix w(2, 2);
   w << 2.0, 0.5, 0.5, 1.0;
   expect_near(solve_point(make_point(2, 0.0, 3.0), w, vector({-5.5, -20.0})), vector({2.0, 3.0}));
@@ -110,7 +120,7 @@ TEST(CoulombPoint, SlipsWithTrescasBound) {
   expect_near(solve_point(make_point(2, 0.0, 3.0), w, vector({-0.5, -20.0})), vector({0.0, 1.0}));
 }
 
-TEST(CoulombPoint, SlipsWithTheLesserOfCoulombsFrictionAndTheBound) {
+TEST(ContactPoint, SlipsWithTheLesserOfCoulombsFrictionAndTheBound) {
   PointMatrix w(2, 2);
   w << 2.0, 0.5, 0.5, 1.0;
   // r_N = 2, so F r_N is 4 above the bound of 3, and 1 below it.
@@ -124,17 +134,17 @@ TEST(CoulombPoint, SlipsWithTheLesserOfCoulombsFrictionAndTheBound) {
   EXPECT_NEAR(2.0 * found[0] + 0.5 * found[1] - 0.5, 0.0, 1e-15);
 }
 
-TEST(CoulombPoint, SlipsWhereTangentialComplianceIsMissing) {
+TEST(ContactPoint, SlipsWhereTangentialComplianceIsMissing) {
   PointMatrix w = PointMatrix::Zero(3, 3);
   w(0, 0) = 2.0;
   expect_near(solve_point(make_point(3, 0.5), w, vector({-2.0, 3.0, -4.0})), vector({1.0, -0.3, 0.4}));
   expect_near(solve_point(make_point(3, 0.5), w, vector({-2.0, 0.0, 0.0})), vector({1.0, 0.0, 0.0}));
 }
 
-TEST(CoulombPoint, ResidualIsZeroOnTheLawOnly) {
-  const CoulombPoint point = make_point(3, 0.5);
-  const auto residual = [&](std::initializer_list<double> rho, std::initializer_list<double> u) {
-    return natural_residual(point, vector(rho), vector(u));
+TEST(ContactPoint, AlartCurnierResidualIsZeroOnTheLawOnly) {
+  const ContactPoint point = make_point(3, 0.5);
+  const auto residual = [&](std::initializer_list<double> r, std::initializer_list<double> u) {
+    return alart_curnier_residual(point, 1.0, pad(vector(r)), pad(vector(u)));
   };
   EXPECT_EQ(residual({0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}), 0.0);
   EXPECT_EQ(residual({2.0, 0.3, 0.4}, {0.0, 0.0, 0.0}), 0.0);
@@ -144,6 +154,39 @@ TEST(CoulombPoint, ResidualIsZeroOnTheLawOnly) {
   EXPECT_EQ(residual({2.0, 0.3, 0.4}, {0.0, 0.01, 0.0}), 0.01);         // slips inside the cone
   EXPECT_NEAR(residual({2.0, 0.6, 0.8}, {0.0, 6.0, 8.0}), 2.0, 1e-15);  // friction along the slip
   EXPECT_NEAR(residual({2.0, 1.2, 1.6}, {0.0, 0.0, 0.0}), 1.0, 1e-15);  // beyond the cone
+}
+
+TEST(ContactPoint, NaturalMapIsZeroOnTheLawOnly) {
+  ContactPoint point = make_point(3, 0.5);
+  point.diagonal = 4.0;
+  const auto map = [&](std::initializer_list<double> r, std::initializer_list<double> u) {
+    return natural_map(point, pad(vector(r)), pad(vector(u)));
+  };
+  EXPECT_EQ(map({0.0, 0.0, 0.0}, {1.0, 2.0, 3.0}).norm(), 0.0);
+  EXPECT_EQ(map({2.0, 0.3, 0.4}, {0.0, 0.0, 0.0}).norm(), 0.0);
+  EXPECT_NEAR(map({2.0, 0.6, 0.8}, {0.0, -6.0, -8.0}).norm(), 0.0, 1e-15);
+  EXPECT_EQ(map({0.0, 0.0, 0.0}, {0.0, 2.0, 3.0}).norm(), 0.0);
+  // Stick inside the cone: û/w is all that is wrong.
+  EXPECT_EQ(map({2.0, 0.3, 0.4}, {0.0, 0.04, 0.0}), PaddedVector(0.005, 0.01, 0.0));
+  // A pull, a penetration, friction along the slip, a reaction beyond the cone.
+  EXPECT_GT(map({2.0, 0.0, 0.0}, {1.0, 0.0, 0.0}).norm(), 0.1);
+  EXPECT_EQ(map({0.0, 0.0, 0.0}, {-4.0, 0.0, 0.0}), PaddedVector(-1.0, 0.0, 0.0));
+  EXPECT_GT(map({2.0, 0.6, 0.8}, {0.0, 6.0, 8.0}).norm(), 1.0);
+  EXPECT_GT(map({2.0, 1.2, 1.6}, {0.0, 0.0, 0.0}).norm(), 0.1);
+}
+
+TEST(ContactPoint, ProjectionOnTheConeIsTheNearestPoint) {
+  std::mt19937 random(11);
+  for (int k = 0; k < 2000; ++k) {
+    const double friction = 2.0 * std::abs(test::uniform(random));
+    const PaddedVector r = test::uniform(3, random);
+    const PaddedVector p = project_on_cone(friction, r);
+    EXPECT_LE(p.tail<2>().norm(), friction * p[0] * (1.0 + 1e-15) + 1e-300);
+    // r − p is in the polar cone and normal to p.
+    const PaddedVector rest = r - p;
+    EXPECT_NEAR(rest.dot(p), 0.0, 1e-15);
+    EXPECT_LE(friction * rest.tail<2>().norm(), -rest[0] + 1e-15);
+  }
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/solver/coulomb_solver.hpp"
-#include "support/coulomb_problems.hpp"
+#include "support/contact_problems.hpp"
 
 /// @file The Coulomb solver in a time loop, and on operators that are not definite.
 namespace ricochet {
 namespace {
 
+using test::ContactRun;
 using test::expect_law;
 using test::FrictionProblem;
 using test::half_space_problem;
@@ -24,71 +24,69 @@ void advance(FrictionProblem& problem) {
   }
 }
 
-TEST(CoulombInTime, TakesFewNewtonSteps) {
+TEST(FrictionInTime, TakesFewNewtonSteps) {
   FrictionProblem problem = half_space_problem(10, 0.3);
-  CoulombSolver solver;
-  CoulombSolution solution;
-  solver.solve(problem.view(), solution);
+  ContactRun solver;
+  ContactSolution solution = solver.solve(problem);
   expect_law(problem, solution);
   EXPECT_LE(solution.newton_steps, 15);
   for (int step = 0; step < 10; ++step) {
     advance(problem);
-    solver.solve(problem.view(), solution);
+    solution = solver.solve(problem);
     expect_law(problem, solution);
     EXPECT_LE(solution.newton_steps, 4);
     EXPECT_LE((solution.reaction - solve(problem).reaction).lpNorm<Eigen::Infinity>(),
               1e-11 * solution.reaction.lpNorm<Eigen::Infinity>());
   }
   // The same problem once more: already solved.
-  solver.solve(problem.view(), solution);
-  EXPECT_TRUE(solution.solved);
+  solution = solver.solve(problem);
+  EXPECT_TRUE(solution.solved());
   EXPECT_EQ(solution.newton_steps, 0);
 }
 
-TEST(CoulombInTime, UsesTheFactorAgainInTwoDimensions) {
+TEST(FrictionInTime, NeedsNoFactorAfterASmallChange) {
   FrictionProblem problem = random_problem(40, 2, 0.3, 4);
-  CoulombSolver solver;
-  CoulombSolution solution;
-  solver.solve(problem.view(), solution);
+  ContactRun solver;
+  ContactSolution solution = solver.solve(problem);
   problem.q *= 1.0 + 1e-6;
-  solver.solve(problem.view(), solution);
+  solution = solver.solve(problem);
   expect_law(problem, solution);
-  EXPECT_EQ(solution.newton_steps, 1);
+  EXPECT_LE(solution.iterations, 20);
   EXPECT_EQ(solution.factorizations, 0);
 }
 
-TEST(CoulombInTime, ResumesFromItsWarmStartWithTheSameBits) {
+TEST(FrictionInTime, ResumesFromItsWarmStartWithTheSameBits) {
   for (const Index dimension : {2, 3}) {
     FrictionProblem problem = dimension == 2 ? random_problem(40, 2, 0.3, 4) : half_space_problem(8, 0.3);
-    CoulombSolver solver;
-    CoulombSolution solution;
+    ContactRun solver;
+    ContactSolution solution;
     for (int step = 0; step < 3; ++step) {
-      solver.solve(problem.view(), solution);
+      solution = solver.solve(problem);
       problem.q *= 1.001;
     }
-    CoulombSolver resumed;
+    ContactRun resumed;
     resumed.set_warm_start(solver.warm_start());
-    CoulombSolution other;
-    solver.solve(problem.view(), solution);
-    resumed.solve(problem.view(), other);
+    ContactSolution other;
+    solution = solver.solve(problem);
+    other = resumed.solve(problem);
     EXPECT_EQ(other.reaction, solution.reaction);
     EXPECT_EQ(other.iterations, solution.iterations);
   }
 }
 
-TEST(CoulombInTime, ForgetsAnotherProblem) {
+TEST(FrictionInTime, ForgetsAnotherProblem) {
   const FrictionProblem first = random_problem(30, 3, 0.5, 1);
   const FrictionProblem second = random_problem(30, 3, 0.5, 2);
-  CoulombSolver solver;
-  CoulombSolution solution;
-  solver.solve(first.view(), solution);
+  ContactRun solver;
+  ContactSolution solution;
+  solution = solver.solve(first);
   solver.reset();
-  solver.solve(second.view(), solution);
+  solution = solver.solve(second);
   EXPECT_EQ(solution.reaction, solve(second).reaction);
 }
 
 /// Every point twice: W has half its rank, u stays what it was.
-TEST(CoulombSingular, FindsTheMotionOfPointsThatAreThereTwice) {
+TEST(FrictionSingular, FindsTheMotionOfPointsThatAreThereTwice) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     for (const double friction : {0.0, 0.3, 1.0}) {
       SCOPED_TRACE(testing::Message() << "F = " << friction << ", " << seed);
@@ -104,9 +102,9 @@ TEST(CoulombSingular, FindsTheMotionOfPointsThatAreThereTwice) {
       FrictionProblem twice(sizes, friction);
       twice.w = single.w(rows, rows);
       twice.q = single.q(rows);
-      const CoulombSolution solution = solve(twice);
+      const ContactSolution solution = solve(twice);
       expect_law(twice, solution);
-      const CoulombSolution expected = solve(single);
+      const ContactSolution expected = solve(single);
       const Vector u = twice.q + twice.w * solution.reaction;
       const Vector expected_u = single.q + single.w * expected.reaction;
       EXPECT_LE((u - expected_u(rows)).lpNorm<Eigen::Infinity>(), 1e-11);
@@ -115,7 +113,7 @@ TEST(CoulombSingular, FindsTheMotionOfPointsThatAreThereTwice) {
 }
 
 /// More rows than degrees of freedom, and motions that satisfy all conditions strictly: solutions exist.
-TEST(CoulombSingular, SolvesProblemsWithMoreConditionsThanFreedom) {
+TEST(FrictionSingular, SolvesProblemsWithMoreConditionsThanFreedom) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -129,12 +127,12 @@ TEST(CoulombSingular, SolvesProblemsWithMoreConditionsThanFreedom) {
   }
 }
 
-TEST(CoulombFailure, IsSaid) {
+TEST(FrictionFailure, IsSaid) {
   constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
   const auto expect_unsolved = [](const FrictionProblem& problem) {
-    const CoulombSolution solution = solve(problem);
-    EXPECT_FALSE(solution.solved);
-    EXPECT_STRNE(solution.reason, "");
+    const ContactSolution solution = solve(problem);
+    EXPECT_FALSE(solution.solved());
+    EXPECT_NE(solution.reason, "");
   };
   FrictionProblem problem = half_space_problem(4, 0.3);
   problem.q[7] = not_a_number;
@@ -156,16 +154,16 @@ TEST(CoulombFailure, IsSaid) {
   expect_unsolved(problem);
 }
 
-TEST(CoulombFailure, DoesNotSpoilTheNextProblem) {
+TEST(FrictionFailure, DoesNotSpoilTheNextProblem) {
   FrictionProblem problem = half_space_problem(4, 0.3);
   const double kept = problem.q[7];
-  CoulombSolver solver;
-  CoulombSolution solution;
+  ContactRun solver;
+  ContactSolution solution;
   problem.q[7] = std::numeric_limits<double>::infinity();
-  solver.solve(problem.view(), solution);
-  EXPECT_FALSE(solution.solved);
+  solution = solver.solve(problem);
+  EXPECT_FALSE(solution.solved());
   problem.q[7] = kept;
-  solver.solve(problem.view(), solution);
+  solution = solver.solve(problem);
   expect_law(problem, solution);
 }
 

@@ -1,0 +1,76 @@
+#include "ricochet/linear_algebra/dense_kernels.hpp"
+
+#include <cmath>
+
+// The program is compiled for any x86-64; these loops take wider registers where the processor has them. The rounding
+// of an entry does not depend on the width: fused operations are off.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define RICOCHET_EACH_INSTRUCTION_SET __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define RICOCHET_EACH_INSTRUCTION_SET
+#endif
+
+namespace ricochet {
+
+namespace {
+
+RICOCHET_EACH_INSTRUCTION_SET
+void add_one(Index size, const double* __restrict a, double f, double* __restrict y) {
+  for (Index i = 0; i < size; ++i) y[i] += f * a[i];
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
+void add_two(Index size, const double* __restrict a, const double* __restrict b, double f, double g,
+             double* __restrict y) {
+  for (Index i = 0; i < size; ++i) y[i] = (y[i] + f * a[i]) + g * b[i];
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
+void add_three(Index size, const double* __restrict a, const double* __restrict b, const double* __restrict c, double f,
+               double g, double h, double* __restrict y) {
+  for (Index i = 0; i < size; ++i) y[i] = ((y[i] + f * a[i]) + g * b[i]) + h * c[i];
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
+void add_one_with_size(Index size, const double* __restrict a, double f, double* __restrict y,
+                       double* __restrict sizes) {
+  for (Index i = 0; i < size; ++i) {
+    const double term = f * a[i];
+    y[i] += term;
+    sizes[i] += std::abs(term);
+  }
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
+void add_three_with_size(Index size, const double* __restrict a, const double* __restrict b, const double* __restrict c,
+                         double f, double g, double h, double* __restrict y, double* __restrict sizes) {
+  for (Index i = 0; i < size; ++i) {
+    const double first = f * a[i], second = g * b[i], third = h * c[i];
+    y[i] = ((y[i] + first) + second) + third;
+    sizes[i] += std::abs(first) + std::abs(second) + std::abs(third);
+  }
+}
+
+}  // namespace
+
+void add_columns(Index size, Index count, const double* columns, Index stride, const double* factors, double* y) {
+  if (count == 3) {
+    add_three(size, columns, columns + stride, columns + 2 * stride, factors[0], factors[1], factors[2], y);
+  } else if (count == 2) {
+    add_two(size, columns, columns + stride, factors[0], factors[1], y);
+  } else {
+    add_one(size, columns, factors[0], y);
+  }
+}
+
+void add_columns(Index size, Index count, const double* columns, Index stride, const double* factors, double* y,
+                 double* sizes) {
+  if (count == 3) {
+    add_three_with_size(size, columns, columns + stride, columns + 2 * stride, factors[0], factors[1], factors[2], y,
+                        sizes);
+    return;
+  }
+  for (Index k = 0; k < count; ++k) add_one_with_size(size, columns + k * stride, factors[k], y, sizes);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,119 @@
+#include "ricochet/linear_algebra/principal_factor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet {
+
+namespace {
+/// A change of this part of the base set, or less, borders the factor; a larger one makes a new factor.
+constexpr std::size_t part = 8;
+}  // namespace
+
+void PrincipalFactor::reset() {
+  base_.clear();
+  indices_.clear();
+  came_.clear();
+  went_.clear();
+}
+
+bool PrincipalFactor::set_base(const Matrix& w, const std::vector<Index>& indices) {
+  base_ = indices_ = indices;
+  came_.clear();
+  went_.clear();
+  kept_a_.resize(indices.size());
+  for (std::size_t k = 0; k < indices.size(); ++k) kept_a_[k] = static_cast<Index>(k);
+  kept_b_ = kept_a_;
+  if (indices.empty()) return true;
+  const auto count = static_cast<Index>(indices.size());
+  Matrix block(count, count);
+  for (Index j = 0; j < count; ++j) {
+    const double* column = w.data() + indices[static_cast<std::size_t>(j)] * w.rows();
+    for (Index i = 0; i < count; ++i) block(i, j) = column[indices[static_cast<std::size_t>(i)]];
+  }
+  // The square roots, and so the bits, do not depend on the unit system.
+  const double largest = block.diagonal().maxCoeff();
+  scale_ = std::isnormal(largest) ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
+  block *= scale_;
+  factor_.compute(block);
+  if (factor_.info() == Eigen::Success) return true;
+  reset();
+  return false;
+}
+
+void PrincipalFactor::renumber_base(const std::vector<Index>& indices) {
+  if (indices == base_) return;
+  base_ = indices;
+  indices_.clear();
+}
+
+bool PrincipalFactor::set_indices(const Matrix& w, const std::vector<Index>& indices) {
+  has_factored_ = false;
+  if (indices == indices_ && !indices_.empty()) return true;
+  std::vector<Index> common;
+  std::set_intersection(indices.begin(), indices.end(), base_.begin(), base_.end(), std::back_inserter(common));
+  const std::size_t changes = (indices.size() - common.size()) + (base_.size() - common.size());
+  if (!base_.empty() && changes * part <= base_.size() && border(w, indices)) return true;
+  has_factored_ = true;
+  return set_base(w, indices);
+}
+
+bool PrincipalFactor::border(const Matrix& w, const std::vector<Index>& indices) {
+  indices_ = indices;
+  came_.clear();
+  went_.clear();
+  kept_a_.clear();
+  kept_b_.clear();
+  std::size_t a = 0, b = 0;
+  while (a < indices.size() || b < base_.size()) {
+    if (b == base_.size() || (a < indices.size() && indices[a] < base_[b])) {
+      came_.push_back(static_cast<Index>(a++));
+    } else if (a == indices.size() || base_[b] < indices[a]) {
+      went_.push_back(static_cast<Index>(b++));
+    } else {
+      kept_a_.push_back(static_cast<Index>(a++));
+      kept_b_.push_back(static_cast<Index>(b++));
+    }
+  }
+  const auto size = static_cast<Index>(base_.size());
+  const auto arrivals = static_cast<Index>(came_.size());
+  const auto changes = arrivals + static_cast<Index>(went_.size());
+  if (changes == 0) return true;
+  border_.setZero(size, changes);
+  Matrix schur = Matrix::Zero(changes, changes);
+  for (Index k = 0; k < arrivals; ++k) {
+    const Index index = indices[static_cast<std::size_t>(came_[static_cast<std::size_t>(k)])];
+    const double* column = w.data() + index * w.rows();
+    for (Index i = 0; i < size; ++i) border_(i, k) = scale_ * column[base_[static_cast<std::size_t>(i)]];
+    for (Index l = 0; l < arrivals; ++l) {
+      const Index other = indices[static_cast<std::size_t>(came_[static_cast<std::size_t>(l)])];
+      schur(l, k) = scale_ * column[other];
+    }
+  }
+  for (Index k = arrivals; k < changes; ++k) border_(went_[static_cast<std::size_t>(k - arrivals)], k) = 1.0;
+  solved_ = factor_.solve(border_);
+  schur.noalias() -= border_.transpose() * solved_;
+  if (!schur.allFinite()) return false;
+  schur_.compute(schur);
+  return true;
+}
+
+void PrincipalFactor::solve(const Vector& right, Vector& x) const {
+  base_right_.setZero(static_cast<Index>(base_.size()));
+  for (std::size_t k = 0; k < kept_a_.size(); ++k) base_right_[kept_b_[k]] = scale_ * right[kept_a_[k]];
+  if (base_right_.size() > 0) factor_.solveInPlace(base_right_);
+  const auto arrivals = static_cast<Index>(came_.size());
+  const auto changes = arrivals + static_cast<Index>(went_.size());
+  x.resize(right.size());
+  if (changes > 0) {
+    // (S)(x_D, λ) = (b_D, 0) − (W_DB; E_Rᵀ) W_BB⁻¹ b_B.
+    border_right_.noalias() = -(border_.transpose() * base_right_);
+    for (Index k = 0; k < arrivals; ++k) border_right_[k] += scale_ * right[came_[static_cast<std::size_t>(k)]];
+    border_solution_ = schur_.solve(border_right_);
+    base_right_.noalias() -= solved_ * border_solution_;
+    for (Index k = 0; k < arrivals; ++k) x[came_[static_cast<std::size_t>(k)]] = border_solution_[k];
+  }
+  for (std::size_t k = 0; k < kept_a_.size(); ++k) x[kept_a_[k]] = base_right_[kept_b_[k]];
+}
+
+}  // namespace ricochet

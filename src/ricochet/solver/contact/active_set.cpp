@@ -1,0 +1,157 @@
+#include "ricochet/solver/contact/active_set.hpp"
+
+#include <limits>
+
+#include "ricochet/solver/contact/alart_curnier.hpp"
+#include "ricochet/solver/contact/contact_iteration.hpp"
+
+namespace ricochet {
+
+namespace {
+/// Block steps without fewer violations before single ones are taken.
+constexpr int patience = 8;
+}  // namespace
+
+/// The factor is of rows of another selection of points.
+void PrimalDualActiveSet::renumber(const ContactSystem& system) {
+  renumbered_.clear();
+  for (const Index row : base_) {
+    const Index found = system.system_row(row);
+    if (found < 0) {
+      reset();
+      return;
+    }
+    renumbered_.push_back(found);
+  }
+  factor_.renumber_base(renumbered_);
+  if (has_base_to_factor_) factor_.set_base(*system.dense(), renumbered_);
+  has_base_to_factor_ = false;
+}
+
+/// r on the active points from W_AA r_A = −q_A, once more for what rounding left over, and u everywhere.
+bool PrimalDualActiveSet::solve_active(const ContactSystem& system, ContactIterate& current) {
+  if (!factor_.set_indices(*system.dense(), indices_)) return false;
+  const auto count = static_cast<Index>(indices_.size());
+  right_.resize(count);
+  current.reaction.setZero(system.rows());
+  current.motion = system.offset();
+  for (int pass = 0; pass < 2; ++pass) {
+    for (Index i = 0; i < count; ++i) right_[i] = -current.motion[indices_[static_cast<std::size_t>(i)]];
+    factor_.solve(right_, solution_);
+    for (Index i = 0; i < count; ++i) current.reaction[indices_[static_cast<std::size_t>(i)]] += solution_[i];
+    system.evaluate(current);
+  }
+  return solution_.allFinite();
+}
+
+void PrimalDualActiveSet::find_violations(const ContactSystem& system, const ContactIterate& current) {
+  violations_.clear();
+  for (std::size_t k = 0; k < system.points().size(); ++k) {
+    const ContactPoint& point = system.points()[k];
+    const bool wrong = active_[k] != 0 ? current.reaction[point.first] < 0.0
+                                       : current.motion[point.first] < -system.floor_of(point, current).normal;
+    if (wrong) violations_.push_back(k);
+  }
+}
+
+std::string PrimalDualActiveSet::solve(const ContactSystem& system, ContactIterate& current, int& iterations,
+                                       int& factorizations) {
+  const std::vector<ContactPoint>& points = system.points();
+  renumber(system);
+  active_.assign(points.size(), 0);
+  if (current.reaction.isZero(0.0)) {
+    find_violations(system, current);
+    for (const std::size_t k : violations_) active_[k] = 1;
+  } else {
+    for (std::size_t k = 0; k < points.size(); ++k) active_[k] = current.reaction[points[k].first] > 0.0 ? 1 : 0;
+  }
+  const int limit = 1000 + 20 * static_cast<int>(points.size());
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  int blocks_left = patience;
+  for (int k = 0; k < limit; ++k) {
+    indices_.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (active_[i] != 0) indices_.push_back(points[i].first);
+    }
+    ++iterations;
+    if (!solve_active(system, current))
+      return "the contact operator is not positive definite: contact conditions depend on one another";
+    if (factor_.has_factored()) {
+      ++factorizations;
+      base_.clear();
+      for (const Index row : factor_.base()) base_.push_back(system.problem_row(row));
+    }
+    find_violations(system, current);
+    if (violations_.empty()) return "";
+    if (violations_.size() < fewest) {
+      fewest = violations_.size();
+      blocks_left = patience;
+    } else if (blocks_left > 0) {
+      --blocks_left;
+    }
+    if (blocks_left > 0) {
+      for (const std::size_t i : violations_) active_[i] ^= 1;
+    } else {
+      active_[violations_.back()] ^= 1;
+    }
+  }
+  return "the active set still changes after the largest number of iterations";
+}
+
+namespace {
+
+/// Without friction PrimalDualActiveSet; with friction in two dimensions whole Alart–Curnier steps, which are an active
+/// set method over open, stick and slip to either side.
+class ActiveSetSolver final : public IterativeContactSolver {
+ protected:
+  [[nodiscard]] bool works_on_candidates() const override { return true; }
+  void forget() override {
+    frictionless_.reset();
+    step_.reset();
+  }
+  [[nodiscard]] std::string refuses(const ContactSystem& system) const override {
+    if (system.dense() == nullptr) return "the active set method needs a dense W";
+    for (const ContactPoint& point : system.points()) {
+      if (point.size > 2) return "the active set method takes friction in two dimensions only: slip has two directions";
+    }
+    return "";
+  }
+  std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
+                      ContactSolution& solution) override;
+
+ private:
+  PrimalDualActiveSet frictionless_;
+  AlartCurnierStep step_;
+  ContactIterate next_;
+};
+
+std::string ActiveSetSolver::iterate(const ContactSystem& system, const ContactOptions& options,
+                                     ContactIterate& current, ContactSolution& solution) {
+  bool friction = false;
+  for (const ContactPoint& point : system.points()) friction = friction || point.has_friction();
+  if (!friction) {
+    const std::string reason = frictionless_.solve(system, current, solution.newton_steps, solution.factorizations);
+    note(system, options, "active set", system.residual(current), solution);
+    return reason;
+  }
+  const int limit = options.iteration_limit > 0 ? options.iteration_limit : 100;
+  for (int k = 0; k < limit; ++k) {
+    if (system.is_solved(current, options.tolerance)) return "";
+    ++solution.newton_steps;
+    if (!step_.step(system, current, next_.reaction)) return "the system of the active points is singular";
+    if (step_.has_factored()) ++solution.factorizations;
+    system.evaluate(next_);
+    if (step_.refine(next_, next_.reaction)) system.evaluate(next_);
+    std::swap(current, next_);
+    note(system, options, "active set", system.residual(current), solution);
+  }
+  return "the states of the points still change after the largest number of iterations";
+}
+
+}  // namespace
+
+std::unique_ptr<ContactSolver> make_active_set() {
+  return std::make_unique<ActiveSetSolver>();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "ricochet/linear_algebra/principal_factor.hpp"
+#include "ricochet/solver/contact/contact_system.hpp"
+
+/// @file The frictionless contact problem.
+namespace ricochet {
+
+/// Primal–dual active set, as block principal pivoting: all points on the wrong side change sides at once. When that
+/// has not reduced their number for several steps (cycling), only the one with the largest index changes (Murty's
+/// rule), which ends for every positive definite W; as soon as the number has fallen, blocks are used again. J. J.
+/// Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587–596. Starts from the points that have a reaction.
+///
+/// Wrong sides are r_i < 0 (no tolerance: what is returned is never negative) and u_i below −(rounding of q_i + that of
+/// W r). The factor follows the set (PrincipalFactor).
+class PrimalDualActiveSet {
+ public:
+  /// A system whose points have no friction, with entries in dense form. Counts its steps in `iterations`. Returns why
+  /// it ended without a solution, or nothing: `current` is the solution, evaluated.
+  std::string solve(const ContactSystem& system, ContactIterate& current, int& iterations, int& factorizations);
+  void reset() {
+    factor_.reset();
+    base_.clear();
+  }
+
+  /// The rows of the factor's base set, see IterativeContactSolver.
+  [[nodiscard]] const std::vector<Index>& base() const { return base_; }
+  void take_base(std::vector<Index> base) {
+    reset();
+    base_ = std::move(base);
+    has_base_to_factor_ = true;
+  }
+  [[nodiscard]] bool keeps_row(Index problem_row) const {
+    return std::binary_search(base_.begin(), base_.end(), problem_row);
+  }
+
+ private:
+  void renumber(const ContactSystem& system);
+  bool solve_active(const ContactSystem& system, ContactIterate& current);
+  void find_violations(const ContactSystem& system, const ContactIterate& current);
+
+  std::vector<char> active_;    ///< per point
+  std::vector<Index> indices_;  ///< rows of active points
+  std::vector<std::size_t> violations_;
+  PrincipalFactor factor_;
+  std::vector<Index> base_;  ///< of the factor, by the problem's rows
+  std::vector<Index> renumbered_;
+  bool has_base_to_factor_ = false;  ///< after take_base
+  Vector right_, solution_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,205 @@
+#include "ricochet/solver/contact/alart_curnier.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ricochet {
+
+namespace {
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Relative to W's diagonal; small enough to leave a few steps, large enough to hide what is rounding in W.
+constexpr double proximal_size = 0x1p-30;
+/// A diagonal of this many W leaves p = 0 to rounding.
+constexpr double rigid = 0x1p60;
+/// Up to this many unknowns LU in double precision is the fastest.
+constexpr Index few_unknowns = 64;
+/// A new factor is worth unknowns/`iterations_per_factor` iterations with an old one, and no fewer than these.
+constexpr Index iterations_per_factor = 30;
+constexpr Index fewest_iterations = 6;
+/// With the factor of the system itself.
+constexpr Index fresh_iterations = 12;
+}  // namespace
+
+namespace {
+
+/// The same state, whatever the direction of slip.
+bool is_alike(const ContactUnknown& one, const ContactUnknown& other) {
+  double product = 0.0;
+  for (std::size_t k = 0; k < one.test.size(); ++k) product += one.test[k] * other.test[k];
+  return one.problem_row == other.problem_row && product > 0.5;
+}
+
+}  // namespace
+
+void AlartCurnierStep::add(ContactUnknown unknown, const PaddedVector& trial, const PaddedVector& test, double diagonal,
+                           double present) {
+  std::copy(trial.begin(), trial.end(), unknown.trial.begin());
+  std::copy(test.begin(), test.end(), unknown.test.begin());
+  unknown.diagonal = diagonal;
+  present_[static_cast<Index>(unknowns_.size())] = present;
+  unknowns_.push_back(unknown);
+}
+
+/// The unknowns of a point, by its state.
+void AlartCurnierStep::choose(const ContactSystem& system, const ContactPoint& point, const ContactIterate& from) {
+  const PaddedVector r = padded(point, from.reaction);
+  const double c = 1.0 / point.diagonal;
+  const PaddedVector tau = r - c * padded(point, from.motion);
+  if (!(tau[0] > 0.0)) return;
+  const ContactUnknown unknown{system.problem_row(point.first), point.first, point.size, {}, {}, 0.0};
+  const auto unit = [](Index k) { return PaddedVector(PaddedVector::Unit(k)); };
+  if (!point.has_friction()) {
+    add(unknown, unit(0), unit(0), 0.0, r[0]);
+    return;
+  }
+  const double limit = point.friction_limit(tau[0]);
+  const double length = tau.tail<2>().norm();
+  if (length <= limit) {
+    for (Index k = 0; k < point.size; ++k) add(unknown, unit(k), unit(k), 0.0, r[k]);
+    return;
+  }
+  PaddedVector direction = tau / length;
+  direction[0] = 0.0;
+  PaddedVector pressing = unit(0);
+  if (point.is_bounded(tau[0])) {
+    enter(point, point.bound * direction, fixed_);
+    has_fixed_ = true;
+  } else {
+    pressing += point.coefficient * direction;
+  }
+  add(unknown, pressing, unit(0), 0.0, r[0]);
+  const double diagonal = (length - limit) / (limit * c);
+  if (point.size < 3 || !(diagonal * c < rigid)) return;
+  const PaddedVector across(0.0, -direction[2], direction[1]);
+  add(unknown, across, across, diagonal, across.dot(r));
+}
+
+/// A matrix singular to rounding belongs to conditions that depend on one another. With a small multiple of x −
+/// x_present added, whole steps stay defined and their limits are the solutions of the problem itself.
+void AlartCurnierStep::add_proximal_term() {
+  proximal_ = 0.0;
+  const double count = static_cast<double>(unknowns_.size());
+  if (factor_.smallest_pivot() > 4.0 * count * epsilon) return;
+  proximal_ = proximal_size;
+  matrix_.diagonal().array() += proximal_;
+  factor_.compute(matrix_);
+}
+
+void AlartCurnierStep::expand(const Vector& x, Vector& reaction) const {
+  for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+    const ContactUnknown& unknown = unknowns_[j];
+    for (Index k = 0; k < unknown.size; ++k)
+      reaction[unknown.first + k] += x[static_cast<Index>(j)] * unknown.trial[static_cast<std::size_t>(k)];
+  }
+}
+
+bool AlartCurnierStep::solve_directly() {
+  is_iterative_ = false;
+  if (unknowns_ != factored_) {
+    factor_.compute(matrix_);
+    add_proximal_term();
+    factored_ = unknowns_;
+    has_factored_ = true;
+  }
+  const auto count = static_cast<Index>(unknowns_.size());
+  for (Index i = 0; i < count; ++i) right_[i] += proximal_ * present_[i];
+  factor_.solve(right_, solution_);
+  if (solution_.allFinite()) return true;
+  factored_.clear();
+  return false;
+}
+
+/// GMRES on what is left of the system; adds the correction to the solution. Returns the reduction reached.
+double AlartCurnierStep::correct(const Vector& left, double reduction, Index limit) {
+  const auto multiply = [this](const Vector& x, Vector& y) { multiply_dense(matrix_, x, y); };
+  const auto precondition = [this](const Vector& x, Vector& y) { reused_.apply(x, y); };
+  const double reached = gmres_.solve(multiply, precondition, left, reduction, limit, correction_);
+  if (correction_.allFinite()) solution_ += correction_;
+  return reached;
+}
+
+bool AlartCurnierStep::solve_with_reused_factor(const ContactSystem& system, double reduction) {
+  const auto count = static_cast<Index>(unknowns_.size());
+  is_iterative_ = true;
+  solution_ = present_.head(count);
+  const auto find_left = [&] {
+    multiply_dense(matrix_, solution_, left_);
+    left_ = right_ - left_;
+    return left_.norm();
+  };
+  const double start = find_left();
+  if (!(start > 0.0)) return start == 0.0;
+  if (!reused_.empty() && reused_.place(system, unknowns_)) {
+    const Index limit = std::max(fewest_iterations, count / iterations_per_factor);
+    if (correct(left_, reduction, limit) <= reduction) return true;
+  }
+  if (!reused_.compute(matrix_, unknowns_)) return false;
+  has_factored_ = true;
+  if (!reused_.place(system, unknowns_)) return false;
+  const double left = find_left();
+  if (!std::isfinite(left)) {
+    solution_ = present_.head(count);
+    find_left();
+  }
+  const double wanted = std::min(1.0, reduction * start / left_.norm());
+  if (correct(left_, wanted, fresh_iterations) <= std::max(wanted, 1e-4)) return true;
+  reused_.reset();
+  return false;
+}
+
+bool AlartCurnierStep::step(const ContactSystem& system, const ContactIterate& from, Vector& reaction,
+                            double reduction) {
+  unknowns_.clear();
+  present_.resize(system.rows());
+  fixed_.setZero(system.rows());
+  has_fixed_ = false;
+  for (const ContactPoint& point : system.points()) choose(system, point, from);
+  has_settled_ = std::equal(unknowns_.begin(), unknowns_.end(), last_unknowns_.begin(), last_unknowns_.end(), is_alike);
+  last_unknowns_ = unknowns_;
+  has_factored_ = false;
+  reaction = fixed_;
+  if (unknowns_.empty()) return true;
+  if (has_fixed_) {
+    system.multiply(fixed_, fixed_motion_);
+    fixed_motion_ += system.offset();
+  } else {
+    fixed_motion_ = system.offset();
+  }
+  const auto count = static_cast<Index>(unknowns_.size());
+  right_.resize(count);
+  for (Index i = 0; i < count; ++i)
+    right_[i] = -test_motion(unknowns_[static_cast<std::size_t>(i)], fixed_motion_.data());
+  const bool direct = count <= few_unknowns;
+  if (!direct || unknowns_ != factored_) assemble_contact_matrix(system, unknowns_, column_, matrix_);
+  proximal_ = 0.0;
+  const bool solved = (!direct && solve_with_reused_factor(system, reduction)) || solve_directly();
+  if (solved) expand(solution_, reaction);
+  return solved;
+}
+
+bool AlartCurnierStep::refine(const ContactIterate& full, Vector& reaction) {
+  const auto count = static_cast<Index>(unknowns_.size());
+  if (proximal_ > 0.0 || count == 0) return false;
+  bool rounding_only = true;
+  left_.resize(count);
+  for (Index i = 0; i < count; ++i) {
+    const ContactUnknown& unknown = unknowns_[static_cast<std::size_t>(i)];
+    const double held = unknown.diagonal * solution_[i];
+    left_[i] = -(test_motion(unknown, full.motion.data()) + held);
+    double size = std::abs(held);
+    for (Index k = 0; k < unknown.size; ++k) size += full.size[unknown.first + k];
+    rounding_only = rounding_only && std::abs(left_[i]) <= 4.0 * epsilon * size;
+  }
+  if (rounding_only) return false;
+  if (is_iterative_) {
+    correct(left_, 1e-4, fewest_iterations);
+  } else {
+    factor_.solve(left_, correction_);
+  }
+  if (!correction_.allFinite()) return false;
+  expand(correction_, reaction);
+  return true;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/linear_algebra/dense_factor.hpp"
+#include "ricochet/linear_algebra/gmres.hpp"
+#include "ricochet/solver/contact/contact_system.hpp"
+#include "ricochet/solver/contact/reused_factor.hpp"
+
+/// @file A Newton step of the contact problem with Coulomb friction.
+namespace ricochet {
+
+/// Newton on the equations of P. Alart and A. Curnier (Comput. Methods Appl. Mech. Engrg. 92 (1991) 353–375), as an
+/// active set: with τ = (r_N − c u_N, r_T − c u_T), c = 1/w and b the friction limit of τ_N, a point is
+///   open   where τ_N ≤ 0:    r = 0
+///   stick  where |τ_T| ≤ b:  u = 0
+///   slip   elsewhere:        u_N = 0, r_T = b t + p with t = τ_T/|τ_T|, p ⟂ t and (I − ttᵀ) u_T + (|τ_T| − b)/(b c) p
+///   = 0,
+/// the last being the linearisation of r_T = b τ_T/|τ_T| with b = F r_N, solved for the direction of slip. At a
+/// solution (|τ_T| − b)/(b c) = |u_T|/b ≥ 0, so that the system is W on some directions and a positive diagonal, all of
+/// its rows in units of u. In two dimensions there is no p and the iteration is a finite active-set method.
+///
+/// The linear systems. Few unknowns: LU in double precision, used again as long as nothing changes. Many: GMRES,
+/// preconditioned by the LU in single precision of an earlier system (ReusedFactor), of this step, of an earlier one or
+/// of an earlier problem with the same W; where that takes more iterations than a new factor is worth, by the factor of
+/// this one. Where even that does not do (W singular), LU in double precision with a proximal term.
+class AlartCurnierStep {
+ public:
+  /// The r of the full step from `from`. The linear system is solved to `reduction` of its residual at `from`, or
+  /// better. False: it could not be solved.
+  bool step(const ContactSystem& system, const ContactIterate& from, Vector& reaction, double reduction = 1e-13);
+  /// With u of that r: what the linear system left over, once more solved for and added to r. False where it is
+  /// rounding.
+  bool refine(const ContactIterate& full, Vector& reaction);
+  /// The factors are of another W.
+  void reset() {
+    factored_.clear();
+    reused_.reset();
+  }
+  /// Before the first step of a problem: only factors are kept from earlier ones.
+  void start() { last_unknowns_.clear(); }
+  /// The factor of many unknowns, see IterativeContactSolver.
+  [[nodiscard]] const ReusedFactor& reused() const { return reused_; }
+  void take_memory(const std::vector<double>& memory) { reused_.take_memory(memory); }
+  /// The last step needed a new factor.
+  [[nodiscard]] bool has_factored() const { return has_factored_; }
+  /// The last two steps had the same states: with exact systems Newton converges from here on.
+  [[nodiscard]] bool has_settled() const { return has_settled_; }
+
+ private:
+  void choose(const ContactSystem& system, const ContactPoint& point, const ContactIterate& from);
+  void add(ContactUnknown unknown, const PaddedVector& trial, const PaddedVector& test, double diagonal,
+           double present);
+  void add_proximal_term();
+  bool solve_directly();
+  bool solve_with_reused_factor(const ContactSystem& system, double reduction);
+  double correct(const Vector& left, double reduction, Index limit);
+  void expand(const Vector& x, Vector& reaction) const;
+
+  std::vector<ContactUnknown> unknowns_, last_unknowns_, factored_;
+  Vector present_;  ///< x of the r the step starts from
+  Vector fixed_;    ///< r that is not unknown: Tresca's b t
+  bool has_fixed_ = false;
+  Vector right_, left_, solution_, correction_, fixed_motion_, column_;
+  Matrix matrix_;
+  DenseLu factor_;
+  ReusedFactor reused_;
+  Gmres gmres_;
+  bool is_iterative_ = false;  ///< the last step was solved by GMRES
+  double proximal_ = 0.0;      ///< added to the diagonal of a matrix singular to rounding
+  bool has_factored_ = false, has_settled_ = false;
+};
+
+}  // namespace ricochet

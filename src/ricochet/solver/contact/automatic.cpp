@@ -1,0 +1,409 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "ricochet/solver/contact/active_set.hpp"
+#include "ricochet/solver/contact/alart_curnier.hpp"
+#include "ricochet/solver/contact/contact_iteration.hpp"
+#include "ricochet/solver/contact/gauss_seidel.hpp"
+#include "ricochet/solver/contact/newton_iteration.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr int accelerated_limit = 500;
+/// Sweeps after which the rounding of W r is left to Newton.
+constexpr int verdict_limit = 6;
+/// Sweeps over which the progress of the accelerated ones is judged.
+constexpr std::size_t outlook = 5;
+/// A fourth sweep with more than this part of the second one's residual: W is ill conditioned.
+constexpr double stall = 0.4;
+/// How many more operations of a factorization than of a sweep the machine does in the same time, and what a point
+/// costs in entries of W.
+constexpr double factor_speed = 12.0;
+constexpr double point_work = 100.0;
+constexpr double factor_overhead = 60.0;
+/// Sweeps before the first Newton step: from zero, and from an earlier solution.
+constexpr int cold_sweeps = 20;
+/// Newton steps in a row before the sweeps take over again.
+constexpr int newton_limit = 30;
+/// Of sweeps and Newton in turn; the number of sweeps doubles every time.
+constexpr int round_limit = 6;
+/// Part of a point's correction that is taken.
+constexpr double smallest_damping = 0.125;
+/// Of long runs of sweeps at the very end, and their length in entries of W.
+constexpr int last_rounds = 20;
+constexpr double last_work = 2e7;
+/// After a Newton step.
+constexpr int smoothing_sweeps = 8;
+/// Halvings of a Newton step.
+constexpr int cut_limit = 8;
+/// Of the residual of a linear system while the points still change their states.
+constexpr double loose_reduction = 1e-3;
+/// Accepted where nothing improves any more.
+constexpr double loosest = 1e-12;
+
+bool has_friction(const ContactSystem& system) {
+  return std::any_of(system.points().begin(), system.points().end(), [](const auto& p) { return p.has_friction(); });
+}
+
+bool is_nearly_closed(const ContactSystem& system, const ContactIterate& iterate) {
+  const auto closed = std::count_if(system.points().begin(), system.points().end(),
+                                    [&](const auto& p) { return iterate.reaction[p.first] > 0.0; });
+  return 10 * closed >= 9 * static_cast<std::ptrdiff_t>(system.points().size());
+}
+
+double squared(double value) {
+  return value * value;
+}
+
+/// Non-smooth Newton after accelerated projected Gauss–Seidel.
+///
+/// 1. From the last r, a few sweeps: first order, robust; they find the contact and the directions of slip roughly, and
+///    where W is well conditioned they go on to the end.
+/// 2. Newton on the Alart–Curnier equations (AlartCurnierStep), each step cut back until Alart and Curnier's residual
+///    decreases (sum of squares over points); where no part of a step does, a run of whole steps from the best r so
+///    far.
+/// 3. Where Newton stalls, more sweeps from the best r so far, then Newton again, twice as many sweeps every time. At
+///    last the same from r = 0, with sweeps that take a half, a quarter, an eighth of each point's correction, and
+///    whole ones for as long as they come closer.
+class AutomaticSolver final : public IterativeContactSolver {
+ public:
+  std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
+                      ContactSolution& solution) override;
+
+ protected:
+  [[nodiscard]] bool works_on_candidates() const override { return true; }
+  void forget() override {
+    newton_step_.reset();
+    sparse_system_.reset();
+    frictionless_.reset();
+  }
+  /// The base set of the frictionless factor and its size, then the unknowns of the other one.
+  void append_memory(std::vector<double>& memory) const override {
+    memory.push_back(static_cast<double>(frictionless_.base().size()));
+    for (const Index row : frictionless_.base()) memory.push_back(static_cast<double>(row));
+    newton_step_.reused().append_memory(memory);
+  }
+  void take_memory(const std::vector<double>& memory) override {
+    const auto size = static_cast<std::ptrdiff_t>(memory.front());
+    std::vector<Index> base;
+    for (std::ptrdiff_t k = 1; k <= size; ++k) base.push_back(static_cast<Index>(memory[static_cast<std::size_t>(k)]));
+    frictionless_.take_base(std::move(base));
+    newton_step_.take_memory(std::vector<double>(memory.begin() + 1 + size, memory.end()));
+  }
+  [[nodiscard]] bool keeps_row(Index problem_row) const override {
+    return frictionless_.keeps_row(problem_row) || newton_step_.reused().keeps_row(problem_row);
+  }
+
+ private:
+  /// What a part of the iteration works on.
+  struct Work {
+    const ContactSystem& system;
+    const ContactOptions& options;
+    ContactIterate& current;
+    ContactSolution& solution;
+  };
+  [[nodiscard]] static double merit(const ContactSystem& system, const ContactIterate& iterate);
+  void keep_best(const Work& work);
+  [[nodiscard]] static bool is_done(const Work& work, const ContactIterate& iterate);
+  [[nodiscard]] static double newton_cost(const Work& work, bool settled);
+  bool accelerated(const Work& work);
+  bool sweep(const Work& work, int sweeps, double damping);
+  bool newton(const Work& work, bool line_search);
+  [[nodiscard]] double next_reduction(const Work& work) const;
+  bool search_line(const Work& work);
+  bool full_step(const Work& work, double reduction);
+  std::string iterate_with_products(const Work& work);
+  void smooth(const Work& work);
+  bool alternate(const Work& work, int sweeps, double damping);
+  bool sweep_on(const Work& work);
+
+  GaussSeidel sweeps_;
+  AcceleratedGaussSeidel accelerated_;
+  AlartCurnierStep newton_step_;
+  NewtonSystem sparse_system_;  ///< where W is sparse
+  std::vector<PointEquation> equations_;
+  std::unique_ptr<ContactSolver> products_;  ///< where there are no entries of W
+  PrimalDualActiveSet frictionless_;
+  ContactIterate trial_, cut_, best_, fallback_;
+  Vector begin_;
+  double current_merit_ = 0.0, best_merit_ = 0.0;
+  bool stalled_ = false;
+};
+
+double AutomaticSolver::merit(const ContactSystem& system, const ContactIterate& iterate) {
+  double sum = 0.0;
+  for (const ContactPoint& point : system.points()) {
+    sum += squared(alart_curnier_residual(point, 1.0 / point.diagonal, padded(point, iterate.reaction),
+                                          padded(point, iterate.motion)));
+  }
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+void AutomaticSolver::keep_best(const Work& work) {
+  current_merit_ = merit(work.system, work.current);
+  if (!(current_merit_ < best_merit_)) return;
+  best_ = work.current;
+  best_merit_ = current_merit_;
+}
+
+/// Where rounding is asked for, sweeps arrive as soon as the rounding of q covers what is left. Newton leaves much
+/// less, and a scheme that asks whether a gap is zero to rounding sees the difference: klr-conserving would open the
+/// point.
+bool AutomaticSolver::is_done(const Work& work, const ContactIterate& iterate) {
+  const ContactSystem::Measure measure = work.system.measure(iterate);
+  if (work.options.tolerance > 0.0) return measure.beyond_floor <= work.options.tolerance * work.system.data();
+  return measure.beyond_floor == 0.0 && measure.is_exact;
+}
+
+/// What Newton would cost from here, in sweeps: a few factorizations at the speed of products of matrices.
+double AutomaticSolver::newton_cost(const Work& work, bool settled) {
+  double unknowns = 0.0, closed_rows = 0.0;
+  for (const ContactPoint& point : work.system.points()) {
+    const PaddedVector r = padded(point, work.current.reaction);
+    if (!(r[0] > 0.0)) continue;
+    closed_rows += static_cast<double>(point.size);
+    const bool slips = point.has_friction() && r.tail<2>().norm() >= point.friction_limit(r[0]) * (1.0 - 1e-9);
+    unknowns += static_cast<double>(slips ? point.size - 1 : point.size);
+  }
+  const double sweep = closed_rows * (static_cast<double>(work.system.rows()) + point_work);
+  const double factor = unknowns * unknowns * (unknowns / factor_speed + factor_overhead);
+  const double product = 4.0 * unknowns * static_cast<double>(work.system.rows());
+  return (settled ? 1.5 : 6.0) * (factor + product) / std::max(sweep, 1.0);
+}
+
+/// Accelerated sweeps for as long as they promise to arrive sooner than Newton would.
+bool AutomaticSolver::accelerated(const Work& work) {
+  const ContactSystem& system = work.system;
+  const double target = std::max(work.options.tolerance, 1e-14) * system.data();
+  accelerated_.start(system);
+  stalled_ = false;
+  std::array<double, outlook> earlier{};
+  double best = std::numeric_limits<double>::infinity();
+  int unchanged = 0, verdicts = 0;
+  double second = 0.0;
+  double residual_per_change = 1.0;
+  for (int k = 0; k < accelerated_limit; ++k) {
+    unchanged = accelerated_.sweep(system, work.current) ? 0 : unchanged + 1;
+    const double change = accelerated_.change();
+    if (!std::isfinite(change)) break;
+    // The change of a sweep is a good guess of the residual, and costs nothing.
+    double residual = change * residual_per_change;
+    if (residual <= 2.0 * target || work.options.record) {
+      residual = system.residual(work.current);
+      residual_per_change = residual / change;
+    }
+    note(system, work.options, "sweep", residual, work.solution);
+    best = std::min(best, residual);
+    if (residual <= target) {
+      system.evaluate(work.current);
+      if (is_done(work, work.current)) return true;
+      if (++verdicts == verdict_limit) break;
+    }
+    if (k == 1) second = residual;
+    stalled_ = k == 3 && residual > stall * second;
+    if (stalled_) break;
+    double& past = earlier[static_cast<std::size_t>(k) % outlook];
+    if (k >= static_cast<int>(outlook)) {
+      const double rate = std::log(past / best) / static_cast<double>(outlook);
+      const double left = rate > 0.0 ? std::log(best / target) / rate : std::numeric_limits<double>::infinity();
+      if (left > newton_cost(work, unchanged > 1)) break;
+    }
+    past = best;
+  }
+  system.evaluate(work.current);
+  keep_best(work);
+  return is_done(work, work.current);
+}
+
+/// True: solved. Ends early when two sweeps change no state, where Newton is to follow.
+bool AutomaticSolver::sweep(const Work& work, int sweeps, double damping) {
+  sweeps_.restart();
+  const bool long_run = sweeps > cold_sweeps;
+  int unchanged = 0;
+  for (int k = 1; k <= sweeps && unchanged < 2; ++k) {
+    const bool changed = sweeps_.sweep(work.system, damping, work.current);
+    note(work.system, work.options, "sweep", work.system.residual(work.current), work.solution);
+    unchanged = changed || long_run ? 0 : unchanged + 1;
+    if (!long_run || k % 16 != 0) continue;
+    work.system.evaluate(work.current);
+    if (is_done(work, work.current)) return true;
+  }
+  work.system.evaluate(work.current);
+  keep_best(work);
+  return is_done(work, work.current);
+}
+
+/// From `current` towards the full step `trial_`: the whole, half, quarter, … of it with a smaller merit becomes
+/// `current`.
+bool AutomaticSolver::search_line(const Work& work) {
+  double length = 1.0;
+  for (int k = 0; k <= cut_limit; ++k, length *= 0.5) {
+    if (k > 0) {
+      cut_.reaction = work.current.reaction + length * (trial_.reaction - work.current.reaction);
+      cut_.motion = work.current.motion + length * (trial_.motion - work.current.motion);
+      cut_.size = work.current.size + length * (trial_.size - work.current.size);
+    }
+    ContactIterate& candidate = k == 0 ? trial_ : cut_;
+    if (merit(work.system, candidate) < (1.0 - 1e-4 * length) * current_merit_) {
+      std::swap(work.current, candidate);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Of the residual of the next linear system: while states change the step need not be exact.
+double AutomaticSolver::next_reduction(const Work& work) const {
+  if (!newton_step_.has_settled()) return loose_reduction;
+  const double wanted = 0.1 * work.options.tolerance * work.system.data() / work.system.residual(work.current);
+  return std::clamp(wanted, 1e-13, loose_reduction);
+}
+
+/// The whole Newton step, in `trial_`.
+bool AutomaticSolver::full_step(const Work& work, double reduction) {
+  const ContactSystem& system = work.system;
+  if (system.dense() != nullptr) {
+    if (!newton_step_.step(system, work.current, trial_.reaction, reduction)) return false;
+    if (newton_step_.has_factored()) ++work.solution.factorizations;
+    system.evaluate(trial_);
+    if (newton_step_.refine(trial_, trial_.reaction)) system.evaluate(trial_);
+    return true;
+  }
+  equations_.clear();
+  for (const ContactPoint& point : system.points()) {
+    equations_.push_back(projection_equation(point, padded(point, work.current.reaction),
+                                             padded(point, work.current.motion), DiscRadius::of_trial, true));
+  }
+  ++work.solution.factorizations;
+  if (!sparse_system_.solve(system, equations_, trial_.reaction)) return false;
+  trial_.reaction += work.current.reaction;
+  system.evaluate(trial_);
+  return true;
+}
+
+/// W by its product alone: a first-order method that needs no more.
+std::string AutomaticSolver::iterate_with_products(const Work& work) {
+  if (products_ == nullptr) products_ = make_contact_solver("accelerated-gradient");
+  return dynamic_cast<IterativeContactSolver&>(*products_)
+      .iterate(work.system, work.options, work.current, work.solution);
+}
+
+/// Whole steps leave errors of short wave length at points that changed their state, which sweeps remove: replaces the
+/// step by what a few sweeps make of it where that is better.
+void AutomaticSolver::smooth(const Work& work) {
+  cut_ = trial_;
+  for (int k = 0; k < smoothing_sweeps; ++k) sweeps_.sweep(work.system, 1.0, cut_);
+  if (merit(work.system, cut_) < merit(work.system, trial_)) std::swap(trial_, cut_);
+}
+
+/// Without the line search an active set may pass through a large residual: where conditions depend on one another, two
+/// points have to be pressed against each other until one of them slips.
+bool AutomaticSolver::newton(const Work& work, bool line_search) {
+  const ContactSystem& system = work.system;
+  current_merit_ = merit(system, work.current);
+  double reduction = next_reduction(work);
+  for (int k = 0; k < newton_limit; ++k) {
+    ++work.solution.newton_steps;
+    if (!full_step(work, reduction)) return false;
+    reduction = next_reduction(work);
+    note(system, work.options, "newton", system.residual(trial_), work.solution);
+    if (system.is_solved(trial_, work.options.tolerance)) {
+      std::swap(work.current, trial_);
+      return true;
+    }
+    if (line_search) smooth(work);
+    if (!line_search) {
+      std::swap(work.current, trial_);
+    } else if (!search_line(work)) {
+      return false;
+    }
+    keep_best(work);
+  }
+  return false;
+}
+
+/// Sweeps and Newton in turn, from `current`.
+bool AutomaticSolver::alternate(const Work& work, int sweeps, double damping) {
+  best_ = work.current;
+  best_merit_ = merit(work.system, best_);
+  for (int round = 1; round <= round_limit; ++round) {
+    if (sweeps > 0 && sweep(work, sweeps, damping)) return true;
+    if (newton(work, true)) return true;
+    work.current = best_;
+    if (newton(work, false)) return true;
+    work.current = best_;
+    if (work.options.tolerance == 0.0 && work.system.is_solved(best_, loosest)) return true;
+    sweeps = cold_sweeps << round;
+  }
+  return false;
+}
+
+std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactOptions& options,
+                                     ContactIterate& current, ContactSolution& solution) {
+  const Work work{system, options, current, solution};
+  // What an earlier problem leaves behind must not decide bits of this one.
+  sweeps_.restart();
+  newton_step_.start();
+  if (!system.has_entries()) return iterate_with_products(work);
+  const bool cold = current.reaction.isZero(0.0);
+  if (!cold && is_done(work, current)) return "";
+  if (system.dense() != nullptr && !has_friction(system) &&
+      frictionless_.solve(system, current, solution.iterations, solution.factorizations) == "")
+    return "";
+  best_merit_ = std::numeric_limits<double>::infinity();
+  begin_ = current.reaction;
+  if (accelerated(work)) return "";
+  if (is_nearly_closed(system, current) && stalled_) {
+    // Newton knows better from the start than from what a few sweeps have made of it.
+    current.reaction = begin_;
+    system.evaluate(current);
+    best_ = current;
+    best_merit_ = merit(system, current);
+  }
+  work.current = best_;
+  if (alternate(work, 0, 1.0)) return "";
+  // Strong friction can make whole corrections circle; parts of them, from zero, then often arrive.
+  fallback_ = best_;
+  const bool finite = std::isfinite(best_merit_);
+  for (double damping = 0.5; damping >= smallest_damping && finite; damping *= 0.5) {
+    current.reaction.setZero();
+    system.evaluate(current);
+    if (alternate(work, 2 * cold_sweeps, damping)) return "";
+  }
+  current = fallback_;
+  if (!finite) return "the iteration diverged: the contact operator is not positive definite";
+  if (sweep_on(work)) return "";
+  return "the conditions of contact and friction are still not met after the largest number of iterations";
+}
+
+/// The last resort: Gauss–Seidel for as long as it comes closer, with Newton tried now and then. Where conditions
+/// depend on one another it may creep, and still arrive.
+bool AutomaticSolver::sweep_on(const Work& work) {
+  const double rows = static_cast<double>(work.system.rows());
+  const int sweeps = static_cast<int>(std::clamp(last_work / (rows * rows), 100.0, 4000.0));
+  for (int k = 0; k < last_rounds; ++k) {
+    const double before = merit(work.system, work.current);
+    best_ = work.current;
+    best_merit_ = before;
+    if (sweep(work, sweeps, 1.0)) return true;
+    if (!(current_merit_ < 0.5 * before)) break;
+    fallback_ = work.current;
+    if (newton(work, false)) return true;
+    work.current = fallback_;
+  }
+  work.current = best_;
+  return false;
+}
+
+}  // namespace
+
+std::unique_ptr<ContactSolver> make_automatic() {
+  return std::make_unique<AutomaticSolver>();
+}
+
+}  // namespace ricochet

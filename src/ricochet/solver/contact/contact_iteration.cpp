@@ -1,0 +1,252 @@
+#include "ricochet/solver/contact/contact_iteration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/linear_algebra/dense_kernels.hpp"
+
+namespace ricochet {
+
+namespace {
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double rounding = 32.0 * epsilon;
+/// Where a solver stops just inside the tolerance, putting r on its law may leave it just outside: once more, closer.
+constexpr int tightenings = 4;
+/// Accepted where nothing improves any more and rounding is what is asked for.
+constexpr double loosest = 1e-12;
+}  // namespace
+
+void IterativeContactSolver::analyse(const ContactProblem& problem) {
+  problem.validate();
+  system_.analyse(problem);
+  analysed_ = problem.contact_operator;
+  set_warm_start({});
+}
+
+void IterativeContactSolver::set_warm_start(const Vector& start) {
+  forget();
+  const Index rows = analysed_ != nullptr ? analysed_->rows() : start.size();
+  warm_reaction_ = start.head(std::min(rows, start.size()));
+  if (start.size() > rows) take_memory(std::vector<double>(start.begin() + rows, start.end()));
+}
+
+Vector IterativeContactSolver::warm_start() const {
+  std::vector<double> memory;
+  append_memory(memory);
+  Vector start(warm_reaction_.size() + static_cast<Index>(memory.size()));
+  start << warm_reaction_, Eigen::Map<const Vector>(memory.data(), static_cast<Index>(memory.size()));
+  return start;
+}
+
+void IterativeContactSolver::note(const ContactSystem& system, const ContactOptions& options, const char* phase,
+                                  double residual, ContactSolution& solution) {
+  ++solution.iterations;
+  if (options.record) solution.record.push_back({phase, residual / system.data()});
+}
+
+/// r = 0 is a solution.
+bool IterativeContactSolver::is_open(const ContactProblem& problem) const {
+  for (Index i = 0; i < problem.points(); ++i) {
+    if (!problem.is_eligible(i)) continue;
+    const Index row = problem.first[static_cast<std::size_t>(i)];
+    const double u = problem.offset[row];
+    const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
+    if (!(u >= -(known + rounding * std::abs(u)))) return false;
+  }
+  return true;
+}
+
+void IterativeContactSolver::choose_points(const ContactProblem& problem) {
+  const bool all = !works_on_candidates();
+  wanted_.assign(static_cast<std::size_t>(problem.points()), 0);
+  for (Index i = 0; i < problem.points(); ++i) {
+    const Index row = problem.first[static_cast<std::size_t>(i)];
+    const bool had_reaction = warm_reaction_.size() == problem.rows() && warm_reaction_[row] != 0.0;
+    const bool may_press = all || problem.offset[row] < 0.0 || had_reaction;
+    wanted_[static_cast<std::size_t>(i)] = (may_press && problem.is_eligible(i)) || keeps_row(row) ? 1 : 0;
+  }
+  system_.select(problem, wanted_);
+}
+
+/// The last r where it is still admissible.
+void IterativeContactSolver::start(Vector& reaction) const {
+  for (const ContactPoint& point : system_.points()) {
+    auto r = reaction.segment(point.first, point.size);
+    r[0] = std::max(r[0], 0.0);
+    const double limit = point.friction_limit(r[0]);
+    const double length = r.tail(point.size - 1).norm();
+    if (length > limit) r.tail(point.size - 1) *= limit / length;
+  }
+}
+
+void IterativeContactSolver::put_on_law(const ContactSystem& system, const Vector& motion, Vector& reaction) {
+  for (const ContactPoint& point : system.points()) {
+    auto r = reaction.segment(point.first, point.size);
+    const bool grazing = point.is_tresca() && r[0] == 0.0;
+    if (grazing) continue;
+    if (!(r[0] > 0.0)) {
+      r.setZero();
+      continue;
+    }
+    if (point.size == 1) continue;
+    const PointVector u = motion.segment(point.first + 1, point.size - 1);
+    auto friction = r.tail(point.size - 1);
+    const double limit = point.friction_limit(r[0]);
+    const PointVector tau = friction - u / point.diagonal;
+    const double length = tau.norm();
+    if (length >= limit && length > 0.0) friction = tau * (limit / length);
+    const double size = friction.norm();
+    if (size > limit) friction *= limit / size;
+  }
+}
+
+/// u of the problem from its own W, unless the system has all of its rows.
+void IterativeContactSolver::find_motion(const ContactProblem& problem, ContactSolution& solution) const {
+  if (system_.rows() == problem.rows()) {
+    system_.give_motion(finished_.motion, solution.motion);
+    return;
+  }
+  const Matrix* w = problem.contact_operator->dense();
+  if (w == nullptr) {
+    problem.contact_operator->multiply(solution.reaction, solution.motion);
+    solution.motion += problem.offset;
+    return;
+  }
+  solution.motion = problem.offset;
+  for (Index i = 0; i < problem.points(); ++i) {
+    const Index row = problem.first[static_cast<std::size_t>(i)];
+    const Index size = problem.first[static_cast<std::size_t>(i) + 1] - row;
+    if (solution.reaction.segment(row, size).isZero(0.0)) continue;
+    add_columns(problem.rows(), size, w->data() + row * w->rows(), w->rows(), solution.reaction.data() + row,
+                solution.motion.data());
+  }
+}
+
+/// True: some point outside of the system penetrates; the system now has it.
+bool IterativeContactSolver::take_in_penetrating(const ContactProblem& problem, const ContactOptions& options,
+                                                 const ContactSolution& solution) {
+  bool found = false;
+  for (Index i = 0; i < problem.points(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (wanted_[at] != 0 || !problem.is_eligible(i)) continue;
+    const Index row = problem.first[at];
+    if (!(solution.motion[row] < 0.0)) continue;
+    const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
+    if (solution.motion[row] >= -(known + rounding * std::abs(problem.offset[row]))) continue;
+    if (system_.residual_of(problem, i, solution.reaction, solution.motion) <= options.tolerance * system_.data())
+      continue;
+    wanted_[at] = 1;
+    found = true;
+  }
+  return found;
+}
+
+void IterativeContactSolver::run(const ContactOptions& options, ContactSolution& solution) {
+  ContactOptions closer = options;
+  for (int k = 0; k <= tightenings; ++k, closer.tolerance *= 0.25) {
+    system_.evaluate(current_);
+    solution.reason = iterate(system_, closer, current_, solution);
+    finished_.reaction = current_.reaction;
+    put_on_law(system_, current_.motion, finished_.reaction);
+    if (finished_.reaction == current_.reaction) {
+      std::swap(finished_, current_);
+    } else {
+      system_.evaluate(finished_);
+    }
+    measure_ = system_.measure(finished_);
+    if (!solution.reason.empty() || measure_.beyond_floor <= options.tolerance * system_.data()) break;
+    current_.reaction = finished_.reaction;
+  }
+  system_.give_reaction(finished_.reaction, solution.reaction);
+}
+
+void IterativeContactSolver::judge(const ContactProblem& problem, const ContactOptions& options,
+                                   ContactSolution& solution) {
+  double largest = measure_.residual;
+  for (Index i = 0; i < problem.points(); ++i) {
+    if (wanted_[static_cast<std::size_t>(i)] != 0 || !problem.is_eligible(i)) continue;
+    largest = std::max(largest, system_.residual_of(problem, i, solution.reaction, solution.motion));
+  }
+  solution.residual = largest / system_.data();
+  solution.rounding_floor = measure_.rounding_floor / system_.data();
+  if (!std::isfinite(largest)) {
+    solution.outcome = ContactOutcome::invalid_data;
+    solution.reason = "the iteration diverged: W has entries that are not finite, or is not positive semi-definite";
+    return;
+  }
+  const double accepted = options.tolerance > 0.0 ? options.tolerance : loosest;
+  if (measure_.beyond_floor <= accepted * system_.data()) {
+    solution.outcome = ContactOutcome::solved;
+    solution.reason.clear();
+    warm_reaction_ = solution.reaction;
+    return;
+  }
+  solution.outcome = ContactOutcome::not_converged;
+  if (solution.reason.empty()) solution.reason = "the largest number of iterations was not enough";
+}
+
+void IterativeContactSolver::tell_states(const ContactProblem& problem, ContactSolution& solution) const {
+  solution.status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
+  for (const ContactPoint& point : system_.points()) {
+    ContactStatus& status = solution.status[static_cast<std::size_t>(point.point)];
+    const auto r = finished_.reaction.segment(point.first, point.size);
+    if (r.isZero(0.0)) continue;
+    status = ContactStatus::closed;
+    if (!point.has_friction()) continue;
+    status = ContactStatus::stick;
+    const double limit = point.friction_limit(r[0]) * (1.0 - 8.0 * epsilon);
+    if (r.tail(point.size - 1).norm() < limit) continue;
+    const double floor = system_.floor_of(point, finished_).tangential;
+    if (finished_.motion.segment(point.first + 1, point.size - 1).norm() > floor) status = ContactStatus::slip;
+  }
+}
+
+void IterativeContactSolver::solve(const ContactProblem& problem, const ContactOptions& options,
+                                   ContactSolution& solution) {
+  if (problem.contact_operator != analysed_)
+    throw Error(ErrorKind::invalid_input, "contact problem: W is another than the one that was analysed");
+  solution.outcome = ContactOutcome::not_converged;
+  solution.reason.clear();
+  solution.iterations = solution.newton_steps = solution.factorizations = 0;
+  solution.residual = solution.rounding_floor = 0.0;
+  solution.record.clear();
+  solution.reaction.setZero(problem.rows());
+  solution.status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
+  system_.set_data(problem);
+  solution.motion = problem.offset;
+  if (!system_.data_are_finite()) {
+    solution.outcome = ContactOutcome::invalid_data;
+    solution.residual = std::numeric_limits<double>::quiet_NaN();
+    solution.reason = "the data of the contact problem are not finite";
+    return;
+  }
+  if (is_open(problem)) {
+    solution.outcome = ContactOutcome::solved;
+    warm_reaction_ = solution.reaction;
+    return;
+  }
+  choose_points(problem);
+  solution.reason = refuses(system_);
+  if (!solution.reason.empty()) {
+    solution.outcome = ContactOutcome::not_applicable;
+    solution.residual = 1.0;
+    return;
+  }
+  solution.reaction = warm_reaction_.size() == problem.rows() && warm_reaction_.allFinite()
+                          ? warm_reaction_
+                          : Vector(Vector::Zero(problem.rows()));
+  do {
+    system_.take_reaction(solution.reaction, current_.reaction);
+    start(current_.reaction);
+    run(options, solution);
+    find_motion(problem, solution);
+    if (!works_on_candidates() || !take_in_penetrating(problem, options, solution)) break;
+    system_.select(problem, wanted_);
+  } while (true);
+  judge(problem, options, solution);
+  tell_states(problem, solution);
+}
+
+}  // namespace ricochet

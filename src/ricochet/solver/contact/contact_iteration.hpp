@@ -1,0 +1,67 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/solver/contact/contact_solver.hpp"
+#include "ricochet/solver/contact/contact_system.hpp"
+
+/// @file What all solvers share: scaling, warm start, the choice of points, the verdict.
+namespace ricochet {
+
+/// A solver writes `iterate`; everything it is given is scaled (ContactSystem), and what it returns is judged here by
+/// the one measure: no solver can declare a problem solved.
+class IterativeContactSolver : public ContactSolver {
+ public:
+  void analyse(const ContactProblem& problem) override;
+  void solve(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution) override;
+  [[nodiscard]] Vector warm_start() const override;
+  void set_warm_start(const Vector& start) override;
+
+  /// From `current`, which is evaluated and satisfies the signs and limits of its law, towards a solution: until
+  /// system.is_solved(current, tolerance), or for as long as it gets closer. Leaves the best r and its u in `current`.
+  /// Returns why it stopped without a solution, or nothing.
+  virtual std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
+                              ContactSolution& solution) = 0;
+
+ protected:
+  /// Why such a problem is not for this solver; empty: it is.
+  [[nodiscard]] virtual std::string refuses(const ContactSystem&) const { return {}; }
+  /// Another W, or another start: what was kept from earlier problems no longer holds.
+  virtual void forget() {}
+  /// What besides the reactions is kept from one problem to the next and decides bits (factors that are used again, by
+  /// what they were made of), and its return after `forget`.
+  virtual void append_memory(std::vector<double>&) const {}
+  virtual void take_memory(const std::vector<double>&) {}
+  /// A point whose rows are wanted in the system though it may be open: something kept needs them.
+  [[nodiscard]] virtual bool keeps_row(Index /* of the problem, a point's first */) const { return false; }
+  /// Solve on the points that move into the obstacle or had a reaction, and take in others when they turn out to
+  /// penetrate, instead of on all points.
+  [[nodiscard]] virtual bool works_on_candidates() const { return false; }
+
+  /// Counts an iteration, and notes it in the record. `residual`: not yet divided by the data.
+  static void note(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
+                   ContactSolution& solution);
+  /// r on the law: signs and limits hold exactly, friction along the slip where it is at its limit. u does not follow.
+  static void put_on_law(const ContactSystem& system, const Vector& motion, Vector& reaction);
+
+ private:
+  [[nodiscard]] bool is_open(const ContactProblem& problem) const;
+  void choose_points(const ContactProblem& problem);
+  void start(Vector& reaction) const;
+  void run(const ContactOptions& options, ContactSolution& solution);
+  void find_motion(const ContactProblem& problem, ContactSolution& solution) const;
+  bool take_in_penetrating(const ContactProblem& problem, const ContactOptions& options,
+                           const ContactSolution& solution);
+  void judge(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution);
+  void tell_states(const ContactProblem& problem, ContactSolution& solution) const;
+
+  ContactSystem system_;
+  std::shared_ptr<const ContactOperator> analysed_;
+  Vector warm_reaction_;
+  std::vector<char> wanted_;
+  ContactIterate current_, finished_;
+  ContactSystem::Measure measure_;  ///< of `finished_`
+};
+
+}  // namespace ricochet

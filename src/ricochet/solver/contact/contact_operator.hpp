@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+#include "ricochet/solver/contact/contact_point.hpp"
+
+/// @file W of the contact problem: dense, block-sparse, or only its product with a vector.
+namespace ricochet {
+
+/// A symmetric positive semi-definite matrix on the rows of contact points (normal first, then tangents).
+class ContactOperator {
+ public:
+  virtual ~ContactOperator() = default;
+  ContactOperator() = default;
+  ContactOperator(const ContactOperator&) = delete;
+  ContactOperator& operator=(const ContactOperator&) = delete;
+
+  [[nodiscard]] virtual Index rows() const = 0;
+  /// y = W x.
+  virtual void multiply(const Vector& x, Vector& y) const = 0;
+  /// The diagonal block of the rows first … first + size − 1, which are those of one point.
+  [[nodiscard]] virtual PointMatrix block(Index first, Index size) const = 0;
+  /// The whole matrix where it is stored so, otherwise null.
+  [[nodiscard]] virtual const Matrix* dense() const { return nullptr; }
+  /// The matrix in compressed columns where it is stored so, otherwise null.
+  [[nodiscard]] virtual const SparseMatrix* sparse() const { return nullptr; }
+};
+
+/// Throws Error(invalid_input) where W is not square.
+[[nodiscard]] std::shared_ptr<ContactOperator> make_dense_operator(Matrix w);
+/// Compressed columns, duplicates summed, both triangles present; stored by blocks of points when it is solved with.
+/// Throws Error(invalid_input) where W is not square.
+[[nodiscard]] std::shared_ptr<ContactOperator> make_sparse_operator(SparseMatrix w);
+/// Known by its product y = W x alone. Solvers that need entries of W find them by products with unit vectors as long
+/// as there are few rows, and say so where there are too many.
+[[nodiscard]] std::shared_ptr<ContactOperator> make_product_operator(
+    Index rows, std::function<void(const Vector& x, Vector& y)> product);
+
+}  // namespace ricochet

@@ -1,0 +1,61 @@
+#include "ricochet/solver/contact/contact_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& message) {
+  throw Error(ErrorKind::invalid_input, "contact problem: " + message);
+}
+
+void require(bool holds, const char* message) {
+  if (!holds) fail(message);
+}
+
+void require_size(Index found, Index expected, const char* what) {
+  if (found != expected) fail(fmt::format("{} has {} entries, but {} are needed", what, found, expected));
+}
+
+}  // namespace
+
+ContactProblem::ContactProblem(Index dimension, std::shared_ptr<const ContactOperator> w, Vector q, Vector friction)
+    : contact_operator(std::move(w)), offset(std::move(q)), friction_coefficient(std::move(friction)) {
+  if (dimension < 1 || dimension > 3) fail(fmt::format("{} rows per point; there can be 1, 2 or 3", dimension));
+  for (Index row = 0; row <= offset.size(); row += dimension) first.push_back(row);
+  validate();
+}
+
+ContactProblem::ContactProblem(Index dimension, Matrix w, Vector q, double friction)
+    : ContactProblem(dimension, make_dense_operator(std::move(w)), q,
+                     Vector::Constant(dimension > 0 ? q.size() / dimension : 0, friction)) {}
+
+void ContactProblem::validate() const {
+  require(contact_operator != nullptr, "there is no operator W");
+  require(!first.empty() && first.front() == 0, "the first point must begin with row 0");
+  for (std::size_t i = 0; i + 1 < first.size(); ++i) {
+    const Index size = first[i + 1] - first[i];
+    if (size < 1 || size > 3) fail(fmt::format("point {} has {} rows; there can be 1, 2 or 3", i, size));
+  }
+  require_size(offset.size(), first.back(), "the offset q");
+  require_size(contact_operator->rows(), first.back(), "a column of W");
+  require_size(friction_coefficient.size(), points(), "the friction coefficients");
+  if (friction_bound.size() > 0) require_size(friction_bound.size(), points(), "the friction bounds");
+  if (offset_rounding.size() > 0) require_size(offset_rounding.size(), rows(), "the rounding of q");
+  if (!eligible.empty()) require_size(static_cast<Index>(eligible.size()), points(), "the list of eligible points");
+  const auto admissible = [](double value) { return value >= 0.0 && std::isfinite(value); };
+  for (Index i = 0; i < points(); ++i) {
+    if (!admissible(friction_coefficient[i]))
+      fail(fmt::format("the friction coefficient of point {} is {}; it must be zero or positive", i,
+                       friction_coefficient[i]));
+    if (!admissible(bound(i)))
+      fail(fmt::format("the friction bound of point {} is {}; it must be zero (none) or positive", i, bound(i)));
+  }
+}
+
+}  // namespace ricochet

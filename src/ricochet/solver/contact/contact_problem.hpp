@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+#include "ricochet/solver/contact/contact_operator.hpp"
+
+/// @file The contact problem of a step. Knows nothing of finite elements or time.
+namespace ricochet {
+
+/// Point i has the rows first[i] … first[i+1]−1: its normal, then (if it can have friction) its d−1 tangents. Find the
+/// reactions r and the motion u (velocities or gaps, whatever q is) with
+///   u = q + W r,
+/// and at every eligible point
+///   0 ≤ r_N ⟂ u_N ≥ 0,   |r_T| ≤ b,   r_T = −b u_T/|u_T| where u_T ≠ 0,
+/// with b = F r_N (Coulomb; no bound), b = min(F r_N, bound) (Coulomb's law with a limit), or b = bound where r_N > 0
+/// and b = 0 where r_N = 0 (Tresca: F = 0 < bound); r_i = 0 at the others. The disc |r_T| ≤ b is the disc itself, no
+/// polygon. Without bounds this is the cone complementarity problem of De Saxcé,
+///   K* ∋ û ⟂ r ∈ K,   û = u + (F |u_T|, 0, 0),   K = {|r_T| ≤ F r_N},
+/// the form in which FCLib states it.
+///
+/// Tresca's b jumps at r_N = 0, and a solution need not exist then: friction can hold up a point that would penetrate
+/// without it. The law is closed there: at a grazing point (r_N = 0 = u_N) any b in [0, bound] is admitted, the limit
+/// of b = min(bound, k r_N) for k → ∞.
+struct ContactProblem {
+  std::shared_ptr<const ContactOperator> contact_operator;  ///< W
+  Vector offset;                                            ///< q, per row
+  std::vector<Index> first;                                 ///< points + 1
+  Vector friction_coefficient;                              ///< F ≥ 0, per point
+  Vector friction_bound;                                    ///< per point, in units of r; 0: none. Empty: none anywhere
+  Vector offset_rounding;       ///< size of the rounding error of q, per row. Empty: q is exact
+  std::vector<char> eligible;   ///< per point: may have a reaction. Empty: all may
+  double reaction_scale = 1.0;  ///< r is so many times the force (a power of two). For reports: no solver looks at it
+
+  ContactProblem() = default;
+  /// `dimension` rows per point: 1 (no friction), 2 or 3. One F for all points.
+  ContactProblem(Index dimension, Matrix w, Vector q, double friction);
+  ContactProblem(Index dimension, std::shared_ptr<const ContactOperator> w, Vector q, Vector friction);
+
+  [[nodiscard]] Index points() const { return static_cast<Index>(first.size()) - 1; }
+  [[nodiscard]] Index rows() const { return offset.size(); }
+  [[nodiscard]] bool is_eligible(Index point) const {
+    return eligible.empty() || eligible[static_cast<std::size_t>(point)] != 0;
+  }
+  [[nodiscard]] double bound(Index point) const { return friction_bound.size() > 0 ? friction_bound[point] : 0.0; }
+  /// Throws Error(invalid_input) where sizes do not agree, a coefficient or bound is negative, or a number of q or F is
+  /// not finite; names the point.
+  void validate() const;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/contact_status.hpp"
+#include "ricochet/base/types.hpp"
+#include "ricochet/solver/contact/contact_problem.hpp"
+
+/// @file Solvers of the contact problem. To add one: a file with a class derived from IterativeContactSolver
+/// (contact_iteration.hpp), one line in registry.cpp, and its name in the tests' list.
+///
+///     ContactProblem problem(3, w, q, 0.3);        // W dense, three rows per point: normal, two tangents
+///     const auto solver = make_contact_solver("automatic");
+///     ContactSolution solution;
+///     solver->analyse(problem);                    // once per W
+///     solver->solve(problem, {.tolerance = 1e-8}, solution);
+///     if (!solution.solved()) std::cerr << solution.reason << ", residual " << solution.residual << '\n';
+///     problem.offset = next_q;                     // the next step
+///     solver->solve(problem, {.tolerance = 1e-8}, solution);  // starts from the last reactions
+///     std::cout << solution.reaction << '\n';
+namespace ricochet {
+
+struct ContactOptions {
+  /// On the residual (below). Zero: down to rounding.
+  double tolerance = 0.0;
+  /// Of the solver's own kind (sweeps, Newton steps, …). Zero: the solver's own limit.
+  int iteration_limit = 0;
+  /// Keep a record of every iteration.
+  bool record = false;
+};
+
+enum class ContactOutcome : char {
+  solved,          ///< the residual is below the tolerance, or is rounding
+  not_converged,   ///< after the largest number of iterations, or because nothing improves any more
+  not_applicable,  ///< the solver does not treat such problems: reason says why
+  invalid_data,    ///< not finite, or W has a negative diagonal
+};
+
+/// One line of the record.
+struct ContactIteration {
+  const char* phase = "";  ///< "sweep", "newton", …
+  double residual = 0.0;   ///< after it, relative
+};
+
+struct ContactSolution {
+  /// r, per row; r_N never negative, |r_T| never beyond the limit by more than rounding, exactly zero where open. Where
+  /// the problem is not solved: the best found.
+  Vector reaction;
+  Vector motion;  ///< u = q + W r, per row
+  /// Per point. closed: no friction. stick: |r_T| < b, or u_T is rounding. slip: |r_T| = b to rounding.
+  std::vector<ContactStatus> status;
+  ContactOutcome outcome = ContactOutcome::not_converged;
+  std::string reason;  ///< why not, when not solved
+  /// The measure, see contact_measure.hpp: largest natural map of a point over that of r = 0.
+  double residual = 0.0;
+  /// What of `residual` may be rounding: a residual below it says nothing more.
+  double rounding_floor = 0.0;
+  int iterations = 0;      ///< all, of every kind
+  int newton_steps = 0;    ///< of them, those with a linear system
+  int factorizations = 0;  ///< of those, the ones that could not use the factor of an earlier step
+  std::vector<ContactIteration> record;
+
+  [[nodiscard]] bool solved() const { return outcome == ContactOutcome::solved; }
+};
+
+class ContactSolver {
+ public:
+  virtual ~ContactSolver() = default;
+  ContactSolver() = default;
+  ContactSolver(const ContactSolver&) = delete;
+  ContactSolver& operator=(const ContactSolver&) = delete;
+
+  /// Takes up W and the points of `problem`; q, F, bounds and eligibility may change until the next call. Forgets the
+  /// warm start. Throws Error(invalid_input), see ContactProblem::validate.
+  virtual void analyse(const ContactProblem& problem) = 0;
+  /// Starts from the reactions of the last solved problem, if there is one. Does not throw for what the numbers say:
+  /// that is in `solution.outcome`. Work space is kept from call to call.
+  virtual void solve(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution) = 0;
+
+  /// What the next solve starts from: the last reactions, and what else decides its bits. For a checkpoint: a solver
+  /// that is given it goes on with the same bits. Empty: a cold start.
+  [[nodiscard]] virtual Vector warm_start() const = 0;
+  /// Reactions (one per row), or what warm_start() gave. An empty vector forgets.
+  virtual void set_warm_start(const Vector& start) = 0;
+};
+
+/// Is shown contact problems and their solutions.
+using ContactObserver = std::function<void(const ContactProblem&, const ContactSolution&)>;
+
+struct ContactSolverDescription {
+  std::string name;
+  std::string text;  ///< one line
+};
+
+/// By name; throws Error(invalid_input) that lists the names. "automatic" needs no choice.
+[[nodiscard]] std::unique_ptr<ContactSolver> make_contact_solver(const std::string& name = "automatic");
+[[nodiscard]] std::vector<ContactSolverDescription> contact_solvers();
+
+}  // namespace ricochet

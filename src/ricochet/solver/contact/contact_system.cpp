@@ -1,0 +1,352 @@
+#include "ricochet/solver/contact/contact_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/linear_algebra/dense_kernels.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Rounding of a sum, in units of the sum of absolute values.
+constexpr double rounding = 32.0 * epsilon;
+/// Up to this many rows the entries of a product operator are found by products with unit vectors.
+constexpr Index few_rows = 3000;
+/// Up to this many rows a dense matrix is always faster than a sparse one.
+constexpr Index small = 150;
+
+/// The power of two at or below.
+double power_of_two(double value) {
+  return std::isnormal(value) ? std::ldexp(1.0, std::ilogb(value)) : 1.0;
+}
+
+}  // namespace
+
+void ContactSystem::analyse(const ContactProblem& problem) {
+  operator_ = problem.contact_operator;
+  problem_first_ = problem.first;
+  gathered_.clear();
+  row_of_.clear();
+  const Index points = problem.points();
+  scale_.assign(static_cast<std::size_t>(points), 1.0);
+  normal_.assign(scale_.size(), 1.0);
+  mean_.assign(scale_.size(), 1.0);
+  std::vector<double> largest_of(scale_.size(), 0.0);
+  found_.reset();
+  if (operator_->dense() == nullptr && operator_->sparse() == nullptr && operator_->rows() <= few_rows) {
+    Matrix entries(operator_->rows(), operator_->rows());
+    Vector unit = Vector::Zero(operator_->rows()), column;
+    for (Index j = 0; j < entries.cols(); ++j) {
+      unit[j] = 1.0;
+      operator_->multiply(unit, column);
+      unit[j] = 0.0;
+      entries.col(j) = column;
+    }
+    found_ = make_dense_operator(std::move(entries));
+    operator_ = found_;
+  }
+  mode_ = operator_->dense() != nullptr ? Mode::dense : operator_->sparse() != nullptr ? Mode::sparse : Mode::product;
+  // Few rows, or rows that are not sparse: dense loops are faster.
+  if (mode_ == Mode::sparse) {
+    const SparseMatrix& w = *operator_->sparse();
+    const double rows = static_cast<double>(w.rows());
+    if (w.rows() <= small || (w.rows() <= few_rows && static_cast<double>(w.nonZeros()) > 0.1 * rows * rows)) {
+      found_ = make_dense_operator(Matrix(w));
+      operator_ = found_;
+      mode_ = Mode::dense;
+    }
+  }
+  double largest = 0.0;
+  for (Index i = 0; i < points; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const PointMatrix block = operator_->block(problem.first[at], problem.first[at + 1] - problem.first[at]);
+    normal_[at] = block(0, 0);
+    mean_[at] = block.trace() / static_cast<double>(block.rows());
+    largest_of[at] = block.diagonal().maxCoeff();
+    largest = std::max(largest, largest_of[at]);
+  }
+  // The root of a power of two is one only for even powers: W's largest diagonal is brought between one and two first.
+  operator_scale_ = 1.0 / power_of_two(largest);
+  // Even with respect to the first point: a scaling of other rows, the largest one's included, changes nothing.
+  const auto present = std::find_if(largest_of.begin(), largest_of.end(), [](double d) { return d > 0.0; });
+  if (present != largest_of.end() && ((std::ilogb(largest) - std::ilogb(*present)) & 1) != 0) operator_scale_ *= 0.5;
+  for (std::size_t i = 0; i < scale_.size(); ++i) {
+    const double diagonal = operator_scale_ * largest_of[i];
+    if (std::isnormal(diagonal) && diagonal > 0.0) scale_[i] = std::ldexp(1.0, -(std::ilogb(diagonal) >> 1));
+    const double factor = operator_scale_ * scale_[i] * scale_[i];
+    mean_[i] *= factor;
+    normal_[i] *= factor;
+  }
+}
+
+ContactPoint ContactSystem::make_point(const ContactProblem& problem, Index i) const {
+  const auto at = static_cast<std::size_t>(i);
+  ContactPoint point;
+  point.point = i;
+  point.first = problem.first[at];
+  point.size = problem.first[at + 1] - point.first;
+  if (point.size > 1) {
+    point.coefficient = problem.friction_coefficient[i];
+    point.bound = problem.bound(i) * reaction_scale(i);
+  }
+  const bool friction = point.has_friction();
+  if (!friction) point.size = 1;
+  const double w = friction ? mean_[at] : normal_[at];
+  if (w > 0.0) point.diagonal = w;
+  return point;
+}
+
+void ContactSystem::set_data(const ContactProblem& problem) {
+  data_scale_ = 1.0;
+  data_ = 0.0;
+  data_are_finite_ = true;
+  for (Index i = 0; i < problem.points(); ++i) {
+    if (!problem.is_eligible(i)) continue;
+    ContactPoint point = make_point(problem, i);
+    PaddedVector q = PaddedVector::Zero();
+    for (Index k = 0; k < point.size; ++k) q[k] = scale_[static_cast<std::size_t>(i)] * problem.offset[point.first + k];
+    data_are_finite_ = data_are_finite_ && q.allFinite();
+    data_ = std::max(data_, residual(point, PaddedVector::Zero(), q));
+  }
+  data_scale_ = 1.0 / power_of_two(data_);
+  data_ *= data_scale_;
+}
+
+void ContactSystem::select(const ContactProblem& problem, const std::vector<char>& wanted) {
+  std::vector<Index> chosen;
+  for (Index i = 0; i < problem.points(); ++i) {
+    // The columns of points that cannot matter now are kept for others: entries cost more than they do.
+    if (mode_ != Mode::dense || wanted[static_cast<std::size_t>(i)] != 0) chosen.push_back(i);
+  }
+  gather(problem, chosen);
+  offset_.resize(static_cast<Index>(row_of_.size()));
+  offset_rounding_.setZero(offset_.size());
+  for (Index row = 0; row < offset_.size(); ++row) {
+    const auto at = static_cast<std::size_t>(row);
+    const double scale = data_scale_ * row_scale_[at];
+    offset_[row] = scale * problem.offset[row_of_[at]];
+    if (problem.offset_rounding.size() > 0) offset_rounding_[row] = scale * problem.offset_rounding[row_of_[at]];
+  }
+}
+
+void ContactSystem::gather(const ContactProblem& problem, const std::vector<Index>& chosen) {
+  points_.clear();
+  std::vector<Index> rows;
+  for (const Index i : chosen) {
+    ContactPoint point = make_point(problem, i);
+    const Index first = point.first;
+    // Sparse and product operators keep all of their rows.
+    const Index size = mode_ == Mode::dense ? point.size : problem_first_[static_cast<std::size_t>(i) + 1] - first;
+    point.first = static_cast<Index>(rows.size());
+    for (Index k = 0; k < size; ++k) rows.push_back(first + k);
+    if (problem.is_eligible(i)) points_.push_back(point);
+  }
+  const bool same = rows == row_of_ && chosen == gathered_;
+  if (!same) {
+    gathered_ = chosen;
+    row_of_ = std::move(rows);
+    row_scale_.clear();
+    row_scale_.assign(row_of_.size(), 1.0);
+    std::size_t point = 0;
+    for (std::size_t row = 0; row < row_of_.size(); ++row) {
+      while (problem_first_[point + 1] <= row_of_[row]) ++point;
+      row_scale_[row] = scale_[point];
+    }
+    if (mode_ == Mode::dense) copy_dense();
+    if (mode_ == Mode::sparse) copy_sparse();
+  }
+  point_operators_.clear();
+  for (const ContactPoint& point : points_) {
+    PointMatrix block;
+    if (mode_ == Mode::dense) {
+      block = matrix_.block(point.first, point.first, point.size, point.size);
+    } else {
+      const double scale = row_scale_[static_cast<std::size_t>(point.first)];
+      block = operator_scale_ * scale * scale *
+              operator_->block(row_of_[static_cast<std::size_t>(point.first)], point.size);
+    }
+    point_operators_.push_back(make_point_operator(block));
+  }
+}
+
+Index ContactSystem::system_row(Index problem_row) const {
+  const auto found = std::lower_bound(row_of_.begin(), row_of_.end(), problem_row);
+  return found != row_of_.end() && *found == problem_row ? found - row_of_.begin() : -1;
+}
+
+void ContactSystem::copy_dense() {
+  const Matrix& w = *operator_->dense();
+  const auto count = static_cast<Index>(row_of_.size());
+  if (matrix_.rows() != count) matrix_.resize(count, count);
+  // Rows come in runs of neighbours: copied together.
+  std::vector<Index> runs;
+  for (Index i = 0; i < count; ++i) {
+    if (i == 0 || problem_row(i) != problem_row(i - 1) + 1) runs.push_back(i);
+  }
+  runs.push_back(count);
+  const Eigen::Map<const Vector> scales(row_scale_.data(), count);
+  for (Index j = 0; j < count; ++j) {
+    const double* column = w.data() + problem_row(j) * w.rows();
+    const double scale = operator_scale_ * row_scale_[static_cast<std::size_t>(j)];
+    for (std::size_t k = 0; k + 1 < runs.size(); ++k) {
+      const Index first = runs[k], size = runs[k + 1] - first;
+      const Eigen::Map<const Vector> from(column + problem_row(first), size);
+      matrix_.col(j).segment(first, size) = (scale * scales.segment(first, size)).cwiseProduct(from);
+    }
+  }
+}
+
+void ContactSystem::copy_sparse() {
+  sparse_ = *operator_->sparse();
+  for (Index j = 0; j < sparse_.cols(); ++j) {
+    const double scale = operator_scale_ * row_scale_[static_cast<std::size_t>(j)];
+    for (SparseMatrix::InnerIterator entry(sparse_, j); entry; ++entry)
+      entry.valueRef() *= scale * row_scale_[static_cast<std::size_t>(entry.row())];
+  }
+}
+
+void ContactSystem::add_change(const ContactPoint& point, const PaddedVector& change, Vector& motion) const {
+  if (mode_ == Mode::dense) {
+    add_columns(motion.size(), point.size, matrix_.data() + point.first * matrix_.rows(), matrix_.rows(), change.data(),
+                motion.data());
+    return;
+  }
+  for (Index k = 0; k < point.size; ++k) {
+    if (change[k] == 0.0) continue;
+    for (SparseMatrix::InnerIterator entry(sparse_, point.first + k); entry; ++entry)
+      motion[entry.row()] += change[k] * entry.value();
+  }
+}
+
+void ContactSystem::multiply(const Vector& x, Vector& y) const {
+  if (mode_ != Mode::product) {
+    y.setZero(rows());
+    for (const ContactPoint& point : points_) {
+      const PaddedVector part = padded(point, x);
+      if (!part.isZero(0.0)) add_change(point, part, y);
+    }
+    return;
+  }
+  product_argument_.setZero(operator_->rows());
+  for (const ContactPoint& point : points_) {
+    for (Index row = point.first; row < point.first + point.size; ++row)
+      product_argument_[row] = row_scale_[static_cast<std::size_t>(row)] * x[row];
+  }
+  operator_->multiply(product_argument_, product_result_);
+  y.resize(rows());
+  for (Index row = 0; row < y.size(); ++row)
+    y[row] = operator_scale_ * row_scale_[static_cast<std::size_t>(row)] * product_result_[row];
+}
+
+void ContactSystem::evaluate(ContactIterate& iterate) const {
+  iterate.motion = offset_;
+  iterate.size = offset_.cwiseAbs();
+  if (mode_ == Mode::dense) {
+    for (const ContactPoint& point : points_) {
+      const PaddedVector r = padded(point, iterate.reaction);
+      if (r.isZero(0.0)) continue;
+      add_columns(rows(), point.size, matrix_.data() + point.first * matrix_.rows(), matrix_.rows(), r.data(),
+                  iterate.motion.data(), iterate.size.data());
+    }
+  } else if (mode_ == Mode::sparse) {
+    for (const ContactPoint& point : points_) {
+      for (Index k = point.first; k < point.first + point.size; ++k) {
+        const double r = iterate.reaction[k];
+        if (r == 0.0) continue;
+        for (SparseMatrix::InnerIterator entry(sparse_, k); entry; ++entry) {
+          iterate.motion[entry.row()] += r * entry.value();
+          iterate.size[entry.row()] += std::abs(r * entry.value());
+        }
+      }
+    }
+  } else {
+    Vector product;
+    multiply(iterate.reaction, product);
+    iterate.motion += product;
+    // |W_ij|² ≤ W_ii W_jj, of which the largest is below four.
+    iterate.size.array() += 4.0 * iterate.reaction.lpNorm<1>();
+  }
+}
+
+double ContactSystem::residual(const ContactPoint& point, const PaddedVector& reaction, const PaddedVector& motion) {
+  const double value = natural_map(point, reaction, motion).norm() * std::sqrt(point.diagonal);
+  return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+}
+
+double ContactSystem::residual(const ContactIterate& iterate) const {
+  double largest = 0.0;
+  for (const ContactPoint& point : points_)
+    largest = std::max(largest, residual(point, padded(point, iterate.reaction), padded(point, iterate.motion)));
+  return largest;
+}
+
+ContactSystem::Floor ContactSystem::floor_of(const ContactPoint& point, const ContactIterate& iterate) const {
+  Floor floor;
+  for (Index k = 0; k < point.size; ++k) {
+    const Index row = point.first + k;
+    const double of_sum = rounding * iterate.size[row];
+    double& of_row = k == 0 ? floor.normal : floor.tangential;
+    of_row = std::max(of_row, offset_rounding_[row] + of_sum);
+    floor.of_sums = std::max(floor.of_sums, of_sum);
+  }
+  return floor;
+}
+
+namespace {
+
+/// What an error of u of this size makes of the natural map: û = u + F |u_T|.
+double floor_of_map(const ContactPoint& point, const ContactSystem::Floor& floor) {
+  return (std::max(floor.normal, floor.tangential) + point.coefficient * floor.tangential) / std::sqrt(point.diagonal);
+}
+
+}  // namespace
+
+ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) const {
+  Measure result;
+  for (const ContactPoint& point : points_) {
+    const double value = residual(point, padded(point, iterate.reaction), padded(point, iterate.motion));
+    const Floor of_motion = floor_of(point, iterate);
+    const double floor = floor_of_map(point, of_motion);
+    result.is_exact =
+        result.is_exact && value * std::sqrt(point.diagonal) <= (1.0 + point.coefficient) * of_motion.of_sums;
+    result.residual = std::max(result.residual, value);
+    result.rounding_floor = std::max(result.rounding_floor, floor);
+    if (!(value <= floor)) result.beyond_floor = std::max(result.beyond_floor, value - floor);
+  }
+  return result;
+}
+
+void ContactSystem::take_reaction(const Vector& reaction, Vector& scaled) const {
+  scaled.setZero(rows());
+  for (const ContactPoint& point : points_) {
+    const double scale = reaction_scale(point.point);
+    const Index first = problem_first_[static_cast<std::size_t>(point.point)];
+    for (Index k = 0; k < point.size; ++k) scaled[point.first + k] = scale * reaction[first + k];
+  }
+}
+
+void ContactSystem::give_reaction(const Vector& scaled, Vector& reaction) const {
+  reaction.setZero(problem_first_.back());
+  for (const ContactPoint& point : points_) {
+    const double scale = 1.0 / reaction_scale(point.point);
+    const Index first = problem_first_[static_cast<std::size_t>(point.point)];
+    for (Index k = 0; k < point.size; ++k) reaction[first + k] = scale * scaled[point.first + k];
+  }
+}
+
+void ContactSystem::give_motion(const Vector& scaled, Vector& motion) const {
+  motion.resize(rows());
+  for (Index row = 0; row < rows(); ++row)
+    motion[row] = scaled[row] / (data_scale_ * row_scale_[static_cast<std::size_t>(row)]);
+}
+
+double ContactSystem::residual_of(const ContactProblem& problem, Index i, const Vector& reaction,
+                                  const Vector& motion) const {
+  const ContactPoint point = make_point(problem, i);
+  return residual(point, reaction_scale(i) * padded(point, reaction), motion_scale(i) * padded(point, motion));
+}
+
+}  // namespace ricochet

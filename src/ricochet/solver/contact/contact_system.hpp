@@ -1,0 +1,127 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+#include "ricochet/solver/contact/contact_point.hpp"
+#include "ricochet/solver/contact/contact_problem.hpp"
+
+/// @file The contact problem as solvers see it: the points that may matter, scaled.
+namespace ricochet {
+
+/// A state of the iteration and what follows from it, all of it scaled.
+struct ContactIterate {
+  Vector reaction;  ///< r
+  Vector motion;    ///< u = q + W r
+  Vector size;      ///< |q| + Σ_j |W_ij r_j|, of which u has the rounding
+};
+
+/// Rows and columns are scaled by powers of two, one exponent per point, so that the largest diagonal entry of each
+/// block of W lies in [1, 4) and the data (below) in [1, 2): nothing a solver does then depends on units or on a
+/// scaling of rows, and nothing is rounded. With u' = S D u, W' = e D W D, r' = (S/e) D⁻¹ r it is u' = q' + W' r'.
+///
+/// The measure. At each point the natural map e_i of the cone complementarity problem (contact_point.hpp) is taken in
+/// the unit in which W_ii is one: |e_i| √w_i with w_i its mean diagonal entry. The residual is the largest of these
+/// over the points, divided by the data: the same for r = 0, which is what the problem asks for (points that stay open
+/// without help do not count). Its rounding floor is what 32 ε (|q| + Σ|W r|) + offset_rounding makes of it.
+class ContactSystem {
+ public:
+  /// Takes up W and its scales.
+  void analyse(const ContactProblem& problem);
+  /// The points of the system, out of the eligible ones, in their order; and the data of this problem. A dense W is
+  /// gathered for them, unless it already is.
+  void select(const ContactProblem& problem, const std::vector<char>& wanted);
+  /// q, F and bounds of the problem, and the size of the data. Before `select`.
+  void set_data(const ContactProblem& problem);
+
+  [[nodiscard]] const std::vector<ContactPoint>& points() const { return points_; }
+  [[nodiscard]] const PointOperator& point_operator(std::size_t k) const { return point_operators_[k]; }
+  [[nodiscard]] Index rows() const { return offset_.size(); }
+  /// The row of the problem that is this row of the system, and back (−1: it is not in the system): what is kept from
+  /// one selection of points to the next is known by the problem's rows.
+  [[nodiscard]] Index problem_row(Index row) const { return row_of_[static_cast<std::size_t>(row)]; }
+  [[nodiscard]] Index system_row(Index problem_row) const;
+  [[nodiscard]] const Vector& offset() const { return offset_; }
+  /// Largest natural map of r = 0, over all eligible points. In [1, 2), or zero: r = 0 is a solution.
+  [[nodiscard]] double data() const { return data_; }
+  [[nodiscard]] bool data_are_finite() const { return data_are_finite_; }
+  /// W′ of the system's rows where entries are at hand (no product operator of many rows).
+  [[nodiscard]] const Matrix* dense() const { return mode_ == Mode::dense ? &matrix_ : nullptr; }
+  [[nodiscard]] const SparseMatrix* sparse() const { return mode_ == Mode::sparse ? &sparse_ : nullptr; }
+  [[nodiscard]] bool has_entries() const { return mode_ != Mode::product; }
+
+  /// u = q + W r and its size, afresh.
+  void evaluate(ContactIterate& iterate) const;
+  /// y = W x.
+  void multiply(const Vector& x, Vector& y) const;
+  /// u += W · (change of the reaction of a point). Needs entries.
+  void add_change(const ContactPoint& point, const PaddedVector& change, Vector& motion) const;
+
+  /// |e_i| √w_i of one point.
+  [[nodiscard]] static double residual(const ContactPoint& point, const PaddedVector& reaction,
+                                       const PaddedVector& motion);
+  /// Largest over the points, not divided by the data.
+  [[nodiscard]] double residual(const ContactIterate& iterate) const;
+  /// What there is to say of an iterate, none of it divided by the data.
+  struct Measure {
+    double residual = 0.0;        ///< largest over the points
+    double beyond_floor = 0.0;    ///< largest of what is beyond the rounding floor of its point. Zero: it is rounding
+    double rounding_floor = 0.0;  ///< largest over the points
+    bool is_exact = true;         ///< it is rounding even where q is taken for exact
+  };
+  [[nodiscard]] Measure measure(const ContactIterate& iterate) const;
+  /// What is left is no more than `tolerance` of the data, or rounding.
+  [[nodiscard]] bool is_solved(const ContactIterate& iterate, double tolerance) const {
+    return measure(iterate).beyond_floor <= tolerance * data_;
+  }
+  /// The floor of u at a point: normal, and tangential.
+  struct Floor {
+    double normal = 0.0, tangential = 0.0;
+    double of_sums = 0.0;  ///< largest part that is not the rounding of q
+  };
+  [[nodiscard]] Floor floor_of(const ContactPoint& point, const ContactIterate& iterate) const;
+
+  /// From the rows of the problem to those of the system and back; what is not in the system is zero.
+  void take_reaction(const Vector& reaction, Vector& scaled) const;
+  void give_reaction(const Vector& scaled, Vector& reaction) const;
+  /// For a system with all rows of the problem.
+  void give_motion(const Vector& scaled, Vector& motion) const;
+  /// Scaled residual of any eligible point of the problem, in or out of the system, from r and u in the problem's
+  /// units.
+  [[nodiscard]] double residual_of(const ContactProblem& problem, Index point, const Vector& reaction,
+                                   const Vector& motion) const;
+
+ private:
+  enum class Mode { dense, sparse, product };
+  [[nodiscard]] ContactPoint make_point(const ContactProblem& problem, Index i) const;
+  [[nodiscard]] double motion_scale(Index i) const { return data_scale_ * scale_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] double reaction_scale(Index i) const {
+    return data_scale_ / operator_scale_ / scale_[static_cast<std::size_t>(i)];
+  }
+  void gather(const ContactProblem& problem, const std::vector<Index>& points);
+  void copy_dense();
+  void copy_sparse();
+
+  Mode mode_ = Mode::dense;
+  std::shared_ptr<const ContactOperator> operator_;
+  std::shared_ptr<const ContactOperator> found_;  ///< a product operator of few rows, by its entries
+  std::vector<Index> problem_first_;
+  std::vector<double> scale_;          ///< D, per point of the problem
+  std::vector<double> normal_, mean_;  ///< w, per point of the problem, scaled: of the normal, of the block
+  double operator_scale_ = 1.0;        ///< e
+  double data_scale_ = 1.0;            ///< S
+  double data_ = 0.0;
+  bool data_are_finite_ = true;
+
+  std::vector<Index> gathered_;    ///< points of the problem in the system, eligible or not
+  std::vector<Index> row_of_;      ///< per row of the system: the problem's row
+  std::vector<double> row_scale_;  ///< per row of the system: D
+  std::vector<ContactPoint> points_;
+  std::vector<PointOperator> point_operators_;
+  Matrix matrix_;
+  SparseMatrix sparse_;
+  Vector offset_, offset_rounding_;
+  mutable Vector product_argument_, product_result_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,79 @@
+#include "ricochet/solver/contact/gauss_seidel.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "ricochet/solver/contact/contact_iteration.hpp"
+
+namespace ricochet {
+
+bool GaussSeidel::sweep(const ContactSystem& system, double damping, ContactIterate& iterate) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const std::vector<ContactPoint>& points = system.points();
+  bool changed = states_.size() != points.size();
+  if (changed) {
+    states_.assign(points.size(), 0);
+    slip_stiffness_.assign(points.size(), -1.0);
+  }
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const ContactPoint& point = points[k];
+    const PaddedVector r = padded(point, iterate.reaction);
+    const PaddedVector u = padded(point, iterate.motion);
+    if (u[0] >= 0.0 && r.isZero(0.0)) {
+      changed = changed || states_[k] != 0;
+      states_[k] = 0;
+      continue;
+    }
+    const PointOperator& block = system.point_operator(k);
+    const PaddedVector found = solve_point(point, block, u - block.multiply(r), r[0] > 0.0, slip_stiffness_[k]);
+    char state = found[0] > 0.0 ? 1 : 0;
+    if (state != 0 && point.has_friction()) {
+      const double limit = point.friction_limit(found[0]) * (1.0 - 8.0 * epsilon);
+      if (found.tail<2>().squaredNorm() < limit * limit) state = 2;
+    }
+    changed = changed || state != states_[k];
+    states_[k] = state;
+    const PaddedVector change = damping * (found - r);
+    if (change.isZero(0.0)) continue;
+    system.add_change(point, change, iterate.motion);
+    enter(point, damping < 1.0 ? PaddedVector(r + change) : found, iterate.reaction);
+  }
+  return changed;
+}
+
+namespace {
+
+/// The sweeps alone, for comparison and as a fallback.
+class GaussSeidelSolver final : public IterativeContactSolver {
+ protected:
+  [[nodiscard]] std::string refuses(const ContactSystem& system) const override {
+    return system.has_entries() ? "" : "Gauss-Seidel needs the entries of W, and W is known by its product alone";
+  }
+  std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
+                      ContactSolution& solution) override {
+    const int limit = options.iteration_limit > 0 ? options.iteration_limit : 20000;
+    sweeps_.restart();
+    for (int k = 1; k <= limit; ++k) {
+      sweeps_.sweep(system, 1.0, current);
+      const double residual = system.residual(current);
+      note(system, options, "sweep", residual, solution);
+      if (!std::isfinite(residual)) return "the sweeps diverged: W is not positive definite";
+      // u gathers the rounding of its updates; the verdict is on a fresh one.
+      if (residual > options.tolerance * system.data() && k % 16 != 0) continue;
+      system.evaluate(current);
+      if (system.is_solved(current, options.tolerance)) return "";
+    }
+    return "the largest number of sweeps was not enough";
+  }
+
+ private:
+  GaussSeidel sweeps_;
+};
+
+}  // namespace
+
+std::unique_ptr<ContactSolver> make_gauss_seidel() {
+  return std::make_unique<GaussSeidelSolver>();
+}
+
+}  // namespace ricochet

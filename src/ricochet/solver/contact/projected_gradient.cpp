@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/solver/contact/cone_formulation.hpp"
+#include "ricochet/solver/contact/contact_iteration.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr int iteration_limit = 50000;
+/// Iterations between verdicts on a u computed afresh.
+constexpr int verdict_interval = 16;
+/// Iterations in which the residual must halve if the correction is to follow every iteration.
+constexpr int patience = 400;
+/// Part of its residual to which a problem with the correction held is solved before the correction follows.
+constexpr double held_accuracy = 0.1;
+/// By which the estimate of W's largest eigenvalue falls after an iteration and rises where it was too small.
+constexpr double slackening = 0.97, tightening = 1.5;
+
+/// Accelerated projected gradient. For a given De Saxcé correction s = F |u_T| the problem is that of the least
+///   ½ rᵀ W r + (q + s n)ᵀ r   on   r ∈ K,
+/// which is solved by
+///   r⁺ = P_K(y − (W y + q + s n)/(L w)),   y = r + β (r − r⁻),
+/// with Nesterov's β, begun again where it points uphill (B. O'Donoghue, E. Candès, Found. Comput. Math. 15 (2015)
+/// 715–732), and 1/L the longest step for which the quadratic is bounded by its value with L in the place of W (A.
+/// Beck, M. Teboulle, SIAM J. Imaging Sci. 2 (2009) 183–202). s follows y at every iteration; where that does not get
+/// closer any more (strong friction) it is held until the problem with it is nearly solved. One product with W for each
+/// iteration. On contact problems: H. Mazhar, T. Heyn, D. Negrut, A. Tasora, ACM Trans. Graph. 34 (2015) 32.
+class AcceleratedGradient final : public IterativeContactSolver {
+ protected:
+  [[nodiscard]] std::string refuses(const ContactSystem& system) const override { return refuse_bounds(system); }
+  std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
+                      ContactSolution& solution) override;
+
+ private:
+  void advance(const ContactSystem& system, const ContactIterate& current);
+  void step(const ContactSystem& system);
+  void accelerate(const ContactSystem& system, const ContactIterate& current);
+  [[nodiscard]] double correction(const ContactSystem& system, std::size_t k, const PaddedVector& motion) const;
+  void hold(const ContactSystem& system, const ContactIterate& current, double residual);
+  [[nodiscard]] bool is_held_problem_solved(const ContactSystem& system, const ContactIterate& current) const;
+
+  Vector start_reaction_, start_motion_;  ///< y and W y + q
+  Vector step_;                           ///< r⁺ − y
+  ContactIterate next_, best_;
+  Vector held_;  ///< s per point, while it is held
+  bool holds_ = false;
+  double target_ = 0.0;      ///< for the residual of the problem with s held
+  double eigenvalue_ = 1.0;  ///< L
+  double theta_ = 1.0;       ///< of Nesterov's sequence
+};
+
+/// s of a point.
+double AcceleratedGradient::correction(const ContactSystem& system, std::size_t k, const PaddedVector& motion) const {
+  if (holds_) return held_[static_cast<Index>(k)];
+  return system.points()[k].coefficient * motion.tail<2>().norm();
+}
+
+void AcceleratedGradient::hold(const ContactSystem& system, const ContactIterate& current, double residual) {
+  const std::vector<ContactPoint>& points = system.points();
+  holds_ = true;
+  held_.resize(static_cast<Index>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k)
+    held_[static_cast<Index>(k)] = points[k].coefficient * padded(points[k], current.motion).tail<2>().norm();
+  target_ = held_accuracy * residual;
+}
+
+bool AcceleratedGradient::is_held_problem_solved(const ContactSystem& system, const ContactIterate& current) const {
+  for (std::size_t k = 0; k < system.points().size(); ++k) {
+    const ContactPoint& point = system.points()[k];
+    const PaddedVector r = padded(point, current.reaction);
+    PaddedVector slope = padded(point, current.motion);
+    slope[0] += held_[static_cast<Index>(k)];
+    const PaddedVector change = r - project(point, PaddedVector(r - slope / point.diagonal));
+    if (!(change.norm() * std::sqrt(point.diagonal) <= target_)) return false;
+  }
+  return true;
+}
+
+/// r⁺ and its u for the present L.
+void AcceleratedGradient::step(const ContactSystem& system) {
+  next_.reaction.setZero(system.rows());
+  for (std::size_t k = 0; k < system.points().size(); ++k) {
+    const ContactPoint& point = system.points()[k];
+    const PaddedVector y = padded(point, start_reaction_);
+    PaddedVector slope = padded(point, start_motion_);
+    slope[0] += correction(system, k, slope);
+    enter(point, project(point, y - slope / (eigenvalue_ * point.diagonal)), next_.reaction);
+  }
+  system.multiply(next_.reaction, next_.motion);
+  next_.motion += system.offset();
+  step_ = next_.reaction - start_reaction_;
+}
+
+void AcceleratedGradient::advance(const ContactSystem& system, const ContactIterate& current) {
+  for (int k = 0; k < 60; ++k) {
+    step(system);
+    const double curvature = step_.dot(next_.motion - start_motion_);
+    if (!(curvature > eigenvalue_ * weighted_product(system, step_, step_))) break;
+    eigenvalue_ *= tightening;
+  }
+  accelerate(system, current);
+  eigenvalue_ *= slackening;
+}
+
+void AcceleratedGradient::accelerate(const ContactSystem& system, const ContactIterate& current) {
+  start_reaction_ = next_.reaction - current.reaction;
+  if (weighted_product(system, step_, start_reaction_) < 0.0) theta_ = 1.0;
+  const double squared = theta_ * theta_;
+  const double following = 0.5 * (std::sqrt(squared * (squared + 4.0)) - squared);
+  const double beta = theta_ * (1.0 - theta_) / (squared + following);
+  theta_ = following;
+  start_reaction_ = next_.reaction + beta * start_reaction_;
+  start_motion_ = next_.motion + beta * (next_.motion - current.motion);
+}
+
+std::string AcceleratedGradient::iterate(const ContactSystem& system, const ContactOptions& options,
+                                         ContactIterate& current, ContactSolution& solution) {
+  if (system.is_solved(current, options.tolerance)) return "";
+  const int limit = options.iteration_limit > 0 ? options.iteration_limit : iteration_limit;
+  best_ = current;
+  double best = system.residual(current);
+  start_reaction_ = current.reaction;
+  start_motion_ = current.motion;
+  eigenvalue_ = theta_ = 1.0;
+  holds_ = false;
+  double compared = best;
+  int next_comparison = patience;
+  for (int k = 1; k <= limit; ++k) {
+    advance(system, current);
+    std::swap(current.reaction, next_.reaction);
+    std::swap(current.motion, next_.motion);
+    const double residual = system.residual(current);
+    note(system, options, "gradient", residual, solution);
+    if (!std::isfinite(residual)) break;
+    if (holds_ && is_held_problem_solved(system, current)) hold(system, current, residual);
+    if (!holds_ && k == next_comparison) {
+      if (!(best < 0.5 * compared)) hold(system, current, residual);
+      compared = best;
+      next_comparison += patience;
+    }
+    if (residual > options.tolerance * system.data() && k % verdict_interval != 0) continue;
+    system.evaluate(current);
+    if (system.is_solved(current, options.tolerance)) return "";
+    if (residual < best) {
+      best = residual;
+      best_ = current;
+    }
+  }
+  const bool finite = std::isfinite(system.residual(current));
+  if (!(finite && system.residual(current) < best)) current = best_;
+  system.evaluate(current);
+  return finite ? "the largest number of gradient steps was not enough"
+                : "the gradient steps diverged: W is not positive semi-definite";
+}
+
+}  // namespace
+
+std::unique_ptr<ContactSolver> make_accelerated_gradient() {
+  return std::make_unique<AcceleratedGradient>();
+}
+
+}  // namespace ricochet

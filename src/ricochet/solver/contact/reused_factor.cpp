@@ -1,0 +1,126 @@
+#include "ricochet/solver/contact/reused_factor.hpp"
+
+#include <algorithm>
+
+#include "ricochet/linear_algebra/dense_kernels.hpp"
+
+namespace ricochet {
+
+void assemble_contact_matrix(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns, Vector& column,
+                             Matrix& matrix) {
+  const Matrix& w = *system.dense();
+  const auto count = static_cast<Index>(unknowns.size());
+  if (matrix.rows() != count) matrix.resize(count, count);
+  for (Index j = 0; j < count; ++j) {
+    const ContactUnknown& unknown = unknowns[static_cast<std::size_t>(j)];
+    column.setZero(w.rows());
+    add_columns(w.rows(), unknown.size, w.data() + unknown.first * w.rows(), w.rows(), unknown.trial.data(),
+                column.data());
+    double* to = matrix.data() + j * count;
+    for (const ContactUnknown& row : unknowns) *to++ = test_motion(row, column.data());
+    matrix(j, j) += unknown.diagonal;
+  }
+}
+
+bool ReusedFactor::compute(const Matrix& matrix, const std::vector<ContactUnknown>& unknowns) {
+  unknowns_ = unknowns;
+  is_factored_ = factor_.compute(matrix);
+  if (!is_factored_) unknowns_.clear();
+  return is_factored_;
+}
+
+bool ReusedFactor::place(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns) {
+  for (ContactUnknown& unknown : unknowns_) {
+    unknown.first = system.system_row(unknown.problem_row);
+    // Tangents are not there when a stage leaves friction out.
+    if (unknown.first < 0 || system.system_row(unknown.problem_row + unknown.size - 1) < 0) return false;
+  }
+  if (!is_factored_) {
+    Matrix matrix;
+    assemble_contact_matrix(system, unknowns_, motion_, matrix);
+    is_factored_ = factor_.compute(matrix);
+    if (!is_factored_) return false;
+  }
+  present_ = unknowns;
+  same_ = present_ == unknowns_;
+  compliance_.assign(static_cast<std::size_t>(system.rows()), 1.0);
+  for (const ContactPoint& point : system.points()) {
+    for (Index k = 0; k < point.size; ++k)
+      compliance_[static_cast<std::size_t>(point.first + k)] = 1.0 / point.diagonal;
+  }
+  return true;
+}
+
+namespace {
+/// Numbers of an unknown in the memory.
+constexpr std::size_t unknown_size = 9;
+}  // namespace
+
+void ReusedFactor::append_memory(std::vector<double>& memory) const {
+  for (const ContactUnknown& unknown : unknowns_) {
+    memory.push_back(static_cast<double>(unknown.problem_row));
+    memory.push_back(static_cast<double>(unknown.size));
+    memory.insert(memory.end(), unknown.trial.begin(), unknown.trial.end());
+    memory.insert(memory.end(), unknown.test.begin(), unknown.test.end());
+    memory.push_back(unknown.diagonal);
+  }
+}
+
+void ReusedFactor::take_memory(const std::vector<double>& memory) {
+  unknowns_.clear();
+  is_factored_ = false;
+  for (std::size_t at = 0; at + unknown_size <= memory.size(); at += unknown_size) {
+    ContactUnknown unknown;
+    unknown.problem_row = static_cast<Index>(memory[at]);
+    unknown.size = static_cast<Index>(memory[at + 1]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      unknown.trial[k] = memory[at + 2 + k];
+      unknown.test[k] = memory[at + 5 + k];
+    }
+    unknown.diagonal = memory[at + 8];
+    unknowns_.push_back(unknown);
+  }
+}
+
+/// They are in the order of their points.
+bool ReusedFactor::keeps_row(Index problem_row) const {
+  const auto found =
+      std::lower_bound(unknowns_.begin(), unknowns_.end(), problem_row,
+                       [](const ContactUnknown& unknown, Index row) { return unknown.problem_row < row; });
+  return found != unknowns_.end() && found->problem_row == problem_row;
+}
+
+void ReusedFactor::apply(const Vector& right, Vector& z) const {
+  if (same_) {
+    factor_.solve(right, z);
+    return;
+  }
+  const auto add = [](const ContactUnknown& unknown, const std::array<double, 3>& direction, double factor,
+                      Vector& to) {
+    for (Index k = 0; k < unknown.size; ++k) to[unknown.first + k] += factor * direction[static_cast<std::size_t>(k)];
+  };
+  motion_.setZero(static_cast<Index>(compliance_.size()));
+  for (std::size_t i = 0; i < present_.size(); ++i)
+    add(present_[i], present_[i].test, right[static_cast<Index>(i)], motion_);
+  earlier_right_.setZero(static_cast<Index>(unknowns_.size()));
+  for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+    const ContactUnknown& unknown = unknowns_[j];
+    earlier_right_[static_cast<Index>(j)] = test_motion(unknown, motion_.data());
+  }
+  // The tests of a point are orthonormal: what they do not see is left.
+  for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+    add(unknowns_[j], unknowns_[j].test, -earlier_right_[static_cast<Index>(j)], motion_);
+  }
+  factor_.solve(earlier_right_, earlier_solution_);
+  reaction_.resize(motion_.size());
+  for (Index row = 0; row < motion_.size(); ++row)
+    reaction_[row] = compliance_[static_cast<std::size_t>(row)] * motion_[row];
+  for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+    add(unknowns_[j], unknowns_[j].trial, earlier_solution_[static_cast<Index>(j)], reaction_);
+  }
+  z.resize(right.size());
+  for (std::size_t i = 0; i < present_.size(); ++i)
+    z[static_cast<Index>(i)] = test_motion(present_[i], reaction_.data());
+}
+
+}  // namespace ricochet

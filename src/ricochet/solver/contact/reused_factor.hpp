@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "ricochet/linear_algebra/dense_factor.hpp"
+#include "ricochet/solver/contact/contact_system.hpp"
+
+/// @file The factor of an earlier Newton system as a preconditioner of the present one.
+namespace ricochet {
+
+/// An unknown x of a Newton step: r = … + x trial, and the equation test·u + diagonal x = 0, on the rows of one point.
+/// The tests of a point are orthonormal, and test·trial = 1 for one and the same unknown, 0 for others.
+struct ContactUnknown {
+  Index problem_row = 0;  ///< the problem's row that is `first`
+  Index first = 0, size = 0;
+  std::array<double, 3> trial{}, test{};
+  double diagonal = 0.0;
+  /// In whatever system: what a factor depends on.
+  bool operator==(const ContactUnknown& other) const {
+    return problem_row == other.problem_row && size == other.size && trial == other.trial && test == other.test &&
+           diagonal == other.diagonal;
+  }
+};
+
+[[nodiscard]] inline double test_motion(const ContactUnknown& unknown, const double* motion) {
+  const double* at = motion + unknown.first;
+  double sum = unknown.test[0] * at[0];
+  if (unknown.size > 1) sum += unknown.test[1] * at[1];
+  if (unknown.size > 2) sum += unknown.test[2] * at[2];
+  return sum;
+}
+
+/// Between two Newton systems a few points change their state and directions of slip turn a little. What the earlier
+/// system says of u on the points that both have is solved with its factor (single precision); what it does not know (a
+/// point that came, a direction in which one now sticks) with the diagonal of W.
+class ReusedFactor {
+ public:
+  void reset() { unknowns_.clear(); }
+  [[nodiscard]] bool empty() const { return unknowns_.empty(); }
+  /// Takes the matrix of the system for these unknowns. False: singular.
+  bool compute(const Matrix& matrix, const std::vector<ContactUnknown>& unknowns);
+  /// Before `apply`: the rows of the earlier unknowns in this system. False: it does not have all of them, or (after
+  /// take_memory) their matrix is singular.
+  bool place(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns);
+  /// z ≈ (system of the unknowns given to `place`)⁻¹ b.
+  void apply(const Vector& right, Vector& z) const;
+
+  /// The unknowns as numbers, and back: the factor is then made again at the next `place`, with the same bits.
+  void append_memory(std::vector<double>& memory) const;
+  void take_memory(const std::vector<double>& memory);
+  /// One of the unknowns is of the point that begins with this row of the problem.
+  [[nodiscard]] bool keeps_row(Index problem_row) const;
+
+ private:
+  std::vector<ContactUnknown> unknowns_;  ///< of the factor
+  std::vector<ContactUnknown> present_;   ///< of the system to solve
+  bool same_ = false;
+  bool is_factored_ = false;
+  std::vector<double> compliance_;  ///< per row of the system: 1/w
+  SingleLu factor_;
+  mutable Vector motion_, reaction_, earlier_right_, earlier_solution_;
+};
+
+/// Rows test·(W trial) + diagonal of the unknowns; W dense.
+void assemble_contact_matrix(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns, Vector& column,
+                             Matrix& matrix);
+
+}  // namespace ricochet
