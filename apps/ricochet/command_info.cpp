@@ -9,6 +9,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
+#include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 
@@ -133,6 +134,8 @@ int info(const std::vector<std::string>& paths) {
       describe_result(path);
     } else if (fs::path(path).extension() == ".toml") {
       describe_case(path);
+    } else if (is_hdf5_file(path) || fs::path(path).extension() == ".hdf5") {
+      describe_contact_problem(path);
     } else {
       describe_mesh(path);
     }

@@ -52,13 +52,16 @@ void print_summary(const RunSummary& s, const std::string& directory) {
   print_expectations(s.expectations);
   for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
   fmt::print("  results in {}\n", directory);
+  if (!s.contact_export.empty()) fmt::print("  {}\n", s.contact_export);
 }
 
 }  // namespace
 
 int run(const RunArguments& arguments) {
-  const Case input = read_case(arguments.case_file, arguments.overrides);
   RunOptions options{arguments.output_directory, arguments.force, arguments.quiet};
+  if (arguments.export_contact) options.export_contact = parse_steps(*arguments.export_contact);
+  options.export_contact_to = arguments.export_contact_to;
+  const Case input = read_case(arguments.case_file, arguments.overrides);
   if (options.output_directory.empty()) {
     options.output_directory =
         (std::filesystem::path("out") / std::filesystem::path(arguments.case_file).stem()).string();

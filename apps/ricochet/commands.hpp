@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,11 +13,25 @@ struct RunArguments {
   std::vector<std::string> overrides;
   bool force = false;
   bool quiet = false;
+  std::optional<std::string> export_contact;  ///< steps, like 10,20,50:60
+  std::string export_contact_to;              ///< directory; empty: contact/ in the output directory
+};
+
+struct ContactArguments {
+  std::string problem;
+  std::string solver = "automatic";
+  double tolerance = 0.0;
+  std::string output;  ///< empty: none
+  bool record = false;
+  bool list = false;  ///< the solvers, nothing else
 };
 
 int run(const RunArguments& arguments);
 int validate(const std::string& case_file, const std::vector<std::string>& overrides);
 int info(const std::vector<std::string>& paths);
 int schema(bool markdown);
+int contact(const ContactArguments& arguments);
+/// A contact problem in a few lines.
+void describe_contact_problem(const std::string& path);
 
 }  // namespace ricochet::program

@@ -15,6 +15,7 @@ using namespace ricochet;
 
 struct Arguments {
   program::RunArguments run;
+  program::ContactArguments contact;
   std::string validate_file;
   std::vector<std::string> validate_overrides;
   std::vector<std::string> info_paths;
@@ -48,6 +49,13 @@ int dispatch(int argc, char** argv) {
   run->add_option("--threads", arguments.threads, "number of threads; results do not depend on it")->type_name("N");
   run->add_flag("--quiet", arguments.run.quiet, "no progress and no messages but warnings and errors");
   run->add_flag("--force", arguments.run.force, "overwrite a run that is in the output directory");
+  run->add_option("--export-contact", arguments.run.export_contact,
+                  "write the contact problems of these steps as FCLib files, for example 10,20,50:60")
+      ->type_name("STEPS");
+  run->add_option("--export-contact-to", arguments.run.export_contact_to,
+                  "directory of these files (default: contact in the output directory)")
+      ->type_name("DIR")
+      ->needs("--export-contact");
   add_common(*run, arguments);
 
   CLI::App* validate = app.add_subcommand("validate", "Check everything that can be checked without running");
@@ -58,11 +66,26 @@ int dispatch(int argc, char** argv) {
   add_common(*validate, arguments);
 
   CLI::App* info = app.add_subcommand(
-      "info", "Describe a mesh, a case or a result in a few lines; several results are compared in a table");
-  info->add_option("path", arguments.info_paths, "mesh, case file or output directory")
+      "info",
+      "Describe a mesh, a case, a contact problem or a result in a few lines; several results are compared in a table");
+  info->add_option("path", arguments.info_paths, "mesh, case file, FCLib file or output directory")
       ->required()
       ->type_name("FILE_OR_DIR");
   add_common(*info, arguments);
+
+  CLI::App* contact = app.add_subcommand("contact", "Solve a contact problem from an FCLib file");
+  contact->add_option("problem", arguments.contact.problem, "FCLib file of a local problem")->type_name("PROBLEM.hdf5");
+  contact->add_option("--solver", arguments.contact.solver, "name of the solver, see --list (default: automatic)")
+      ->type_name("NAME");
+  contact
+      ->add_option("--tolerance", arguments.contact.tolerance,
+                   "relative residual to reach (default: 0, down to rounding)")
+      ->type_name("T");
+  contact->add_option("-o,--output", arguments.contact.output, "FCLib file for the problem and its solution")
+      ->type_name("SOLUTION.hdf5");
+  contact->add_flag("--record", arguments.contact.record, "print every iteration");
+  contact->add_flag("--list", arguments.contact.list, "list the solvers and do nothing else");
+  add_common(*contact, arguments);
 
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
   schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
@@ -79,6 +102,7 @@ int dispatch(int argc, char** argv) {
   if (run->parsed()) return program::run(arguments.run);
   if (validate->parsed()) return program::validate(arguments.validate_file, arguments.validate_overrides);
   if (info->parsed()) return program::info(arguments.info_paths);
+  if (contact->parsed()) return program::contact(arguments.contact);
   return program::schema(arguments.markdown);
 }
 

@@ -42,9 +42,11 @@ class CommandLine(TestCase):
 
     def test_help_and_version(self):
         process = self.expect_status(0, run("--help"))
-        for word in ("run", "validate", "info", "schema", "Exit status", "did not converge"):
+        for word in ("run", "validate", "info", "contact", "schema", "Exit status", "did not converge"):
             self.assertIn(word, process.stdout)
-        for command, words in (("run", ("-o", "--set", "--threads", "--log-level", "--quiet", "--force")),
+        for command, words in (("run", ("-o", "--set", "--threads", "--log-level", "--quiet", "--force",
+                                        "--export-contact", "--export-contact-to")),
+                               ("contact", ("--solver", "--tolerance", "-o", "--record", "--list")),
                                ("validate", ("CASE.toml",)), ("info", ("FILE_OR_DIR",)), ("schema", ("--markdown",))):
             process = self.expect_status(0, run(command, "--help"))
             for word in words:

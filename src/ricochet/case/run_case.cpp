@@ -29,6 +29,11 @@ constexpr double large_rotation = 1.0;
 /// What a run leaves in its directory.
 constexpr const char* result_files[] = {"history.csv", "summary.json", "results.h5", "results.xdmf"};
 
+std::string export_directory(const RunOptions& options) {
+  const bool elsewhere = !options.export_contact.empty() && !options.export_contact_to.empty();
+  return elsewhere ? options.export_contact_to : (std::filesystem::path(options.output_directory) / "contact").string();
+}
+
 void prepare_directory(const RunOptions& options) {
   namespace fs = std::filesystem;
   std::error_code problem;
@@ -45,19 +50,71 @@ void prepare_directory(const RunOptions& options) {
                               options.output_directory, name));
     }
   }
+  const std::string contact = export_directory(options);
+  if (!options.force && !exported_contact_problems(contact).empty()) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: holds contact problems of a run already; choose another directory, or overwrite them "
+                            "with --force",
+                            contact));
+  }
 }
 
 /// Takes away what an earlier run left (this one may write no fields). Called when the new run is ready to start, so
 /// that a case that is refused costs nothing.
-void remove_old_run(const std::string& directory) {
-  for (const char* name : result_files) {
-    const std::filesystem::path file = std::filesystem::path(directory) / name;
-    std::error_code problem;
-    std::filesystem::remove(file, problem);
-    if (problem) {
-      throw Error(ErrorKind::file_access, fmt::format("{}: cannot be removed: {}", file.string(), problem.message()));
-    }
+void remove_old_run(const RunOptions& options) {
+  namespace fs = std::filesystem;
+  const std::string contact = export_directory(options);
+  std::vector<std::string> files = exported_contact_problems(contact);
+  const bool had_contact = !files.empty();
+  for (const char* name : result_files) files.push_back((fs::path(options.output_directory) / name).string());
+  std::error_code problem;
+  for (const std::string& file : files) {
+    fs::remove(file, problem);
+    if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be removed: {}", file, problem.message()));
   }
+  if (had_contact && fs::is_empty(contact, problem)) fs::remove(contact, problem);
+}
+
+/// Fails early: a run of hours should not end because its last step cannot be written.
+void check_export(const Case& input, const RunOptions& options, long steps) {
+  if (options.export_contact.empty()) return;
+  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
+    if (!(input.contacts[i].friction_bound > 0.0)) continue;
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: contact problems with a friction_bound cannot be exported: FCLib's files state "
+                            "Coulomb's law only",
+                            input.where(fmt::format("contact.{}.friction_bound", i)).text()));
+  }
+  const auto& asked = options.export_contact;
+  const bool some = std::any_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.first <= steps; });
+  const bool all = std::all_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.last <= steps; });
+  if (!some) throw Error(ErrorKind::usage, fmt::format("--export-contact: the run has {} steps only", steps));
+  if (!all) log::warning(fmt::format("--export-contact: the run has {} steps; those after it are left out", steps));
+}
+
+ContactProvenance provenance(const Case& input, const RunSummary& summary) {
+  ContactProvenance result;
+  result.title = input.title.empty() ? std::filesystem::path(input.path).stem().string() : input.title;
+  result.dimension = summary.dimension;
+  result.step_size = summary.step;
+  std::string overrides;
+  for (const std::string& key : summary.overrides) {
+    const auto value = input.values.find(key);
+    overrides += fmt::format(" {}{}", key, value != input.values.end() ? "=" + value->second : "");
+  }
+  result.origin = fmt::format("Ricochet {}, case {}{}{}; scheme {}", summary.version, input.path,
+                              overrides.empty() ? "" : " with --set", overrides, summary.scheme);
+  if (summary.scheme == "newmark")
+    result.origin += fmt::format(" (beta {:g}, gamma {:g})", input.time.beta, input.time.gamma);
+  result.origin += fmt::format(", step size {:g}, mass {}, multipliers", summary.step, summary.mass);
+  std::vector<std::string> spaces;
+  for (const ContactSection& contact : input.contacts) {
+    if (std::find(spaces.begin(), spaces.end(), contact.multipliers) == spaces.end())
+      spaces.push_back(contact.multipliers);
+  }
+  for (const std::string& space : spaces) result.origin += " " + space;
+  result.origin += fmt::format(", displacement of degree {}, {} dofs.", summary.degree, summary.dofs);
+  return result;
 }
 
 RunSummary describe(const Case& input, const Model& model, const Scheme& scheme, const Simulation& simulation) {
@@ -211,13 +268,15 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
 }
 
 /// All steps, recorded. Returns what ended them early, if anything did; `seconds` receives the time without recording.
-std::optional<Error> take_steps(Simulation& simulation, Recording& recording, long steps, bool quiet, double& seconds) {
+std::optional<Error> take_steps(Simulation& simulation, Recording& recording, ContactExport* contact_export, long steps,
+                                bool quiet, double& seconds) {
   Progress progress(steps, quiet);
   const double recorded_before = recording.seconds();
   std::optional<Error> failure;
   Timer timer;
   try {
     while (simulation.state().step < steps) {
+      if (contact_export) contact_export->begin_step(simulation.state().step + 1);
       simulation.advance();
       recording.record(simulation.state(), simulation.account());
       progress.update(simulation.state().step, simulation.state().time);
@@ -250,6 +309,7 @@ long step_count(const TimeSection& time) {
 RunSummary run_case(const Case& input, const RunOptions& options) {
   log::clear_warnings();
   Timer total, timer;
+  check_export(input, options, step_count(input.time));
   prepare_directory(options);
   BuildTimes build;
   const std::unique_ptr<Model> model = build_model(input, &build);
@@ -264,11 +324,19 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   }
 
   RunSummary summary = describe(input, *model, *scheme, simulation);
-  remove_old_run(options.output_directory);
+  remove_old_run(options);
+  std::optional<ContactExport> contact_export;
+  if (!options.export_contact.empty()) {
+    contact_export.emplace(options.export_contact, export_directory(options), provenance(input, summary));
+    simulation.observe_contact([&](const ContactProblem& problem, const ContactSolution& solution) {
+      contact_export->write(problem, solution);
+    });
+  }
   Recording recording(input, *model, options.output_directory, steps);
   recording.record(simulation.state(), simulation.account());
   double step_seconds = 0.0;
-  const std::optional<Error> failure = take_steps(simulation, recording, steps, options.quiet, step_seconds);
+  const std::optional<Error> failure = take_steps(simulation, recording, contact_export ? &*contact_export : nullptr,
+                                                  steps, options.quiet, step_seconds);
   recording.close(summary);
   summary.steps = simulation.state().step;
   summary.time_per_step = summary.steps > 0 ? step_seconds / static_cast<double>(summary.steps) : 0.0;
@@ -276,6 +344,7 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
       {"read_mesh", build.read_mesh}, {"assembly", build.assembly},    {"start_and_factorization", start_seconds},
       {"steps", step_seconds},        {"output", recording.seconds()}, {"total", total.seconds()}};
   if (!failure) judge_energy(summary, model->problem, simulation.state());
+  if (contact_export) summary.contact_export = contact_export->report();
   summary.warnings = log::warnings();
   if (failure) {
     summary.status = "failed";

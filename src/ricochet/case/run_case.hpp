@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "ricochet/case/case.hpp"
+#include "ricochet/io/contact_export.hpp"
 #include "ricochet/io/summary.hpp"
 
 /// @file Running a case: everything between a case file and an output directory.
@@ -15,9 +17,13 @@ struct RunOptions {
   std::string output_directory;
   bool force = false;  ///< overwrite a run that is there
   bool quiet = false;  ///< no progress
+  /// Steps whose contact problems are written as FCLib files, see io/contact_export.hpp.
+  std::vector<StepRange> export_contact = {};
+  std::string export_contact_to = {};  ///< their directory; empty: contact/ in the output directory
 };
 
-/// Runs a case and writes history.csv, results.h5, results.xdmf and summary.json. Throws Error; when a step fails, what
+/// Runs a case and writes history.csv, results.h5, results.xdmf and summary.json, and contact problems that are asked
+/// for. Throws Error; when a step fails, what
 /// came before it is in the files and summary.json says what happened.
 RunSummary run_case(const Case& input, const RunOptions& options);
 

@@ -50,6 +50,7 @@ struct RunSummary {
   std::vector<ColumnDigest> digests;  ///< per column, over the rows written
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;
+  std::string contact_export;  ///< what became of contact problems to be exported, in words; not in the file
 
   /// Digest of a column; zeros when there is no such column.
   [[nodiscard]] ColumnDigest digest(const std::string& column) const;

@@ -20,6 +20,9 @@ class Simulation {
   /// step.
   void advance();
 
+  /// Shows the contact problems of the next steps, and their solutions, to the observer; none if it is empty.
+  void observe_contact(const ContactObserver& observer) { solver_->observe_contact(observer); }
+
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] EnergyAccount& account() { return *account_; }
   [[nodiscard]] const Vector& increment() const { return increment_; }

@@ -1,0 +1,134 @@
+#include "ricochet/io/contact_export.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <regex>
+#include <utility>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/fclib_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const std::string& text, const std::string& part, const std::string& why) {
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("--export-contact {}: \"{}\" {}; steps are given like 10,20,50:60, from 1 on", text, part, why));
+}
+
+long parse_step(const std::string& text, const std::string& part, const std::string& number) {
+  long value = 0;
+  if (part.empty()) refuse(text, part, "is empty");
+  const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (problem == std::errc::result_out_of_range) refuse(text, part, "is beyond all steps");
+  if (problem != std::errc() || end != number.data() + number.size())
+    refuse(text, part, "is neither a step nor a range of steps");
+  if (value == 0) refuse(text, part, "names step 0, the initial state, which has no contact problem");
+  if (value < 0) refuse(text, part, "names a negative step");
+  return value;
+}
+
+/// r and W in the units of the case. Powers of two: no bit is lost.
+void take_out_scale(FclibProblem& problem, double scale) {
+  problem.w *= scale;
+  if (problem.solution) problem.solution->reaction /= scale;
+  for (FclibSolution& guess : problem.guesses) guess.reaction /= scale;
+}
+
+}  // namespace
+
+std::vector<StepRange> parse_steps(const std::string& text) {
+  std::vector<StepRange> result;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    const std::size_t colon = part.find(':');
+    StepRange range;
+    range.first = parse_step(text, part, part.substr(0, colon));
+    range.last = colon == std::string::npos ? range.first : parse_step(text, part, part.substr(colon + 1));
+    if (range.last < range.first) refuse(text, part, "ends before it begins");
+    result.push_back(range);
+    begin = end + 1;
+  }
+  return result;
+}
+
+std::vector<std::string> exported_contact_problems(const std::string& directory) {
+  static const std::regex name("step-[0-9]{6,}(-stage-[0-9]+)?\\.hdf5");
+  std::vector<std::string> result;
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory, problem)) {
+    if (std::regex_match(entry.path().filename().string(), name)) result.push_back(entry.path().string());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+ContactExport::ContactExport(std::vector<StepRange> steps, std::string directory, ContactProvenance provenance)
+    : steps_(std::move(steps)), directory_(std::move(directory)), provenance_(std::move(provenance)) {
+  std::error_code problem;
+  fs::create_directories(directory_, problem);
+  if (problem || !fs::is_directory(directory_)) {
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", directory_,
+                                                    problem ? problem.message() : "a file of that name is there"));
+  }
+}
+
+bool ContactExport::asked_for(long step) const {
+  return std::any_of(steps_.begin(), steps_.end(),
+                     [&](const StepRange& range) { return range.first <= step && step <= range.last; });
+}
+
+void ContactExport::begin_step(long step) {
+  step_ = step;
+  wanted_ = asked_for(step);
+  written_in_step_ = 0;
+  if (wanted_) ++steps_seen_;
+}
+
+std::string ContactExport::description(const ContactProblem& problem) const {
+  Index eligible = 0;
+  for (Index i = 0; i < problem.points(); ++i) eligible += problem.is_eligible(i) ? 1 : 0;
+  return fmt::format(
+      "Contact problem of step {} (t = {:.9g}).\n{}\n"
+      "u: gap and slip as lengths, (y/s, w/sigma) with y = q + s G delta and w = p + sigma B_T delta of the scheme's "
+      "stage, delta the displacement increment. r = (r_N, -r_T): contact forces on the body, r_N >= 0 pressing, r_T "
+      "opposed to the slip. W = H A^-1 H^T with H = [G; B_T], A the scheme's operator. Units are those of the case.\n"
+      "Points: the {} of {} contact points that may touch in this step; /fclib_local/info/points has their numbers, "
+      "counted from 0.",
+      step_, time(), provenance_.origin, eligible, problem.points());
+}
+
+void ContactExport::write(const ContactProblem& problem, const ContactSolution& solution) {
+  if (!wanted_) return;
+  FclibProblem file = make_fclib(problem, provenance_.dimension, &solution);
+  take_out_scale(file, problem.reaction_scale);
+  const std::string stage = written_in_step_ > 0 ? fmt::format("-stage-{}", written_in_step_ + 1) : "";
+  file.title = fmt::format("{}: step {}{}, t = {:.9g}", provenance_.title, step_,
+                           stage.empty() ? "" : fmt::format(", stage {}", written_in_step_ + 1), time());
+  file.description = description(problem) + (file.description.empty() ? "" : "\n" + file.description);
+  file.math_info = "W is symmetric and positive semi-definite.\n" + file.math_info;
+  write_fclib((fs::path(directory_) / fmt::format("step-{:06d}{}.hdf5", step_, stage)).string(), file);
+  if (written_in_step_++ == 0) ++steps_written_;
+  ++files_;
+}
+
+std::string ContactExport::report() const {
+  long last = 0;
+  for (const StepRange& range : steps_) last = std::max(last, range.last);
+  std::string result = fmt::format("contact problems of {} steps in {}", steps_written_, directory_);
+  if (files_ > steps_written_) result += fmt::format(" ({} files)", files_);
+  if (steps_seen_ > steps_written_)
+    result += fmt::format("; {} had none (no point could touch)", steps_seen_ - steps_written_);
+  if (last > step_) result += fmt::format("; steps after {} were not reached", step_);
+  return result;
+}
+
+}  // namespace ricochet

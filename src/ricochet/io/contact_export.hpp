@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/solver/contact/contact_solver.hpp"
+
+/// @file Writing the contact problems of chosen steps of a run as FCLib files (fclib_file.hpp).
+namespace ricochet {
+
+struct StepRange {
+  long first = 0, last = 0;  ///< both included
+};
+
+/// Steps as "10,20,50:60", numbered as in history.csv, in any order. Throws Error(usage) that names what of the text is
+/// wrong.
+[[nodiscard]] std::vector<StepRange> parse_steps(const std::string& text);
+
+/// Files in a directory that have the names of contact problems, step-000010.hdf5 and step-000010-stage-2.hdf5.
+[[nodiscard]] std::vector<std::string> exported_contact_problems(const std::string& directory);
+
+/// What a file says of where it comes from.
+struct ContactProvenance {
+  std::string title;   ///< of the case
+  std::string origin;  ///< program, case file, scheme, …: lines of the description
+  Index dimension = 3;
+  double step_size = 0.0;  ///< a step ends at its number times this
+};
+
+class ContactExport {
+ public:
+  /// Makes the directory. Throws Error(file_access).
+  ContactExport(std::vector<StepRange> steps, std::string directory, ContactProvenance provenance);
+
+  /// What is written from now on belongs to this step.
+  void begin_step(long step);
+  /// Writes the problem and its solution where the step is one of those asked for: reactions and W in the units of the
+  /// case, r and W of `problem` without their scale. Throws Error(file_access), and Error(invalid_input) for problems
+  /// that FCLib's format cannot state.
+  void write(const ContactProblem& problem, const ContactSolution& solution);
+  /// What was written, and how many of the steps asked for had nothing to write or were not reached, in a line.
+  [[nodiscard]] std::string report() const;
+
+ private:
+  [[nodiscard]] bool asked_for(long step) const;
+  [[nodiscard]] double time() const { return static_cast<double>(step_) * provenance_.step_size; }
+  [[nodiscard]] std::string description(const ContactProblem& problem) const;
+
+  std::vector<StepRange> steps_;
+  std::string directory_;
+  ContactProvenance provenance_;
+  long step_ = 0;
+  bool wanted_ = false;
+  int written_in_step_ = 0;
+  long files_ = 0, steps_seen_ = 0, steps_written_ = 0;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,265 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "ricochet/io/fclib_file.hpp"
+#include "ricochet/io/hdf5_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Integers = std::vector<std::int64_t>;
+
+/// W_ij and W_ji may differ by so much of √(W_ii W_jj).
+constexpr double asymmetry_limit = 1e-8;
+
+/// A size or count: not negative, and small enough for the index of a sparse matrix.
+std::int64_t read_count(const Hdf5Reader& file, const std::string& name) {
+  const std::int64_t value = file.integer(name);
+  if (value < 0) file.fail(name, fmt::format("is {}, but counts something", value));
+  if (value >= std::numeric_limits<int>::max()) file.fail(name, fmt::format("is {}, which is too large", value));
+  return value;
+}
+
+void check_indices(const Hdf5Reader& file, const std::string& name, const Integers& indices, std::int64_t used,
+                   std::int64_t end) {
+  for (std::int64_t k = 0; k < used; ++k) {
+    const std::int64_t index = indices[static_cast<std::size_t>(k)];
+    if (index < 0 || index >= end)
+      file.fail(name, fmt::format("entry {} is {}, outside of 0 to {}", k, index, end - 1));
+  }
+}
+
+/// Starts of compressed columns or rows: from 0, never falling, at most nzmax.
+void check_starts(const Hdf5Reader& file, const std::string& name, const Integers& starts, std::int64_t limit) {
+  if (starts.front() != 0) file.fail(name, fmt::format("starts with {} where 0 is expected", starts.front()));
+  for (std::size_t k = 1; k < starts.size(); ++k) {
+    if (starts[k] < starts[k - 1])
+      file.fail(name, fmt::format("falls from {} to {} at entry {}", starts[k - 1], starts[k], k));
+    if (starts[k] > limit) file.fail(name, fmt::format("entry {} is {}, more than nzmax = {}", k, starts[k], limit));
+  }
+}
+
+using Triplets = std::vector<Eigen::Triplet<double, int>>;
+
+SparseMatrix assemble(const Triplets& entries, std::int64_t rows, std::int64_t columns) {
+  SparseMatrix result(rows, columns);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+SparseMatrix read_triplets(const Hdf5Reader& file, const std::string& group, std::int64_t count, std::int64_t limit,
+                           std::int64_t rows, std::int64_t columns) {
+  if (count > limit) file.fail(group + "/nz", fmt::format("is {}, more than nzmax = {}", count, limit));
+  const Integers row = file.integers(group + "/p", count);
+  const Integers column = file.integers(group + "/i", count);
+  // FCLib itself writes nz values, older versions of it nzmax.
+  const std::int64_t values = file.size(group + "/x");
+  const Vector value = file.reals(group + "/x", values == limit ? limit : count);
+  check_indices(file, group + "/p", row, count, rows);
+  check_indices(file, group + "/i", column, count, columns);
+  Triplets entries;
+  entries.reserve(row.size());
+  for (std::size_t k = 0; k < row.size(); ++k)
+    entries.emplace_back(static_cast<int>(row[k]), static_cast<int>(column[k]), value[static_cast<Index>(k)]);
+  return assemble(entries, rows, columns);
+}
+
+/// Does every column (row) have its entries in order, and each once?
+bool is_sorted(const std::vector<int>& starts, const std::vector<int>& indices) {
+  for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
+    const auto begin = indices.begin() + starts[k], end = indices.begin() + starts[k + 1];
+    if (std::adjacent_find(begin, end, std::greater_equal<>()) != end) return false;
+  }
+  return true;
+}
+
+SparseMatrix read_compressed(const Hdf5Reader& file, const std::string& group, bool by_column, std::int64_t limit,
+                             std::int64_t rows, std::int64_t columns) {
+  const std::int64_t outer = by_column ? columns : rows;
+  const Integers read_starts = file.integers(group + "/p", outer + 1);
+  check_starts(file, group + "/p", read_starts, limit);
+  const Integers read_indices = file.integers(group + "/i", limit);
+  const Vector value = file.reals(group + "/x", limit);
+  const std::int64_t count = read_starts.back();
+  check_indices(file, group + "/i", read_indices, count, by_column ? rows : columns);
+  const std::vector<int> starts(read_starts.begin(), read_starts.end());
+  const std::vector<int> indices(read_indices.begin(), read_indices.begin() + count);
+  if (is_sorted(starts, indices)) {
+    if (by_column)
+      return Eigen::Map<const SparseMatrix>(rows, columns, count, starts.data(), indices.data(), value.data());
+    return Eigen::Map<const SparseRowMatrix>(rows, columns, count, starts.data(), indices.data(), value.data());
+  }
+  Triplets entries;
+  entries.reserve(indices.size());
+  for (std::size_t k = 0; k + 1 < starts.size(); ++k) {
+    for (int at = starts[k]; at < starts[k + 1]; ++at) {
+      const int other = indices[static_cast<std::size_t>(at)], own = static_cast<int>(k);
+      entries.emplace_back(by_column ? other : own, by_column ? own : other, value[at]);
+    }
+  }
+  return assemble(entries, rows, columns);
+}
+
+SparseMatrix read_matrix(const Hdf5Reader& file, const std::string& group) {
+  if (!file.has_group(group)) file.fail(group, "there is no such group");
+  const std::int64_t limit = read_count(file, group + "/nzmax");
+  const std::int64_t rows = read_count(file, group + "/m");
+  const std::int64_t columns = read_count(file, group + "/n");
+  const std::int64_t form = file.integer(group + "/nz");
+  if (form < -2) {
+    file.fail(group + "/nz", fmt::format("is {}; a number of triplets, -1 (compressed columns) or -2 (compressed rows) "
+                                         "is expected",
+                                         form));
+  }
+  SparseMatrix result = form >= 0 ? read_triplets(file, group, form, limit, rows, columns)
+                                  : read_compressed(file, group, form == -1, limit, rows, columns);
+  for (Index k = 0; k < result.nonZeros(); ++k) {
+    // Finite entries, each at one place several times, may add up to infinity.
+    if (!std::isfinite(result.valuePtr()[k])) file.fail(group + "/x", "has entries whose sum is not finite");
+  }
+  return result;
+}
+
+/// The symmetric part; more than rounding beside it is an error.
+SparseMatrix symmetric_part(const Hdf5Reader& file, const std::string& group, const SparseMatrix& matrix) {
+  const SparseMatrix transposed = matrix.transpose();
+  const auto same = [&](const auto* a, const auto* b, Index count) { return std::equal(a, a + count, b); };
+  if (same(matrix.outerIndexPtr(), transposed.outerIndexPtr(), matrix.cols() + 1) &&
+      same(matrix.innerIndexPtr(), transposed.innerIndexPtr(), matrix.nonZeros()) &&
+      same(matrix.valuePtr(), transposed.valuePtr(), matrix.nonZeros())) {
+    return matrix;
+  }
+  const Vector diagonal = matrix.diagonal().cwiseAbs().cwiseSqrt();
+  const SparseMatrix difference = matrix - transposed;
+  double worst = 0.0;
+  Index row = -1, column = -1;
+  for (Index j = 0; j < difference.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator entry(difference, j); entry; ++entry) {
+      // Divided one after the other: a product of very small numbers would vanish.
+      const double size = std::abs(entry.value()) / diagonal[entry.row()] / diagonal[j];
+      if (entry.value() == 0.0 || size <= worst) continue;
+      worst = size;
+      row = std::min(entry.row(), j);  // the same of the two, whatever their order in the file
+      column = std::max(entry.row(), j);
+    }
+  }
+  if (worst == 0.0) return matrix;
+  if (!(worst <= asymmetry_limit)) {
+    file.fail(group, fmt::format("is not symmetric: the entry in row {0} and column {1} (counted from 0) is {2:.17g}, "
+                                 "that in row {1} and column {0} is {3:.17g}",
+                                 row, column, matrix.coeff(row, column), matrix.coeff(column, row)));
+  }
+  return 0.5 * matrix + 0.5 * transposed;
+}
+
+void read_constraints(const Hdf5Reader& file, FclibProblem& problem) {
+  const bool has_v = file.has_group("/fclib_local/V"), has_r = file.has_group("/fclib_local/R");
+  if (has_v != has_r)
+    file.fail(has_v ? "/fclib_local/R" : "/fclib_local/V", "there is no such group; V and R come together");
+  problem.v.resize(problem.w.rows(), 0);
+  problem.r.resize(0, 0);
+  problem.s.resize(0);
+  if (!has_v) return;
+  problem.v = read_matrix(file, "/fclib_local/V");
+  const SparseMatrix r = read_matrix(file, "/fclib_local/R");
+  if (r.rows() != r.cols()) file.fail("/fclib_local/R", fmt::format("has {} rows and {} columns", r.rows(), r.cols()));
+  problem.r = symmetric_part(file, "/fclib_local/R", r);
+  if (problem.v.rows() != problem.w.rows() || problem.v.cols() != r.rows()) {
+    file.fail("/fclib_local/V", fmt::format("has {} rows and {} columns where {} (rows of W) and {} (rows of R) are "
+                                            "expected",
+                                            problem.v.rows(), problem.v.cols(), problem.w.rows(), r.rows()));
+  }
+  problem.s = file.reals("/fclib_local/vectors/s", r.rows());
+}
+
+void read_info(const Hdf5Reader& file, FclibProblem& problem) {
+  const auto read = [&](const char* name, std::string& text) {
+    const std::string path = std::string("/fclib_local/info/") + name;
+    if (file.has_dataset(path)) text = file.text(path);
+  };
+  read("title", problem.title);
+  read("description", problem.description);
+  read("math_info", problem.math_info);
+  const std::string points = "/fclib_local/info/points";
+  if (!file.has_dataset(points)) return;
+  const Integers numbers = file.integers(points, problem.point_count());
+  problem.points.assign(numbers.begin(), numbers.end());
+}
+
+FclibSolution read_solution(const Hdf5Reader& file, const std::string& group, const FclibProblem& problem) {
+  FclibSolution result;
+  result.motion = file.reals(group + "/u", problem.w.rows());
+  result.reaction = file.reals(group + "/r", problem.w.rows());
+  result.multiplier.resize(0);
+  if (problem.constraint_count() > 0) result.multiplier = file.reals(group + "/l", problem.constraint_count());
+  return result;
+}
+
+void read_solutions(const Hdf5Reader& file, FclibProblem& problem) {
+  if (file.has_group("/solution")) problem.solution = read_solution(file, "/solution", problem);
+  if (!file.has_group("/guesses")) return;
+  const std::int64_t count = read_count(file, "/guesses/number_of_guesses");
+  for (std::int64_t k = 1; k <= count; ++k) {
+    const std::string group = fmt::format("/guesses/{}", k);
+    if (!file.has_group(group)) file.fail(group, fmt::format("there is no such group, of {} guesses", count));
+    problem.guesses.push_back(read_solution(file, group, problem));
+  }
+}
+
+void read_local(const Hdf5Reader& file, FclibProblem& problem) {
+  problem.dimension = file.integer("/fclib_local/spacedim");
+  if (problem.dimension != 2 && problem.dimension != 3)
+    file.fail("/fclib_local/spacedim", fmt::format("is {}; 2 or 3 is expected", problem.dimension));
+  const SparseMatrix w = read_matrix(file, "/fclib_local/W");
+  if (w.rows() != w.cols()) file.fail("/fclib_local/W", fmt::format("has {} rows and {} columns", w.rows(), w.cols()));
+  if (w.rows() % problem.dimension != 0) {
+    file.fail("/fclib_local/W",
+              fmt::format("has {} rows, not {} (spacedim) for each point", w.rows(), problem.dimension));
+  }
+  problem.w = symmetric_part(file, "/fclib_local/W", w);
+  Index negative = 0;
+  if (w.rows() > 0 && problem.w.diagonal().minCoeff(&negative) < 0.0) {
+    file.fail("/fclib_local/W", fmt::format("is not positive semi-definite: the entry in row and column {} (counted "
+                                            "from 0) is {:.17g}",
+                                            negative, problem.w.coeff(negative, negative)));
+  }
+  problem.q = file.reals("/fclib_local/vectors/q", w.rows());
+  problem.mu = file.reals("/fclib_local/vectors/mu", w.rows() / problem.dimension);
+  for (Index i = 0; i < problem.mu.size(); ++i) {
+    if (problem.mu[i] < 0.0)
+      file.fail("/fclib_local/vectors/mu",
+                fmt::format("entry {} is {}: a coefficient of friction is not negative", i, problem.mu[i]));
+  }
+  read_constraints(file, problem);
+  read_info(file, problem);
+  read_solutions(file, problem);
+}
+
+}  // namespace
+
+FclibProblem read_fclib(const std::string& path) {
+  const Hdf5Reader file(path);
+  if (!file.has_group("/fclib_local")) {
+    if (file.has_group("/fclib_global")) {
+      file.fail("/fclib_global",
+                "a global problem; only local problems (group /fclib_local) are read: eliminate v by "
+                "W = H^T M^-1 H, q = w + H^T M^-1 f first");
+    }
+    file.fail("/fclib_local", "there is no such group: this is no file of FCLib, or it is damaged");
+  }
+  FclibProblem problem;
+  problem.path = path;
+  try {
+    read_local(file, problem);
+  } catch (const std::bad_alloc&) {
+    file.fail("/fclib_local", "does not fit into memory, or its sizes are damaged");
+  }
+  return problem;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,303 @@
+#include "ricochet/io/hdf5_file.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <new>
+#include <utility>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Closes what it holds.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }  // NOLINT: used wherever HDF5 wants an identifier
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// Errors are reported by us, not printed by HDF5, which also must not tidy up at the program's end (a full disk).
+void quiet_library() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+const char* kind_name(H5T_class_t kind) {
+  switch (kind) {
+    case H5T_INTEGER:
+      return "whole numbers";
+    case H5T_FLOAT:
+      return "numbers";
+    case H5T_STRING:
+      return "text";
+    default:
+      return "data of another kind";
+  }
+}
+
+/// Data up to this size go into the header of their data set, which has a checksum; larger data into checked chunks.
+constexpr std::size_t header_limit = 32768;
+constexpr hsize_t chunk_entries = 1 << 17;
+
+}  // namespace
+
+bool is_hdf5_file(const std::string& path) {
+  quiet_library();
+  return fs::is_regular_file(path) && H5Fis_hdf5(path.c_str()) > 0;
+}
+
+struct Hdf5Reader::Dataset {
+  std::string name;
+  Handle set, type, space;
+  Dataset(const Hdf5Reader& reader, const std::string& which)
+      : name(which),
+        set(reader.has_dataset(which) ? H5Dopen2(reader.file_, which.c_str(), H5P_DEFAULT) : -1, H5Dclose),
+        type(set >= 0 ? H5Dget_type(set) : -1, H5Tclose),
+        space(set >= 0 ? H5Dget_space(set) : -1, H5Sclose) {
+    if (!reader.has_dataset(which)) reader.fail(which, "there is no such data set");
+    if (set < 0 || type < 0 || space < 0) reader.fail(which, "this data set cannot be opened: the file is damaged");
+  }
+};
+
+Hdf5Reader::Hdf5Reader(std::string path) : path_(std::move(path)) {
+  quiet_library();
+  std::error_code problem;
+  if (!fs::exists(path_, problem)) throw Error(ErrorKind::file_access, fmt::format("{}: no such file", path_));
+  if (fs::is_directory(path_, problem))
+    throw Error(ErrorKind::file_access, fmt::format("{}: is a directory, not a file", path_));
+  if (access(path_.c_str(), R_OK) != 0)
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot be read: {}", path_, std::strerror(errno)));
+  if (H5Fis_hdf5(path_.c_str()) <= 0)
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: is not an HDF5 file", path_));
+  file_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file_ < 0) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: cannot be opened as an HDF5 file: it is cut off or damaged", path_));
+  }
+}
+
+Hdf5Reader::~Hdf5Reader() {
+  if (file_ >= 0) H5Fclose(file_);
+}
+
+void Hdf5Reader::fail(const std::string& name, const std::string& message) const {
+  throw Error(ErrorKind::invalid_input, fmt::format("{}: {}: {}", path_, name, message));
+}
+
+bool Hdf5Reader::has(const std::string& name, bool group) const {
+  // Every group on the way must be there: HDF5 takes a missing one for an error.
+  for (std::size_t end = name.find('/', 1);; end = name.find('/', end + 1)) {
+    const std::string part = name.substr(0, end);
+    const htri_t exists = H5Lexists(file_, part.c_str(), H5P_DEFAULT);
+    if (exists == 0) return false;
+    if (exists < 0) fail(part, "cannot be looked for: the file is damaged");
+    if (end == std::string::npos) break;
+  }
+  const Handle object(H5Oopen(file_, name.c_str(), H5P_DEFAULT), H5Oclose);
+  if (object < 0) fail(name, "cannot be opened: the file is damaged");
+  return H5Iget_type(object) == (group ? H5I_GROUP : H5I_DATASET);
+}
+
+bool Hdf5Reader::has_group(const std::string& name) const {
+  return has(name, true);
+}
+
+bool Hdf5Reader::has_dataset(const std::string& name) const {
+  return has(name, false);
+}
+
+std::int64_t Hdf5Reader::size(const std::string& name) const {
+  const Dataset set(*this, name);
+  const int rank = H5Sget_simple_extent_ndims(set.space);
+  const hssize_t count = H5Sget_simple_extent_npoints(set.space);
+  if (rank < 0 || count < 0) fail(name, "the size of this data set cannot be read: the file is damaged");
+  if (rank > 1) fail(name, fmt::format("has {} dimensions where one is expected", rank));
+  return count;
+}
+
+void Hdf5Reader::check_size(const Dataset& set, std::int64_t expected_size, std::size_t bytes_per_entry) const {
+  const std::int64_t found = size(set.name);
+  if (found != expected_size) fail(set.name, fmt::format("has {} entries where {} are expected", found, expected_size));
+  // A damaged header may claim more than there is: say so before memory is asked for it.
+  const Handle properties(H5Dget_create_plist(set.set), H5Pclose);
+  const bool filtered = properties < 0 || H5Pget_nfilters(properties) > 0;
+  const auto stored = static_cast<std::uint64_t>(H5Dget_storage_size(set.set));
+  std::error_code problem;
+  const std::uint64_t in_file = fs::file_size(path_, problem);
+  const auto needed = static_cast<std::uint64_t>(expected_size) * bytes_per_entry;
+  if (found > 0 && (stored == 0 || (!filtered && (stored < needed || needed > in_file))))
+    fail(set.name, fmt::format("the file does not hold its {} entries: it is cut off or damaged", found));
+}
+
+Vector Hdf5Reader::numbers(const Dataset& set, std::int64_t expected_size) const {
+  const H5T_class_t kind = H5Tget_class(set.type);
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT)
+    fail(set.name, fmt::format("holds {} where numbers are expected", kind_name(kind)));
+  check_size(set, expected_size, H5Tget_size(set.type));
+  Vector result(expected_size);
+  if (result.size() > 0 && H5Dread(set.set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()) < 0)
+    fail(set.name, "cannot be read: the file is damaged");
+  return result;
+}
+
+std::int64_t Hdf5Reader::integer(const std::string& name) const {
+  const std::int64_t found = size(name);
+  if (found != 1) fail(name, fmt::format("has {} entries where one number is expected", found));
+  return integers(name, 1).front();
+}
+
+std::vector<std::int64_t> Hdf5Reader::integers(const std::string& name, std::int64_t expected_size) const {
+  const Dataset set(*this, name);
+  std::vector<std::int64_t> result;
+  if (H5Tget_class(set.type) != H5T_INTEGER) {
+    for (const double value : numbers(set, expected_size)) {
+      if (!(std::abs(value) < 0x1p53) || value != std::trunc(value))
+        fail(name, fmt::format("entry {} is {}, which is not a whole number", result.size(), value));
+      result.push_back(static_cast<std::int64_t>(value));
+    }
+    return result;
+  }
+  check_size(set, expected_size, H5Tget_size(set.type));
+  result.resize(static_cast<std::size_t>(expected_size));
+  if (!result.empty() && H5Dread(set.set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()) < 0)
+    fail(name, "cannot be read: the file is damaged");
+  return result;
+}
+
+Vector Hdf5Reader::reals(const std::string& name, std::int64_t expected_size) const {
+  const Dataset set(*this, name);
+  Vector values = numbers(set, expected_size);
+  const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+  if (bad != values.end()) fail(name, fmt::format("entry {} is {}, which is not finite", bad - values.begin(), *bad));
+  return values;
+}
+
+std::string Hdf5Reader::text(const std::string& name) const {
+  const Dataset set(*this, name);
+  const H5T_class_t kind = H5Tget_class(set.type);
+  if (kind != H5T_STRING) fail(name, fmt::format("holds {} where text is expected", kind_name(kind)));
+  if (const std::int64_t found = size(name); found != 1)
+    fail(name, fmt::format("has {} entries where one text is expected", found));
+  if (H5Tis_variable_str(set.type) > 0) {
+    char* value = nullptr;
+    if (H5Dread(set.set, set.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
+      fail(name, "cannot be read: the file is damaged");
+    std::string result = value != nullptr ? value : "";
+    H5free_memory(value);
+    return result;
+  }
+  check_size(set, 1, H5Tget_size(set.type));
+  std::string result(H5Tget_size(set.type), '\0');
+  if (H5Dread(set.set, set.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()) < 0)
+    fail(name, "cannot be read: the file is damaged");
+  result.resize(std::min(result.find('\0'), result.size()));
+  if (H5Tget_strpad(set.type) == H5T_STR_SPACEPAD) result.resize(result.find_last_not_of(' ') + 1);
+  return result;
+}
+
+Hdf5Writer::Hdf5Writer(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
+  quiet_library();
+  // The format that puts a checksum on everything but the data themselves.
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+  errno = 0;
+  file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  if (file_ < 0) {
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot be written{}{}", path_, errno != 0 ? ": " : "",
+                                                    errno != 0 ? std::strerror(errno) : ""));
+  }
+}
+
+Hdf5Writer::~Hdf5Writer() {
+  if (file_ < 0) return;
+  H5Fclose(file_);
+  std::error_code problem;
+  fs::remove(temporary_, problem);
+}
+
+void Hdf5Writer::check(bool good, const std::string& what) const {
+  if (!good) throw Error(ErrorKind::file_access, fmt::format("{}: cannot write {} (is the disk full?)", path_, what));
+}
+
+void Hdf5Writer::group(const std::string& name) {
+  const Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);  // the same data give the same file
+  const Handle made(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose);
+  check(made >= 0, name);
+}
+
+void Hdf5Writer::numbers(const std::string& name, bool real, const void* values, Index size) {
+  const hid_t type = real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT;
+  const auto count = static_cast<hsize_t>(size);
+  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
+  if (count * H5Tget_size(type) <= header_limit) {
+    H5Pset_layout(properties, H5D_COMPACT);
+  } else {
+    const hsize_t chunk = std::min(count, chunk_entries);
+    H5Pset_chunk(properties, 1, &chunk);
+    H5Pset_fletcher32(properties);
+  }
+  const Handle set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
+  check(set >= 0 && (size == 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0), name);
+}
+
+void Hdf5Writer::integer(const std::string& name, int value) {
+  numbers(name, false, &value, 1);
+}
+
+void Hdf5Writer::integers(const std::string& name, const int* values, Index size) {
+  numbers(name, false, values, size);
+}
+
+void Hdf5Writer::reals(const std::string& name, const double* values, Index size) {
+  numbers(name, true, values, size);
+}
+
+void Hdf5Writer::text(const std::string& name, const std::string& value) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, value.size() + 1);
+  H5Tset_strpad(type, H5T_STR_NULLTERM);
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
+  if (value.size() < header_limit) H5Pset_layout(properties, H5D_COMPACT);
+  const Handle set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
+  check(set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value.c_str()) >= 0, name);
+}
+
+void Hdf5Writer::close() {
+  const bool good = H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0;
+  const bool closed = H5Fclose(file_) >= 0;
+  file_ = -1;
+  std::error_code problem;
+  if (good && closed) {
+    fs::rename(temporary_, path_, problem);
+    if (!problem) return;
+  }
+  fs::remove(temporary_, problem);
+  check(false, "the file");
+}
+
+}  // namespace ricochet

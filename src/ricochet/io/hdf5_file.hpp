@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+/// @file Small data sets of an HDF5 file, with errors that name file and data set. HDF5's own header stays in the .cpp.
+namespace ricochet {
+
+/// Is there a file that starts like HDF5?
+[[nodiscard]] bool is_hdf5_file(const std::string& path);
+
+/// Reads from a file that may be damaged or made by others: sizes are compared before anything is allocated, numbers of
+/// any integer or floating type are converted. Every error says what of the file is wrong.
+class Hdf5Reader {
+ public:
+  /// Throws Error(file_access) where there is no such file or it cannot be opened, Error(invalid_input) where it is not
+  /// HDF5 or is cut off.
+  explicit Hdf5Reader(std::string path);
+  ~Hdf5Reader();
+  Hdf5Reader(const Hdf5Reader&) = delete;
+  Hdf5Reader& operator=(const Hdf5Reader&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// Something that is there but cannot be opened is an error, here too.
+  [[nodiscard]] bool has_group(const std::string& name) const;
+  [[nodiscard]] bool has_dataset(const std::string& name) const;
+  /// All of these throw Error(invalid_input) where there is no such data set or it is of another kind.
+  [[nodiscard]] std::int64_t integer(const std::string& name) const;
+  /// Number of entries of a data set of one dimension (or of a scalar: 1).
+  [[nodiscard]] std::int64_t size(const std::string& name) const;
+  [[nodiscard]] std::vector<std::int64_t> integers(const std::string& name, std::int64_t expected_size) const;
+  /// Also throws where a number is not finite.
+  [[nodiscard]] Vector reals(const std::string& name, std::int64_t expected_size) const;
+  [[nodiscard]] std::string text(const std::string& name) const;
+  /// Throws Error(invalid_input): "PATH: NAME: message".
+  [[noreturn]] void fail(const std::string& name, const std::string& message) const;
+
+ private:
+  struct Dataset;
+  [[nodiscard]] bool has(const std::string& name, bool group) const;
+  void check_size(const Dataset& set, std::int64_t expected_size, std::size_t bytes_per_entry) const;
+  [[nodiscard]] Vector numbers(const Dataset& set, std::int64_t expected_size) const;
+
+  std::string path_;
+  std::int64_t file_ = -1;
+};
+
+/// Writes a file under a temporary name and moves it into place when it is complete. Data sets have the types and
+/// shapes that HDF5's H5LTmake_dataset_int, _double and _string give them. They carry checksums (HDF5 1.10 or later
+/// reads them), so that a damaged file is noticed. Throws Error(file_access).
+class Hdf5Writer {
+ public:
+  explicit Hdf5Writer(std::string path);
+  ~Hdf5Writer();
+  Hdf5Writer(const Hdf5Writer&) = delete;
+  Hdf5Writer& operator=(const Hdf5Writer&) = delete;
+
+  void group(const std::string& name);
+  void integer(const std::string& name, int value);
+  void integers(const std::string& name, const int* values, Index size);
+  void reals(const std::string& name, const double* values, Index size);
+  void text(const std::string& name, const std::string& value);
+  /// Without it nothing is left behind.
+  void close();
+
+ private:
+  void numbers(const std::string& name, bool real, const void* values, Index size);
+  void check(bool good, const std::string& what) const;
+
+  std::string path_, temporary_;
+  std::int64_t file_ = -1;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,117 @@
+#include "ricochet/io/contact_export.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "fclib_support.hpp"
+
+namespace ricochet::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TemporaryDirectory {
+  std::string path = TemporaryFile().path + ".d";
+  ~TemporaryDirectory() { fs::remove_all(path); }
+};
+
+TEST(ContactExport, Steps) {
+  const std::vector<StepRange> steps = parse_steps("10,20,50:60,7:7");
+  ASSERT_EQ(steps.size(), 4u);
+  EXPECT_EQ(steps[1].first, 20);
+  EXPECT_EQ(steps[1].last, 20);
+  EXPECT_EQ(steps[2].first, 50);
+  EXPECT_EQ(steps[2].last, 60);
+  EXPECT_EQ(steps[3].last, 7);
+}
+
+TEST(ContactExport, StepsThatAreNone) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "\"\" is empty"},
+      {"10,", "\"\" is empty"},
+      {",10", "\"\" is empty"},
+      {"x", "\"x\" is neither a step nor a range of steps"},
+      {"10,1.5", "\"1.5\" is neither"},
+      {"1 0", "\"1 0\" is neither"},
+      {"1:2:3", "\"1:2:3\" is neither"},
+      {":3", "\":3\" is neither"},
+      {"3:", "\"3:\" is neither"},
+      {"5:3", "\"5:3\" ends before it begins"},
+      {"0:3", "names step 0, the initial state"},
+      {"-1", "names a negative step"},
+      {"99999999999999999999", "is beyond all steps"},
+  };
+  for (const auto& [text, expected] : cases) expect_error([&] { (void)parse_steps(text); }, expected, ErrorKind::usage);
+}
+
+/// Two points without friction, of which one is eligible.
+ContactProblem problem() {
+  ContactProblem result(1, Matrix::Identity(2, 2) * 4.0, Vector::Constant(2, -8.0), 0.0);
+  result.eligible = {0, 1};
+  result.reaction_scale = 0x1p-20;
+  return result;
+}
+
+ContactSolution solution() {
+  ContactSolution result;
+  result.reaction = Eigen::Vector2d(0.0, 2.0);
+  result.motion = Eigen::Vector2d(-8.0, 0.0);
+  result.outcome = ContactOutcome::solved;
+  return result;
+}
+
+TEST(ContactExport, WritesTheStepsAskedForInUnitsOfTheCase) {
+  const TemporaryDirectory directory;
+  ContactExport contact_export({{2, 3}, {5, 5}, {9, 9}}, directory.path, {"Title", "origin", 2, 0.5});
+  for (long step = 1; step <= 5; ++step) {
+    contact_export.begin_step(step);
+    if (step == 5) continue;  // no point may touch
+    contact_export.write(problem(), solution());
+    if (step == 3) contact_export.write(problem(), solution());
+  }
+  const std::vector<std::string> files = exported_contact_problems(directory.path);
+  ASSERT_EQ(files.size(), 3u);
+  EXPECT_TRUE(files[0].ends_with("/step-000002.hdf5"));
+  EXPECT_TRUE(files[1].ends_with("/step-000003-stage-2.hdf5"));
+  EXPECT_TRUE(files[2].ends_with("/step-000003.hdf5"));
+  const FclibProblem read = read_fclib(files[0]);
+  EXPECT_EQ(read.points, std::vector<Index>{1});
+  EXPECT_EQ(read.w.coeff(0, 0), 0x1p-18);
+  EXPECT_EQ(read.w.coeff(1, 1), 0x1p-18);
+  EXPECT_EQ(read.q, Eigen::Vector2d(-8.0, 0.0));
+  ASSERT_TRUE(read.solution.has_value());
+  EXPECT_EQ(read.solution->reaction, Eigen::Vector2d(0x1p21, 0.0));
+  EXPECT_EQ(read.solution->motion, Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(read.title, "Title: step 2, t = 1");
+  EXPECT_EQ(read_fclib(files[1]).title, "Title: step 3, stage 2, t = 1.5");
+  EXPECT_NE(read.description.find("origin"), std::string::npos);
+  EXPECT_EQ(contact_export.report(), "contact problems of 2 steps in " + directory.path +
+                                         " (3 files); 1 had none (no point could touch); steps after 5 were not "
+                                         "reached");
+}
+
+TEST(ContactExport, OnlyItsOwnFilesCount) {
+  const TemporaryDirectory directory;
+  EXPECT_TRUE(exported_contact_problems(directory.path).empty());
+  fs::create_directories(directory.path);
+  for (const char* name :
+       {"notes.txt", "step-1.hdf5", "step-000001.hdf5.part", "step-000001.hdf5", "step-1000000.hdf5"})
+    std::ofstream(fs::path(directory.path) / name) << "x";
+  EXPECT_EQ(exported_contact_problems(directory.path).size(), 2u);
+}
+
+TEST(ContactExport, AFileInThePlaceOfTheDirectory) {
+  const TemporaryFile file;
+  std::ofstream(file.path) << "x";
+  expect_error(
+      [&] {
+        ContactExport({{1, 1}}, file.path, {});
+      },
+      file.path + ": cannot make this directory", ErrorKind::file_access);
+}
+
+}  // namespace
+}  // namespace ricochet::test
