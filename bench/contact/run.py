@@ -1,0 +1,286 @@
+#!/usr/bin/python3
+"""Runs Ricochet's and Siconos' solvers over the set and judges what they return.
+
+    run.py [--directory build/bench-contact] [--bench build/ricochet_contact_bench] [--only PART-OF-A-NAME] [--ours-only]
+
+Writes DIRECTORY/results.json, one record for each problem, solver and tolerance, and sequences.json; report.py makes the
+tables and the plots of them. What Siconos did is kept from run to run (theirs.json) until a problem's file changes.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import queue
+import subprocess
+import sys
+import threading
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ[variable] = "1"
+
+import numpy as np
+
+import describe
+import fclib
+import measure
+import reference
+from siconos_solvers import RAW, SOLVERS
+
+HERE = pathlib.Path(__file__).resolve().parent
+TOLERANCES = (1e-4, 1e-8, 1e-12)
+LIMIT = 20.0  # seconds for one call
+SMALL, SMALL_LIMIT = 450, 5.0  # points, and seconds for them: hundreds of times what the good solvers take
+SLACK = 10.0  # a true residual of so many tolerances still counts as solved
+REPEAT = 5
+
+
+class Siconos:
+    """The serving process; killed when a call takes too long, started again when it crashes."""
+
+    def __init__(self, directory):
+        self.process = None
+        self.reaction = str(directory / "theirs-reaction.npy")
+
+    def stop(self):
+        if self.process is not None:
+            self.process.kill()
+            self.process.wait()
+        self.process = None
+
+    def ask(self, request, limit):
+        if self.process is None:
+            self.process = subprocess.Popen(
+                [sys.executable, str(HERE / "siconos_solvers.py"), "--serve"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL, text=True)
+            self.lines = queue.Queue()
+            threading.Thread(target=self._read, args=(self.process, self.lines), daemon=True).start()
+        try:
+            self.process.stdin.write(json.dumps({**request, "reaction": self.reaction}) + "\n")
+            self.process.stdin.flush()
+            line = self.lines.get(timeout=limit)
+        except queue.Empty:
+            self.stop()
+            return {"failure": "time limit"}, None
+        except OSError:
+            line = None
+        if line is None:
+            self.stop()
+            return {"failure": "crash"}, None
+        return json.loads(line), np.load(self.reaction)
+
+    @staticmethod
+    def _read(process, lines):
+        for line in process.stdout:
+            lines.put(line)
+        lines.put(None)
+
+
+class Judge:
+    """Of one problem: its reference and what an answer is worth."""
+
+    def __init__(self, problem):
+        self.measure = measure.Measure(problem)
+        self.problem, self.reference, self.motion, self.floor = problem, None, None, 0.0
+
+    def set_reference(self, start):
+        self.reference, self.reference_residual = reference.solve(self.problem, start)
+        self.motion = self.measure.motion(self.reference)
+        self.floor = self.measure.rounding_floor(self.reference.astype(float))
+
+    def assess(self, answer, reaction, tolerance):
+        if reaction is None:
+            return {**answer, "solved": False}
+        residual = self.measure.residual(reaction)
+        of_reaction, of_motion = self.measure.distance(reaction, self.reference, self.motion)
+        solved = residual <= max(SLACK * tolerance, 10 * self.floor)
+        answer = {**answer, "residual": residual, "distance_r": of_reaction, "distance_u": of_motion, "solved": bool(solved)}
+        if not solved:
+            # Claimed: the program itself says that it is solved.
+            claims = answer.get("outcome") == "solved" or answer.get("status") == 0
+            answer["failure"] = "claimed, but not solved" if claims else "says so"
+        return answer
+
+
+def expand(problem, reaction):
+    """r of all rows, where the solver was given only the normal ones of points without friction."""
+    if reaction.size == problem.offset.size:
+        return reaction
+    full = np.zeros(problem.offset.size)
+    with_tangents = np.repeat(problem.coefficient > 0, problem.dimension)
+    with_tangents[:: problem.dimension] = True
+    full[with_tangents] = reaction
+    return full
+
+
+def run_ours(bench, directory, path, problem, solver, tolerance, repeat, more=()):
+    """(answer, reaction) for one problem; for a sequence `path` is a list and so is the answer."""
+    paths = [path] if isinstance(path, pathlib.Path) else path
+    reactions = directory / "ours"
+    reactions.mkdir(exist_ok=True)
+    command = [bench, *map(str, paths), "--solver", solver, "--tolerance", repr(tolerance), "--repeat", str(repeat),
+               "--reactions", str(reactions), "--json", *more]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=2 * LIMIT * max(repeat, len(paths)))
+    except subprocess.TimeoutExpired:
+        return {"failure": "time limit"}, None
+    lines = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    if len(lines) != len(paths):
+        return {"failure": "crash"}, None
+    results = []
+    for file, answer in zip(paths, lines):
+        reaction = expand(problem, np.loadtxt(reactions / f"{file.name}.txt", ndmin=1))
+        results.append((answer, reaction))
+    return results[0] if isinstance(path, pathlib.Path) else results
+
+
+def their_solvers(dimension):
+    return [(name, False) for name in SOLVERS[dimension]] + [(name, True) for name in RAW[dimension]]
+
+
+def solve_theirs(siconos, path, judge, solver, raw, tolerance):
+    """The loosest of three settings of their tolerance with which the answer is accurate enough; their best chance."""
+    answer = {}
+    for tighten in (1.0, 0.1, 0.01) if not raw else (1.0,):
+        request = {"problem": str(path), "solver": solver, "raw": raw, "tolerance": tolerance, "tighten": tighten, "repeat": REPEAT}
+        reply, reaction = siconos.ask(request, SMALL_LIMIT if judge.problem.points <= SMALL else LIMIT)
+        answer = judge.assess({**reply, "tighten": tighten}, reaction, tolerance)
+        if answer["solved"] or answer.get("status") != 0:  # it says no itself: asked for more it would say so again
+            break
+    return answer
+
+
+def run_problems(arguments, directory, our_solvers):
+    cache_file = directory / "theirs.json"
+    cache = json.loads(cache_file.read_text()) if cache_file.exists() else {}
+    siconos = Siconos(directory)
+    records, table = [], []
+    paths = [path for path in (directory / "problems").glob("*.hdf5") if arguments.only in path.name]
+    paths.sort(key=lambda path: (path.stat().st_size // 100000, path.name))  # small ones first
+    for number, path in enumerate(paths):
+        problem = fclib.read(path)
+        judge = Judge(problem)
+        stamp = f"{path.name}:{path.stat().st_size}:{np.abs(problem.operator).sum():.17g}:{problem.offset @ problem.offset:.17g}"
+        _, start = run_ours(arguments.bench, directory, path, problem, "automatic", 1e-12, 1)
+        if start is None or judge.measure.residual(start) > 1e-6:
+            _, start = siconos.ask({"problem": str(path), "solver": "NSGS", "tolerance": 1e-8}, 100.0)
+        judge.set_reference(start)
+        entry = describe.describe(path, judge.reference.astype(float), with_condition=problem.points < 1200)
+        table.append({"problem": path.stem, **entry, "reference_residual": judge.reference_residual, "floor": judge.floor})
+        begin = len(records)
+        for tolerance in arguments.tolerances:
+            for solver in our_solvers:
+                repeat = REPEAT if problem.points < 1000 else 3
+                if solver != "automatic" and problem.points >= 1000:
+                    repeat = 1
+                answer, reaction = run_ours(arguments.bench, directory, path, problem, solver, tolerance, repeat)
+                if answer.get("outcome") == "not_applicable":
+                    continue
+                answer = judge.assess(answer, reaction, tolerance)
+                records.append({"problem": path.stem, "by": "ricochet", "solver": solver, "raw": False, "tolerance": tolerance,
+                                **{key: answer[key] for key in answer if key not in ("problem", "solver", "tolerance")}})
+        if not arguments.ours_only:
+            for solver, raw in their_solvers(problem.dimension):
+                if not raw and "-in-" in path.stem:  # scaled to unit size it is the problem itself
+                    continue
+                hopeless = False
+                for tolerance in arguments.tolerances:
+                    key = f"{stamp}|{solver}|{raw}|{tolerance}"
+                    if key not in cache:
+                        cache[key] = ({"failure": "failed at a larger tolerance", "solved": False} if hopeless
+                                      else solve_theirs(siconos, path, judge, solver, raw, tolerance))
+                    hopeless = hopeless or not cache[key]["solved"]
+                    records.append({"problem": path.stem, "by": "siconos", "solver": solver, "raw": raw, "tolerance": tolerance,
+                                    **cache[key]})
+            cache_file.write_text(json.dumps(cache))
+        progress(number + 1, len(paths), path.stem, records[begin:])
+        (directory / "results.json").write_text(json.dumps({"problems": table, "records": records}, indent=1))
+    siconos.stop()
+
+
+def progress(number, count, name, records):
+    at = [record for record in records if record["tolerance"] == 1e-8 and record["solved"]]
+    ours = [record["seconds"] for record in at if record["by"] == "ricochet" and record["solver"] == "automatic"]
+    theirs = min(((r["seconds"], r["solver"]) for r in at if r["by"] == "siconos"), default=(float("nan"), "none"))
+    own = f"{ours[0] * 1e3:9.3f}" if ours else "   failed"
+    print(f"{number:3d}/{count} {name:52s} ours {own} ms   theirs {theirs[0] * 1e3:9.3f} ms {theirs[1]}", file=sys.stderr, flush=True)
+
+
+WARM = {2: ("NSGS", "NSGS-shuffle", "CPG"), 3: ("NSGS-newton-blocks", "NSGS-projection-blocks", "NSGS-newton-freeze",
+        "NSN_AC", "NSN_AC-extragradient", "VI_EG", "ADMM")}
+
+
+def run_sequences(arguments, directory):
+    """Consecutive steps: ours from its last reactions, theirs from their own last reactions."""
+    siconos = Siconos(directory)
+    results = []
+    for folder in sorted((directory / "sequences").iterdir()):
+        if arguments.only not in folder.name:
+            continue
+        paths = sorted(folder.glob("*.hdf5"))
+        problems = [fclib.read(path) for path in paths]
+        judges = [Judge(problem) for problem in problems]
+        for tolerance in (1e-8,):
+            answers = run_ours(arguments.bench, directory, paths, problems[0], "automatic", tolerance, 3, ["--sequence"])
+            for judge, (_, reaction) in zip(judges, answers):
+                judge.set_reference(reaction)
+            ours = [judge.assess(answer, reaction, tolerance) for judge, (answer, reaction) in zip(judges, answers)]
+            results.append(sequence_record(folder.name, problems[0], "ricochet", "automatic", tolerance, ours))
+            if arguments.ours_only:
+                continue
+            for solver in WARM[problems[0].dimension]:
+                theirs, last = [], None
+                for path, judge in zip(paths, judges):
+                    best, best_reaction = None, None
+                    for tighten in (1.0, 0.1, 0.01):
+                        request = {"problem": str(path), "solver": solver, "tolerance": tolerance, "tighten": tighten, "repeat": 3}
+                        if last is not None:
+                            request["start"] = last
+                        reply, reaction = siconos.ask(request, SMALL_LIMIT)
+                        best, best_reaction = judge.assess(reply, reaction, tolerance), reaction
+                        if best["solved"] or reaction is None:
+                            break
+                    theirs.append(best)
+                    if best_reaction is not None and np.isfinite(best_reaction).all():
+                        last = str(directory / "theirs-start.npy")
+                        np.save(last, best_reaction)
+                results.append(sequence_record(folder.name, problems[0], "siconos", solver, tolerance, theirs))
+        for record in results:
+            if record["sequence"] == folder.name:
+                print(f"{folder.name:40s} {record['by']:9s} {record['solver']:24s} median {record['median'] * 1e3:9.3f} ms, "
+                      f"{record['failures']} failures", file=sys.stderr, flush=True)
+        (directory / "sequences.json").write_text(json.dumps(results, indent=1))
+    siconos.stop()
+
+
+def sequence_record(name, problem, by, solver, tolerance, answers):
+    seconds = [answer.get("seconds", LIMIT) for answer in answers]
+    return {"sequence": name, "dimension": problem.dimension, "points": problem.points, "by": by, "solver": solver,
+            "tolerance": tolerance, "median": float(np.median(seconds[1:])), "total": float(sum(seconds)), "first": seconds[0],
+            "failures": sum(not answer["solved"] for answer in answers),
+            "distance": max((answer.get("distance_r", float("inf")) for answer in answers))}
+
+
+def main():
+    root = HERE.parents[1]
+    parser = argparse.ArgumentParser(description="Ricochet's contact solvers against Siconos'")
+    parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-contact")
+    parser.add_argument("--bench", default=str(root / "build/ricochet_contact_bench"))
+    parser.add_argument("--program", default=str(root / "build/ricochet"))
+    parser.add_argument("--only", default="")
+    parser.add_argument("--ours-only", action="store_true")
+    parser.add_argument("--default-only", action="store_true", help="of ours only the default solver")
+    parser.add_argument("--no-sequences", action="store_true")
+    parser.add_argument("--no-problems", action="store_true")
+    parser.add_argument("--tolerances", type=float, nargs="+", default=TOLERANCES)
+    arguments = parser.parse_args()
+    listing = subprocess.run([arguments.program, "contact", "--list"], capture_output=True, text=True, check=True).stdout
+    our_solvers = ["automatic"] if arguments.default_only else [line.split()[0] for line in listing.splitlines() if line.strip()]
+    if not arguments.no_problems:
+        run_problems(arguments, arguments.directory.resolve(), our_solvers)
+    if not arguments.no_sequences:
+        run_sequences(arguments, arguments.directory.resolve())
+
+
+if __name__ == "__main__":
+    main()
