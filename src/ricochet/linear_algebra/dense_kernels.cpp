@@ -15,6 +15,25 @@ namespace ricochet {
 namespace {
 
 RICOCHET_EACH_INSTRUCTION_SET
+void add_one(Index size, const float* __restrict a, double f, double* __restrict y) {
+  for (Index i = 0; i < size; ++i) y[i] += f * static_cast<double>(a[i]);
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
+void add_two(Index size, const float* __restrict a, const float* __restrict b, double f, double g,
+             double* __restrict y) {
+  for (Index i = 0; i < size; ++i) y[i] = (y[i] + f * static_cast<double>(a[i])) + g * static_cast<double>(b[i]);
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
+void add_three(Index size, const float* __restrict a, const float* __restrict b, const float* __restrict c, double f,
+               double g, double h, double* __restrict y) {
+  for (Index i = 0; i < size; ++i) {
+    y[i] = ((y[i] + f * static_cast<double>(a[i])) + g * static_cast<double>(b[i])) + h * static_cast<double>(c[i]);
+  }
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
 void add_one(Index size, const double* __restrict a, double f, double* __restrict y) {
   for (Index i = 0; i < size; ++i) y[i] += f * a[i];
 }
@@ -53,7 +72,10 @@ void add_three_with_size(Index size, const double* __restrict a, const double* _
 
 }  // namespace
 
-void add_columns(Index size, Index count, const double* columns, Index stride, const double* factors, double* y) {
+namespace {
+
+template <typename Number>
+void add_any(Index size, Index count, const Number* columns, Index stride, const double* factors, double* y) {
   if (count == 3) {
     add_three(size, columns, columns + stride, columns + 2 * stride, factors[0], factors[1], factors[2], y);
   } else if (count == 2) {
@@ -61,6 +83,16 @@ void add_columns(Index size, Index count, const double* columns, Index stride, c
   } else {
     add_one(size, columns, factors[0], y);
   }
+}
+
+}  // namespace
+
+void add_columns(Index size, Index count, const double* columns, Index stride, const double* factors, double* y) {
+  add_any(size, count, columns, stride, factors, y);
+}
+
+void add_columns(Index size, Index count, const float* columns, Index stride, const double* factors, double* y) {
+  add_any(size, count, columns, stride, factors, y);
 }
 
 void add_columns(Index size, Index count, const double* columns, Index stride, const double* factors, double* y,

@@ -31,7 +31,7 @@ bool AcceleratedGaussSeidel::sweep(const ContactSystem& system, ContactIterate& 
   } else {
     start_reaction_ = iterate.reaction;
   }
-  const bool changed = sweeps_.sweep(system, 1.0, iterate);
+  const bool changed = sweeps_.sweep(system, 1.0, iterate, true);
   residual_ = iterate.reaction - start_reaction_;
   const double change = residual_.norm();
   if (has_last_ && stored_ > 0 && change > growth * change_) {
@@ -60,6 +60,12 @@ bool AcceleratedGaussSeidel::sweep(const ContactSystem& system, ContactIterate& 
   has_last_ = true;
   extrapolate();
   return changed;
+}
+
+/// The weights of an extrapolation add up to one: what was wrong with all u of the past is wrong with the next start.
+void AcceleratedGaussSeidel::correct(const Vector& motion) {
+  start_motion_ += motion - end_motion_;
+  end_motion_ = motion;
 }
 
 void AcceleratedGaussSeidel::extrapolate() {

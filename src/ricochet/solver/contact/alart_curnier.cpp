@@ -17,6 +17,10 @@ constexpr Index few_unknowns = 64;
 /// A new factor is worth unknowns/`iterations_per_factor` iterations with an old one, and no fewer than these.
 constexpr Index iterations_per_factor = 30;
 constexpr Index fewest_iterations = 6;
+/// How many more operations of a factorization than of a product with a vector the machine does in the same time, and
+/// what a row of a factorization costs besides.
+constexpr double factor_speed = 12.0;
+constexpr double factor_overhead = 60.0;
 /// With the factor of the system itself.
 constexpr Index fresh_iterations = 12;
 }  // namespace
@@ -75,6 +79,15 @@ void AlartCurnierStep::choose(const ContactSystem& system, const ContactPoint& p
   add(unknown, across, across, diagonal, across.dot(r));
 }
 
+double AlartCurnierStep::factor_work(double unknowns) {
+  return unknowns * unknowns * (unknowns / factor_speed + factor_overhead);
+}
+
+/// The matrix, a factor in half the memory, and the vectors before.
+double AlartCurnierStep::iteration_work(double unknowns) {
+  return 1.5 * unknowns * unknowns + 30.0 * unknowns;
+}
+
 /// A matrix singular to rounding belongs to conditions that depend on one another. With a small multiple of x −
 /// x_present added, whole steps stay defined and their limits are the solutions of the problem itself.
 void AlartCurnierStep::add_proximal_term() {
@@ -98,6 +111,7 @@ bool AlartCurnierStep::solve_directly() {
   is_iterative_ = false;
   if (unknowns_ != factored_) {
     factor_.compute(matrix_);
+    work_ += factor_work(static_cast<double>(unknowns_.size()));
     add_proximal_term();
     factored_ = unknowns_;
     has_factored_ = true;
@@ -115,6 +129,7 @@ double AlartCurnierStep::correct(const Vector& left, double reduction, Index lim
   const auto multiply = [this](const Vector& x, Vector& y) { multiply_dense(matrix_, x, y); };
   const auto precondition = [this](const Vector& x, Vector& y) { reused_.apply(x, y); };
   const double reached = gmres_.solve(multiply, precondition, left, reduction, limit, correction_);
+  work_ += static_cast<double>(gmres_.iterations()) * iteration_work(static_cast<double>(left.size()));
   if (correction_.allFinite()) solution_ += correction_;
   return reached;
 }
@@ -134,6 +149,7 @@ bool AlartCurnierStep::solve_with_reused_factor(const ContactSystem& system, dou
     const Index limit = std::max(fewest_iterations, count / iterations_per_factor);
     if (correct(left_, reduction, limit) <= reduction) return true;
   }
+  work_ += factor_work(static_cast<double>(count));
   if (!reused_.compute(matrix_, unknowns_)) return false;
   has_factored_ = true;
   if (!reused_.place(system, unknowns_)) return false;
@@ -171,6 +187,7 @@ bool AlartCurnierStep::step(const ContactSystem& system, const ContactIterate& f
   for (Index i = 0; i < count; ++i)
     right_[i] = -test_motion(unknowns_[static_cast<std::size_t>(i)], fixed_motion_.data());
   const bool direct = count <= few_unknowns;
+  work_ += 3.0 * static_cast<double>(count) * static_cast<double>(system.rows());
   if (!direct || unknowns_ != factored_) assemble_contact_matrix(system, unknowns_, column_, matrix_);
   proximal_ = 0.0;
   const bool solved = (!direct && solve_with_reused_factor(system, reduction)) || solve_directly();

@@ -38,7 +38,15 @@ class AlartCurnierStep {
     reused_.reset();
   }
   /// Before the first step of a problem: only factors are kept from earlier ones.
-  void start() { last_unknowns_.clear(); }
+  void start() {
+    last_unknowns_.clear();
+    work_ = 0.0;
+  }
+  /// Of the steps since `start`, in entries of matrices read (operations of a factorization count a twelfth).
+  [[nodiscard]] double work() const { return work_; }
+  /// The same of a factorization and of an iteration with so many unknowns.
+  [[nodiscard]] static double factor_work(double unknowns);
+  [[nodiscard]] static double iteration_work(double unknowns);
   /// The factor of many unknowns, see IterativeContactSolver.
   [[nodiscard]] const ReusedFactor& reused() const { return reused_; }
   void take_memory(const std::vector<double>& memory) { reused_.take_memory(memory); }
@@ -69,6 +77,7 @@ class AlartCurnierStep {
   bool is_iterative_ = false;  ///< the last step was solved by GMRES
   double proximal_ = 0.0;      ///< added to the diagonal of a matrix singular to rounding
   bool has_factored_ = false, has_settled_ = false;
+  double work_ = 0.0;
 };
 
 }  // namespace ricochet

@@ -15,17 +15,20 @@ namespace ricochet {
 namespace {
 
 constexpr int accelerated_limit = 500;
+/// Part of its residual to which an iteration in single precision can be trusted.
+constexpr double rough_digits = 1e-5;
 /// Sweeps after which the rounding of W r is left to Newton.
 constexpr int verdict_limit = 6;
 /// Sweeps over which the progress of the accelerated ones is judged.
 constexpr std::size_t outlook = 5;
 /// A fourth sweep with more than this part of the second one's residual: W is ill conditioned.
 constexpr double stall = 0.4;
-/// How many more operations of a factorization than of a sweep the machine does in the same time, and what a point
-/// costs in entries of W.
-constexpr double factor_speed = 12.0;
+/// What a point of a sweep costs in entries of W.
 constexpr double point_work = 100.0;
-constexpr double factor_overhead = 60.0;
+/// Part of a factorization that a step in time is charged before it is known how long a factor lasts.
+constexpr double amortized_factor = 0.125;
+/// Weight of the last step in the means of what steps have cost.
+constexpr double recent = 0.3;
 /// Sweeps before the first Newton step: from zero, and from an earlier solution.
 constexpr int cold_sweeps = 20;
 /// Newton steps in a row before the sweeps take over again.
@@ -56,6 +59,10 @@ bool is_nearly_closed(const ContactSystem& system, const ContactIterate& iterate
   return 10 * closed >= 9 * static_cast<std::ptrdiff_t>(system.points().size());
 }
 
+void learn(double& mean, double value) {
+  mean = mean > 0.0 ? (1.0 - recent) * mean + recent * value : value;
+}
+
 double squared(double value) {
   return value * value;
 }
@@ -81,19 +88,22 @@ class AutomaticSolver final : public IterativeContactSolver {
     newton_step_.reset();
     sparse_system_.reset();
     frictionless_.reset();
+    history_ = {};
   }
-  /// The base set of the frictionless factor and its size, then the unknowns of the other one.
+  /// The costs, the size of the frictionless factor's base set and that set, then the unknowns of the other factor.
   void append_memory(std::vector<double>& memory) const override {
+    memory.push_back(history_.sweeps);
+    memory.push_back(history_.newton);
     memory.push_back(static_cast<double>(frictionless_.base().size()));
     for (const Index row : frictionless_.base()) memory.push_back(static_cast<double>(row));
     newton_step_.reused().append_memory(memory);
   }
   void take_memory(const std::vector<double>& memory) override {
-    const auto size = static_cast<std::ptrdiff_t>(memory.front());
-    std::vector<Index> base;
-    for (std::ptrdiff_t k = 1; k <= size; ++k) base.push_back(static_cast<Index>(memory[static_cast<std::size_t>(k)]));
-    frictionless_.take_base(std::move(base));
-    newton_step_.take_memory(std::vector<double>(memory.begin() + 1 + size, memory.end()));
+    history_ = {memory.at(0), memory.at(1)};
+    const auto base = memory.begin() + 3;
+    const auto rest = base + static_cast<std::ptrdiff_t>(memory.at(2));
+    frictionless_.take_base(std::vector<Index>(base, rest));
+    newton_step_.take_memory(std::vector<double>(rest, memory.end()));
   }
   [[nodiscard]] bool keeps_row(Index problem_row) const override {
     return frictionless_.keeps_row(problem_row) || newton_step_.reused().keeps_row(problem_row);
@@ -110,6 +120,9 @@ class AutomaticSolver final : public IterativeContactSolver {
   [[nodiscard]] static double merit(const ContactSystem& system, const ContactIterate& iterate);
   void keep_best(const Work& work);
   [[nodiscard]] static bool is_done(const Work& work, const ContactIterate& iterate);
+  [[nodiscard]] static double sweep_work(const Work& work);
+  [[nodiscard]] static double unknown_count(const Work& work);
+  [[nodiscard]] bool prefers_newton(const Work& work) const;
   [[nodiscard]] static double newton_cost(const Work& work, bool settled);
   bool accelerated(const Work& work);
   bool sweep(const Work& work, int sweeps, double damping);
@@ -133,6 +146,10 @@ class AutomaticSolver final : public IterativeContactSolver {
   Vector begin_;
   double current_merit_ = 0.0, best_merit_ = 0.0;
   bool stalled_ = false;
+  /// What problems have cost, on the mean of recent ones: zero, not known yet.
+  struct History {
+    double sweeps = 0.0, newton = 0.0;
+  } history_;
 };
 
 double AutomaticSolver::merit(const ContactSystem& system, const ContactIterate& iterate) {
@@ -160,20 +177,44 @@ bool AutomaticSolver::is_done(const Work& work, const ContactIterate& iterate) {
   return measure.beyond_floor == 0.0 && measure.is_exact;
 }
 
-/// What Newton would cost from here, in sweeps: a few factorizations at the speed of products of matrices.
-double AutomaticSolver::newton_cost(const Work& work, bool settled) {
-  double unknowns = 0.0, closed_rows = 0.0;
+/// Entries of matrices that a sweep reads, and what its points cost besides.
+double AutomaticSolver::sweep_work(const Work& work) {
+  double closed_rows = 0.0;
+  for (const ContactPoint& point : work.system.points())
+    closed_rows += work.current.reaction[point.first] > 0.0 ? static_cast<double>(point.size) : 0.0;
+  return std::max(closed_rows, 1.0) * (static_cast<double>(work.system.rows()) + point_work);
+}
+
+double AutomaticSolver::unknown_count(const Work& work) {
+  double unknowns = 0.0;
   for (const ContactPoint& point : work.system.points()) {
     const PaddedVector r = padded(point, work.current.reaction);
     if (!(r[0] > 0.0)) continue;
-    closed_rows += static_cast<double>(point.size);
     const bool slips = point.has_friction() && r.tail<2>().norm() >= point.friction_limit(r[0]) * (1.0 - 1e-9);
     unknowns += static_cast<double>(slips ? point.size - 1 : point.size);
   }
-  const double sweep = closed_rows * (static_cast<double>(work.system.rows()) + point_work);
-  const double factor = unknowns * unknowns * (unknowns / factor_speed + factor_overhead);
+  return unknowns;
+}
+
+/// What Newton would cost from here, in sweeps.
+double AutomaticSolver::newton_cost(const Work& work, bool settled) {
+  const double unknowns = unknown_count(work);
   const double product = 4.0 * unknowns * static_cast<double>(work.system.rows());
-  return (settled ? 1.5 : 6.0) * (factor + product) / std::max(sweep, 1.0);
+  return (settled ? 1.5 : 6.0) * (AlartCurnierStep::factor_work(unknowns) + product) / sweep_work(work);
+}
+
+/// From the last reactions: Newton with the factor of an earlier step, if that has cost less than sweeps (or promises
+/// to).
+bool AutomaticSolver::prefers_newton(const Work& work) const {
+  if (work.system.dense() == nullptr || !(history_.sweeps > 0.0)) return false;
+  double expected = history_.newton;
+  if (!(expected > 0.0)) {
+    const double unknowns = unknown_count(work);
+    expected = amortized_factor * AlartCurnierStep::factor_work(unknowns) +
+               2.0 * (6.0 * unknowns * static_cast<double>(work.system.rows()) +
+                      4.0 * AlartCurnierStep::iteration_work(unknowns));
+  }
+  return expected < history_.sweeps;
 }
 
 /// Accelerated sweeps for as long as they promise to arrive sooner than Newton would.
@@ -187,6 +228,7 @@ bool AutomaticSolver::accelerated(const Work& work) {
   int unchanged = 0, verdicts = 0;
   double second = 0.0;
   double residual_per_change = 1.0;
+  double exact_residual = system.has_rough_entries() ? system.data() : 0.0;  // when u was last evaluated
   for (int k = 0; k < accelerated_limit; ++k) {
     unchanged = accelerated_.sweep(system, work.current) ? 0 : unchanged + 1;
     const double change = accelerated_.change();
@@ -199,10 +241,13 @@ bool AutomaticSolver::accelerated(const Work& work) {
     }
     note(system, work.options, "sweep", residual, work.solution);
     best = std::min(best, residual);
-    if (residual <= target) {
+    const bool arrived = residual <= target;
+    if (arrived || residual < rough_digits * exact_residual) {
       system.evaluate(work.current);
-      if (is_done(work, work.current)) return true;
-      if (++verdicts == verdict_limit) break;
+      accelerated_.correct(work.current.motion);
+      exact_residual = residual;
+      if (arrived && is_done(work, work.current)) return true;
+      if (arrived && ++verdicts == verdict_limit) break;
     }
     if (k == 1) second = residual;
     stalled_ = k == 3 && residual > stall * second;
@@ -356,8 +401,18 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
       frictionless_.solve(system, current, solution.iterations, solution.factorizations) == "")
     return "";
   best_merit_ = std::numeric_limits<double>::infinity();
+  if (!cold) keep_best(work);
   begin_ = current.reaction;
-  if (accelerated(work)) return "";
+  if (!cold && prefers_newton(work)) {
+    const bool solved = newton(work, true);
+    learn(history_.newton, newton_step_.work());
+    if (solved) return "";
+    work.current = best_;
+  }
+  const int before = solution.iterations;
+  const bool solved = accelerated(work);
+  learn(history_.sweeps, static_cast<double>(solution.iterations - before) * sweep_work(work));
+  if (solved) return "";
   if (is_nearly_closed(system, current) && stalled_) {
     // Newton knows better from the start than from what a few sweeps have made of it.
     current.reaction = begin_;

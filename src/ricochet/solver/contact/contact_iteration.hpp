@@ -42,8 +42,9 @@ class IterativeContactSolver : public ContactSolver {
   /// Counts an iteration, and notes it in the record. `residual`: not yet divided by the data.
   static void note(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
                    ContactSolution& solution);
-  /// r on the law: signs and limits hold exactly, friction along the slip where it is at its limit. u does not follow.
-  static void put_on_law(const ContactSystem& system, const Vector& motion, Vector& reaction);
+  /// r on the law: signs and limits hold exactly; where friction is at its limit it is against the slip, to the last
+  /// digits where `exactly` is asked for. u does not follow.
+  static void put_on_law(const ContactSystem& system, const Vector& motion, bool exactly, Vector& reaction);
 
  private:
   [[nodiscard]] bool is_open(const ContactProblem& problem) const;

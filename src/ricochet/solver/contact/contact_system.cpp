@@ -18,6 +18,9 @@ constexpr Index few_rows = 3000;
 /// Up to this many rows a dense matrix is always faster than a sparse one.
 constexpr Index small = 150;
 
+/// From this many rows on, sweeps wait for memory.
+constexpr Index many_rows = 350;
+
 /// The power of two at or below.
 double power_of_two(double value) {
   return std::isnormal(value) ? std::ldexp(1.0, std::ilogb(value)) : 1.0;
@@ -160,14 +163,8 @@ void ContactSystem::gather(const ContactProblem& problem, const std::vector<Inde
   }
   point_operators_.clear();
   for (const ContactPoint& point : points_) {
-    PointMatrix block;
-    if (mode_ == Mode::dense) {
-      block = matrix_.block(point.first, point.first, point.size, point.size);
-    } else {
-      const double scale = row_scale_[static_cast<std::size_t>(point.first)];
-      block = operator_scale_ * scale * scale *
-              operator_->block(row_of_[static_cast<std::size_t>(point.first)], point.size);
-    }
+    const double scale = row_scale_[static_cast<std::size_t>(point.first)];
+    const PointMatrix block = operator_scale_ * scale * scale * operator_->block(problem_row(point.first), point.size);
     point_operators_.push_back(make_point_operator(block));
   }
 }
@@ -177,11 +174,11 @@ Index ContactSystem::system_row(Index problem_row) const {
   return found != row_of_.end() && *found == problem_row ? found - row_of_.begin() : -1;
 }
 
+/// Rows come in runs of neighbours, copied together.
 void ContactSystem::copy_dense() {
   const Matrix& w = *operator_->dense();
   const auto count = static_cast<Index>(row_of_.size());
   if (matrix_.rows() != count) matrix_.resize(count, count);
-  // Rows come in runs of neighbours: copied together.
   std::vector<Index> runs;
   for (Index i = 0; i < count; ++i) {
     if (i == 0 || problem_row(i) != problem_row(i - 1) + 1) runs.push_back(i);
@@ -197,6 +194,8 @@ void ContactSystem::copy_dense() {
       matrix_.col(j).segment(first, size) = (scale * scales.segment(first, size)).cwiseProduct(from);
     }
   }
+  single_.resize(0, 0);
+  if (count >= many_rows) single_ = matrix_.cast<float>();
 }
 
 void ContactSystem::copy_sparse() {
@@ -219,6 +218,12 @@ void ContactSystem::add_change(const ContactPoint& point, const PaddedVector& ch
     for (SparseMatrix::InnerIterator entry(sparse_, point.first + k); entry; ++entry)
       motion[entry.row()] += change[k] * entry.value();
   }
+}
+
+void ContactSystem::add_change_roughly(const ContactPoint& point, const PaddedVector& change, Vector& motion) const {
+  if (!has_rough_entries()) return add_change(point, change, motion);
+  add_columns(motion.size(), point.size, single_.data() + point.first * single_.rows(), single_.rows(), change.data(),
+              motion.data());
 }
 
 void ContactSystem::multiply(const Vector& x, Vector& y) const {

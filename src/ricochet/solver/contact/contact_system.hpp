@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "ricochet/base/types.hpp"
@@ -34,6 +35,11 @@ class ContactSystem {
   /// q, F and bounds of the problem, and the size of the data. Before `select`.
   void set_data(const ContactProblem& problem);
 
+  /// q_N is below `margin` times the largest data, in the unit of the residual.
+  [[nodiscard]] bool is_near(const ContactProblem& problem, Index point, double margin) const {
+    const auto at = static_cast<std::size_t>(point);
+    return motion_scale(point) * problem.offset[problem.first[at]] < margin * data_ * std::sqrt(normal_[at]);
+  }
   [[nodiscard]] const std::vector<ContactPoint>& points() const { return points_; }
   [[nodiscard]] const PointOperator& point_operator(std::size_t k) const { return point_operators_[k]; }
   [[nodiscard]] Index rows() const { return offset_.size(); }
@@ -56,6 +62,11 @@ class ContactSystem {
   void multiply(const Vector& x, Vector& y) const;
   /// u += W · (change of the reaction of a point). Needs entries.
   void add_change(const ContactPoint& point, const PaddedVector& change, Vector& motion) const;
+  /// The same to single precision, for sweeps through a W that no cache holds: they read half as much. u must be
+  /// evaluated afresh before what is left of it has lost its digits.
+  void add_change_roughly(const ContactPoint& point, const PaddedVector& change, Vector& motion) const;
+  /// add_change_roughly is faster than add_change.
+  [[nodiscard]] bool has_rough_entries() const { return mode_ == Mode::dense && single_.size() > 0; }
 
   /// |e_i| √w_i of one point.
   [[nodiscard]] static double residual(const ContactPoint& point, const PaddedVector& reaction,
@@ -119,6 +130,7 @@ class ContactSystem {
   std::vector<ContactPoint> points_;
   std::vector<PointOperator> point_operators_;
   Matrix matrix_;
+  Eigen::MatrixXf single_;  ///< the same rounded, where there are many rows
   SparseMatrix sparse_;
   Vector offset_, offset_rounding_;
   mutable Vector product_argument_, product_result_;

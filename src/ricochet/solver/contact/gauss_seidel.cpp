@@ -7,7 +7,8 @@
 
 namespace ricochet {
 
-bool GaussSeidel::sweep(const ContactSystem& system, double damping, ContactIterate& iterate) {
+bool GaussSeidel::sweep(const ContactSystem& system, double damping, ContactIterate& iterate, bool roughly) {
+  roughly = roughly && system.has_rough_entries();
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const std::vector<ContactPoint>& points = system.points();
   bool changed = states_.size() != points.size();
@@ -35,7 +36,8 @@ bool GaussSeidel::sweep(const ContactSystem& system, double damping, ContactIter
     states_[k] = state;
     const PaddedVector change = damping * (found - r);
     if (change.isZero(0.0)) continue;
-    system.add_change(point, change, iterate.motion);
+    roughly ? system.add_change_roughly(point, change, iterate.motion)
+            : system.add_change(point, change, iterate.motion);
     enter(point, damping < 1.0 ? PaddedVector(r + change) : found, iterate.reaction);
   }
   return changed;

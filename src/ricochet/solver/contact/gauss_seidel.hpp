@@ -13,7 +13,8 @@ namespace ricochet {
 class GaussSeidel {
  public:
   /// Takes `damping` of each point's correction. False: which points are open, stick and slip is as it was last time.
-  bool sweep(const ContactSystem& system, double damping, ContactIterate& iterate);
+  /// `roughly`: u follows to single precision only.
+  bool sweep(const ContactSystem& system, double damping, ContactIterate& iterate, bool roughly = false);
   /// The next sweep has nothing to compare its states with.
   void restart() { states_.clear(); }
 
@@ -34,6 +35,8 @@ class AcceleratedGaussSeidel {
   /// One sweep from the extrapolated start; `iterate` is the sweep's end, which satisfies the law's signs and limits.
   /// Returns whether states changed.
   bool sweep(const ContactSystem& system, ContactIterate& iterate);
+  /// u of the end of the last sweep, evaluated afresh: sweeps follow it to single precision only where that is faster.
+  void correct(const Vector& motion);
   /// |g(r) − r|, scaled, of the last sweep.
   [[nodiscard]] double change() const { return change_; }
 
