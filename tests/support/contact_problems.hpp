@@ -127,6 +127,7 @@ class ContactRun {
     operator_.reset();
     start_.resize(0);
   }
+  [[nodiscard]] const ContactSolution& solution() const { return solution_; }
   [[nodiscard]] Vector warm_start() const { return solver_->warm_start(); }
   void set_warm_start(const Vector& start) {
     start_ = start;

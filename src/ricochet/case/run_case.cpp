@@ -335,14 +335,19 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   Recording recording(input, *model, options.output_directory, steps);
   recording.record(simulation.state(), simulation.account());
   double step_seconds = 0.0;
+  const double contact_before = simulation.contact_seconds();
   const std::optional<Error> failure = take_steps(simulation, recording, contact_export ? &*contact_export : nullptr,
                                                   steps, options.quiet, step_seconds);
   recording.close(summary);
   summary.steps = simulation.state().step;
   summary.time_per_step = summary.steps > 0 ? step_seconds / static_cast<double>(summary.steps) : 0.0;
-  summary.timings = {
-      {"read_mesh", build.read_mesh}, {"assembly", build.assembly},    {"start_and_factorization", start_seconds},
-      {"steps", step_seconds},        {"output", recording.seconds()}, {"total", total.seconds()}};
+  summary.timings = {{"read_mesh", build.read_mesh},
+                     {"assembly", build.assembly},
+                     {"start_and_factorization", start_seconds},
+                     {"steps", step_seconds},
+                     {"contact_solver", simulation.contact_seconds() - contact_before},
+                     {"output", recording.seconds()},
+                     {"total", total.seconds()}};
   if (!failure) judge_energy(summary, model->problem, simulation.state());
   if (contact_export) summary.contact_export = contact_export->report();
   summary.warnings = log::warnings();

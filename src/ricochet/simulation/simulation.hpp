@@ -27,6 +27,7 @@ class Simulation {
   [[nodiscard]] EnergyAccount& account() { return *account_; }
   [[nodiscard]] const Vector& increment() const { return increment_; }
   [[nodiscard]] std::size_t factor_entries() const { return solver_->factor_entries(); }
+  [[nodiscard]] double contact_seconds() const { return solver_->contact_seconds(); }
 
  private:
   const SemidiscreteProblem& problem_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/timer.hpp"
 #include "ricochet/linear_algebra/dense_factor.hpp"
 
 namespace ricochet {
@@ -135,7 +136,9 @@ void CondensedContact::choose_friction(const Stage& stage) {
 }
 
 void CondensedContact::solve_contact() {
+  const Timer timer;
   solver_->solve(contact_, {}, contact_solution_);
+  solver_seconds_ += timer.seconds();
   if (!contact_solution_.solved()) throw_not_solved();
   if (observer_) observer_(contact_, contact_solution_);
 }

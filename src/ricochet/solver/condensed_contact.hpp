@@ -26,6 +26,8 @@ class CondensedContact {
   void solve(const Stage& stage, Eigen::Ref<Vector> trailing, StageSolution& solution);
   /// Called after every contact problem that has been solved; none if empty.
   void observe(ContactObserver observer) { observer_ = std::move(observer); }
+  /// In the contact solver, all calls so far.
+  [[nodiscard]] double solver_seconds() const { return solver_seconds_; }
 
  private:
   void number_rows();
@@ -46,6 +48,7 @@ class CondensedContact {
   std::unique_ptr<ContactSolver> solver_;
   ContactSolution contact_solution_;
   ContactObserver observer_;
+  double solver_seconds_ = 0.0;
 };
 
 }  // namespace ricochet

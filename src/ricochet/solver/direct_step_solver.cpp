@@ -31,6 +31,7 @@ class DirectStage {
 
   void solve(const Stage& stage, StageSolution& solution);
   void observe_contact(const ContactObserver& observer) { contact_->observe(observer); }
+  [[nodiscard]] double contact_seconds() const { return contact_->solver_seconds(); }
   [[nodiscard]] std::size_t factor_entries() const { return factor_->factor_entries(); }
 
  private:
@@ -156,6 +157,11 @@ class DirectStepSolver final : public StepSolver {
   }
   void observe_contact(const ContactObserver& observer) override {
     for (const auto& stage : stages_) stage->observe_contact(observer);
+  }
+  [[nodiscard]] double contact_seconds() const override {
+    double sum = 0.0;
+    for (const auto& stage : stages_) sum += stage->contact_seconds();
+    return sum;
   }
   [[nodiscard]] std::size_t factor_entries() const override {
     std::size_t sum = 0;

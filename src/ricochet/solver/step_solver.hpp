@@ -17,6 +17,8 @@ class StepSolver {
   virtual void solve(std::size_t number, const Stage& stage, StageSolution& solution) = 0;
   /// Shows every contact problem that is solved from now on, and its solution, to the observer; none if it is empty.
   virtual void observe_contact(const ContactObserver& observer) = 0;
+  /// Spent so far in contact solvers, for the summary.
+  [[nodiscard]] virtual double contact_seconds() const = 0;
   /// Entries of all factors, for the summary.
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
 };

@@ -40,6 +40,7 @@ class AlartCurnierStep {
   /// Before the first step of a problem: only factors are kept from earlier ones.
   void start() {
     last_unknowns_.clear();
+    has_settled_ = false;
     work_ = 0.0;
   }
   /// Of the steps since `start`, in entries of matrices read (operations of a factorization count a twelfth).
