@@ -61,6 +61,16 @@ void add_one_with_size(Index size, const double* __restrict a, double f, double*
 }
 
 RICOCHET_EACH_INSTRUCTION_SET
+void add_two_with_size(Index size, const double* __restrict a, const double* __restrict b, double f, double g,
+                       double* __restrict y, double* __restrict sizes) {
+  for (Index i = 0; i < size; ++i) {
+    const double first = f * a[i], second = g * b[i];
+    y[i] = (y[i] + first) + second;
+    sizes[i] += std::abs(first) + std::abs(second);
+  }
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
 void add_three_with_size(Index size, const double* __restrict a, const double* __restrict b, const double* __restrict c,
                          double f, double g, double h, double* __restrict y, double* __restrict sizes) {
   for (Index i = 0; i < size; ++i) {
@@ -100,9 +110,11 @@ void add_columns(Index size, Index count, const double* columns, Index stride, c
   if (count == 3) {
     add_three_with_size(size, columns, columns + stride, columns + 2 * stride, factors[0], factors[1], factors[2], y,
                         sizes);
-    return;
+  } else if (count == 2) {
+    add_two_with_size(size, columns, columns + stride, factors[0], factors[1], y, sizes);
+  } else {
+    add_one_with_size(size, columns, factors[0], y, sizes);
   }
-  for (Index k = 0; k < count; ++k) add_one_with_size(size, columns + k * stride, factors[k], y, sizes);
 }
 
 }  // namespace ricochet

@@ -40,8 +40,9 @@ constexpr double smallest_damping = 0.125;
 /// Of long runs of sweeps at the very end, and their length in entries of W.
 constexpr int last_rounds = 20;
 constexpr double last_work = 2e7;
-/// After a Newton step.
+/// After a Newton step that has left more than this part of the merit (a square).
 constexpr int smoothing_sweeps = 8;
+constexpr double good_step = 1e-4;
 /// Halvings of a Newton step.
 constexpr int cut_limit = 8;
 /// Of the residual of a linear system while the points still change their states.
@@ -361,7 +362,7 @@ bool AutomaticSolver::newton(const Work& work, bool line_search) {
       std::swap(work.current, trial_);
       return true;
     }
-    if (line_search) smooth(work);
+    if (line_search && merit(system, trial_) > good_step * current_merit_) smooth(work);
     if (!line_search) {
       std::swap(work.current, trial_);
     } else if (!search_line(work)) {

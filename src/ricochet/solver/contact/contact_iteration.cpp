@@ -172,6 +172,7 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
   double largest = measure_.residual;
   for (Index i = 0; i < problem.points(); ++i) {
     if (wanted_[static_cast<std::size_t>(i)] != 0 || !problem.is_eligible(i)) continue;
+    if (solution.motion[problem.first[static_cast<std::size_t>(i)]] >= 0.0) continue;
     largest = std::max(largest, system_.residual_of(problem, i, solution.reaction, solution.motion));
   }
   solution.residual = largest / system_.data();

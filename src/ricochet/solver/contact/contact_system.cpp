@@ -33,6 +33,7 @@ void ContactSystem::analyse(const ContactProblem& problem) {
   problem_first_ = problem.first;
   gathered_.clear();
   row_of_.clear();
+  points_.clear();
   const Index points = problem.points();
   scale_.assign(static_cast<std::size_t>(points), 1.0);
   normal_.assign(scale_.size(), 1.0);
@@ -136,6 +137,7 @@ void ContactSystem::select(const ContactProblem& problem, const std::vector<char
 }
 
 void ContactSystem::gather(const ContactProblem& problem, const std::vector<Index>& chosen) {
+  last_points_.swap(points_);
   points_.clear();
   std::vector<Index> rows;
   for (const Index i : chosen) {
@@ -161,6 +163,10 @@ void ContactSystem::gather(const ContactProblem& problem, const std::vector<Inde
     if (mode_ == Mode::dense) copy_dense();
     if (mode_ == Mode::sparse) copy_sparse();
   }
+  const auto is_alike = [](const ContactPoint& a, const ContactPoint& b) {
+    return a.first == b.first && a.size == b.size;
+  };
+  if (same && std::equal(points_.begin(), points_.end(), last_points_.begin(), last_points_.end(), is_alike)) return;
   point_operators_.clear();
   for (const ContactPoint& point : points_) {
     const double scale = row_scale_[static_cast<std::size_t>(point.first)];

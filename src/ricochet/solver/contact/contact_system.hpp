@@ -127,7 +127,7 @@ class ContactSystem {
   std::vector<Index> gathered_;    ///< points of the problem in the system, eligible or not
   std::vector<Index> row_of_;      ///< per row of the system: the problem's row
   std::vector<double> row_scale_;  ///< per row of the system: D
-  std::vector<ContactPoint> points_;
+  std::vector<ContactPoint> points_, last_points_;
   std::vector<PointOperator> point_operators_;
   Matrix matrix_;
   Eigen::MatrixXf single_;  ///< the same rounded, where there are many rows
