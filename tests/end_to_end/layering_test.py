@@ -55,6 +55,14 @@ class Layering(unittest.TestCase):
                     wrong.append(f"{path.relative_to(SOURCE)} includes {include}")
         self.assertEqual(wrong, [])
 
+    def test_contact_solvers_know_nothing_of_finite_elements_or_time(self):
+        folder = SOURCE / "src" / "ricochet" / "solver" / "contact"
+        allowed = ("ricochet/base/", "ricochet/linear_algebra/", "ricochet/solver/contact/")
+        self.assertGreater(len(list(folder.glob("*.cpp"))), 10)
+        wrong = [f"{path.name} includes {include}" for path in sorted(folder.iterdir()) for include in includes(path)
+                 if include.startswith("ricochet/") and not include.startswith(allowed)]
+        self.assertEqual(wrong, [])
+
     def test_own_headers_are_included_by_their_full_path(self):
         """A relative include would escape the check above."""
         wrong = [f"{path.relative_to(SOURCE)} includes {include}" for path in sources() for include in includes(path)
