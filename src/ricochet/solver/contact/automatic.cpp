@@ -31,6 +31,8 @@ constexpr double amortized_factor = 0.125;
 constexpr double recent = 0.3;
 /// Sweeps before the first Newton step: from zero, and from an earlier solution.
 constexpr int cold_sweeps = 20;
+/// Newton steps that the rounding of q covers before the last of them is taken for exact.
+constexpr int inexact_limit = 3;
 /// Newton steps in a row before the sweeps take over again.
 constexpr int newton_limit = 30;
 /// Of sweeps and Newton in turn; the number of sweeps doubles every time.
@@ -353,6 +355,7 @@ bool AutomaticSolver::newton(const Work& work, bool line_search) {
   const ContactSystem& system = work.system;
   current_merit_ = merit(system, work.current);
   double reduction = next_reduction(work);
+  int inexact = 0;
   for (int k = 0; k < newton_limit; ++k) {
     ++work.solution.newton_steps;
     if (!full_step(work, reduction)) return false;
@@ -360,7 +363,9 @@ bool AutomaticSolver::newton(const Work& work, bool line_search) {
     note(system, work.options, "newton", system.residual(trial_), work.solution);
     if (system.is_solved(trial_, work.options.tolerance)) {
       std::swap(work.current, trial_);
-      return true;
+      if (is_done(work, work.current) || ++inexact == inexact_limit) return true;
+      current_merit_ = merit(system, work.current);
+      continue;
     }
     if (line_search && merit(system, trial_) > good_step * current_merit_) smooth(work);
     if (!line_search) {
