@@ -210,6 +210,15 @@ class ResultsFiles(TestCase):
         results = self.simulate(DISC, values={"time.end": 0.001, "output.fields_every": 0})
         self.assertEqual(sorted(path.name for path in results.iterdir()), ["history.csv", "summary.json"])
 
+    def test_the_same_run_gives_the_same_bytes(self):
+        """Run again later: nothing in the files tells when they were written."""
+        case = self.write("block.toml", block_case())
+        first = self.simulate(case, "first")
+        time.sleep(1.1)  # file formats keep times in seconds
+        second = self.simulate(case, "second")
+        for name in ("history.csv", "results.h5", "results.xdmf"):
+            self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
+
     def test_well_formed_after_every_frame(self):
         """The run is stopped again and again: whatever it has written by then is a complete document."""
         case = self.write("case.toml", block_case() + "[output]\nfields_every = 1\n")

@@ -220,8 +220,10 @@ Hdf5Writer::Hdf5Writer(std::string path) : path_(std::move(path)), temporary_(pa
   // The format that puts a checksum on everything but the data themselves.
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+  const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);  // the same data give the same file
   errno = 0;
-  file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, properties, access);
   if (file_ < 0) {
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot be written{}{}", path_, errno != 0 ? ": " : "",
                                                     errno != 0 ? std::strerror(errno) : ""));

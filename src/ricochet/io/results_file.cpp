@@ -49,7 +49,10 @@ void ResultsWriter::Implementation::dataset(const std::string& name, hid_t file_
                                             hsize_t columns, const void* data) const {
   const hsize_t extents[2] = {rows, columns};
   const hid_t space = H5Screate_simple(columns > 0 ? 2 : 1, extents, nullptr);
-  const hid_t set = H5Dcreate2(file, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(properties, false);
+  const hid_t set = H5Dcreate2(file, name.c_str(), file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  H5Pclose(properties);
   const bool good = set >= 0 && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
   if (set >= 0) H5Dclose(set);
   H5Sclose(space);
@@ -57,7 +60,10 @@ void ResultsWriter::Implementation::dataset(const std::string& name, hid_t file_
 }
 
 void ResultsWriter::Implementation::group(const std::string& name) const {
-  const hid_t made = H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t properties = H5Pcreate(H5P_GROUP_CREATE);
+  H5Pset_obj_track_times(properties, false);
+  const hid_t made = H5Gcreate2(file, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT);
+  H5Pclose(properties);
   check(made >= 0, name.c_str());
   H5Gclose(made);
 }
@@ -194,7 +200,11 @@ ResultsWriter::ResultsWriter(const std::string& directory, const DisplacementSpa
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported by us, not printed by HDF5
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
-  own.file = H5Fcreate(own.path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  // The same run gives the same file: no object carries the time at which it was made.
+  const hid_t properties = H5Pcreate(H5P_FILE_CREATE);
+  H5Pset_obj_track_times(properties, false);
+  own.file = H5Fcreate(own.path.c_str(), H5F_ACC_TRUNC, properties, access);
+  H5Pclose(properties);
   H5Pclose(access);
   own.check(own.file >= 0, "the file");
   own.write_mesh(space);

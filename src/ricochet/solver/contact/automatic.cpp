@@ -14,6 +14,7 @@ namespace ricochet {
 
 namespace {
 
+/// Accelerated sweeps, at most.
 constexpr int accelerated_limit = 500;
 /// Part of its residual to which an iteration in single precision can be trusted.
 constexpr double rough_digits = 1e-5;
@@ -29,7 +30,7 @@ constexpr double point_work = 100.0;
 constexpr double amortized_factor = 0.125;
 /// Weight of the last step in the means of what steps have cost.
 constexpr double recent = 0.3;
-/// Sweeps before the first Newton step: from zero, and from an earlier solution.
+/// Plain sweeps between runs of Newton steps, the first time.
 constexpr int cold_sweeps = 20;
 /// Newton steps that the rounding of q covers before the last of them is taken for exact.
 constexpr int inexact_limit = 3;

@@ -17,7 +17,6 @@ constexpr double rounding = 32.0 * epsilon;
 constexpr Index few_rows = 3000;
 /// Up to this many rows a dense matrix is always faster than a sparse one.
 constexpr Index small = 150;
-
 /// From this many rows on, sweeps wait for memory.
 constexpr Index many_rows = 350;
 
@@ -122,7 +121,7 @@ void ContactSystem::set_data(const ContactProblem& problem) {
 void ContactSystem::select(const ContactProblem& problem, const std::vector<char>& wanted) {
   std::vector<Index> chosen;
   for (Index i = 0; i < problem.points(); ++i) {
-    // The columns of points that cannot matter now are kept for others: entries cost more than they do.
+    // Sparse and product operators keep all points: a selection would cost more than they do.
     if (mode_ != Mode::dense || wanted[static_cast<std::size_t>(i)] != 0) chosen.push_back(i);
   }
   gather(problem, chosen);
@@ -153,7 +152,6 @@ void ContactSystem::gather(const ContactProblem& problem, const std::vector<Inde
   if (!same) {
     gathered_ = chosen;
     row_of_ = std::move(rows);
-    row_scale_.clear();
     row_scale_.assign(row_of_.size(), 1.0);
     std::size_t point = 0;
     for (std::size_t row = 0; row < row_of_.size(); ++row) {
