@@ -5,10 +5,9 @@
 #include <memory>
 
 #include "ricochet/solver/contact/active_set.hpp"
-#include "ricochet/solver/contact/alart_curnier.hpp"
 #include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/gauss_seidel.hpp"
-#include "ricochet/solver/contact/newton_iteration.hpp"
+#include "ricochet/solver/contact/globalized_newton.hpp"
 
 namespace ricochet {
 
@@ -32,10 +31,6 @@ constexpr double amortized_factor = 0.125;
 constexpr double recent = 0.3;
 /// Plain sweeps between runs of Newton steps, the first time.
 constexpr int cold_sweeps = 20;
-/// Newton steps that the rounding of q covers before the last of them is taken for exact.
-constexpr int inexact_limit = 3;
-/// Newton steps in a row before the sweeps take over again.
-constexpr int newton_limit = 30;
 /// Of sweeps and Newton in turn; the number of sweeps doubles every time.
 constexpr int round_limit = 6;
 /// Part of a point's correction that is taken.
@@ -43,15 +38,6 @@ constexpr double smallest_damping = 0.125;
 /// Of long runs of sweeps at the very end, and their length in entries of W.
 constexpr int last_rounds = 20;
 constexpr double last_work = 2e7;
-/// After a Newton step that has left more than this part of the merit (a square).
-constexpr int smoothing_sweeps = 8;
-constexpr double good_step = 1e-4;
-/// Halvings of a Newton step.
-constexpr int cut_limit = 8;
-/// Of the residual of a linear system while the points still change their states.
-constexpr double loose_reduction = 1e-3;
-/// Accepted where nothing improves any more.
-constexpr double loosest = 1e-12;
 
 bool has_friction(const ContactSystem& system) {
   return std::any_of(system.points().begin(), system.points().end(), [](const auto& p) { return p.has_friction(); });
@@ -67,17 +53,14 @@ void learn(double& mean, double value) {
   mean = mean > 0.0 ? (1.0 - recent) * mean + recent * value : value;
 }
 
-double squared(double value) {
-  return value * value;
-}
-
 /// Non-smooth Newton after accelerated projected Gauss–Seidel.
 ///
-/// 1. From the last r, a few sweeps: first order, robust; they find the contact and the directions of slip roughly, and
-///    where W is well conditioned they go on to the end.
-/// 2. Newton on the Alart–Curnier equations (AlartCurnierStep), each step cut back until Alart and Curnier's residual
-///    decreases (sum of squares over points); where no part of a step does, a run of whole steps from the best r so
-///    far.
+/// 0. Without friction and with the entries of W: the primal–dual active set. From the reactions of an earlier step,
+///    where the factor kept from it has proved cheaper than sweeps: Newton at once.
+/// 1. From the last r, accelerated sweeps: first order, robust; they find the contact and the directions of slip
+///    roughly, and where W is well conditioned they go on to the end.
+/// 2. Newton on the Alart–Curnier equations (GlobalizedNewton), each step cut back until the merit decreases; where no
+///    part of a step does, a run of whole steps from the best r so far.
 /// 3. Where Newton stalls, more sweeps from the best r so far, then Newton again, twice as many sweeps every time. At
 ///    last the same from r = 0, with sweeps that take a half, a quarter, an eighth of each point's correction, and
 ///    whole ones for as long as they come closer.
@@ -89,8 +72,7 @@ class AutomaticSolver final : public IterativeContactSolver {
  protected:
   [[nodiscard]] bool works_on_candidates() const override { return true; }
   void forget() override {
-    newton_step_.reset();
-    sparse_system_.reset();
+    newton_.reset();
     frictionless_.reset();
     history_ = {};
   }
@@ -100,55 +82,38 @@ class AutomaticSolver final : public IterativeContactSolver {
     memory.push_back(history_.newton);
     memory.push_back(static_cast<double>(frictionless_.base().size()));
     for (const Index row : frictionless_.base()) memory.push_back(static_cast<double>(row));
-    newton_step_.reused().append_memory(memory);
+    newton_.step().reused().append_memory(memory);
   }
   void take_memory(const std::vector<double>& memory) override {
     history_ = {memory.at(0), memory.at(1)};
     const auto base = memory.begin() + 3;
     const auto rest = base + static_cast<std::ptrdiff_t>(memory.at(2));
     frictionless_.take_base(std::vector<Index>(base, rest));
-    newton_step_.take_memory(std::vector<double>(rest, memory.end()));
+    newton_.take_memory(std::vector<double>(rest, memory.end()));
   }
   [[nodiscard]] bool keeps_row(Index problem_row) const override {
-    return frictionless_.keeps_row(problem_row) || newton_step_.reused().keeps_row(problem_row);
+    return frictionless_.keeps_row(problem_row) || newton_.step().reused().keeps_row(problem_row);
   }
 
  private:
-  /// What a part of the iteration works on.
-  struct Work {
-    const ContactSystem& system;
-    const ContactOptions& options;
-    ContactIterate& current;
-    ContactSolution& solution;
-  };
-  [[nodiscard]] static double merit(const ContactSystem& system, const ContactIterate& iterate);
-  void keep_best(const Work& work);
-  [[nodiscard]] static bool is_done(const Work& work, const ContactIterate& iterate);
-  [[nodiscard]] static double sweep_work(const Work& work);
-  [[nodiscard]] static double unknown_count(const Work& work);
-  [[nodiscard]] bool prefers_newton(const Work& work) const;
-  [[nodiscard]] static double newton_cost(const Work& work, bool settled);
-  bool accelerated(const Work& work);
-  bool sweep(const Work& work, int sweeps, double damping);
-  bool newton(const Work& work, bool line_search);
-  [[nodiscard]] double next_reduction(const Work& work) const;
-  bool search_line(const Work& work);
-  bool full_step(const Work& work, double reduction);
-  std::string iterate_with_products(const Work& work);
-  void smooth(const Work& work);
-  bool alternate(const Work& work, int sweeps, double damping);
-  bool sweep_on(const Work& work);
+  [[nodiscard]] static double sweep_work(const ContactWork& work);
+  [[nodiscard]] static double unknown_count(const ContactWork& work);
+  [[nodiscard]] bool prefers_newton(const ContactWork& work) const;
+  [[nodiscard]] static double newton_cost(const ContactWork& work, bool settled);
+  bool accelerated(const ContactWork& work);
+  bool sweep(const ContactWork& work, int sweeps, double damping);
+  std::string iterate_with_products(const ContactWork& work);
+  bool alternate(const ContactWork& work, int sweeps, double damping);
+  bool sweep_on(const ContactWork& work);
 
   GaussSeidel sweeps_;
   AcceleratedGaussSeidel accelerated_;
-  AlartCurnierStep newton_step_;
-  NewtonSystem sparse_system_;  ///< where W is sparse
-  std::vector<PointEquation> equations_;
+  GlobalizedNewton newton_;
   std::unique_ptr<ContactSolver> products_;  ///< where there are no entries of W
   PrimalDualActiveSet frictionless_;
-  ContactIterate trial_, cut_, best_, fallback_;
+  BestIterate best_;
+  ContactIterate fallback_;
   Vector begin_;
-  double current_merit_ = 0.0, best_merit_ = 0.0;
   bool stalled_ = false;
   /// What problems have cost, on the mean of recent ones: zero, not known yet.
   struct History {
@@ -156,40 +121,15 @@ class AutomaticSolver final : public IterativeContactSolver {
   } history_;
 };
 
-double AutomaticSolver::merit(const ContactSystem& system, const ContactIterate& iterate) {
-  double sum = 0.0;
-  for (const ContactPoint& point : system.points()) {
-    sum += squared(alart_curnier_residual(point, 1.0 / point.diagonal, padded(point, iterate.reaction),
-                                          padded(point, iterate.motion)));
-  }
-  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
-}
-
-void AutomaticSolver::keep_best(const Work& work) {
-  current_merit_ = merit(work.system, work.current);
-  if (!(current_merit_ < best_merit_)) return;
-  best_ = work.current;
-  best_merit_ = current_merit_;
-}
-
-/// Where rounding is asked for, sweeps arrive as soon as the rounding of q covers what is left. Newton leaves much
-/// less, and a scheme that asks whether a gap is zero to rounding sees the difference: klr-conserving would open the
-/// point.
-bool AutomaticSolver::is_done(const Work& work, const ContactIterate& iterate) {
-  const ContactSystem::Measure measure = work.system.measure(iterate);
-  if (work.options.tolerance > 0.0) return measure.beyond_floor <= work.options.tolerance * work.system.data();
-  return measure.beyond_floor == 0.0 && measure.is_exact;
-}
-
 /// Entries of matrices that a sweep reads, and what its points cost besides.
-double AutomaticSolver::sweep_work(const Work& work) {
+double AutomaticSolver::sweep_work(const ContactWork& work) {
   double closed_rows = 0.0;
   for (const ContactPoint& point : work.system.points())
     closed_rows += work.current.reaction[point.first] > 0.0 ? static_cast<double>(point.size) : 0.0;
   return std::max(closed_rows, 1.0) * (static_cast<double>(work.system.rows()) + point_work);
 }
 
-double AutomaticSolver::unknown_count(const Work& work) {
+double AutomaticSolver::unknown_count(const ContactWork& work) {
   double unknowns = 0.0;
   for (const ContactPoint& point : work.system.points()) {
     const PaddedVector r = padded(point, work.current.reaction);
@@ -201,7 +141,7 @@ double AutomaticSolver::unknown_count(const Work& work) {
 }
 
 /// What Newton would cost from here, in sweeps.
-double AutomaticSolver::newton_cost(const Work& work, bool settled) {
+double AutomaticSolver::newton_cost(const ContactWork& work, bool settled) {
   const double unknowns = unknown_count(work);
   const double product = 4.0 * unknowns * static_cast<double>(work.system.rows());
   return (settled ? 1.5 : 6.0) * (AlartCurnierStep::factor_work(unknowns) + product) / sweep_work(work);
@@ -209,7 +149,7 @@ double AutomaticSolver::newton_cost(const Work& work, bool settled) {
 
 /// From the last reactions: Newton with the factor of an earlier step, if that has cost less than sweeps (or promises
 /// to).
-bool AutomaticSolver::prefers_newton(const Work& work) const {
+bool AutomaticSolver::prefers_newton(const ContactWork& work) const {
   if (work.system.dense() == nullptr || !(history_.sweeps > 0.0)) return false;
   double expected = history_.newton;
   if (!(expected > 0.0)) {
@@ -222,7 +162,7 @@ bool AutomaticSolver::prefers_newton(const Work& work) const {
 }
 
 /// Accelerated sweeps for as long as they promise to arrive sooner than Newton would.
-bool AutomaticSolver::accelerated(const Work& work) {
+bool AutomaticSolver::accelerated(const ContactWork& work) {
   const ContactSystem& system = work.system;
   const double target = std::max(work.options.tolerance, 1e-14) * system.data();
   accelerated_.start(system);
@@ -250,7 +190,7 @@ bool AutomaticSolver::accelerated(const Work& work) {
       system.evaluate(work.current);
       accelerated_.correct(work.current.motion);
       exact_residual = residual;
-      if (arrived && is_done(work, work.current)) return true;
+      if (arrived && work.is_done(work.current)) return true;
       if (arrived && ++verdicts == verdict_limit) break;
     }
     if (k == 1) second = residual;
@@ -265,12 +205,12 @@ bool AutomaticSolver::accelerated(const Work& work) {
     past = best;
   }
   system.evaluate(work.current);
-  keep_best(work);
-  return is_done(work, work.current);
+  best_.keep(work);
+  return work.is_done(work.current);
 }
 
 /// True: solved. Ends early when two sweeps change no state, where Newton is to follow.
-bool AutomaticSolver::sweep(const Work& work, int sweeps, double damping) {
+bool AutomaticSolver::sweep(const ContactWork& work, int sweeps, double damping) {
   sweeps_.restart();
   const bool long_run = sweeps > cold_sweeps;
   int unchanged = 0;
@@ -280,116 +220,30 @@ bool AutomaticSolver::sweep(const Work& work, int sweeps, double damping) {
     unchanged = changed || long_run ? 0 : unchanged + 1;
     if (!long_run || k % 16 != 0) continue;
     work.system.evaluate(work.current);
-    if (is_done(work, work.current)) return true;
+    if (work.is_done(work.current)) return true;
   }
   work.system.evaluate(work.current);
-  keep_best(work);
-  return is_done(work, work.current);
-}
-
-/// From `current` towards the full step `trial_`: the whole, half, quarter, … of it with a smaller merit becomes
-/// `current`.
-bool AutomaticSolver::search_line(const Work& work) {
-  double length = 1.0;
-  for (int k = 0; k <= cut_limit; ++k, length *= 0.5) {
-    if (k > 0) {
-      cut_.reaction = work.current.reaction + length * (trial_.reaction - work.current.reaction);
-      cut_.motion = work.current.motion + length * (trial_.motion - work.current.motion);
-      cut_.size = work.current.size + length * (trial_.size - work.current.size);
-    }
-    ContactIterate& candidate = k == 0 ? trial_ : cut_;
-    if (merit(work.system, candidate) < (1.0 - 1e-4 * length) * current_merit_) {
-      std::swap(work.current, candidate);
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Of the residual of the next linear system: while states change the step need not be exact.
-double AutomaticSolver::next_reduction(const Work& work) const {
-  if (!newton_step_.has_settled()) return loose_reduction;
-  const double wanted = 0.1 * work.options.tolerance * work.system.data() / work.system.residual(work.current);
-  return std::clamp(wanted, 1e-13, loose_reduction);
-}
-
-/// The whole Newton step, in `trial_`.
-bool AutomaticSolver::full_step(const Work& work, double reduction) {
-  const ContactSystem& system = work.system;
-  if (system.dense() != nullptr) {
-    if (!newton_step_.step(system, work.current, trial_.reaction, reduction)) return false;
-    if (newton_step_.has_factored()) ++work.solution.factorizations;
-    system.evaluate(trial_);
-    if (newton_step_.refine(trial_, trial_.reaction)) system.evaluate(trial_);
-    return true;
-  }
-  equations_.clear();
-  for (const ContactPoint& point : system.points()) {
-    equations_.push_back(projection_equation(point, padded(point, work.current.reaction),
-                                             padded(point, work.current.motion), DiscRadius::of_trial, true));
-  }
-  ++work.solution.factorizations;
-  if (!sparse_system_.solve(system, equations_, trial_.reaction)) return false;
-  trial_.reaction += work.current.reaction;
-  system.evaluate(trial_);
-  return true;
+  best_.keep(work);
+  return work.is_done(work.current);
 }
 
 /// W by its product alone: a first-order method that needs no more.
-std::string AutomaticSolver::iterate_with_products(const Work& work) {
+std::string AutomaticSolver::iterate_with_products(const ContactWork& work) {
   if (products_ == nullptr) products_ = make_contact_solver("accelerated-gradient");
   return dynamic_cast<IterativeContactSolver&>(*products_)
       .iterate(work.system, work.options, work.current, work.solution);
 }
 
-/// Whole steps leave errors of short wave length at points that changed their state, which sweeps remove: replaces the
-/// step by what a few sweeps make of it where that is better.
-void AutomaticSolver::smooth(const Work& work) {
-  cut_ = trial_;
-  for (int k = 0; k < smoothing_sweeps; ++k) sweeps_.sweep(work.system, 1.0, cut_);
-  if (merit(work.system, cut_) < merit(work.system, trial_)) std::swap(trial_, cut_);
-}
-
-/// Without the line search an active set may pass through a large residual: where conditions depend on one another, two
-/// points have to be pressed against each other until one of them slips.
-bool AutomaticSolver::newton(const Work& work, bool line_search) {
-  const ContactSystem& system = work.system;
-  current_merit_ = merit(system, work.current);
-  double reduction = next_reduction(work);
-  int inexact = 0;
-  for (int k = 0; k < newton_limit; ++k) {
-    ++work.solution.newton_steps;
-    if (!full_step(work, reduction)) return false;
-    reduction = next_reduction(work);
-    note(system, work.options, "newton", system.residual(trial_), work.solution);
-    if (system.is_solved(trial_, work.options.tolerance)) {
-      std::swap(work.current, trial_);
-      if (is_done(work, work.current) || ++inexact == inexact_limit) return true;
-      current_merit_ = merit(system, work.current);
-      continue;
-    }
-    if (line_search && merit(system, trial_) > good_step * current_merit_) smooth(work);
-    if (!line_search) {
-      std::swap(work.current, trial_);
-    } else if (!search_line(work)) {
-      return false;
-    }
-    keep_best(work);
-  }
-  return false;
-}
-
 /// Sweeps and Newton in turn, from `current`.
-bool AutomaticSolver::alternate(const Work& work, int sweeps, double damping) {
-  best_ = work.current;
-  best_merit_ = merit(work.system, best_);
+bool AutomaticSolver::alternate(const ContactWork& work, int sweeps, double damping) {
+  best_.restart(work);
   for (int round = 1; round <= round_limit; ++round) {
     if (sweeps > 0 && sweep(work, sweeps, damping)) return true;
-    if (newton(work, true)) return true;
-    work.current = best_;
-    if (newton(work, false)) return true;
-    work.current = best_;
-    if (work.options.tolerance == 0.0 && work.system.is_solved(best_, loosest)) return true;
+    if (newton_.run(work, true, best_)) return true;
+    work.current = best_.iterate;
+    if (newton_.run(work, false, best_)) return true;
+    work.current = best_.iterate;
+    if (work.options.tolerance == 0.0 && work.system.is_solved(best_.iterate, loosest_residual)) return true;
     sweeps = cold_sweeps << round;
   }
   return false;
@@ -397,24 +251,24 @@ bool AutomaticSolver::alternate(const Work& work, int sweeps, double damping) {
 
 std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactOptions& options,
                                      ContactIterate& current, ContactSolution& solution) {
-  const Work work{system, options, current, solution};
+  const ContactWork work{system, options, current, solution};
   // What an earlier problem leaves behind must not decide bits of this one.
   sweeps_.restart();
-  newton_step_.start();
+  newton_.start();
   if (!system.has_entries()) return iterate_with_products(work);
   const bool cold = current.reaction.isZero(0.0);
-  if (!cold && is_done(work, current)) return "";
+  if (!cold && work.is_done(current)) return "";
   if (system.dense() != nullptr && !has_friction(system) &&
       frictionless_.solve(system, current, solution.iterations, solution.factorizations) == "")
     return "";
-  best_merit_ = std::numeric_limits<double>::infinity();
-  if (!cold) keep_best(work);
+  best_.merit = std::numeric_limits<double>::infinity();
+  if (!cold) best_.keep(work);
   begin_ = current.reaction;
   if (!cold && prefers_newton(work)) {
-    const bool solved = newton(work, true);
-    learn(history_.newton, newton_step_.work());
+    const bool solved = newton_.run(work, true, best_);
+    learn(history_.newton, newton_.step().work());
     if (solved) return "";
-    work.current = best_;
+    work.current = best_.iterate;
   }
   const int before = solution.iterations;
   const bool solved = accelerated(work);
@@ -424,14 +278,13 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
     // Newton knows better from the start than from what a few sweeps have made of it.
     current.reaction = begin_;
     system.evaluate(current);
-    best_ = current;
-    best_merit_ = merit(system, current);
+    best_.restart(work);
   }
-  work.current = best_;
+  work.current = best_.iterate;
   if (alternate(work, 0, 1.0)) return "";
   // Strong friction can make whole corrections circle; parts of them, from zero, then often arrive.
-  fallback_ = best_;
-  const bool finite = std::isfinite(best_merit_);
+  fallback_ = best_.iterate;
+  const bool finite = std::isfinite(best_.merit);
   for (double damping = 0.5; damping >= smallest_damping && finite; damping *= 0.5) {
     current.reaction.setZero();
     system.evaluate(current);
@@ -445,20 +298,19 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
 
 /// The last resort: Gauss–Seidel for as long as it comes closer, with Newton tried now and then. Where conditions
 /// depend on one another it may creep, and still arrive.
-bool AutomaticSolver::sweep_on(const Work& work) {
+bool AutomaticSolver::sweep_on(const ContactWork& work) {
   const double rows = static_cast<double>(work.system.rows());
   const int sweeps = static_cast<int>(std::clamp(last_work / (rows * rows), 100.0, 4000.0));
   for (int k = 0; k < last_rounds; ++k) {
-    const double before = merit(work.system, work.current);
-    best_ = work.current;
-    best_merit_ = before;
+    best_.restart(work);
+    const double before = best_.merit;
     if (sweep(work, sweeps, 1.0)) return true;
-    if (!(current_merit_ < 0.5 * before)) break;
+    if (!(work.merit() < 0.5 * before)) break;
     fallback_ = work.current;
-    if (newton(work, false)) return true;
+    if (newton_.run(work, false, best_)) return true;
     work.current = fallback_;
   }
-  work.current = best_;
+  work.current = best_.iterate;
   return false;
 }
 

@@ -1,5 +1,7 @@
 #include "ricochet/solver/contact/cone_formulation.hpp"
 
+#include <cmath>
+
 namespace ricochet {
 
 std::string refuse_bounds(const ContactSystem& system) {
@@ -21,6 +23,31 @@ bool open_points(const ContactSystem& system, ContactIterate& iterate) {
     changed = true;
   }
   return changed;
+}
+
+void FirstOrderVerdict::start(const ContactSystem& system, double tolerance, const ContactIterate& current) {
+  best_ = current;
+  best_residual_ = system.residual(current);
+  tolerance_ = tolerance;
+}
+
+bool FirstOrderVerdict::is_solved(const ContactSystem& system, int k, double residual, ContactIterate& current) {
+  if (residual > tolerance_ * system.data() && k % interval != 0) return false;
+  system.evaluate(current);
+  if (system.is_solved(current, tolerance_)) return true;
+  if (residual < best_residual_) {
+    best_residual_ = residual;
+    best_ = current;
+  }
+  return false;
+}
+
+bool FirstOrderVerdict::finish(const ContactSystem& system, ContactIterate& current) const {
+  const double residual = system.residual(current);
+  const bool finite = std::isfinite(residual);
+  if (!(finite && residual < best_residual_)) current = best_;
+  system.evaluate(current);
+  return finite;
 }
 
 double weighted_product(const ContactSystem& system, const Vector& x, const Vector& y) {

@@ -26,6 +26,25 @@ namespace ricochet {
 /// leaves at open points. u does not follow. True: some r changed.
 bool open_points(const ContactSystem& system, ContactIterate& iterate);
 
+/// The verdicts of an iteration whose u follows by updates and whose residual need not fall: on a u evaluated afresh,
+/// every sixteenth time and when the residual seems small enough. The best r is kept.
+class FirstOrderVerdict {
+ public:
+  void start(const ContactSystem& system, double tolerance, const ContactIterate& current);
+  /// After iteration k, which left `residual` with the u it follows. True: `current` is a solution, and evaluated.
+  bool is_solved(const ContactSystem& system, int k, double residual, ContactIterate& current);
+  /// `current` becomes the best there was, evaluated. False: the iteration diverged.
+  bool finish(const ContactSystem& system, ContactIterate& current) const;
+  /// Residual of the best r so far.
+  [[nodiscard]] double best() const { return best_residual_; }
+
+ private:
+  static constexpr int interval = 16;
+  ContactIterate best_;
+  double best_residual_ = 0.0;
+  double tolerance_ = 0.0;
+};
+
 /// Σ w_i x_i·y_i.
 [[nodiscard]] double weighted_product(const ContactSystem& system, const Vector& x, const Vector& y);
 

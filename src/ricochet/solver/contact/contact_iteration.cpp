@@ -11,13 +11,10 @@ namespace ricochet {
 
 namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double rounding = 32.0 * epsilon;
 /// Where a solver stops just inside the tolerance, putting r on its law may leave it just outside: once more, closer.
 constexpr int tightenings = 4;
 /// Points that do not penetrate at r = 0 by more than this part of the data are left out at first.
 constexpr double margin = 0.1;
-/// Accepted where nothing improves any more and rounding is what is asked for.
-constexpr double loosest = 1e-12;
 }  // namespace
 
 void IterativeContactSolver::analyse(const ContactProblem& problem) {
@@ -55,7 +52,7 @@ bool IterativeContactSolver::is_open(const ContactProblem& problem) const {
     const Index row = problem.first[static_cast<std::size_t>(i)];
     const double u = problem.offset[row];
     const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
-    if (!(u >= -(known + rounding * std::abs(u)))) return false;
+    if (!(u >= -(known + sum_rounding * std::abs(u)))) return false;
   }
   return true;
 }
@@ -139,7 +136,7 @@ bool IterativeContactSolver::take_in_penetrating(const ContactProblem& problem, 
     const Index row = problem.first[at];
     if (!(solution.motion[row] < 0.0)) continue;
     const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
-    if (solution.motion[row] >= -(known + rounding * std::abs(problem.offset[row]))) continue;
+    if (solution.motion[row] >= -(known + sum_rounding * std::abs(problem.offset[row]))) continue;
     if (system_.residual_of(problem, i, solution.reaction, solution.motion) <= options.tolerance * system_.data())
       continue;
     wanted_[at] = 1;
@@ -182,7 +179,7 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
     solution.reason = "the iteration diverged: W has entries that are not finite, or is not positive semi-definite";
     return;
   }
-  const double accepted = options.tolerance > 0.0 ? options.tolerance : loosest;
+  const double accepted = options.tolerance > 0.0 ? options.tolerance : loosest_residual;
   if (measure_.beyond_floor <= accepted * system_.data()) {
     solution.outcome = ContactOutcome::solved;
     solution.reason.clear();

@@ -24,6 +24,10 @@ class IterativeContactSolver : public ContactSolver {
   virtual std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
                               ContactSolution& solution) = 0;
 
+  /// Counts an iteration, and notes it in the record. `residual`: not yet divided by the data.
+  static void note(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
+                   ContactSolution& solution);
+
  protected:
   /// Why such a problem is not for this solver; empty: it is.
   [[nodiscard]] virtual std::string refuses(const ContactSystem&) const { return {}; }
@@ -39,9 +43,6 @@ class IterativeContactSolver : public ContactSolver {
   /// penetrate, instead of on all points.
   [[nodiscard]] virtual bool works_on_candidates() const { return false; }
 
-  /// Counts an iteration, and notes it in the record. `residual`: not yet divided by the data.
-  static void note(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
-                   ContactSolution& solution);
   /// r on the law: signs and limits hold exactly; where friction is at its limit it is against the slip, to the last
   /// digits where `exactly` is asked for. u does not follow.
   static void put_on_law(const ContactSystem& system, const Vector& motion, bool exactly, Vector& reaction);

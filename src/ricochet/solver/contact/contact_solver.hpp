@@ -54,7 +54,7 @@ struct ContactSolution {
   std::vector<ContactStatus> status;
   ContactOutcome outcome = ContactOutcome::not_converged;
   std::string reason;  ///< why not, when not solved
-  /// The measure, see contact_measure.hpp: largest natural map of a point over that of r = 0.
+  /// The measure, see contact_system.hpp: largest natural map of a point over that of r = 0.
   double residual = 0.0;
   /// What of `residual` may be rounding: a residual below it says nothing more.
   double rounding_floor = 0.0;

@@ -10,9 +10,6 @@ namespace ricochet {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Rounding of a sum, in units of the sum of absolute values.
-constexpr double rounding = 32.0 * epsilon;
 /// Up to this many rows the entries of a product operator are found by products with unit vectors.
 constexpr Index few_rows = 3000;
 /// Up to this many rows a dense matrix is always faster than a sparse one.
@@ -296,7 +293,7 @@ ContactSystem::Floor ContactSystem::floor_of(const ContactPoint& point, const Co
   Floor floor;
   for (Index k = 0; k < point.size; ++k) {
     const Index row = point.first + k;
-    const double of_sum = rounding * iterate.size[row];
+    const double of_sum = sum_rounding * iterate.size[row];
     double& of_row = k == 0 ? floor.normal : floor.tangential;
     of_row = std::max(of_row, offset_rounding_[row] + of_sum);
     floor.of_sums = std::max(floor.of_sums, of_sum);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "ricochet/base/types.hpp"
@@ -9,6 +10,11 @@
 
 /// @file The contact problem as solvers see it: the points that may matter, scaled.
 namespace ricochet {
+
+/// Rounding of a sum, in units of the sum of absolute values.
+inline constexpr double sum_rounding = 32.0 * std::numeric_limits<double>::epsilon();
+/// Residual that is accepted where rounding is asked for and nothing improves any more.
+inline constexpr double loosest_residual = 1e-12;
 
 /// A state of the iteration and what follows from it, all of it scaled.
 struct ContactIterate {

@@ -9,8 +9,6 @@ namespace ricochet {
 namespace {
 
 constexpr int iteration_limit = 50000;
-/// Iterations between verdicts on a u computed afresh.
-constexpr int verdict_interval = 16;
 /// Bounds of ρ |û(r̄) − û(r)|/|r̄ − r|: above the first the step is repeated, shorter; below the other the next is
 /// longer.
 constexpr double longest = 0.9, shortest = 0.3;
@@ -32,8 +30,9 @@ class Extragradient final : public IterativeContactSolver {
   void step(const ContactSystem& system, const ContactIterate& from, const Vector& motion, ContactIterate& to) const;
   [[nodiscard]] double ratio(const ContactSystem& system, const ContactIterate& current) const;
 
-  ContactIterate middle_, best_;  ///< r̄, and the best r so far
-  double step_ = 1.0;             ///< ρ
+  ContactIterate middle_;  ///< r̄
+  FirstOrderVerdict verdict_;
+  double step_ = 1.0;  ///< ρ
 };
 
 void Extragradient::step(const ContactSystem& system, const ContactIterate& from, const Vector& motion,
@@ -76,27 +75,17 @@ std::string Extragradient::iterate(const ContactSystem& system, const ContactOpt
                                    ContactSolution& solution) {
   if (system.is_solved(current, options.tolerance)) return "";
   const int limit = options.iteration_limit > 0 ? options.iteration_limit : iteration_limit;
-  best_ = current;
-  double best = system.residual(current);
+  verdict_.start(system, options.tolerance, current);
   step_ = 1.0;
   for (int k = 1; k <= limit; ++k) {
     advance(system, current);
     const double residual = system.residual(current);
     note(system, options, "extragradient", residual, solution);
     if (!std::isfinite(residual)) break;
-    if (residual > options.tolerance * system.data() && k % verdict_interval != 0) continue;
-    system.evaluate(current);
-    if (system.is_solved(current, options.tolerance)) return "";
-    if (residual < best) {
-      best = residual;
-      best_ = current;
-    }
+    if (verdict_.is_solved(system, k, residual, current)) return "";
   }
-  const bool finite = std::isfinite(system.residual(current));
-  if (!(finite && system.residual(current) < best)) current = best_;
-  system.evaluate(current);
-  return finite ? "the largest number of extragradient steps was not enough"
-                : "the extragradient steps diverged: W is not positive semi-definite";
+  return verdict_.finish(system, current) ? "the largest number of extragradient steps was not enough"
+                                          : "the extragradient steps diverged: W is not positive semi-definite";
 }
 
 }  // namespace

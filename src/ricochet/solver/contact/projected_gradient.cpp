@@ -9,8 +9,6 @@ namespace ricochet {
 namespace {
 
 constexpr int iteration_limit = 50000;
-/// Iterations between verdicts on a u computed afresh.
-constexpr int verdict_interval = 16;
 /// Iterations in which the residual must halve if the correction is to follow every iteration.
 constexpr int patience = 400;
 /// Part of its residual to which a problem with the correction held is solved before the correction follows.
@@ -43,7 +41,8 @@ class AcceleratedGradient final : public IterativeContactSolver {
 
   Vector start_reaction_, start_motion_;  ///< y and W y + q
   Vector step_;                           ///< r⁺ − y
-  ContactIterate next_, best_;
+  ContactIterate next_;
+  FirstOrderVerdict verdict_;
   Vector held_;  ///< s per point, while it is held
   bool holds_ = false;
   double target_ = 0.0;      ///< for the residual of the problem with s held
@@ -119,13 +118,12 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
                                          ContactIterate& current, ContactSolution& solution) {
   if (system.is_solved(current, options.tolerance)) return "";
   const int limit = options.iteration_limit > 0 ? options.iteration_limit : iteration_limit;
-  best_ = current;
-  double best = system.residual(current);
+  verdict_.start(system, options.tolerance, current);
   start_reaction_ = current.reaction;
   start_motion_ = current.motion;
   eigenvalue_ = theta_ = 1.0;
   holds_ = false;
-  double compared = best;
+  double compared = verdict_.best();
   int next_comparison = patience;
   for (int k = 1; k <= limit; ++k) {
     advance(system, current);
@@ -136,23 +134,14 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
     if (!std::isfinite(residual)) break;
     if (holds_ && is_held_problem_solved(system, current)) hold(system, current, residual);
     if (!holds_ && k == next_comparison) {
-      if (!(best < 0.5 * compared)) hold(system, current, residual);
-      compared = best;
+      if (!(verdict_.best() < 0.5 * compared)) hold(system, current, residual);
+      compared = verdict_.best();
       next_comparison += patience;
     }
-    if (residual > options.tolerance * system.data() && k % verdict_interval != 0) continue;
-    system.evaluate(current);
-    if (system.is_solved(current, options.tolerance)) return "";
-    if (residual < best) {
-      best = residual;
-      best_ = current;
-    }
+    if (verdict_.is_solved(system, k, residual, current)) return "";
   }
-  const bool finite = std::isfinite(system.residual(current));
-  if (!(finite && system.residual(current) < best)) current = best_;
-  system.evaluate(current);
-  return finite ? "the largest number of gradient steps was not enough"
-                : "the gradient steps diverged: W is not positive semi-definite";
+  return verdict_.finish(system, current) ? "the largest number of gradient steps was not enough"
+                                          : "the gradient steps diverged: W is not positive semi-definite";
 }
 
 }  // namespace
