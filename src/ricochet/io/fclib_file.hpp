@@ -17,6 +17,7 @@
 ///   /fclib_local/vectors/q, mu, s          s with V and R
 ///   /fclib_local/info/title, description, math_info   texts, all optional
 ///   /fclib_local/info/points               ours: the numbers of the points where the problem comes from
+///   /fclib_local/info/q_rounding           ours: per row, size of the rounding error of q
 ///   /solution/u, r, l                      l with V and R
 ///   /guesses/number_of_guesses, 1/u, 1/r, 1/l, 2/…
 namespace ricochet {
@@ -43,6 +44,7 @@ struct FclibProblem {
   Vector q, mu, s;      ///< per row, per point, per constraint
   std::string title, description, math_info;
   std::vector<Index> points;  ///< numbers where the problem comes from; empty: not known
+  Vector q_rounding;          ///< per row, size of the rounding error of q; empty: not known
   std::optional<FclibSolution> solution;
   std::vector<FclibSolution> guesses;
 

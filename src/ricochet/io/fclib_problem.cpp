@@ -166,6 +166,7 @@ FclibReduction reduce(const FclibProblem& problem) {
                   fmt::format("{}: /fclib_local/R: eliminating the equality constraints overflows", problem.path));
   }
   result.problem = ContactProblem(problem.dimension, make_operator(std::move(w)), std::move(q), problem.mu);
+  result.problem.offset_rounding = problem.q_rounding;
   return result;
 }
 
@@ -203,6 +204,7 @@ FclibProblem make_fclib(const ContactProblem& problem, Index dimension, const Co
   const Index rows = result.w.rows();
   result.v.resize(rows, 0);
   result.q = select_rows(problem.offset, selection);
+  if (problem.offset_rounding.size() > 0) result.q_rounding = select_rows(problem.offset_rounding, selection);
   result.mu.setZero(rows / dimension);
   Index padded = 0;
   for (Index i = 0; i < result.mu.size(); ++i) {

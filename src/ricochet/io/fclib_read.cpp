@@ -185,10 +185,18 @@ void read_info(const Hdf5Reader& file, FclibProblem& problem) {
   read("title", problem.title);
   read("description", problem.description);
   read("math_info", problem.math_info);
-  const std::string points = "/fclib_local/info/points";
-  if (!file.has_dataset(points)) return;
-  const Integers numbers = file.integers(points, problem.point_count());
-  problem.points.assign(numbers.begin(), numbers.end());
+  const std::string points = "/fclib_local/info/points", rounding = "/fclib_local/info/q_rounding";
+  if (file.has_dataset(points)) {
+    const Integers numbers = file.integers(points, problem.point_count());
+    problem.points.assign(numbers.begin(), numbers.end());
+  }
+  if (!file.has_dataset(rounding)) return;
+  problem.q_rounding = file.reals(rounding, problem.w.rows());
+  for (Index row = 0; row < problem.q_rounding.size(); ++row) {
+    if (!(problem.q_rounding[row] >= 0.0))
+      file.fail(rounding, fmt::format("entry {} is {}: the size of an error cannot be negative", row,
+                                      problem.q_rounding[row]));
+  }
 }
 
 FclibSolution read_solution(const Hdf5Reader& file, const std::string& group, const FclibProblem& problem) {

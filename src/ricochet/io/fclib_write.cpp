@@ -60,11 +60,12 @@ void write_solution(Hdf5Writer& file, const std::string& group, const FclibSolut
 
 void write_info(Hdf5Writer& file, const FclibProblem& problem) {
   const bool has_text = !(problem.title.empty() && problem.description.empty() && problem.math_info.empty());
-  if (!has_text && problem.points.empty()) return;
+  if (!has_text && problem.points.empty() && problem.q_rounding.size() == 0) return;
   file.group("/fclib_local/info");
   if (!problem.title.empty()) file.text("/fclib_local/info/title", problem.title);
   if (!problem.description.empty()) file.text("/fclib_local/info/description", problem.description);
   if (!problem.math_info.empty()) file.text("/fclib_local/info/math_info", problem.math_info);
+  if (problem.q_rounding.size() > 0) write_vector(file, "/fclib_local/info/q_rounding", problem.q_rounding);
   if (problem.points.empty()) return;
   const std::vector<int> points(problem.points.begin(), problem.points.end());
   file.integers("/fclib_local/info/points", points.data(), static_cast<Index>(points.size()));

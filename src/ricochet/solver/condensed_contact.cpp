@@ -139,8 +139,8 @@ void CondensedContact::solve_contact() {
   const Timer timer;
   solver_->solve(contact_, {}, contact_solution_);
   solver_seconds_ += timer.seconds();
-  if (!contact_solution_.solved()) throw_not_solved();
   if (observer_) observer_(contact_, contact_solution_);
+  if (!contact_solution_.solved()) throw_not_solved();
 }
 
 void CondensedContact::throw_not_solved() const {

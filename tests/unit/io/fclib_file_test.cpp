@@ -142,6 +142,7 @@ TEST(FclibFile, OnlyEligiblePointsAndTangentsForAll) {
   problem.friction_coefficient.resize(4);
   problem.friction_coefficient << 0.0, 0.3, 0.4, 0.0;
   problem.eligible = {1, 0, 1, 1};
+  problem.offset_rounding = uniform(8, random).cwiseAbs();
   ContactSolution solution;
   solution.reaction = uniform(8, random);
   solution.motion = uniform(8, random);
@@ -154,6 +155,7 @@ TEST(FclibFile, OnlyEligiblePointsAndTangentsForAll) {
   const Matrix found(made.w);
   for (Index i = 0; i < 9; ++i) {
     EXPECT_EQ(made.q[i], old_row[i] >= 0 ? problem.offset[old_row[i]] : 0.0);
+    EXPECT_EQ(made.q_rounding[i], old_row[i] >= 0 ? problem.offset_rounding[old_row[i]] : 0.0);
     EXPECT_EQ(made.solution->reaction[i], old_row[i] >= 0 ? solution.reaction[old_row[i]] : 0.0);
     EXPECT_EQ(made.solution->motion[i], old_row[i] >= 0 ? solution.motion[old_row[i]] : 0.0);
     for (Index j = 0; j < 9; ++j) {
@@ -162,6 +164,7 @@ TEST(FclibFile, OnlyEligiblePointsAndTangentsForAll) {
       EXPECT_EQ(found(i, j), expected) << i << ' ' << j;
     }
   }
+  EXPECT_EQ(reduce(made).problem.offset_rounding, made.q_rounding);
   // The same from a sparse W, and from its product alone.
   for (const auto& other :
        {make_sparse_operator(w.sparseView()), make_product_operator(8, [&](const Vector&x, Vector&y) { y = w * x; })}) {

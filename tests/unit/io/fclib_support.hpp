@@ -82,6 +82,7 @@ inline FclibProblem example(Index dimension, Index points, Index constraints) {
   result.description = "a description\nof two lines, with an ü";
   result.math_info = "positive definite";
   for (Index i = 0; i < points; ++i) result.points.push_back(3 * i + 1);
+  result.q_rounding = 1e-16 * uniform(rows, random).cwiseAbs();
   result.solution = FclibSolution{uniform(rows, random), uniform(rows, random), uniform(constraints, random)};
   result.guesses.push_back({uniform(rows, random), uniform(rows, random), uniform(constraints, random)});
   result.guesses.push_back({uniform(rows, random), uniform(rows, random), uniform(constraints, random)});
@@ -109,7 +110,7 @@ inline bool same(const FclibProblem& a, const FclibProblem& b) {
   if (a.solution && !same(*a.solution, *b.solution)) return false;
   return a.dimension == b.dimension && same(a.w, b.w) && same(a.v, b.v) && same(a.r, b.r) && same(a.q, b.q) &&
          same(a.mu, b.mu) && same(a.s, b.s) && a.title == b.title && a.description == b.description &&
-         a.math_info == b.math_info && a.points == b.points;
+         a.math_info == b.math_info && a.points == b.points && same(a.q_rounding, b.q_rounding);
 }
 
 /// The data sets of a file by name. Groups are made as they are needed.

@@ -190,6 +190,13 @@ const Malformed cases[] = {
        r.integers["/fclib_local/info/points"] = {1, 2};
      },
      "info/points: has 2 entries where 1"},
+    {"short rounding", [](Raw& r) { r.reals["/fclib_local/info/q_rounding"] = {1e-16}; },
+     "info/q_rounding: has 1 entries where 2"},
+    {"negative rounding",
+     [](Raw& r) {
+       r.reals["/fclib_local/info/q_rounding"] = {1e-16, -1e-16};
+     },
+     "info/q_rounding: entry 1 is -1e-16: the size of an error cannot be negative"},
     {"no u",
      [](Raw& r) {
        r.reals["/solution/r"] = {1.0, 0.0};

@@ -87,7 +87,7 @@ class ContactSolver {
   virtual void set_warm_start(const Vector& start) = 0;
 };
 
-/// Is shown contact problems and their solutions.
+/// Is shown contact problems and what became of them: also those that were not solved.
 using ContactObserver = std::function<void(const ContactProblem&, const ContactSolution&)>;
 
 struct ContactSolverDescription {
