@@ -21,8 +21,10 @@ constexpr double rough_digits = 1e-5;
 constexpr int verdict_limit = 6;
 /// Sweeps over which the progress of the accelerated ones is judged.
 constexpr std::size_t outlook = 5;
-/// A fourth sweep with more than this part of the second one's residual: W is ill conditioned.
+/// A fourth sweep with more than this part of the second one's residual: W is ill conditioned, and Newton takes over at
+/// once if it costs no more than so many sweeps.
 constexpr double stall = 0.4;
+constexpr double affordable_newton = 1000.0;
 /// What a point of a sweep costs in entries of W.
 constexpr double point_work = 100.0;
 /// Part of a factorization that a step in time is charged before it is known how long a factor lasts.
@@ -179,11 +181,11 @@ bool AutomaticSolver::accelerated(const ContactWork& work) {
     if (!std::isfinite(change)) break;
     // The change of a sweep is a good guess of the residual, and costs nothing.
     double residual = change * residual_per_change;
-    if (residual <= 2.0 * target || work.options.record) {
+    if (residual <= 2.0 * target) {
       residual = system.residual(work.current);
       residual_per_change = residual / change;
     }
-    note(system, work.options, "sweep", residual, work.solution);
+    note(system, work.options, "sweep", work.options.record ? system.residual(work.current) : residual, work.solution);
     best = std::min(best, residual);
     const bool arrived = residual <= target;
     if (arrived || residual < rough_digits * exact_residual) {
@@ -194,7 +196,7 @@ bool AutomaticSolver::accelerated(const ContactWork& work) {
       if (arrived && ++verdicts == verdict_limit) break;
     }
     if (k == 1) second = residual;
-    stalled_ = k == 3 && residual > stall * second;
+    stalled_ = k == 3 && residual > stall * second && newton_cost(work, false) < affordable_newton;
     if (stalled_) break;
     double& past = earlier[static_cast<std::size_t>(k) % outlook];
     if (k >= static_cast<int>(outlook)) {

@@ -167,6 +167,17 @@ TEST_P(ContactSolvers, StartFromTheLastSolution) {
   EXPECT_EQ(resumed.solve(problem, {.tolerance = 1e-6}).reaction, expected.reaction);
 }
 
+TEST_P(ContactSolvers, RecordWithoutChangingAnything) {
+  for (const double strength : {0.2, 1.0}) {
+    const FrictionProblem problem = random_problem(130, dimension(), 0.4, 5, strength);
+    const ContactSolution plain = solve(problem, {.tolerance = 1e-9});
+    const ContactSolution recorded = solve(problem, {.tolerance = 1e-9, .record = true});
+    EXPECT_EQ(recorded.reaction, plain.reaction);
+    EXPECT_EQ(recorded.iterations, plain.iterations);
+    EXPECT_EQ(recorded.record.size(), static_cast<std::size_t>(plain.iterations));
+  }
+}
+
 TEST_P(ContactSolvers, SayWhatTheyDidNotSolve) {
   const FrictionProblem problem = random_problem(60, dimension(), 1.0, 3, 4.0);
   const ContactSolution solution = solve(problem, {.tolerance = 1e-10, .iteration_limit = 1, .record = true});
