@@ -102,7 +102,7 @@ class Contact(TestCase):
             last = name.split("/")[-1]
             if last in ("title", "description", "math_info"):
                 self.assertEqual((kind.kind, shape), ("S", ()), name)
-            elif last in ("x", "q", "mu", "s", "u", "r", "l"):
+            elif last in ("x", "q", "mu", "s", "u", "r", "l", "q_rounding"):
                 self.assertEqual((kind, len(shape)), (numpy.dtype("<f8"), 1), name)
             else:
                 self.assertEqual((kind, len(shape)), (numpy.dtype("<i4"), 1), name)

@@ -181,10 +181,11 @@ void ResultsWriter::Implementation::write_side_frame(const State& state, const s
   text += attribute("gap", "Scalar", real, fmt::format("{}", count));
   text += attribute("contact_status", "Scalar", whole, fmt::format("{}", count));
   text += "      </Grid>\n";
-  // The file is complete after every frame: the tail is overwritten by the next one.
+  text += side_tail;
+  // The file is complete after every frame: the tail is overwritten by the next one, in one piece with what follows.
   const auto tail_at = static_cast<std::streamoff>(side.tellp()) - static_cast<std::streamoff>(std::strlen(side_tail));
   side.seekp(tail_at);
-  side << text << side_tail << std::flush;
+  side << text << std::flush;
   if (!side) throw Error(ErrorKind::file_access, fmt::format("{}: cannot write: {}", side_path, std::strerror(errno)));
 }
 

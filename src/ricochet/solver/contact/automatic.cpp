@@ -3,8 +3,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "ricochet/solver/contact/active_set.hpp"
+#include "ricochet/solver/contact/cone_formulation.hpp"
 #include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/gauss_seidel.hpp"
 #include "ricochet/solver/contact/globalized_newton.hpp"
@@ -37,6 +39,9 @@ constexpr int cold_sweeps = 20;
 constexpr int round_limit = 6;
 /// Part of a point's correction that is taken.
 constexpr double smallest_damping = 0.125;
+/// Work of other solvers, tried before the very end, in entries of W or of a factor.
+constexpr double others_work = 4e9;
+constexpr int fewest_of_others = 5;
 /// Of long runs of sweeps at the very end, and their length in entries of W.
 constexpr int last_rounds = 20;
 constexpr double last_work = 2e7;
@@ -63,9 +68,9 @@ void learn(double& mean, double value) {
 ///    roughly, and where W is well conditioned they go on to the end.
 /// 2. Newton on the Alart–Curnier equations (GlobalizedNewton), each step cut back until the merit decreases; where no
 ///    part of a step does, a run of whole steps from the best r so far.
-/// 3. Where Newton stalls, more sweeps from the best r so far, then Newton again, twice as many sweeps every time. At
-///    last the same from r = 0, with sweeps that take a half, a quarter, an eighth of each point's correction, and
-///    whole ones for as long as they come closer.
+/// 3. Where Newton stalls, more sweeps from the best r so far, then Newton again, twice as many sweeps every time; the
+///    same from r = 0, with sweeps that take a half, a quarter, an eighth of each point's correction.
+/// 4. The other solvers. At last whole sweeps for as long as they come closer.
 class AutomaticSolver final : public IterativeContactSolver {
  public:
   std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
@@ -75,6 +80,7 @@ class AutomaticSolver final : public IterativeContactSolver {
   [[nodiscard]] bool works_on_candidates() const override { return true; }
   void forget() override {
     newton_.reset();
+    others_.clear();
     frictionless_.reset();
     history_ = {};
   }
@@ -106,12 +112,14 @@ class AutomaticSolver final : public IterativeContactSolver {
   bool sweep(const ContactWork& work, int sweeps, double damping);
   std::string iterate_with_products(const ContactWork& work);
   bool alternate(const ContactWork& work, int sweeps, double damping);
+  bool ask_others(const ContactWork& work);
   bool sweep_on(const ContactWork& work);
 
   GaussSeidel sweeps_;
   AcceleratedGaussSeidel accelerated_;
   GlobalizedNewton newton_;
-  std::unique_ptr<ContactSolver> products_;  ///< where there are no entries of W
+  std::unique_ptr<ContactSolver> products_;             ///< where there are no entries of W
+  std::vector<std::unique_ptr<ContactSolver>> others_;  ///< where all else has failed
   PrimalDualActiveSet frictionless_;
   BestIterate best_;
   ContactIterate fallback_;
@@ -294,8 +302,41 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   }
   current = fallback_;
   if (!finite) return "the iteration diverged: the contact operator is not positive definite";
+  if (ask_others(work)) return "";
   if (sweep_on(work)) return "";
   return "the conditions of contact and friction are still not met after the largest number of iterations";
+}
+
+/// Other solvers from r = 0, then from the best r there is. They fail where this one does not and the other way round:
+/// strong friction in wedges whose surfaces hardly give (hard_problems_test.cpp) is where they are needed.
+bool AutomaticSolver::ask_others(const ContactWork& work) {
+  if (!refuse_bounds(work.system).empty()) return false;
+  if (others_.empty()) {
+    for (const char* name : {"newton-fischer-burmeister", "accelerated-gradient", "newton-jean-moreau", "admm"})
+      others_.push_back(make_contact_solver(name));
+  }
+  const double rows = static_cast<double>(work.system.rows());
+  double best = work.system.measure(fallback_).beyond_floor;
+  for (const bool cold : {true, false}) {
+    for (std::size_t k = 0; k < others_.size(); ++k) {
+      const double iteration_work =
+          k % 2 == 0 ? rows * rows * rows : rows * rows;  // Newton's methods are the even ones
+      ContactOptions options = work.options;
+      options.iteration_limit = static_cast<int>(std::min(others_work / iteration_work, 20000.0));
+      if (options.iteration_limit < fewest_of_others) continue;
+      work.current.reaction = cold ? Vector(Vector::Zero(work.system.rows())) : fallback_.reaction;
+      work.system.evaluate(work.current);
+      auto& solver = dynamic_cast<IterativeContactSolver&>(*others_[k]);
+      if (solver.iterate(work.system, options, work.current, work.solution).empty()) return true;
+      if (work.options.tolerance == 0.0 && work.system.is_solved(work.current, loosest_residual)) return true;
+      const double reached = work.system.measure(work.current).beyond_floor;
+      if (!(reached < best)) continue;
+      best = reached;
+      fallback_ = work.current;
+    }
+  }
+  work.current = fallback_;
+  return false;
 }
 
 /// The last resort: Gauss–Seidel for as long as it comes closer, with Newton tried now and then. Where conditions

@@ -10,6 +10,9 @@ namespace ricochet {
 
 namespace {
 
+/// Rounding of sums that is more than this part of q excuses nothing: an iteration on a problem without a solution
+/// could increase its reactions until rounding hides what it is short of.
+constexpr double largest_excuse = 0.01;
 /// Up to this many rows the entries of a product operator are found by products with unit vectors.
 constexpr Index few_rows = 3000;
 /// Up to this many rows a dense matrix is always faster than a sparse one.
@@ -60,9 +63,11 @@ void ContactSystem::analyse(const ContactProblem& problem) {
     }
   }
   double largest = 0.0;
+  blocks_.clear();
   for (Index i = 0; i < points; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const PointMatrix block = operator_->block(problem.first[at], problem.first[at + 1] - problem.first[at]);
+    blocks_.push_back(block);
     normal_[at] = block(0, 0);
     mean_[at] = block.trace() / static_cast<double>(block.rows());
     largest_of[at] = block.diagonal().maxCoeff();
@@ -165,7 +170,8 @@ void ContactSystem::gather(const ContactProblem& problem, const std::vector<Inde
   point_operators_.clear();
   for (const ContactPoint& point : points_) {
     const double scale = row_scale_[static_cast<std::size_t>(point.first)];
-    const PointMatrix block = operator_scale_ * scale * scale * operator_->block(problem_row(point.first), point.size);
+    const PointMatrix& whole = blocks_[static_cast<std::size_t>(point.point)];
+    const PointMatrix block = operator_scale_ * scale * scale * whole.topLeftCorner(point.size, point.size);
     point_operators_.push_back(make_point_operator(block));
   }
 }
@@ -272,8 +278,16 @@ void ContactSystem::evaluate(ContactIterate& iterate) const {
     Vector product;
     multiply(iterate.reaction, product);
     iterate.motion += product;
-    // |W_ij|² ≤ W_ii W_jj, of which the largest is below four.
-    iterate.size.array() += 4.0 * iterate.reaction.lpNorm<1>();
+    // Σ |W r| as far as it is known: the point's own part, and the others' together. The bound Σ_j 4 |r_j| would call
+    // residuals of 1e-8 rounding where there are thousands of points.
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const Index first = points_[k].first;
+      const PaddedVector r = padded(points_[k], iterate.reaction);
+      const PaddedVector own = point_operators_[k].block * r;
+      const PaddedVector own_size = point_operators_[k].block.cwiseAbs() * r.cwiseAbs();
+      for (Index i = 0; i < points_[k].size; ++i)
+        iterate.size[first + i] += own_size[i] + std::abs(product[first + i] - own[i]);
+    }
   }
 }
 
@@ -312,6 +326,7 @@ double floor_of_map(const ContactPoint& point, const ContactSystem::Floor& floor
 
 ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) const {
   Measure result;
+  const double excused = largest_excuse * std::max(data_, offset_.lpNorm<Eigen::Infinity>());
   for (const ContactPoint& point : points_) {
     const double value = residual(point, padded(point, iterate.reaction), padded(point, iterate.motion));
     const Floor of_motion = floor_of(point, iterate);
@@ -321,6 +336,10 @@ ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) con
     result.residual = std::max(result.residual, value);
     result.rounding_floor = std::max(result.rounding_floor, floor);
     if (!(value <= floor)) result.beyond_floor = std::max(result.beyond_floor, value - floor);
+    // Where W has a zero block, r is in no sum.
+    const double of_reaction = sum_rounding * point.diagonal * iterate.reaction[point.first];
+    if (iterate.reaction[point.first] > 0.0 && std::max(of_motion.of_sums, of_reaction) > excused)
+      result.beyond_floor = std::max({result.beyond_floor, value, floor, of_reaction});
   }
   return result;
 }

@@ -20,7 +20,7 @@ inline constexpr double loosest_residual = 1e-12;
 struct ContactIterate {
   Vector reaction;  ///< r
   Vector motion;    ///< u = q + W r
-  Vector size;      ///< |q| + Σ_j |W_ij r_j|, of which u has the rounding
+  Vector size;      ///< |q| + Σ_j |W_ij r_j|, of which u has the rounding; of products, what is known of it
 };
 
 /// Rows and columns are scaled by powers of two, one exponent per point, so that the largest diagonal entry of each
@@ -31,6 +31,8 @@ struct ContactIterate {
 /// the unit in which W_ii is one: |e_i| √w_i with w_i its mean diagonal entry. The residual is the largest of these
 /// over the points, divided by the data: the same for r = 0, which is what the problem asks for (points that stay open
 /// without help do not count). Its rounding floor is what 32 ε (|q| + Σ|W r|) + offset_rounding makes of it.
+/// Where the first of the two is above a hundredth of the largest q, reactions are so large that rounding hides the
+/// law: that is no solution.
 class ContactSystem {
  public:
   /// Takes up W and its scales.
@@ -124,6 +126,7 @@ class ContactSystem {
   std::shared_ptr<const ContactOperator> found_;  ///< a product operator of few rows, by its entries
   std::vector<Index> problem_first_;
   std::vector<double> scale_;          ///< D, per point of the problem
+  std::vector<PointMatrix> blocks_;    ///< W_ii, per point of the problem, as they are given
   std::vector<double> normal_, mean_;  ///< w, per point of the problem, scaled: of the normal, of the block
   double operator_scale_ = 1.0;        ///< e
   double data_scale_ = 1.0;            ///< S
