@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 #include <vector>
 
+#include "processor_timer.hpp"
 #include "ricochet/io/fclib_file.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 
@@ -15,20 +15,6 @@
 namespace {
 
 using namespace ricochet;
-
-/// Seconds of processor time: the solvers are serial, and the machine may be shared.
-class ProcessorTimer {
- public:
-  [[nodiscard]] double seconds() const { return now() - start_; }
-
- private:
-  static double now() {
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-  }
-  double start_ = now();
-};
 
 struct Arguments {
   std::vector<std::string> files;

@@ -30,7 +30,7 @@ def _matrix(group):
     starts, indices, values = (np.asarray(group[name][()]) for name in ("p", "i", "x"))
     dense = np.zeros((rows, columns))
     if kind >= 0:  # triplets
-        np.add.at(dense, (indices[:kind], starts[:kind]), values[:kind])
+        np.add.at(dense, (starts[:kind], indices[:kind]), values[:kind])
         return dense
     line = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
     if kind == -1:  # compressed columns

@@ -114,9 +114,12 @@ def ratio_table(results):
     return "\n".join(lines)
 
 
+GROUPS = ["below 30", "30 to 2000", "above 2000", "not computed"]
+
+
 def group_of(entry):
     condition = entry["condition"]
-    return "not computed" if condition is None else "below 30" if condition < 30 else "30 to 2000" if condition < 2000 else "above 2000"
+    return GROUPS[3 if condition is None else 0 if condition < 30 else 1 if condition < 2000 else 2]
 
 
 def group_table(results, tolerance=1e-8):
@@ -125,7 +128,7 @@ def group_table(results, tolerance=1e-8):
         groups = {}
         for name in results.names(dimension):
             groups.setdefault(group_of(results.problems[name]), []).append(name)
-        for group, names in sorted(groups.items()):
+        for group, names in sorted(groups.items(), key=lambda item: GROUPS.index(item[0])):
             ratios, winners = [], {}
             for name in names:
                 times = {key: results.seconds(name, key, tolerance) for key in results.solvers(dimension) if key[0] == "siconos"}
@@ -163,8 +166,8 @@ def claims_table(results):
 def sequence_table(path):
     if not path.exists():
         return ""
-    lines = ["| 50 steps of | points | Ricochet, ms per step | Siconos' fastest, ms per step | ratio | failures, ours and theirs |",
-             "|---|---|---|---|---|---|"]
+    lines = ["| 50 steps of | points | one product W r, ms | Ricochet, ms per step | Siconos' fastest, ms per step | ratio | failures, ours and theirs |",
+             "|---|---|---|---|---|---|---|"]
     records = json.loads(path.read_text())
     ratios = []
     for name in sorted({record["sequence"] for record in records}):
@@ -174,10 +177,10 @@ def sequence_table(path):
         if best is None:
             continue
         ratios.append(best["median"] / ours["median"])
-        lines.append(f"| {name} | {ours['points']} | {ours['median'] * 1e3:.3g} | {best['median'] * 1e3:.3g} ({best['solver']}) | "
+        lines.append(f"| {name} | {ours['points']} | {ours['product'] * 1e3:.2g} | {ours['median'] * 1e3:.3g} | {best['median'] * 1e3:.3g} ({best['solver']}) | "
                      f"{ratios[-1]:.2f} | {ours['failures']}, {best['failures']} |")
     if ratios:
-        lines.append(f"| median | | | | {statistics.median(ratios):.2f} | |")
+        lines.append(f"| median | | | | | {statistics.median(ratios):.2f} | |")
     return "\n".join(lines)
 
 
@@ -247,6 +250,9 @@ def main():
         "claims": claims_table(results),
         "problems": problem_table(results),
     }
+    hard = arguments.directory / "hard.md"
+    if hard.exists():
+        parts["hard"] = hard.read_text().strip()
     if arguments.print:
         print("\n\n".join(parts.values()))
         return

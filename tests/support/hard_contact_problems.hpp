@@ -15,8 +15,7 @@
 /// solvers.
 namespace ricochet::test {
 
-// ---- rigid bodies
-// ----------------------------------------------------------------------------------------------------
+// Rigid bodies.
 
 /// A point of a rigid body, from the body's centre of mass, and the normal of the obstacle there (into the body).
 struct RigidPoint {
@@ -123,8 +122,7 @@ inline FrictionProblem wedged_body(Index points, Index dimension, double frictio
   return problem;
 }
 
-// ---- other problems
-// --------------------------------------------------------------------------------------------------
+// Other problems.
 
 /// Every point twice, the copies last.
 inline FrictionProblem twice(const FrictionProblem& single) {
@@ -207,8 +205,7 @@ inline ContactProblem lattice_problem(Index side, Index dimension, double fricti
   return {dimension, make_sparse_operator(std::move(w)), q, Vector::Constant(side * side, friction)};
 }
 
-// ---- the judge
-// -------------------------------------------------------------------------------------------------------
+// The judge.
 
 struct Judgement {
   double residual = 0.0;  ///< as ContactSolution states it

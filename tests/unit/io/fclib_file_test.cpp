@@ -17,8 +17,7 @@ void expect_equal(const FclibProblem& a, const FclibProblem& b) {
   EXPECT_TRUE(same(a, b));
 }
 
-// --- round trips
-// ------------------------------------------------------------------------------------------------------
+// Round trips.
 
 TEST(FclibFile, RoundTripInEveryFormAndDimension) {
   const TemporaryFile file;
@@ -88,8 +87,7 @@ TEST(FclibFile, SparseAndDenseOperators) {
   EXPECT_NE(reduce(problem).problem.contact_operator->sparse(), nullptr);
 }
 
-// --- equality constraints
-// ---------------------------------------------------------------------------------------------
+// Equality constraints.
 
 TEST(FclibFile, EqualityConstraintsAreEliminated) {
   // Units of the constraints that differ by many orders of magnitude do not matter.
@@ -129,8 +127,7 @@ TEST(FclibFile, ConstraintsThatDependOnOneAnother) {
   expect_error([&] { (void)reduce(problem); }, "is singular, of rank 2 with 3 constraints");
 }
 
-// --- from the contact problem of a step
-// -------------------------------------------------------------------------------
+// From the contact problem of a step.
 
 TEST(FclibFile, OnlyEligiblePointsAndTangentsForAll) {
   std::mt19937 random(1);

@@ -63,8 +63,7 @@ double largest(const Vector& vector) {
   return vector.lpNorm<Eigen::Infinity>();
 }
 
-// ---- redundant points
-// ------------------------------------------------------------------------------------------------
+// Redundant points.
 
 TEST(HardContact, RigidBodiesOnManyPoints) {
   for (const Index dimension : {2, 3}) {
@@ -134,8 +133,7 @@ TEST(HardContact, SymmetricElasticContactWithEveryPointTwice) {
   }
 }
 
-// ---- wedges
-// ----------------------------------------------------------------------------------------------------------
+// Wedges.
 
 struct Count {
   int all = 0, unsolved = 0, locked = 0;
@@ -230,8 +228,7 @@ TEST(HardContact, PainlevesRod) {
   }
 }
 
-// ---- twelve orders of magnitude
-// --------------------------------------------------------------------------------------
+// Twelve orders of magnitude.
 
 TEST(HardContact, TwelveOrdersOfMassesAndStiffnesses) {
   int unsolved = 0;
@@ -291,8 +288,7 @@ TEST(HardContact, PointsScaledByAnyFactors) {
   }
 }
 
-// ---- none to thousands
-// -----------------------------------------------------------------------------------------------
+// None to thousands.
 
 TEST(HardContact, NoPoints) {
   const auto nothing = [](const Vector&, Vector& y) { y.resize(0); };
