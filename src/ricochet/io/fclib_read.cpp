@@ -194,8 +194,8 @@ void read_info(const Hdf5Reader& file, FclibProblem& problem) {
   problem.q_rounding = file.reals(rounding, problem.w.rows());
   for (Index row = 0; row < problem.q_rounding.size(); ++row) {
     if (!(problem.q_rounding[row] >= 0.0))
-      file.fail(rounding, fmt::format("entry {} is {}: the size of an error cannot be negative", row,
-                                      problem.q_rounding[row]));
+      file.fail(rounding,
+                fmt::format("entry {} is {}: the size of an error cannot be negative", row, problem.q_rounding[row]));
   }
 }
 
