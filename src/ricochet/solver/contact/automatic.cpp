@@ -2,7 +2,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "ricochet/solver/contact/active_set.hpp"
@@ -39,8 +41,21 @@ constexpr int cold_sweeps = 20;
 constexpr int round_limit = 6;
 /// Part of a point's correction that is taken.
 constexpr double smallest_damping = 0.125;
-/// Work of other solvers, tried before the very end, in entries of W or of a factor.
-constexpr double others_work = 4e9;
+/// Other solvers, where Newton has failed from the last reactions and from zero, and before the very end: their
+/// iterations, at most, and so many entries of W or operations of a factor.
+struct OtherSolver {
+  const char* name;
+  bool factorizes;
+  int iteration_limit;
+};
+const std::vector<OtherSolver> first_others{{"newton-alart-curnier", true, 60},
+                                            {"newton-fischer-burmeister", true, 150}};
+const std::vector<OtherSolver> last_others{{"newton-fischer-burmeister", true, 200},
+                                           {"accelerated-gradient", false, 20000},
+                                           {"newton-jean-moreau", true, 200},
+                                           {"admm", false, 20000}};
+constexpr double factor_work_of_others = 1e11;
+constexpr double sweep_work_of_others = 4e9;
 constexpr int fewest_of_others = 5;
 /// Of long runs of sweeps at the very end, and their length in entries of W.
 constexpr int last_rounds = 20;
@@ -68,9 +83,10 @@ void learn(double& mean, double value) {
 ///    roughly, and where W is well conditioned they go on to the end.
 /// 2. Newton on the Alart–Curnier equations (GlobalizedNewton), each step cut back until the merit decreases; where no
 ///    part of a step does, a run of whole steps from the best r so far.
-/// 3. Where Newton stalls, more sweeps from the best r so far, then Newton again, twice as many sweeps every time; the
-///    same from r = 0, with sweeps that take a half, a quarter, an eighth of each point's correction.
-/// 4. The other solvers. At last whole sweeps for as long as they come closer.
+/// 3. Where that stalls, the same from r = 0; then another Newton method.
+/// 4. More sweeps from the best r so far, then Newton again, twice as many sweeps every time; the same from r = 0, with
+///    sweeps that take a half, a quarter, an eighth of each point's correction.
+/// 5. The other solvers. At last whole sweeps for as long as they come closer.
 class AutomaticSolver final : public IterativeContactSolver {
  public:
   std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
@@ -111,15 +127,17 @@ class AutomaticSolver final : public IterativeContactSolver {
   bool accelerated(const ContactWork& work);
   bool sweep(const ContactWork& work, int sweeps, double damping);
   std::string iterate_with_products(const ContactWork& work);
+  bool newton(const ContactWork& work);
+  bool sweeps_and_newton(const ContactWork& work);
   bool alternate(const ContactWork& work, int sweeps, double damping);
-  bool ask_others(const ContactWork& work);
+  bool ask_others(const ContactWork& work, const std::vector<OtherSolver>& others);
   bool sweep_on(const ContactWork& work);
 
   GaussSeidel sweeps_;
   AcceleratedGaussSeidel accelerated_;
   GlobalizedNewton newton_;
-  std::unique_ptr<ContactSolver> products_;             ///< where there are no entries of W
-  std::vector<std::unique_ptr<ContactSolver>> others_;  ///< where all else has failed
+  std::unique_ptr<ContactSolver> products_;                       ///< where there are no entries of W
+  std::map<std::string, std::unique_ptr<ContactSolver>> others_;  ///< where all else has failed
   PrimalDualActiveSet frictionless_;
   BestIterate best_;
   ContactIterate fallback_;
@@ -244,19 +262,50 @@ std::string AutomaticSolver::iterate_with_products(const ContactWork& work) {
       .iterate(work.system, work.options, work.current, work.solution);
 }
 
+/// Newton from `current`, with the line search, then whole steps from the best r.
+bool AutomaticSolver::newton(const ContactWork& work) {
+  best_.restart(work);
+  if (newton_.run(work, true, best_)) return true;
+  work.current = best_.iterate;
+  if (newton_.run(work, false, best_)) return true;
+  work.current = best_.iterate;
+  return work.options.tolerance == 0.0 && work.system.is_solved(best_.iterate, loosest_residual);
+}
+
 /// Sweeps and Newton in turn, from `current`.
 bool AutomaticSolver::alternate(const ContactWork& work, int sweeps, double damping) {
   best_.restart(work);
+  double tried = std::numeric_limits<double>::infinity();  // where whole steps from the best r have come to nothing
   for (int round = 1; round <= round_limit; ++round) {
     if (sweeps > 0 && sweep(work, sweeps, damping)) return true;
     if (newton_.run(work, true, best_)) return true;
     work.current = best_.iterate;
-    if (newton_.run(work, false, best_)) return true;
-    work.current = best_.iterate;
+    if (best_.merit < tried) {
+      tried = best_.merit;
+      if (newton_.run(work, false, best_)) return true;
+      work.current = best_.iterate;
+    }
     if (work.options.tolerance == 0.0 && work.system.is_solved(best_.iterate, loosest_residual)) return true;
     sweeps = cold_sweeps << round;
   }
   return false;
+}
+
+/// Accelerated sweeps, then Newton if they do not arrive.
+bool AutomaticSolver::sweeps_and_newton(const ContactWork& work) {
+  begin_ = work.current.reaction;
+  const int before = work.solution.iterations;
+  const bool solved = accelerated(work);
+  learn(history_.sweeps, static_cast<double>(work.solution.iterations - before) * sweep_work(work));
+  if (solved) return true;
+  if (is_nearly_closed(work.system, work.current) && stalled_) {
+    // Newton knows better from the start than from what a few sweeps have made of it.
+    work.current.reaction = begin_;
+    work.system.evaluate(work.current);
+    best_.restart(work);
+  }
+  work.current = best_.iterate;
+  return newton(work);
 }
 
 std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactOptions& options,
@@ -271,63 +320,72 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   if (system.dense() != nullptr && !has_friction(system) &&
       frictionless_.solve(system, current, solution.iterations, solution.factorizations) == "")
     return "";
-  best_.merit = std::numeric_limits<double>::infinity();
-  if (!cold) best_.keep(work);
-  begin_ = current.reaction;
+  best_.restart(work);
+  if (cold) best_.merit = std::numeric_limits<double>::infinity();
   if (!cold && prefers_newton(work)) {
     const bool solved = newton_.run(work, true, best_);
     learn(history_.newton, newton_.step().work());
     if (solved) return "";
     work.current = best_.iterate;
   }
-  const int before = solution.iterations;
-  const bool solved = accelerated(work);
-  learn(history_.sweeps, static_cast<double>(solution.iterations - before) * sweep_work(work));
-  if (solved) return "";
-  if (is_nearly_closed(system, current) && stalled_) {
-    // Newton knows better from the start than from what a few sweeps have made of it.
-    current.reaction = begin_;
-    system.evaluate(current);
-    best_.restart(work);
-  }
-  work.current = best_.iterate;
-  if (alternate(work, 0, 1.0)) return "";
-  // Strong friction can make whole corrections circle; parts of them, from zero, then often arrive.
+  if (sweeps_and_newton(work)) return "";
   fallback_ = best_.iterate;
-  const bool finite = std::isfinite(best_.merit);
-  for (double damping = 0.5; damping >= smallest_damping && finite; damping *= 0.5) {
+  double fallback_merit = best_.merit;
+  if (!std::isfinite(fallback_merit)) return "the iteration diverged: the contact operator is not positive definite";
+  const auto keep = [&] {
+    if (best_.merit < fallback_merit) {
+      fallback_merit = best_.merit;
+      fallback_ = best_.iterate;
+    }
+  };
+  const auto begin_at_zero = [&] {
     current.reaction.setZero();
     system.evaluate(current);
-    if (alternate(work, 2 * cold_sweeps, damping)) return "";
+  };
+  if (!cold) {
+    // Where contact comes and goes the last reactions can be a bad start.
+    begin_at_zero();
+    best_.restart(work);
+    best_.merit = std::numeric_limits<double>::infinity();
+    newton_.start();
+    if (sweeps_and_newton(work)) return "";
+    keep();
   }
+  if (ask_others(work, first_others)) return "";
   current = fallback_;
-  if (!finite) return "the iteration diverged: the contact operator is not positive definite";
-  if (ask_others(work)) return "";
+  if (alternate(work, cold_sweeps, 1.0)) return "";
+  keep();
+  // Strong friction can make whole corrections circle; parts of them, from zero, then often arrive.
+  for (double damping = 0.5; damping >= smallest_damping; damping *= 0.5) {
+    begin_at_zero();
+    if (alternate(work, 2 * cold_sweeps, damping)) return "";
+    keep();
+  }
+  if (ask_others(work, last_others)) return "";
+  current = fallback_;
   if (sweep_on(work)) return "";
   return "the conditions of contact and friction are still not met after the largest number of iterations";
 }
 
 /// Other solvers from r = 0, then from the best r there is. They fail where this one does not and the other way round:
 /// strong friction in wedges whose surfaces hardly give (hard_problems_test.cpp) is where they are needed.
-bool AutomaticSolver::ask_others(const ContactWork& work) {
+bool AutomaticSolver::ask_others(const ContactWork& work, const std::vector<OtherSolver>& others) {
   if (!refuse_bounds(work.system).empty()) return false;
-  if (others_.empty()) {
-    for (const char* name : {"newton-fischer-burmeister", "accelerated-gradient", "newton-jean-moreau", "admm"})
-      others_.push_back(make_contact_solver(name));
-  }
   const double rows = static_cast<double>(work.system.rows());
   double best = work.system.measure(fallback_).beyond_floor;
   for (const bool cold : {true, false}) {
-    for (std::size_t k = 0; k < others_.size(); ++k) {
-      const double iteration_work =
-          k % 2 == 0 ? rows * rows * rows : rows * rows;  // Newton's methods are the even ones
+    for (const OtherSolver& other : others) {
+      const double limit =
+          other.factorizes ? factor_work_of_others / (rows * rows * rows) : sweep_work_of_others / (rows * rows);
       ContactOptions options = work.options;
-      options.iteration_limit = static_cast<int>(std::min(others_work / iteration_work, 20000.0));
+      options.iteration_limit = static_cast<int>(std::min(limit, static_cast<double>(other.iteration_limit)));
       if (options.iteration_limit < fewest_of_others) continue;
       work.current.reaction = cold ? Vector(Vector::Zero(work.system.rows())) : fallback_.reaction;
       work.system.evaluate(work.current);
-      auto& solver = dynamic_cast<IterativeContactSolver&>(*others_[k]);
-      if (solver.iterate(work.system, options, work.current, work.solution).empty()) return true;
+      std::unique_ptr<ContactSolver>& solver = others_[other.name];
+      if (solver == nullptr) solver = make_contact_solver(other.name);
+      auto& iteration = dynamic_cast<IterativeContactSolver&>(*solver);
+      if (iteration.iterate(work.system, options, work.current, work.solution).empty()) return true;
       if (work.options.tolerance == 0.0 && work.system.is_solved(work.current, loosest_residual)) return true;
       const double reached = work.system.measure(work.current).beyond_floor;
       if (!(reached < best)) continue;
@@ -335,7 +393,6 @@ bool AutomaticSolver::ask_others(const ContactWork& work) {
       fallback_ = work.current;
     }
   }
-  work.current = fallback_;
   return false;
 }
 

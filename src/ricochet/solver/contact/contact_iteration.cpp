@@ -1,7 +1,10 @@
 #include "ricochet/solver/contact/contact_iteration.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 
 #include "ricochet/base/error.hpp"
@@ -21,14 +24,31 @@ void IterativeContactSolver::analyse(const ContactProblem& problem) {
   problem.validate();
   system_.analyse(problem);
   analysed_ = problem.contact_operator;
+  analysed_first_ = problem.first;
   set_warm_start({});
 }
 
 void IterativeContactSolver::set_warm_start(const Vector& start) {
   forget();
   const Index rows = analysed_ != nullptr ? analysed_->rows() : start.size();
+  if (start.size() > 0 && start.size() < rows) {
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("contact solver: the warm start has {} numbers, but there are {} reactions", start.size(), rows));
+  }
+  if (!start.allFinite())
+    throw Error(ErrorKind::invalid_input, "contact solver: the warm start has entries that are no finite numbers");
   warm_reaction_ = start.head(std::min(rows, start.size()));
-  if (start.size() > rows) take_memory(std::vector<double>(start.begin() + rows, start.end()));
+  if (start.size() <= rows) return;
+  try {
+    take_memory(std::vector<double>(start.begin() + rows, start.end()));
+  } catch (const std::exception&) {
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("contact solver: the warm start has {} numbers, which are neither the {} reactions nor what "
+                    "this solver's warm_start() gives",
+                    start.size(), rows));
+  }
 }
 
 Vector IterativeContactSolver::warm_start() const {
@@ -43,6 +63,17 @@ void IterativeContactSolver::note(const ContactSystem& system, const ContactOpti
                                   double residual, ContactSolution& solution) {
   ++solution.iterations;
   if (options.record) solution.record.push_back({phase, residual / system.data()});
+}
+
+void ContactOptions::validate() const {
+  if (!(tolerance >= 0.0 && tolerance < 1.0))
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("contact solver: the tolerance {} must be from 0 to below 1", tolerance));
+  if (iteration_limit < 0) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("contact solver: the limit of {} iterations must be zero (the solver's own) or positive",
+                            iteration_limit));
+  }
 }
 
 /// r = 0 is a solution.
@@ -137,7 +168,9 @@ bool IterativeContactSolver::take_in_penetrating(const ContactProblem& problem, 
     if (!(solution.motion[row] < 0.0)) continue;
     const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
     if (solution.motion[row] >= -(known + sum_rounding * std::abs(problem.offset[row]))) continue;
-    if (system_.residual_of(problem, i, solution.reaction, solution.motion) <= options.tolerance * system_.data())
+    const bool steep = problem.friction_coefficient[i] > steep_coefficient;
+    if (!steep &&
+        system_.residual_of(problem, i, solution.reaction, solution.motion) <= options.tolerance * system_.data())
       continue;
     wanted_[at] = 1;
     found = true;
@@ -145,38 +178,61 @@ bool IterativeContactSolver::take_in_penetrating(const ContactProblem& problem, 
   return found;
 }
 
-void IterativeContactSolver::run(const ContactOptions& options, ContactSolution& solution) {
-  ContactOptions closer = options;
-  for (int k = 0; k <= tightenings; ++k, closer.tolerance *= 0.25) {
-    system_.evaluate(current_);
-    solution.reason = iterate(system_, closer, current_, solution);
+/// r on its law, evaluated and measured, in `finished_`. Where rounding is asked for, turning friction against the slip
+/// to the last digits may itself leave more than rounding: then as it is.
+void IterativeContactSolver::finish(const ContactOptions& options) {
+  for (const bool exactly : {true, false}) {
+    if (exactly && options.tolerance > 0.0) continue;
     finished_.reaction = current_.reaction;
-    put_on_law(system_, current_.motion, options.tolerance == 0.0, finished_.reaction);
+    put_on_law(system_, current_.motion, exactly, finished_.reaction);
     if (finished_.reaction == current_.reaction) {
-      std::swap(finished_, current_);
+      finished_ = current_;
     } else {
       system_.evaluate(finished_);
     }
     measure_ = system_.measure(finished_);
-    if (!solution.reason.empty() || measure_.beyond_floor <= options.tolerance * system_.data()) break;
-    current_.reaction = finished_.reaction;
+    if (measure_.beyond_floor <= options.tolerance * system_.data()) return;
   }
+}
+
+void IterativeContactSolver::run(const ContactOptions& options, ContactSolution& solution) {
+  ContactOptions closer = options;
+  ContactSystem::Measure best;
+  for (int k = 0; k <= tightenings; ++k, closer.tolerance *= 0.25) {
+    system_.evaluate(current_);
+    solution.reason = iterate(system_, closer, current_, solution);
+    finish(options);
+    current_.reaction = finished_.reaction;
+    if (k == 0 || measure_.beyond_floor < best.beyond_floor) {
+      best = measure_;
+      std::swap(closest_, finished_);
+    }
+    if (!solution.reason.empty() || best.beyond_floor <= options.tolerance * system_.data()) break;
+  }
+  std::swap(closest_, finished_);
+  measure_ = best;
   system_.give_reaction(finished_.reaction, solution.reaction);
 }
 
 void IterativeContactSolver::judge(const ContactProblem& problem, const ContactOptions& options,
                                    ContactSolution& solution) {
   double largest = measure_.residual;
+  bool finite = solution.reaction.allFinite();
   for (Index i = 0; i < problem.points(); ++i) {
-    if (wanted_[static_cast<std::size_t>(i)] != 0 || !problem.is_eligible(i)) continue;
-    if (solution.motion[problem.first[static_cast<std::size_t>(i)]] >= 0.0) continue;
+    if (!problem.is_eligible(i)) continue;
+    const auto at = static_cast<std::size_t>(i);
+    const Index row = problem.first[at];
+    finite = finite && solution.motion.segment(row, problem.first[at + 1] - row).allFinite();
+    if (wanted_[at] != 0 || solution.motion[row] >= 0.0) continue;
     largest = std::max(largest, system_.residual_of(problem, i, solution.reaction, solution.motion));
   }
   solution.residual = largest / system_.data();
   solution.rounding_floor = measure_.rounding_floor / system_.data();
-  if (!std::isfinite(largest)) {
+  if (!std::isfinite(largest) || !finite) {
     solution.outcome = ContactOutcome::invalid_data;
-    solution.reason = "the iteration diverged: W has entries that are not finite, or is not positive semi-definite";
+    solution.reason =
+        "the iteration diverged: W has entries that are not finite, or is not positive semi-definite, or the "
+        "reactions are beyond the range of numbers";
     return;
   }
   const double accepted = options.tolerance > 0.0 ? options.tolerance : loosest_residual;
@@ -210,6 +266,10 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
                                    ContactSolution& solution) {
   if (problem.contact_operator != analysed_)
     throw Error(ErrorKind::invalid_input, "contact problem: W is another than the one that was analysed");
+  if (problem.first != analysed_first_)
+    throw Error(ErrorKind::invalid_input, "contact problem: the points are others than those that were analysed");
+  problem.validate();
+  options.validate();
   solution.outcome = ContactOutcome::not_converged;
   solution.reason.clear();
   solution.iterations = solution.newton_steps = solution.factorizations = 0;
@@ -231,6 +291,12 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
     return;
   }
   choose_points(problem);
+  if (!system_.fault().empty()) {
+    solution.outcome = ContactOutcome::invalid_data;
+    solution.residual = std::numeric_limits<double>::quiet_NaN();
+    solution.reason = system_.fault();
+    return;
+  }
   solution.reason = refuses(system_);
   if (!solution.reason.empty()) {
     solution.outcome = ContactOutcome::not_applicable;
@@ -242,6 +308,7 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
                           : Vector(Vector::Zero(problem.rows()));
   do {
     system_.take_reaction(solution.reaction, current_.reaction);
+    if (!current_.reaction.allFinite()) current_.reaction.setZero();  // scaled beyond the range of numbers
     start(current_.reaction);
     run(options, solution);
     find_motion(problem, solution);

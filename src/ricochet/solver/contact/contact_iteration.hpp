@@ -51,6 +51,7 @@ class IterativeContactSolver : public ContactSolver {
   [[nodiscard]] bool is_open(const ContactProblem& problem) const;
   void choose_points(const ContactProblem& problem);
   void start(Vector& reaction) const;
+  void finish(const ContactOptions& options);
   void run(const ContactOptions& options, ContactSolution& solution);
   void find_motion(const ContactProblem& problem, ContactSolution& solution) const;
   bool take_in_penetrating(const ContactProblem& problem, const ContactOptions& options,
@@ -60,9 +61,11 @@ class IterativeContactSolver : public ContactSolver {
 
   ContactSystem system_;
   std::shared_ptr<const ContactOperator> analysed_;
+  std::vector<Index> analysed_first_;
   Vector warm_reaction_;
   std::vector<char> wanted_;
   ContactIterate current_, finished_;
+  ContactIterate closest_;          ///< of several passes
   ContactSystem::Measure measure_;  ///< of `finished_`
 };
 

@@ -10,7 +10,7 @@
 #include "ricochet/solver/contact/contact_problem.hpp"
 
 /// @file Solvers of the contact problem. To add one: a file with a class derived from IterativeContactSolver
-/// (contact_iteration.hpp), one line in registry.cpp, and its name in the tests' list.
+/// (contact_iteration.hpp) and one line in registry.cpp, from which the tests take its name.
 ///
 ///     ContactProblem problem(3, w, q, 0.3);        // W dense, three rows per point: normal, two tangents
 ///     const auto solver = make_contact_solver("automatic");
@@ -26,17 +26,21 @@ namespace ricochet {
 struct ContactOptions {
   /// On the residual (below). Zero: down to rounding.
   double tolerance = 0.0;
-  /// Of the solver's own kind (sweeps, Newton steps, …). Zero: the solver's own limit.
+  /// Of the solver's own kind (sweeps, Newton steps, …). Zero: the solver's own limit. "automatic" has several kinds of
+  /// its own limits and does not look at it.
   int iteration_limit = 0;
   /// Keep a record of every iteration.
   bool record = false;
+
+  /// Throws Error(invalid_input) unless 0 <= tolerance < 1 and the limit is not negative.
+  void validate() const;
 };
 
 enum class ContactOutcome : char {
   solved,          ///< the residual is below the tolerance, or is rounding
   not_converged,   ///< after the largest number of iterations, or because nothing improves any more
   not_applicable,  ///< the solver does not treat such problems: reason says why
-  invalid_data,    ///< not finite, or W has a negative diagonal
+  invalid_data,    ///< q or W not finite, W with a negative diagonal, or reactions beyond the range of numbers
 };
 
 /// One line of the record.
@@ -74,16 +78,18 @@ class ContactSolver {
   ContactSolver& operator=(const ContactSolver&) = delete;
 
   /// Takes up W and the points of `problem`; q, F, bounds and eligibility may change until the next call. Forgets the
-  /// warm start. Throws Error(invalid_input), see ContactProblem::validate.
+  /// warm start. Throws Error(invalid_input), see ContactProblem::validate. W must be symmetric: that is not checked.
   virtual void analyse(const ContactProblem& problem) = 0;
-  /// Starts from the reactions of the last solved problem, if there is one. Does not throw for what the numbers say:
-  /// that is in `solution.outcome`. Work space is kept from call to call.
+  /// Starts from the reactions of the last solved problem, if there is one. Throws Error(invalid_input) where sizes or
+  /// options are wrong, not for what the numbers of W and q say: that is in `solution.outcome`. Work space is kept from
+  /// call to call.
   virtual void solve(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution) = 0;
 
-  /// What the next solve starts from: the last reactions, and what else decides its bits. For a checkpoint: a solver
-  /// that is given it goes on with the same bits. Empty: a cold start.
+  /// What the next solve starts from: the last reactions, then what else decides its bits (kept factors, by what they
+  /// were made of). For a checkpoint: a solver that is given it goes on with the same bits. Empty: a cold start.
   [[nodiscard]] virtual Vector warm_start() const = 0;
-  /// Reactions (one per row), or what warm_start() gave. An empty vector forgets.
+  /// Reactions (one per row), or what warm_start() gave. An empty vector forgets. Throws Error(invalid_input) for any
+  /// other length and for numbers that are not finite.
   virtual void set_warm_start(const Vector& start) = 0;
 };
 
@@ -95,7 +101,7 @@ struct ContactSolverDescription {
   std::string text;  ///< one line
 };
 
-/// By name; throws Error(invalid_input) that lists the names. "automatic" needs no choice.
+/// By name; throws Error(usage) that lists the names. "automatic" needs no choice.
 [[nodiscard]] std::unique_ptr<ContactSolver> make_contact_solver(const std::string& name = "automatic");
 [[nodiscard]] std::vector<ContactSolverDescription> contact_solvers();
 

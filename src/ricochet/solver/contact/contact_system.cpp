@@ -1,5 +1,7 @@
 #include "ricochet/solver/contact/contact_system.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +21,9 @@ constexpr Index few_rows = 3000;
 constexpr Index small = 150;
 /// From this many rows on, sweeps wait for memory.
 constexpr Index many_rows = 350;
+
+/// Data are brought into the middle of the range of numbers before they are squared.
+constexpr int largest_exponent = 960;
 
 /// The power of two at or below.
 double power_of_two(double value) {
@@ -63,11 +68,14 @@ void ContactSystem::analyse(const ContactProblem& problem) {
     }
   }
   double largest = 0.0;
+  fault_.clear();
   blocks_.clear();
   for (Index i = 0; i < points; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const PointMatrix block = operator_->block(problem.first[at], problem.first[at + 1] - problem.first[at]);
     blocks_.push_back(block);
+    if (fault_.empty() && !(block.allFinite() && (block.diagonal().array() >= 0.0).all()))
+      fault_ = fmt::format("W has an entry that is negative or no finite number in the diagonal block of point {}", i);
     normal_[at] = block(0, 0);
     mean_[at] = block.trace() / static_cast<double>(block.rows());
     largest_of[at] = block.diagonal().maxCoeff();
@@ -108,16 +116,27 @@ void ContactSystem::set_data(const ContactProblem& problem) {
   data_scale_ = 1.0;
   data_ = 0.0;
   data_are_finite_ = true;
+  double largest = 0.0;
+  for (Index i = 0; i < problem.points(); ++i) {
+    if (!problem.is_eligible(i)) continue;
+    const Index row = problem.first[static_cast<std::size_t>(i)];
+    const auto q = problem.offset.segment(row, problem.first[static_cast<std::size_t>(i) + 1] - row);
+    data_are_finite_ = data_are_finite_ && q.allFinite();
+    largest = std::max(largest, scale_[static_cast<std::size_t>(i)] * q.lpNorm<Eigen::Infinity>());
+  }
+  if (!data_are_finite_ || !std::isfinite(largest) || largest == 0.0) return;
+  const double range = std::ldexp(1.0, std::clamp(-std::ilogb(largest), -largest_exponent, largest_exponent));
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
     ContactPoint point = make_point(problem, i);
     PaddedVector q = PaddedVector::Zero();
-    for (Index k = 0; k < point.size; ++k) q[k] = scale_[static_cast<std::size_t>(i)] * problem.offset[point.first + k];
-    data_are_finite_ = data_are_finite_ && q.allFinite();
+    const double scale = range * scale_[static_cast<std::size_t>(i)];
+    for (Index k = 0; k < point.size; ++k) q[k] = scale * problem.offset[point.first + k];
     data_ = std::max(data_, residual(point, PaddedVector::Zero(), q));
   }
-  data_scale_ = 1.0 / power_of_two(data_);
-  data_ *= data_scale_;
+  const double unit = 1.0 / power_of_two(data_);
+  data_scale_ = range * unit;
+  data_ *= unit;
 }
 
 void ContactSystem::select(const ContactProblem& problem, const std::vector<char>& wanted) {
@@ -192,6 +211,7 @@ void ContactSystem::copy_dense() {
   }
   runs.push_back(count);
   const Eigen::Map<const Vector> scales(row_scale_.data(), count);
+  double sum = 0.0;
   for (Index j = 0; j < count; ++j) {
     const double* column = w.data() + problem_row(j) * w.rows();
     const double scale = operator_scale_ * row_scale_[static_cast<std::size_t>(j)];
@@ -200,18 +220,28 @@ void ContactSystem::copy_dense() {
       const Eigen::Map<const Vector> from(column + problem_row(first), size);
       matrix_.col(j).segment(first, size) = (scale * scales.segment(first, size)).cwiseProduct(from);
     }
+    sum += matrix_.col(j).sum();
   }
+  note_sum(sum);
   single_.resize(0, 0);
   if (count >= many_rows) single_ = matrix_.cast<float>();
 }
 
+/// Of the scaled entries, which are too small for the sum of finite ones to overflow.
+void ContactSystem::note_sum(double sum) {
+  if (!std::isfinite(sum) && fault_.empty()) fault_ = "W has entries that are no finite numbers";
+}
+
 void ContactSystem::copy_sparse() {
+  double sum = 0.0;
   sparse_ = *operator_->sparse();
   for (Index j = 0; j < sparse_.cols(); ++j) {
     const double scale = operator_scale_ * row_scale_[static_cast<std::size_t>(j)];
     for (SparseMatrix::InnerIterator entry(sparse_, j); entry; ++entry)
       entry.valueRef() *= scale * row_scale_[static_cast<std::size_t>(entry.row())];
+    sum += sparse_.col(j).sum();
   }
+  note_sum(sum);
 }
 
 void ContactSystem::add_change(const ContactPoint& point, const PaddedVector& change, Vector& motion) const {
@@ -322,6 +352,12 @@ double floor_of_map(const ContactPoint& point, const ContactSystem::Floor& floor
   return (std::max(floor.normal, floor.tangential) + point.coefficient * floor.tangential) / std::sqrt(point.diagonal);
 }
 
+/// In units of u, and without the factor F that cone and floor have.
+double violation(const ContactPoint& point, const ContactIterate& iterate) {
+  return alart_curnier_residual(point, 1.0 / point.diagonal, padded(point, iterate.reaction),
+                                padded(point, iterate.motion));
+}
+
 }  // namespace
 
 ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) const {
@@ -335,7 +371,15 @@ ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) con
         result.is_exact && value * std::sqrt(point.diagonal) <= (1.0 + point.coefficient) * of_motion.of_sums;
     result.residual = std::max(result.residual, value);
     result.rounding_floor = std::max(result.rounding_floor, floor);
-    if (!(value <= floor)) result.beyond_floor = std::max(result.beyond_floor, value - floor);
+    if (!std::isfinite(value) || !std::isfinite(floor)) {
+      result.beyond_floor = std::numeric_limits<double>::infinity();
+    } else if (value > floor) {
+      result.beyond_floor = std::max(result.beyond_floor, value - floor);
+    } else if (value > loosest_residual * data_ && violation(point, iterate) > excused) {
+      result.beyond_floor = std::max(result.beyond_floor, value);
+    }
+    if (point.coefficient > steep_coefficient && violation(point, iterate) > excused)
+      result.beyond_floor = std::max(result.beyond_floor, data_);
     // Where W has a zero block, r is in no sum.
     const double of_reaction = sum_rounding * point.diagonal * iterate.reaction[point.first];
     if (iterate.reaction[point.first] > 0.0 && std::max(of_motion.of_sums, of_reaction) > excused)

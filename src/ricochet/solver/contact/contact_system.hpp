@@ -15,6 +15,8 @@ namespace ricochet {
 inline constexpr double sum_rounding = 32.0 * std::numeric_limits<double>::epsilon();
 /// Residual that is accepted where rounding is asked for and nothing improves any more.
 inline constexpr double loosest_residual = 1e-12;
+/// Above this F the cone hardly sees a penetration: its residual is 1/F of it. The law itself is looked at besides.
+inline constexpr double steep_coefficient = 30.0;
 
 /// A state of the iteration and what follows from it, all of it scaled.
 struct ContactIterate {
@@ -32,7 +34,9 @@ struct ContactIterate {
 /// over the points, divided by the data: the same for r = 0, which is what the problem asks for (points that stay open
 /// without help do not count). Its rounding floor is what 32 ε (|q| + Σ|W r|) + offset_rounding makes of it.
 /// Where the first of the two is above a hundredth of the largest q, reactions are so large that rounding hides the
-/// law: that is no solution.
+/// law: that is no solution. Nor is a floor an excuse where the law itself (Alart and Curnier's residual) is violated
+/// by so much; at points with F > 30, of which the cone hardly sees a penetration, that is no solution at any
+/// tolerance.
 class ContactSystem {
  public:
   /// Takes up W and its scales.
@@ -59,6 +63,8 @@ class ContactSystem {
   /// Largest natural map of r = 0, over all eligible points. In [1, 2), or zero: r = 0 is a solution.
   [[nodiscard]] double data() const { return data_; }
   [[nodiscard]] bool data_are_finite() const { return data_are_finite_; }
+  /// What is wrong with W; empty: nothing was found in what has been read of it.
+  [[nodiscard]] const std::string& fault() const { return fault_; }
   /// W′ of the system's rows where entries are at hand (no product operator of many rows).
   [[nodiscard]] const Matrix* dense() const { return mode_ == Mode::dense ? &matrix_ : nullptr; }
   [[nodiscard]] const SparseMatrix* sparse() const { return mode_ == Mode::sparse ? &sparse_ : nullptr; }
@@ -119,6 +125,7 @@ class ContactSystem {
   }
   void gather(const ContactProblem& problem, const std::vector<Index>& points);
   void copy_dense();
+  void note_sum(double sum);
   void copy_sparse();
 
   Mode mode_ = Mode::dense;
@@ -132,6 +139,7 @@ class ContactSystem {
   double data_scale_ = 1.0;            ///< S
   double data_ = 0.0;
   bool data_are_finite_ = true;
+  std::string fault_;
 
   std::vector<Index> gathered_;    ///< points of the problem in the system, eligible or not
   std::vector<Index> row_of_;      ///< per row of the system: the problem's row
