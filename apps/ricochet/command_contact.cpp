@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "commands.hpp"
 #include "ricochet/base/error.hpp"
@@ -13,7 +14,7 @@ namespace ricochet::program {
 namespace {
 
 void list_solvers() {
-  for (const ContactSolverDescription& solver : contact_solvers()) fmt::print("{:<22} {}\n", solver.name, solver.text);
+  for (const ContactSolverDescription& solver : contact_solvers()) fmt::print("{:<27} {}\n", solver.name, solver.text);
 }
 
 void print_row(const char* name, const std::string& value) {
@@ -89,7 +90,8 @@ void describe_contact_problem(const std::string& path) {
   const FclibProblem file = read_fclib(path);
   print_problem(file);
   std::string found = file.solution ? "a solution" : "no solution";
-  if (!file.guesses.empty()) found += fmt::format(", {} guesses", file.guesses.size());
+  if (!file.guesses.empty())
+    found += fmt::format(", {} guess{}", file.guesses.size(), file.guesses.size() == 1 ? "" : "es");
   print_row("holds", found);
   for (const std::string* text : {&file.description, &file.math_info}) {
     for (std::size_t begin = 0; begin < text->size();) {
@@ -99,6 +101,22 @@ void describe_contact_problem(const std::string& path) {
     }
   }
 }
+
+namespace {
+
+/// Before anything is solved.
+void check_output(const std::string& output) {
+  namespace fs = std::filesystem;
+  if (output.empty()) return;
+  if (fs::is_directory(output))
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot be written: it is a directory", output));
+  const fs::path parent = fs::path(output).parent_path();
+  if (!parent.empty() && !fs::is_directory(parent))
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: cannot be written: there is no directory {}", output, parent.string()));
+}
+
+}  // namespace
 
 int contact(const ContactArguments& arguments) {
   if (arguments.list) {
@@ -119,6 +137,7 @@ int contact(const ContactArguments& arguments) {
     throw Error(ErrorKind::usage,
                 fmt::format("--solver {}: there is no such solver; there are {}", arguments.solver, names));
   }
+  check_output(arguments.output);
   const auto solver = make_contact_solver(arguments.solver);
   FclibProblem file = read_fclib(arguments.problem);
   print_problem(file);
@@ -130,8 +149,11 @@ int contact(const ContactArguments& arguments) {
   print_solution(arguments, solution, timer.seconds());
   if (!arguments.output.empty()) {
     // A solver that does not treat the problem may have no reactions at all.
-    if (solution.reaction.size() != reduction.problem.rows()) solution.reaction.setZero(reduction.problem.rows());
-    if (solution.motion.size() != reduction.problem.rows()) solution.motion = reduction.problem.offset;
+    if (solution.reaction.size() != reduction.problem.rows() || !solution.reaction.allFinite() ||
+        !solution.motion.allFinite()) {
+      solution.reaction.setZero(reduction.problem.rows());
+      solution.motion = reduction.problem.offset;
+    }
     put_solution(file, reduction.solution(solution), solution);
     write_fclib(arguments.output, file);
     print_row("written to", arguments.output);

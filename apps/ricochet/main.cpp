@@ -79,11 +79,15 @@ int dispatch(int argc, char** argv) {
       ->type_name("NAME");
   contact
       ->add_option("--tolerance", arguments.contact.tolerance,
-                   "relative residual to reach (default: 0, down to rounding)")
+                   "relative residual to reach, or rounding where that is more (default: 0, down to rounding)")
       ->type_name("T");
   contact->add_option("-o,--output", arguments.contact.output, "FCLib file for the problem and its solution")
       ->type_name("SOLUTION.hdf5");
   contact->add_flag("--record", arguments.contact.record, "print every iteration");
+  contact->footer(
+      "Exit status: 0 solved; 1 wrong use of the command line; 2 the file is malformed; 3 not solved: the best that "
+      "was\n"
+      "found is reported with its residual; 4 cannot read or write a file.");
   contact->add_flag("--list", arguments.contact.list, "list the solvers and do nothing else");
   add_common(*contact, arguments);
 

@@ -123,7 +123,8 @@ void ContactExport::write(const ContactProblem& problem, const ContactSolution& 
 std::string ContactExport::report() const {
   long last = 0;
   for (const StepRange& range : steps_) last = std::max(last, range.last);
-  std::string result = fmt::format("contact problems of {} steps in {}", steps_written_, directory_);
+  std::string result =
+      fmt::format("contact problems of {} step{} in {}", steps_written_, steps_written_ == 1 ? "" : "s", directory_);
   if (files_ > steps_written_) result += fmt::format(" ({} files)", files_);
   if (steps_seen_ > steps_written_)
     result += fmt::format("; {} had none (no point could touch)", steps_seen_ - steps_written_);

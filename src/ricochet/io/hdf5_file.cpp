@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "ricochet/base/error.hpp"
 
@@ -131,7 +132,11 @@ std::int64_t Hdf5Reader::size(const std::string& name) const {
   const int rank = H5Sget_simple_extent_ndims(set.space);
   const hssize_t count = H5Sget_simple_extent_npoints(set.space);
   if (rank < 0 || count < 0) fail(name, "the size of this data set cannot be read: the file is damaged");
-  if (rank > 1) fail(name, fmt::format("has {} dimensions where one is expected", rank));
+  // Vectors are also written as matrices of one column or one row.
+  std::vector<hsize_t> extents(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(set.space, extents.data(), nullptr);
+  if (std::count_if(extents.begin(), extents.end(), [](hsize_t n) { return n != 1; }) > 1)
+    fail(name, fmt::format("has {} dimensions where one is expected", rank));
   return count;
 }
 

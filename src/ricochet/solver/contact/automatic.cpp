@@ -364,7 +364,9 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   if (ask_others(work, last_others)) return "";
   current = fallback_;
   if (sweep_on(work)) return "";
-  return "the conditions of contact and friction are still not met after the largest number of iterations";
+  return "the conditions of contact and friction are not met after all that was tried: there may be no solution, or W "
+         "is "
+         "not positive semi-definite";
 }
 
 /// Other solvers from r = 0, then from the best r there is. They fail where this one does not and the other way round:

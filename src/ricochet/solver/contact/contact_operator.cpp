@@ -52,11 +52,21 @@ class SparseOperator final : public ContactOperator {
 class ProductOperator final : public ContactOperator {
  public:
   ProductOperator(Index rows, std::function<void(const Vector&, Vector&)> product)
-      : rows_(rows), product_(std::move(product)) {}
+      : rows_(rows), product_(std::move(product)) {
+    if (rows_ < 0 || product_ == nullptr) {
+      throw Error(ErrorKind::invalid_input, fmt::format("contact problem: W of {} rows needs {}", rows_,
+                                                        rows_ < 0 ? "a number of rows" : "a product"));
+    }
+  }
   [[nodiscard]] Index rows() const override { return rows_; }
   void multiply(const Vector& x, Vector& y) const override {
-    y.resize(rows_);
+    y.setZero(rows_);
     product_(x, y);
+    if (y.size() != rows_) {
+      throw Error(
+          ErrorKind::invalid_input,
+          fmt::format("contact problem: the product with W gives {} entries, but W has {} rows", y.size(), rows_));
+    }
   }
   [[nodiscard]] PointMatrix block(Index first, Index size) const override {
     PointMatrix result(size, size);
@@ -64,7 +74,7 @@ class ProductOperator final : public ContactOperator {
     Vector column(rows_);
     for (Index j = 0; j < size; ++j) {
       unit[first + j] = 1.0;
-      product_(unit, column);
+      multiply(unit, column);
       unit[first + j] = 0.0;
       result.col(j) = column.segment(first, size);
     }

@@ -34,8 +34,10 @@ class ContactOperator {
 /// Compressed columns, duplicates summed, both triangles present; stored by blocks of points when it is solved with.
 /// Throws Error(invalid_input) where W is not square.
 [[nodiscard]] std::shared_ptr<ContactOperator> make_sparse_operator(SparseMatrix w);
-/// Known by its product y = W x alone. Solvers that need entries of W find them by products with unit vectors as long
-/// as there are few rows, and say so where there are too many.
+/// Known by its product y = W x alone; y comes with as many zeros as W has rows. Up to 3000 rows all entries are found
+/// by products with unit vectors, when the problem is analysed; beyond that its diagonal blocks only (as many products:
+/// derive from ContactOperator and define `block` where they are known), and the solvers that need more say so. Throws
+/// Error(invalid_input) without a product, or where it returns another number of entries.
 [[nodiscard]] std::shared_ptr<ContactOperator> make_product_operator(
     Index rows, std::function<void(const Vector& x, Vector& y)> product);
 

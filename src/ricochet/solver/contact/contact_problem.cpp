@@ -19,7 +19,7 @@ void require(bool holds, const char* message) {
 }
 
 void require_size(Index found, Index expected, const char* what) {
-  if (found != expected) fail(fmt::format("{} has {} entries, but {} are needed", what, found, expected));
+  if (found != expected) fail(fmt::format("{} entries in {}, but {} are needed", found, what, expected));
 }
 
 }  // namespace
@@ -27,6 +27,9 @@ void require_size(Index found, Index expected, const char* what) {
 ContactProblem::ContactProblem(Index dimension, std::shared_ptr<const ContactOperator> w, Vector q, Vector friction)
     : contact_operator(std::move(w)), offset(std::move(q)), friction_coefficient(std::move(friction)) {
   if (dimension < 1 || dimension > 3) fail(fmt::format("{} rows per point; there can be 1, 2 or 3", dimension));
+  if (offset.size() % dimension != 0) {
+    fail(fmt::format("q has {} entries, which is not a multiple of the {} rows of a point", offset.size(), dimension));
+  }
   for (Index row = 0; row <= offset.size(); row += dimension) first.push_back(row);
   validate();
 }
@@ -42,8 +45,9 @@ void ContactProblem::validate() const {
     const Index size = first[i + 1] - first[i];
     if (size < 1 || size > 3) fail(fmt::format("point {} has {} rows; there can be 1, 2 or 3", i, size));
   }
-  require_size(offset.size(), first.back(), "the offset q");
-  require_size(contact_operator->rows(), first.back(), "a column of W");
+  require_size(offset.size(), first.back(), "q");
+  if (contact_operator->rows() != first.back())
+    fail(fmt::format("W has {} rows, but the points have {}", contact_operator->rows(), first.back()));
   require_size(friction_coefficient.size(), points(), "the friction coefficients");
   if (friction_bound.size() > 0) require_size(friction_bound.size(), points(), "the friction bounds");
   if (offset_rounding.size() > 0) require_size(offset_rounding.size(), rows(), "the rounding of q");
@@ -51,10 +55,11 @@ void ContactProblem::validate() const {
   const auto admissible = [](double value) { return value >= 0.0 && std::isfinite(value); };
   for (Index i = 0; i < points(); ++i) {
     if (!admissible(friction_coefficient[i]))
-      fail(fmt::format("the friction coefficient of point {} is {}; it must be zero or positive", i,
+      fail(fmt::format("the friction coefficient of point {} is {}; it must be zero or positive, and finite", i,
                        friction_coefficient[i]));
     if (!admissible(bound(i)))
-      fail(fmt::format("the friction bound of point {} is {}; it must be zero (none) or positive", i, bound(i)));
+      fail(fmt::format("the friction bound of point {} is {}; it must be zero (none) or positive, and finite", i,
+                       bound(i)));
   }
 }
 

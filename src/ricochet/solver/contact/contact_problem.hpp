@@ -44,8 +44,8 @@ struct ContactProblem {
     return eligible.empty() || eligible[static_cast<std::size_t>(point)] != 0;
   }
   [[nodiscard]] double bound(Index point) const { return friction_bound.size() > 0 ? friction_bound[point] : 0.0; }
-  /// Throws Error(invalid_input) where sizes do not agree, a coefficient or bound is negative, or a number of q or F is
-  /// not finite; names the point.
+  /// Throws Error(invalid_input) where sizes do not agree, or a coefficient or bound is negative or not finite; names
+  /// the point. Of q and W the solvers say what is wrong (ContactOutcome::invalid_data).
   void validate() const;
 };
 
