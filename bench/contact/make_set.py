@@ -1,13 +1,9 @@
-#!/usr/bin/python3
-"""Makes the benchmark's problems: meshes, case files, runs with --export-contact, rescaled copies.
-
-    make_set.py RICOCHET DIRECTORY [--only PART-OF-A-NAME]
+"""For run.py: makes the benchmark's problems: meshes, case files, runs with --export-contact, rescaled copies.
 
 DIRECTORY/problems/NAME-sSTEP.hdf5 are the problems, DIRECTORY/sequences/NAME/step-*.hdf5 the time sequences. A case whose
 file and program have not changed is not run again.
 """
 
-import argparse
 import hashlib
 import json
 import os
@@ -130,30 +126,22 @@ def run_case(case, program, directory, stamp):
     return ""
 
 
-def main():
-    parser = argparse.ArgumentParser(description="makes the problems of the contact benchmark")
-    parser.add_argument("program")
-    parser.add_argument("directory", type=pathlib.Path)
-    parser.add_argument("--only", default="", help="cases with this in their name")
-    arguments = parser.parse_args()
+def make(program, directory, only=""):
+    """All that is not there yet of the cases with `only` in their name."""
     for name in ("meshes", "runs", "problems", "sequences"):
-        (arguments.directory / name).mkdir(parents=True, exist_ok=True)
-    version = subprocess.run([arguments.program, "--version"], capture_output=True, text=True, check=True).stdout
+        (directory / name).mkdir(parents=True, exist_ok=True)
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
     failures = []
     for case in CASES:
-        if arguments.only not in case.name:
+        if only not in case.name:
             continue
         begin = time.perf_counter()
-        failure = run_case(case, arguments.program, arguments.directory.resolve(), version)
+        failure = run_case(case, program, directory, version)
         print(f"{time.perf_counter() - begin:6.1f} s  {case.name}", file=sys.stderr, flush=True)
         if failure:
             failures.append(failure)
-    problems = list((arguments.directory / "problems").glob("*.hdf5"))
-    size = sum(path.stat().st_size for path in arguments.directory.rglob("*") if path.is_file())
-    print(f"{len(problems)} problems, {size / 1e6:.0f} MB in {arguments.directory}", file=sys.stderr)
+    problems = list((directory / "problems").glob("*.hdf5"))
+    size = sum(path.stat().st_size for path in directory.rglob("*") if path.is_file())
+    print(f"{len(problems)} problems, {size / 1e6:.0f} MB in {directory}", file=sys.stderr)
     if failures:
         sys.exit("\n".join(failures))
-
-
-if __name__ == "__main__":
-    main()

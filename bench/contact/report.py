@@ -5,10 +5,12 @@
 """
 
 import argparse
+import datetime
 import json
 import pathlib
 import re
 import statistics
+import subprocess
 
 import matplotlib
 
@@ -235,25 +237,22 @@ def profile(results, path):
     plt.close(figure)
 
 
-def main():
-    parser = argparse.ArgumentParser(description="tables and plots of the contact benchmark")
-    parser.add_argument("--directory", type=pathlib.Path, default=ROOT / "build/bench-contact")
-    parser.add_argument("--print", action="store_true", help="only print the tables")
-    arguments = parser.parse_args()
-    results = Results(arguments.directory / "results.json")
+def report(directory, results="results.json", sequences="sequences.json", only_print=False):
+    results = Results(directory / results)
     parts = {
         "ratios": ratio_table(results),
         "groups": group_table(results),
         "solvers": "\n\n".join(f"**{dimension}D, {tolerance:g}**\n\n{solver_table(results, dimension, tolerance)}"
                                for dimension in (2, 3) if results.names(dimension) for tolerance in results.tolerances),
-        "sequences": sequence_table(arguments.directory / "sequences.json"),
+        "sequences": sequence_table(directory / sequences),
         "claims": claims_table(results),
         "problems": problem_table(results),
+        "machine": machine(),
     }
-    hard = arguments.directory / "hard.md"
+    hard = directory / "hard.md"
     if hard.exists():
         parts["hard"] = hard.read_text().strip()
-    if arguments.print:
+    if only_print:
         print("\n\n".join(parts.values()))
         return
     page = ROOT / "docs/contact-solvers.md"
@@ -264,5 +263,16 @@ def main():
     profile(results, ROOT / "docs/figures/contact-solvers.png")
 
 
+def machine():
+    """Of the last run: what was compared, where and when."""
+    processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown processor")
+    commit = subprocess.run(["git", "-C", str(ROOT), "log", "-1", "--format=%h"], capture_output=True, text=True).stdout.strip()
+    return f"Measured {datetime.date.today()} with Ricochet at commit {commit or 'unknown'} on one core of a shared machine ({processor})."
+
+
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description="tables and plots of the contact benchmark, from what run.py has left")
+    parser.add_argument("--directory", type=pathlib.Path, default=ROOT / "build/bench-contact")
+    parser.add_argument("--print", action="store_true", help="only print the tables")
+    options = parser.parse_args()
+    report(options.directory, only_print=options.print)

@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """Runs Ricochet's and Siconos' solvers over the set and judges what they return.
 
-    run.py [--directory build/bench-contact] [--bench build/ricochet_contact_bench] [--only PART-OF-A-NAME] [--ours-only]
-           [--again N]
+    run.py --help
 
 Writes DIRECTORY/results.json, one record for each problem, solver and tolerance, and sequences.json; report.py makes the
 tables and the plots of them. What Siconos did is kept from run to run (theirs.json) until a problem's file changes.
@@ -25,8 +24,11 @@ import numpy as np
 
 import describe
 import fclib
+import make_set
 import measure
 import reference
+import report
+from case_table import CASES
 from siconos_solvers import RAW, SOLVERS
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -213,7 +215,7 @@ def run_problems(arguments, directory, our_solvers):
                                     **cache[key]})
             cache_file.write_text(json.dumps(cache))
         progress(number + 1, len(paths), path.stem, records[begin:])
-        (directory / "results.json").write_text(json.dumps({"problems": table, "records": records}, indent=1))
+        (directory / arguments.results).write_text(json.dumps({"problems": table, "records": records}, indent=1))
     siconos.stop()
 
 
@@ -268,7 +270,7 @@ def run_sequences(arguments, directory):
             if record["sequence"] == folder.name:
                 print(f"{folder.name:40s} {record['by']:9s} {record['solver']:24s} median {record['median'] * 1e3:9.3f} ms, "
                       f"{record['failures']} failures", file=sys.stderr, flush=True)
-        (directory / "sequences.json").write_text(json.dumps(results, indent=1))
+        (directory / arguments.sequences).write_text(json.dumps(results, indent=1))
     siconos.stop()
 
 
@@ -294,28 +296,53 @@ def sequence_record(name, problem, by, solver, tolerance, answers):
             "distance": max((answer.get("distance_r", float("inf")) for answer in answers))}
 
 
-def main():
+def parse():
     root = HERE.parents[1]
-    parser = argparse.ArgumentParser(description="Ricochet's contact solvers against Siconos'")
-    parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-contact")
-    parser.add_argument("--bench", default=str(root / "build/ricochet_contact_bench"))
-    parser.add_argument("--program", default=str(root / "build/ricochet"))
-    parser.add_argument("--only", default="")
-    parser.add_argument("--ours-only", action="store_true")
+    parser = argparse.ArgumentParser(
+        description="Ricochet's contact solvers against Siconos': makes the set of problems, runs everything, and writes the tables "
+                    "and the plot of docs/contact-solvers.md. With any of the options that leave something out, tables are only printed.")
+    parser.add_argument("--only", default="", metavar="NAME", help="only the cases with this in their name (case_table.py)")
     parser.add_argument("--default-only", action="store_true", help="of ours only the default solver")
+    parser.add_argument("--ours-only", action="store_true", help="nothing of Siconos'")
+    parser.add_argument("--no-problems", action="store_true", help="only the time sequences")
+    parser.add_argument("--no-sequences", action="store_true", help="only the single problems")
+    parser.add_argument("--no-hard", action="store_true", help="without the random hard problems")
+    parser.add_argument("--tolerances", type=float, nargs="+", default=TOLERANCES, metavar="T", help="instead of 1e-4 1e-8 1e-12")
     parser.add_argument("--again", type=int, default=0, metavar="N",
                         help="time the N fastest of Siconos' answers to each problem anew (after a run on a busy machine)")
-    parser.add_argument("--again-solvers", nargs="*", default=[], help="and all answers of these")
-    parser.add_argument("--no-sequences", action="store_true")
-    parser.add_argument("--no-problems", action="store_true")
-    parser.add_argument("--tolerances", type=float, nargs="+", default=TOLERANCES)
+    parser.add_argument("--again-solvers", nargs="*", default=[], metavar="SOLVER", help="and all answers of these")
+    parser.add_argument("--write", action="store_true", help="write the page whatever was left out: from what is cached")
+    parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-contact", help="of problems and results")
+    parser.add_argument("--build", type=pathlib.Path, default=root / "build", help="where ricochet and its benchmarks are")
+    parser.add_argument("--check", action="store_true", help="look at the options, and do nothing")
     arguments = parser.parse_args()
+    if not any(arguments.only in case.name for case in CASES):
+        parser.error(f"--only {arguments.only}: no case has this in its name; there are {', '.join(case.name for case in CASES)}")
+    arguments.bench, arguments.program = str(arguments.build / "ricochet_contact_bench"), str(arguments.build / "ricochet")
+    # A part must not take the place of the whole.
+    arguments.results, arguments.sequences = (("part.json", "part-sequences.json") if arguments.only
+                                              else ("results.json", "sequences.json"))
+    return arguments
+
+
+def main():
+    arguments = parse()
+    if arguments.check:
+        return
+    directory = arguments.directory.resolve()
+    make_set.make(arguments.program, directory, arguments.only)
     listing = subprocess.run([arguments.program, "contact", "--list"], capture_output=True, text=True, check=True).stdout
     our_solvers = ["automatic"] if arguments.default_only else [line.split()[0] for line in listing.splitlines() if line.strip()]
+    in_part = bool(arguments.only or arguments.default_only or arguments.ours_only or tuple(arguments.tolerances) != TOLERANCES)
     if not arguments.no_problems:
-        run_problems(arguments, arguments.directory.resolve(), our_solvers)
+        run_problems(arguments, directory, our_solvers)
     if not arguments.no_sequences:
-        run_sequences(arguments, arguments.directory.resolve())
+        run_sequences(arguments, directory)
+    if not (arguments.no_hard or in_part):
+        with open(directory / "hard.md", "w") as file:
+            subprocess.run([str(arguments.build / "ricochet_hard_contact_bench")], stdout=file, check=True)
+    left_out = in_part or arguments.no_problems or arguments.no_sequences or arguments.no_hard
+    report.report(directory, arguments.results, arguments.sequences, only_print=left_out and not arguments.write)
 
 
 if __name__ == "__main__":

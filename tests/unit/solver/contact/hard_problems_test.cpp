@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/io/fclib_file.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "support/hard_contact_problems.hpp"
 
@@ -336,6 +337,18 @@ TEST(HardContact, FiveThousandPoints) {
         expect_truth(problem, solution, 1e-8);
       }
     }
+  }
+}
+
+/// A finite element problem on which the default solver's own Newton iteration comes back to where it was: another
+/// Newton method takes over, instead of thousands of sweeps.
+TEST(HardContact, NewtonThatCycles) {
+  const ContactProblem problem = reduce(read_fclib(RICOCHET_TEST_DATA "/contact/newton-cycles.hdf5")).problem;
+  for (const double tolerance : {0.0, 1e-10}) {
+    const ContactSolution solution = solve(problem, tolerance);
+    EXPECT_TRUE(solution.solved()) << solution.reason;
+    EXPECT_LT(solution.iterations, 200);
+    expect_truth(problem, solution, std::max(tolerance, 1e-12));
   }
 }
 
