@@ -130,6 +130,9 @@ class AutomaticSolver final : public IterativeContactSolver {
   bool newton(const ContactWork& work);
   bool sweeps_and_newton(const ContactWork& work);
   bool alternate(const ContactWork& work, int sweeps, double damping);
+  bool fall_back(const ContactWork& work, bool was_cold);
+  static void begin_at_zero(const ContactWork& work);
+  void keep_fallback();
   bool ask_others(const ContactWork& work, const std::vector<OtherSolver>& others);
   bool sweep_on(const ContactWork& work);
 
@@ -139,8 +142,8 @@ class AutomaticSolver final : public IterativeContactSolver {
   std::unique_ptr<ContactSolver> products_;                       ///< where there are no entries of W
   std::map<std::string, std::unique_ptr<ContactSolver>> others_;  ///< where all else has failed
   PrimalDualActiveSet frictionless_;
-  BestIterate best_;
-  ContactIterate fallback_;
+  BestIterate best_;      ///< of a part of the iteration
+  BestIterate fallback_;  ///< of all
   Vector begin_;
   bool stalled_ = false;
   /// What problems have cost, on the mean of recent ones: zero, not known yet.
@@ -329,44 +332,46 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
     work.current = best_.iterate;
   }
   if (sweeps_and_newton(work)) return "";
-  fallback_ = best_.iterate;
-  double fallback_merit = best_.merit;
-  if (!std::isfinite(fallback_merit)) return "the iteration diverged: the contact operator is not positive definite";
-  const auto keep = [&] {
-    if (best_.merit < fallback_merit) {
-      fallback_merit = best_.merit;
-      fallback_ = best_.iterate;
-    }
-  };
-  const auto begin_at_zero = [&] {
-    current.reaction.setZero();
-    system.evaluate(current);
-  };
-  if (!cold) {
+  if (!std::isfinite(best_.merit)) return "the iteration diverged: the contact operator is not positive definite";
+  if (fall_back(work, cold)) return "";
+  return "the conditions of contact and friction are not met after all that was tried: there may be no solution, or W "
+         "is not positive semi-definite";
+}
+
+void AutomaticSolver::begin_at_zero(const ContactWork& work) {
+  work.current.reaction.setZero();
+  work.system.evaluate(work.current);
+}
+
+void AutomaticSolver::keep_fallback() {
+  if (best_.merit < fallback_.merit) fallback_ = best_;
+}
+
+/// What is left to try where sweeps and Newton have failed, the cheapest first.
+bool AutomaticSolver::fall_back(const ContactWork& work, bool was_cold) {
+  fallback_ = best_;
+  if (!was_cold) {
     // Where contact comes and goes the last reactions can be a bad start.
-    begin_at_zero();
+    begin_at_zero(work);
     best_.restart(work);
     best_.merit = std::numeric_limits<double>::infinity();
     newton_.start();
-    if (sweeps_and_newton(work)) return "";
-    keep();
+    if (sweeps_and_newton(work)) return true;
+    keep_fallback();
   }
-  if (ask_others(work, first_others)) return "";
-  current = fallback_;
-  if (alternate(work, cold_sweeps, 1.0)) return "";
-  keep();
+  if (ask_others(work, first_others)) return true;
+  work.current = fallback_.iterate;
+  if (alternate(work, cold_sweeps, 1.0)) return true;
+  keep_fallback();
   // Strong friction can make whole corrections circle; parts of them, from zero, then often arrive.
   for (double damping = 0.5; damping >= smallest_damping; damping *= 0.5) {
-    begin_at_zero();
-    if (alternate(work, 2 * cold_sweeps, damping)) return "";
-    keep();
+    begin_at_zero(work);
+    if (alternate(work, 2 * cold_sweeps, damping)) return true;
+    keep_fallback();
   }
-  if (ask_others(work, last_others)) return "";
-  current = fallback_;
-  if (sweep_on(work)) return "";
-  return "the conditions of contact and friction are not met after all that was tried: there may be no solution, or W "
-         "is "
-         "not positive semi-definite";
+  if (ask_others(work, last_others)) return true;
+  work.current = fallback_.iterate;
+  return sweep_on(work);
 }
 
 /// Other solvers from r = 0, then from the best r there is. They fail where this one does not and the other way round:
@@ -374,7 +379,6 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
 bool AutomaticSolver::ask_others(const ContactWork& work, const std::vector<OtherSolver>& others) {
   if (!refuse_bounds(work.system).empty()) return false;
   const double rows = static_cast<double>(work.system.rows());
-  double best = work.system.measure(fallback_).beyond_floor;
   for (const bool cold : {true, false}) {
     for (const OtherSolver& other : others) {
       const double limit =
@@ -382,17 +386,14 @@ bool AutomaticSolver::ask_others(const ContactWork& work, const std::vector<Othe
       ContactOptions options = work.options;
       options.iteration_limit = static_cast<int>(std::min(limit, static_cast<double>(other.iteration_limit)));
       if (options.iteration_limit < fewest_of_others) continue;
-      work.current.reaction = cold ? Vector(Vector::Zero(work.system.rows())) : fallback_.reaction;
+      work.current.reaction = cold ? Vector(Vector::Zero(work.system.rows())) : fallback_.iterate.reaction;
       work.system.evaluate(work.current);
       std::unique_ptr<ContactSolver>& solver = others_[other.name];
       if (solver == nullptr) solver = make_contact_solver(other.name);
       auto& iteration = dynamic_cast<IterativeContactSolver&>(*solver);
       if (iteration.iterate(work.system, options, work.current, work.solution).empty()) return true;
       if (work.options.tolerance == 0.0 && work.system.is_solved(work.current, loosest_residual)) return true;
-      const double reached = work.system.measure(work.current).beyond_floor;
-      if (!(reached < best)) continue;
-      best = reached;
-      fallback_ = work.current;
+      fallback_.keep(work);
     }
   }
   return false;
@@ -408,9 +409,10 @@ bool AutomaticSolver::sweep_on(const ContactWork& work) {
     const double before = best_.merit;
     if (sweep(work, sweeps, 1.0)) return true;
     if (!(work.merit() < 0.5 * before)) break;
-    fallback_ = work.current;
+    begin_ = work.current.reaction;
     if (newton_.run(work, false, best_)) return true;
-    work.current = fallback_;
+    work.current.reaction = begin_;
+    work.system.evaluate(work.current);
   }
   work.current = best_.iterate;
   return false;

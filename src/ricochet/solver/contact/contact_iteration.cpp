@@ -207,7 +207,8 @@ void IterativeContactSolver::run(const ContactOptions& options, ContactSolution&
       best = measure_;
       std::swap(closest_, finished_);
     }
-    if (!solution.reason.empty() || best.beyond_floor <= options.tolerance * system_.data()) break;
+    const bool enough = k > 0 && options.tolerance == 0.0 && best.beyond_floor <= loosest_residual * system_.data();
+    if (!solution.reason.empty() || enough || best.beyond_floor <= options.tolerance * system_.data()) break;
   }
   std::swap(closest_, finished_);
   measure_ = best;
