@@ -117,6 +117,11 @@ def expand(problem, reaction):
     return full
 
 
+def limit_of(problem):
+    """Seconds for one call."""
+    return SMALL_LIMIT if problem.points <= SMALL else LIMIT
+
+
 def run_ours(bench, directory, path, problem, solver, tolerance, repeat, more=()):
     """(answer, reaction) for one problem; for a sequence `path` is a list and so is the answer."""
     paths = [path] if isinstance(path, pathlib.Path) else path
@@ -125,7 +130,7 @@ def run_ours(bench, directory, path, problem, solver, tolerance, repeat, more=()
     command = [bench, *map(str, paths), "--solver", solver, "--tolerance", repr(tolerance), "--repeat", str(repeat),
                "--reactions", str(reactions), "--json", *more]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=2 * LIMIT * max(repeat, len(paths)))
+        done = subprocess.run(command, capture_output=True, text=True, timeout=2 * limit_of(problem) * max(repeat, len(paths)))
     except subprocess.TimeoutExpired:
         return {"failure": "time limit"}, None
     lines = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
@@ -147,7 +152,7 @@ def solve_theirs(siconos, path, judge, solver, raw, tolerance):
     answer = {}
     for tighten in (1.0, 0.1, 0.01) if not raw else (1.0,):
         request = {"problem": str(path), "solver": solver, "raw": raw, "tolerance": tolerance, "tighten": tighten, "repeat": REPEAT}
-        reply, reaction = siconos.ask(request, SMALL_LIMIT if judge.problem.points <= SMALL else LIMIT)
+        reply, reaction = siconos.ask(request, limit_of(judge.problem))
         answer = judge.assess({**reply, "tighten": tighten}, reaction, tolerance)
         if answer["solved"] or answer.get("status") != 0:  # it says no itself: asked for more it would say so again
             break
@@ -189,15 +194,18 @@ def run_problems(arguments, directory, our_solvers):
         entry = describe.describe(path, judge.reference.astype(float), with_condition=problem.points < 1200)
         table.append({"problem": path.stem, **entry, "reference_residual": judge.reference_residual, "floor": judge.floor})
         begin = len(records)
-        for tolerance in arguments.tolerances:
-            for solver in our_solvers:
+        for solver in our_solvers:
+            hopeless = False
+            for tolerance in arguments.tolerances:
                 repeat = REPEAT if problem.points < 1000 else 3
-                if solver != "automatic" and problem.points >= 1000:
+                if solver != "automatic" and problem.points >= 300:
                     repeat = 1
-                answer, reaction = run_ours(arguments.bench, directory, path, problem, solver, tolerance, repeat)
+                answer, reaction = ({"failure": "failed at a larger tolerance"}, None) if hopeless else run_ours(
+                    arguments.bench, directory, path, problem, solver, tolerance, repeat)
                 if answer.get("outcome") == "not_applicable":
-                    continue
+                    break
                 answer = judge.assess(answer, reaction, tolerance)
+                hopeless = solver != "automatic" and not answer["solved"]
                 records.append({"problem": path.stem, "by": "ricochet", "solver": solver, "raw": False, "tolerance": tolerance,
                                 **{key: answer[key] for key in answer if key not in ("problem", "solver", "tolerance")}})
         if not arguments.ours_only:

@@ -203,11 +203,12 @@ void IterativeContactSolver::run(const ContactOptions& options, ContactSolution&
     solution.reason = iterate(system_, closer, current_, solution);
     finish(options);
     current_.reaction = finished_.reaction;
-    if (k == 0 || measure_.beyond_floor < best.beyond_floor) {
+    const bool improves = k == 0 || measure_.beyond_floor < best.beyond_floor;
+    if (improves) {
       best = measure_;
       std::swap(closest_, finished_);
     }
-    const bool enough = k > 0 && options.tolerance == 0.0 && best.beyond_floor <= loosest_residual * system_.data();
+    const bool enough = !improves && options.tolerance == 0.0 && best.beyond_floor <= loosest_residual * system_.data();
     if (!solution.reason.empty() || enough || best.beyond_floor <= options.tolerance * system_.data()) break;
   }
   std::swap(closest_, finished_);
