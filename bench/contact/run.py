@@ -35,6 +35,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 TOLERANCES = (1e-4, 1e-8, 1e-12)
 LIMIT = 20.0  # seconds for one call
 SMALL, SMALL_LIMIT = 450, 5.0  # points, and seconds for them: hundreds of times what the good solvers take
+MANY = 1500  # points, above which only these of Siconos' solvers are run: the others would take minutes each
+FOR_MANY = ("NSGS-newton-blocks", "NSGS-newton-freeze", "NSGS-projection-blocks", "VI_EG")
 SLACK = 10.0  # a true residual of so many tolerances still counts as solved
 REPEAT = 5
 
@@ -143,8 +145,10 @@ def run_ours(bench, directory, path, problem, solver, tolerance, repeat, more=()
     return results[0] if isinstance(path, pathlib.Path) else results
 
 
-def their_solvers(dimension):
-    return [(name, False) for name in SOLVERS[dimension]] + [(name, True) for name in RAW[dimension]]
+def their_solvers(problem):
+    if problem.points > MANY:
+        return [(name, False) for name in FOR_MANY]
+    return [(name, False) for name in SOLVERS[problem.dimension]] + [(name, True) for name in RAW[problem.dimension]]
 
 
 def solve_theirs(siconos, path, judge, solver, raw, tolerance):
@@ -209,7 +213,7 @@ def run_problems(arguments, directory, our_solvers):
                 records.append({"problem": path.stem, "by": "ricochet", "solver": solver, "raw": False, "tolerance": tolerance,
                                 **{key: answer[key] for key in answer if key not in ("problem", "solver", "tolerance")}})
         if not arguments.ours_only:
-            for solver, raw in their_solvers(problem.dimension):
+            for solver, raw in their_solvers(problem):
                 if not raw and "-in-" in path.stem:  # scaled to unit size it is the problem itself
                     continue
                 hopeless = False
