@@ -53,6 +53,10 @@ class Results:
         record = self.cells.get((name, key, tolerance))
         return record["seconds"] if record and record["solved"] else INFINITE
 
+    def run(self, names, key, tolerance):
+        """Those of the problems on which this solver was run."""
+        return [name for name in names if (name, key, tolerance) in self.cells]
+
     def best_of_theirs(self, name, tolerance):
         return min((self.seconds(n, key, t) for n, key, t in self.cells if n == name and t == tolerance and key[0] == "siconos"),
                    default=INFINITE)
@@ -80,9 +84,10 @@ def solver_table(results, dimension, tolerance):
         records = [results.cells[name, key, tolerance] for name in names if (name, key, tolerance) in results.cells]
         if not records:
             continue
-        times = [results.seconds(name, key, tolerance) for name in names]
+        run = results.run(names, key, tolerance)
+        times = [results.seconds(name, key, tolerance) for name in run]
         ratios = [results.seconds(name, key, tolerance) / results.seconds(name, DEFAULT, tolerance)
-                  for name in names if results.seconds(name, DEFAULT, tolerance) < INFINITE]
+                  for name in run if results.seconds(name, DEFAULT, tolerance) < INFINITE]
         good = [record for record in records if record["solved"]]
         rows.append((statistics.median(times), key, [
             label(key), f"{sum(not r['solved'] for r in records)} of {len(records)}", milliseconds(statistics.median(times)),
@@ -106,8 +111,8 @@ def ratio_table(results):
             if not ratios:
                 continue
             quartiles = ", ".join(number(value, "{:.2f}") for value in np.quantile(ratios, (0.25, 0.5, 0.75)))
-            single = [(statistics.median(results.seconds(name, key, tolerance) for name in names), key)
-                      for key in results.solvers(dimension) if key[0] == "siconos"]
+            single = [(statistics.median(results.seconds(name, key, tolerance) for name in run), key)
+                      for key in results.solvers(dimension) if key[0] == "siconos" and (run := results.run(names, key, tolerance))]
             best = min(single, default=(INFINITE, ("siconos", "none", False)))
             median = statistics.median(ours.values())
             failures = sum(value == INFINITE for value in ours.values())
