@@ -27,6 +27,15 @@ using test::wedged_body;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double degree = std::numbers::pi / 180.0;
 
+/// Of each kind of random problem: a sample under the sanitizers, which look at the code and not at the numbers.
+constexpr unsigned seeds(unsigned count) {
+#ifdef __SANITIZE_ADDRESS__
+  return (count + 9) / 10;
+#else
+  return count;
+#endif
+}
+
 ContactSolution solve(const ContactProblem& problem, double tolerance) {
   const auto solver = make_contact_solver();
   ContactSolution solution;
@@ -70,7 +79,7 @@ TEST(HardContact, RigidBodiesOnManyPoints) {
   for (const Index dimension : {2, 3}) {
     for (const Index points : {4, 9, 25, 100}) {
       for (const double friction : {0.0, 0.3, 1.0}) {
-        for (unsigned seed = 0; seed < 6; ++seed) {
+        for (unsigned seed = 0; seed < seeds(6); ++seed) {
           SCOPED_TRACE(testing::Message() << dimension << "D, " << points << " points, F " << friction << ", " << seed);
           const FrictionProblem problem = rigid_box(points, dimension, friction, seed);
           expect_solved(problem, 1e-8);
@@ -87,7 +96,7 @@ TEST(HardContact, RigidBodiesOnManyPoints) {
 /// any that make it.
 TEST(HardContact, TheFrictionlessMotionOfARigidBodyIsUnique) {
   for (const Index dimension : {2, 3}) {
-    for (unsigned seed = 0; seed < 20; ++seed) {
+    for (unsigned seed = 0; seed < seeds(20); ++seed) {
       SCOPED_TRACE(testing::Message() << dimension << "D, " << seed);
       const FrictionProblem problem = rigid_box(36, dimension, 0.0, seed);
       const Vector motion = expect_solved(problem, 1e-13).motion;
@@ -149,10 +158,11 @@ Count count_wedges(double push, double softness, double preload) {
     for (const Index points : {3, 4, 8, 30}) {
       for (const double angle : {10.0, 20.0, 30.0, 45.0, 60.0, 70.0, 80.0}) {
         for (const double friction : {0.5, 1.0, 2.0, 3.0}) {
+          if (++seed % (seeds(10) < 10 ? 5 : 1) != 0) continue;
           SCOPED_TRACE(testing::Message() << dimension << "D, " << points << " points, " << angle << " degrees, F "
                                           << friction << ", softness " << softness << ", " << seed);
           const ContactProblem problem =
-              wedged_body(points, dimension, friction, angle * degree, push, softness, preload, ++seed).contact();
+              wedged_body(points, dimension, friction, angle * degree, push, softness, preload, seed).contact();
           const ContactSolution solution = solve(problem, 1e-8);
           expect_truth(problem, solution, 1e-8);
           ++count.all;
@@ -236,7 +246,7 @@ TEST(HardContact, TwelveOrdersOfMassesAndStiffnesses) {
   std::string which;
   for (const Index dimension : {2, 3}) {
     for (const double friction : {0.0, 0.3, 1.0, 3.0}) {
-      for (unsigned seed = 0; seed < 10; ++seed) {
+      for (unsigned seed = 0; seed < seeds(10); ++seed) {
         for (const double power : {1.0, 0.0, 2.0}) {
           SCOPED_TRACE(testing::Message() << dimension << "D, F " << friction << ", power " << power << ", " << seed);
           const FrictionProblem problem = unequal_bodies(40, dimension, friction, 12.0, power, seed);
@@ -269,7 +279,7 @@ TEST(HardContact, TwelveOrdersOfMassesAndStiffnesses) {
 /// D W D with any factors from 1e-6 to 1: the same problem, the same solution.
 TEST(HardContact, PointsScaledByAnyFactors) {
   for (const Index dimension : {2, 3}) {
-    for (unsigned seed = 0; seed < 10; ++seed) {
+    for (unsigned seed = 0; seed < seeds(10); ++seed) {
       SCOPED_TRACE(testing::Message() << dimension << "D, " << seed);
       const FrictionProblem problem = unequal_bodies(30, dimension, 0.3, 0.0, 1.0, seed);
       std::mt19937 random(seed);
