@@ -279,8 +279,16 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
   solution.record.clear();
   solution.reaction.setZero(problem.rows());
   solution.status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
-  system_.set_data(problem);
+  const auto has_fault = [&] {
+    if (system_.fault().empty()) return false;
+    solution.outcome = ContactOutcome::invalid_data;
+    solution.residual = std::numeric_limits<double>::quiet_NaN();
+    solution.reason = system_.fault();
+    return true;
+  };
   solution.motion = problem.offset;
+  if (has_fault()) return;
+  system_.set_data(problem);
   if (!system_.data_are_finite()) {
     solution.outcome = ContactOutcome::invalid_data;
     solution.residual = std::numeric_limits<double>::quiet_NaN();
@@ -293,12 +301,7 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
     return;
   }
   choose_points(problem);
-  if (!system_.fault().empty()) {
-    solution.outcome = ContactOutcome::invalid_data;
-    solution.residual = std::numeric_limits<double>::quiet_NaN();
-    solution.reason = system_.fault();
-    return;
-  }
+  if (has_fault()) return;
   solution.reason = refuses(system_);
   if (!solution.reason.empty()) {
     solution.outcome = ContactOutcome::not_applicable;

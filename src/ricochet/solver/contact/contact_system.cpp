@@ -81,6 +81,8 @@ void ContactSystem::analyse(const ContactProblem& problem) {
     largest_of[at] = block.diagonal().maxCoeff();
     largest = std::max(largest, largest_of[at]);
   }
+  operator_scale_ = 1.0;
+  if (!fault_.empty()) return;  // nothing is solved with such a W
   // The root of a power of two is one only for even powers: W's largest diagonal is brought between one and two first.
   operator_scale_ = 1.0 / power_of_two(largest);
   // Even with respect to the first point: a scaling of other rows, the largest one's included, changes nothing.
