@@ -74,10 +74,6 @@ void add_three_with_size(Index size, const double* __restrict a, const double* _
   }
 }
 
-}  // namespace
-
-namespace {
-
 template <typename Number>
 void add_any(Index size, Index count, const Number* columns, Index stride, const double* factors, double* y) {
   if (count == 3) {
