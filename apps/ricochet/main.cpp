@@ -84,11 +84,10 @@ int dispatch(int argc, char** argv) {
   contact->add_option("-o,--output", arguments.contact.output, "FCLib file for the problem and its solution")
       ->type_name("SOLUTION.hdf5");
   contact->add_flag("--record", arguments.contact.record, "print every iteration");
-  contact->footer(
-      "Exit status: 0 solved; 1 wrong use of the command line; 2 the file is malformed; 3 not solved: the best that "
-      "was\n"
-      "found is reported with its residual; 4 cannot read or write a file.");
   contact->add_flag("--list", arguments.contact.list, "list the solvers and do nothing else");
+  contact->footer(
+      "Exit status: 0 solved; 1 wrong use of the command line; 2 the file is malformed; 3 not solved: the best that\n"
+      "was found is reported with its residual; 4 cannot read or write a file.");
   add_common(*contact, arguments);
 
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
