@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "ricochet/base/error.hpp"
-#include "ricochet/solver/contact/contact_solver.hpp"
-#include "support/contact_problems.hpp"
+#include "support/contact_solver_test.hpp"
 
-/// @file Every solver of the library on the same problems, judged by a measure of this file's own.
+/// @file What every solver of the library solves, judged by a measure of this file's own.
 namespace ricochet {
 namespace {
 
@@ -91,21 +87,7 @@ Vector point_scales(const FrictionProblem& problem, const std::function<double(I
   return result;
 }
 
-class ContactSolvers : public testing::TestWithParam<std::string> {
- protected:
-  /// The active set method has no slip in two directions.
-  [[nodiscard]] Index dimension() const { return GetParam() == "active-set" ? 2 : 3; }
-  [[nodiscard]] ContactSolution solve(const FrictionProblem& problem, const ContactOptions& options) const {
-    return test::solve(problem, options, GetParam());
-  }
-  [[nodiscard]] ContactSolution solve(const ContactProblem& problem, const ContactOptions& options) const {
-    const auto solver = make_contact_solver(GetParam());
-    ContactSolution solution;
-    solver->analyse(problem);
-    solver->solve(problem, options, solution);
-    return solution;
-  }
-};
+class ContactSolvers : public test::ContactSolverTest {};
 
 TEST_P(ContactSolvers, MeetTheLawAtEveryPoint) {
   for (Index size = 1; size <= dimension(); ++size) {
@@ -255,119 +237,6 @@ TEST_P(ContactSolvers, MeasureTheSameInAnyScaling) {
   EXPECT_NEAR(solution.residual, residual, 1e-10);
 }
 
-TEST_P(ContactSolvers, RefuseNumbersThatAreNone) {
-  const FrictionProblem sound = random_problem(10, dimension(), 0.3, 1);
-  for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    FrictionProblem problem = sound;
-    problem.q[3] = value;
-    ContactSolution solution = solve(problem, {.tolerance = 1e-8});
-    EXPECT_EQ(solution.outcome, ContactOutcome::invalid_data);
-    EXPECT_NE(solution.reason, "");
-    problem = sound;
-    problem.w.triangularView<Eigen::StrictlyUpper>().setConstant(value);
-    problem.w.triangularView<Eigen::StrictlyLower>().setConstant(value);
-    solution = solve(problem, {.tolerance = 1e-8});
-    EXPECT_FALSE(solution.solved());
-    EXPECT_NE(solution.reason, "");
-  }
-}
-
-/// W with no solution: two points, each of which presses the other down.
-/// Squares of such numbers leave the range of numbers; the problem does not.
-TEST_P(ContactSolvers, SolveDataOfAnySize) {
-  const FrictionProblem problem = random_problem(12, dimension(), 0.3, 3, 1.0);
-  const ContactSolution expected = solve(problem, {.tolerance = 1e-10});
-  ASSERT_TRUE(expected.solved());
-  const std::pair<double, double> factors[] = {{0x1p990, 0x1p990},   {1.0, 0x1p530},  {1.0, 0x1p-990},
-                                               {0x1p-990, 0x1p-980}, {0x1p-990, 1.0}, {0x1p600, 1.0}};
-  for (const auto& [of_operator, of_offset] : factors) {
-    FrictionProblem other = problem;
-    other.w *= of_operator;
-    other.q *= of_offset;
-    const ContactSolution solution = solve(other, {.tolerance = 1e-10});
-    EXPECT_TRUE(solution.solved()) << of_operator << ' ' << of_offset << ": " << solution.reason;
-    EXPECT_EQ(solution.reaction, expected.reaction * (of_offset / of_operator)) << of_operator << ' ' << of_offset;
-  }
-  FrictionProblem beyond = problem;  // reactions of 2^1100
-  beyond.w *= 0x1p-600;
-  beyond.q *= 0x1p500;
-  const ContactSolution solution = solve(beyond, {.tolerance = 1e-10});
-  EXPECT_FALSE(solution.solved());
-  EXPECT_NE(solution.reason.find("range of numbers"), std::string::npos) << solution.reason;
-}
-
-TEST_P(ContactSolvers, RefuseOperatorsWithNumbersThatAreNone) {
-  for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-    for (const double friction : {0.0, 0.3}) {
-      for (const auto& [i, j] : {std::pair<Index, Index>{1, 2}, {0, 5}, {3, 3}, {0, 3}}) {
-        FrictionProblem problem = random_problem(6, 2, friction, 3, 1.0);
-        for (Index k = 0; k < problem.points(); ++k) problem.q[problem.first[static_cast<std::size_t>(k)]] = -1.0;
-        problem.w(i, j) = problem.w(j, i) = value;
-        const ContactSolution solution = solve(problem, {.tolerance = 1e-8});
-        EXPECT_EQ(solution.outcome, ContactOutcome::invalid_data) << i << ' ' << j << ' ' << friction;
-      }
-    }
-  }
-  FrictionProblem negative = random_problem(6, 2, 0.3, 3, 1.0);
-  negative.w(4, 4) = -1.0;
-  EXPECT_EQ(solve(negative, {}).outcome, ContactOutcome::invalid_data);
-}
-
-/// Of a large F the cone hardly sees a penetration: its residual is 1/F of it.
-TEST_P(ContactSolvers, DoNotTakePenetrationForRounding) {
-  for (const double friction : {1e6, 1e7, 1e9}) {
-    for (unsigned seed = 0; seed < 10; ++seed) {
-      const FrictionProblem problem = random_problem(10, dimension(), friction, seed, 1.0);
-      const ContactSolution solution = solve(problem, {.tolerance = 1e-8});
-      if (!solution.solved()) continue;
-      const Vector u = problem.q + problem.w * solution.reaction;
-      for (Index i = 0; i < problem.points(); ++i)
-        EXPECT_GE(u[problem.first[static_cast<std::size_t>(i)]], -0.02 * problem.q.lpNorm<Eigen::Infinity>())
-            << friction << ' ' << seed;
-    }
-  }
-}
-
-TEST_P(ContactSolvers, RefuseSizesAndOptionsThatDoNotFit) {
-  const ContactProblem problem = random_problem(40, dimension(), 0.3, 3, 1.0).contact();
-  const auto solver = make_contact_solver(GetParam());
-  solver->analyse(problem);
-  ContactSolution solution;
-  const auto expect_refused = [&](const auto& change, const ContactOptions& options) {
-    ContactProblem changed = problem;
-    change(changed);
-    EXPECT_THROW(solver->solve(changed, options, solution), Error);
-  };
-  const auto nothing = [](ContactProblem&) {};
-  expect_refused([](ContactProblem& p) { p.offset.conservativeResize(5); }, {});
-  expect_refused([](ContactProblem& p) { p.friction_coefficient.conservativeResize(2); }, {});
-  expect_refused([](ContactProblem& p) { p.friction_coefficient[0] = -1.0; }, {});
-  expect_refused([](ContactProblem& p) { p.friction_coefficient[0] = std::nan(""); }, {});
-  expect_refused([](ContactProblem& p) { p.eligible = {1}; }, {});
-  expect_refused([](ContactProblem& p) { p.first[1] = 1; }, {});
-  expect_refused(nothing, {.tolerance = std::nan("")});
-  expect_refused(nothing, {.tolerance = -1.0});
-  expect_refused(nothing, {.tolerance = 1.0});
-  expect_refused(nothing, {.iteration_limit = -1});
-  EXPECT_THROW(solver->set_warm_start(Vector::Ones(7)), Error);
-  EXPECT_THROW(solver->set_warm_start(Vector::Constant(problem.rows(), std::nan(""))), Error);
-  if (GetParam() == "automatic") {
-    EXPECT_THROW(solver->set_warm_start(Vector::Ones(problem.rows() + 1)), Error);
-  }
-  solver->set_warm_start(Vector::Ones(problem.rows()));
-  solver->solve(problem, {}, solution);
-  EXPECT_TRUE(solution.solved());
-}
-
-TEST_P(ContactSolvers, DoNotSolveWhatHasNoSolution) {
-  FrictionProblem problem({1, 1}, 0.0);
-  problem.w << 1.0, -2.0, -2.0, 1.0;
-  problem.q << -1.0, -1.0;
-  const ContactSolution solution = solve(problem, {.tolerance = 1e-8, .iteration_limit = 500});
-  EXPECT_FALSE(solution.solved());
-  EXPECT_NE(solution.reason, "");
-}
-
 /// Blocks of neighbours only.
 FrictionProblem chain(Index points, Index dimension, double friction) {
   FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(points), dimension), friction);
@@ -484,17 +353,7 @@ TEST_P(ContactSolvers, FindTheMotionOfPointsThatAreThereTwice) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ContactSolvers, testing::ValuesIn([] {
-                           std::vector<std::string> names;
-                           for (const ContactSolverDescription& solver : contact_solvers())
-                             names.push_back(solver.name);
-                           return names;
-                         }()),
-                         [](const testing::TestParamInfo<std::string>& parameter) {
-                           std::string name = parameter.param;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, ContactSolvers, test::every_contact_solver(), test::contact_solver_test_name);
 
 }  // namespace
 }  // namespace ricochet

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "support/contact_problems.hpp"
+
+/// @file What the tests of every contact solver of the library have in common. A solver that is registered is in them.
+namespace ricochet::test {
+
+/// The parameter: a solver's name.
+class ContactSolverTest : public testing::TestWithParam<std::string> {
+ protected:
+  /// The active set method has no slip in two directions.
+  [[nodiscard]] Index dimension() const { return GetParam() == "active-set" ? 2 : 3; }
+  [[nodiscard]] ContactSolution solve(const FrictionProblem& problem, const ContactOptions& options) const {
+    return test::solve(problem, options, GetParam());
+  }
+  [[nodiscard]] ContactSolution solve(const ContactProblem& problem, const ContactOptions& options) const {
+    const auto solver = make_contact_solver(GetParam());
+    ContactSolution solution;
+    solver->analyse(problem);
+    solver->solve(problem, options, solution);
+    return solution;
+  }
+};
+
+/// For INSTANTIATE_TEST_SUITE_P.
+inline auto every_contact_solver() {
+  std::vector<std::string> names;
+  for (const ContactSolverDescription& solver : contact_solvers()) names.push_back(solver.name);
+  return testing::ValuesIn(names);
+}
+inline std::string contact_solver_test_name(const testing::TestParamInfo<std::string>& parameter) {
+  std::string name = parameter.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+}  // namespace ricochet::test

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "ricochet/base/error.hpp"
+#include "support/contact_solver_test.hpp"
+
+/// @file What every solver of the library makes of data and options that do not fit, or only just do.
+namespace ricochet {
+namespace {
+
+using test::FrictionProblem;
+using test::random_problem;
+
+class ContactSolverData : public test::ContactSolverTest {};
+
+TEST_P(ContactSolverData, RefuseNumbersThatAreNone) {
+  const FrictionProblem sound = random_problem(10, dimension(), 0.3, 1);
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    FrictionProblem problem = sound;
+    problem.q[3] = value;
+    ContactSolution solution = solve(problem, {.tolerance = 1e-8});
+    EXPECT_EQ(solution.outcome, ContactOutcome::invalid_data);
+    EXPECT_NE(solution.reason, "");
+    problem = sound;
+    problem.w.triangularView<Eigen::StrictlyUpper>().setConstant(value);
+    problem.w.triangularView<Eigen::StrictlyLower>().setConstant(value);
+    solution = solve(problem, {.tolerance = 1e-8});
+    EXPECT_FALSE(solution.solved());
+    EXPECT_NE(solution.reason, "");
+  }
+}
+
+TEST_P(ContactSolverData, RefuseOperatorsWithNumbersThatAreNone) {
+  for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    for (const double friction : {0.0, 0.3}) {
+      for (const auto& [i, j] : {std::pair<Index, Index>{1, 2}, {0, 5}, {3, 3}, {0, 3}}) {
+        FrictionProblem problem = random_problem(6, 2, friction, 3, 1.0);
+        for (Index k = 0; k < problem.points(); ++k) problem.q[problem.first[static_cast<std::size_t>(k)]] = -1.0;
+        problem.w(i, j) = problem.w(j, i) = value;
+        const ContactSolution solution = solve(problem, {.tolerance = 1e-8});
+        EXPECT_EQ(solution.outcome, ContactOutcome::invalid_data) << i << ' ' << j << ' ' << friction;
+      }
+    }
+  }
+  FrictionProblem negative = random_problem(6, 2, 0.3, 3, 1.0);
+  negative.w(4, 4) = -1.0;
+  EXPECT_EQ(solve(negative, {}).outcome, ContactOutcome::invalid_data);
+}
+
+TEST_P(ContactSolverData, RefuseSizesAndOptionsThatDoNotFit) {
+  const ContactProblem problem = random_problem(40, dimension(), 0.3, 3, 1.0).contact();
+  const auto solver = make_contact_solver(GetParam());
+  solver->analyse(problem);
+  ContactSolution solution;
+  const auto expect_refused = [&](const auto& change, const ContactOptions& options) {
+    ContactProblem changed = problem;
+    change(changed);
+    EXPECT_THROW(solver->solve(changed, options, solution), Error);
+  };
+  const auto nothing = [](ContactProblem&) {};
+  expect_refused([](ContactProblem& p) { p.offset.conservativeResize(5); }, {});
+  expect_refused([](ContactProblem& p) { p.friction_coefficient.conservativeResize(2); }, {});
+  expect_refused([](ContactProblem& p) { p.friction_coefficient[0] = -1.0; }, {});
+  expect_refused([](ContactProblem& p) { p.friction_coefficient[0] = std::nan(""); }, {});
+  expect_refused([](ContactProblem& p) { p.eligible = {1}; }, {});
+  expect_refused([](ContactProblem& p) { p.first[1] = 1; }, {});
+  expect_refused(nothing, {.tolerance = std::nan("")});
+  expect_refused(nothing, {.tolerance = -1.0});
+  expect_refused(nothing, {.tolerance = 1.0});
+  expect_refused(nothing, {.iteration_limit = -1});
+  EXPECT_THROW(solver->set_warm_start(Vector::Ones(7)), Error);
+  EXPECT_THROW(solver->set_warm_start(Vector::Constant(problem.rows(), std::nan(""))), Error);
+  if (GetParam() == "automatic") {
+    EXPECT_THROW(solver->set_warm_start(Vector::Ones(problem.rows() + 1)), Error);
+  }
+  solver->set_warm_start(Vector::Ones(problem.rows()));
+  solver->solve(problem, {}, solution);
+  EXPECT_TRUE(solution.solved());
+}
+
+/// Squares of such numbers leave the range of numbers; the problem does not.
+TEST_P(ContactSolverData, SolveDataOfAnySize) {
+  const FrictionProblem problem = random_problem(12, dimension(), 0.3, 3, 1.0);
+  const ContactSolution expected = solve(problem, {.tolerance = 1e-10});
+  ASSERT_TRUE(expected.solved());
+  const std::pair<double, double> factors[] = {{0x1p990, 0x1p990},   {1.0, 0x1p530},  {1.0, 0x1p-990},
+                                               {0x1p-990, 0x1p-980}, {0x1p-990, 1.0}, {0x1p600, 1.0}};
+  for (const auto& [of_operator, of_offset] : factors) {
+    FrictionProblem other = problem;
+    other.w *= of_operator;
+    other.q *= of_offset;
+    const ContactSolution solution = solve(other, {.tolerance = 1e-10});
+    EXPECT_TRUE(solution.solved()) << of_operator << ' ' << of_offset << ": " << solution.reason;
+    EXPECT_EQ(solution.reaction, expected.reaction * (of_offset / of_operator)) << of_operator << ' ' << of_offset;
+  }
+  FrictionProblem beyond = problem;  // reactions of 2^1100
+  beyond.w *= 0x1p-600;
+  beyond.q *= 0x1p500;
+  const ContactSolution solution = solve(beyond, {.tolerance = 1e-10});
+  EXPECT_FALSE(solution.solved());
+  EXPECT_NE(solution.reason.find("range of numbers"), std::string::npos) << solution.reason;
+}
+
+/// Of a large F the cone hardly sees a penetration: its residual is 1/F of it.
+TEST_P(ContactSolverData, DoNotTakePenetrationForRounding) {
+  for (const double friction : {1e6, 1e7, 1e9}) {
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      const FrictionProblem problem = random_problem(10, dimension(), friction, seed, 1.0);
+      const ContactSolution solution = solve(problem, {.tolerance = 1e-8});
+      if (!solution.solved()) continue;
+      const Vector u = problem.q + problem.w * solution.reaction;
+      for (Index i = 0; i < problem.points(); ++i)
+        EXPECT_GE(u[problem.first[static_cast<std::size_t>(i)]], -0.02 * problem.q.lpNorm<Eigen::Infinity>())
+            << friction << ' ' << seed;
+    }
+  }
+}
+
+/// Two points, each of which presses the other down.
+TEST_P(ContactSolverData, DoNotSolveWhatHasNoSolution) {
+  FrictionProblem problem({1, 1}, 0.0);
+  problem.w << 1.0, -2.0, -2.0, 1.0;
+  problem.q << -1.0, -1.0;
+  const ContactSolution solution = solve(problem, {.tolerance = 1e-8, .iteration_limit = 500});
+  EXPECT_FALSE(solution.solved());
+  EXPECT_NE(solution.reason, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ContactSolverData, test::every_contact_solver(), test::contact_solver_test_name);
+
+}  // namespace
+}  // namespace ricochet
