@@ -14,6 +14,7 @@ namespace {
 
 using test::FrictionProblem;
 using test::random_problem;
+using test::seeds;
 
 class ContactSolverData : public test::ContactSolverTest {};
 
@@ -108,7 +109,7 @@ TEST_P(ContactSolverData, SolveDataOfAnySize) {
 /// Of a large F the cone hardly sees a penetration: its residual is 1/F of it.
 TEST_P(ContactSolverData, DoNotTakePenetrationForRounding) {
   for (const double friction : {1e6, 1e7, 1e9}) {
-    for (unsigned seed = 0; seed < 10; ++seed) {
+    for (unsigned seed = 0; seed < seeds(10); ++seed) {
       const FrictionProblem problem = random_problem(10, dimension(), friction, seed, 1.0);
       const ContactSolution solution = solve(problem, {.tolerance = 1e-8});
       if (!solution.solved()) continue;

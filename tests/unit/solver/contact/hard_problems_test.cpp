@@ -20,21 +20,13 @@ using test::FrictionProblem;
 using test::judge;
 using test::Judgement;
 using test::rigid_box;
+using test::seeds;
 using test::twice;
 using test::unequal_bodies;
 using test::wedged_body;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double degree = std::numbers::pi / 180.0;
-
-/// Of each kind of random problem: a sample under the sanitizers, which look at the code and not at the numbers.
-constexpr unsigned seeds(unsigned count) {
-#ifdef __SANITIZE_ADDRESS__
-  return (count + 9) / 10;
-#else
-  return count;
-#endif
-}
 
 ContactSolution solve(const ContactProblem& problem, double tolerance) {
   const auto solver = make_contact_solver();
