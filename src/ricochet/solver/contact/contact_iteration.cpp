@@ -18,6 +18,13 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int tightenings = 4;
 /// Points that do not penetrate at r = 0 by more than this part of the data are left out at first.
 constexpr double margin = 0.1;
+
+void refuse_data(const std::string& reason, ContactSolution& solution,
+                 double residual = std::numeric_limits<double>::quiet_NaN()) {
+  solution.outcome = ContactOutcome::invalid_data;
+  solution.reason = reason;
+  solution.residual = residual;
+}
 }  // namespace
 
 void IterativeContactSolver::analyse(const ContactProblem& problem) {
@@ -231,11 +238,10 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
   solution.residual = largest / system_.data();
   solution.rounding_floor = measure_.rounding_floor / system_.data();
   if (!std::isfinite(largest) || !finite) {
-    solution.outcome = ContactOutcome::invalid_data;
-    solution.reason =
+    return refuse_data(
         "the iteration diverged: W has entries that are not finite, or is not positive semi-definite, or the "
-        "reactions are beyond the range of numbers";
-    return;
+        "reactions are beyond the range of numbers",
+        solution, solution.residual);
   }
   const double accepted = options.tolerance > 0.0 ? options.tolerance : loosest_residual;
   if (measure_.beyond_floor <= accepted * system_.data()) {
@@ -279,29 +285,17 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
   solution.record.clear();
   solution.reaction.setZero(problem.rows());
   solution.status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
-  const auto has_fault = [&] {
-    if (system_.fault().empty()) return false;
-    solution.outcome = ContactOutcome::invalid_data;
-    solution.residual = std::numeric_limits<double>::quiet_NaN();
-    solution.reason = system_.fault();
-    return true;
-  };
   solution.motion = problem.offset;
-  if (has_fault()) return;
+  if (!system_.fault().empty()) return refuse_data(system_.fault(), solution);
   system_.set_data(problem);
-  if (!system_.data_are_finite()) {
-    solution.outcome = ContactOutcome::invalid_data;
-    solution.residual = std::numeric_limits<double>::quiet_NaN();
-    solution.reason = "the data of the contact problem are not finite";
-    return;
-  }
+  if (!system_.data_are_finite()) return refuse_data("the data of the contact problem are not finite", solution);
   if (is_open(problem)) {
     solution.outcome = ContactOutcome::solved;
     warm_reaction_ = solution.reaction;
     return;
   }
   choose_points(problem);
-  if (has_fault()) return;
+  if (!system_.fault().empty()) return refuse_data(system_.fault(), solution);
   solution.reason = refuses(system_);
   if (!solution.reason.empty()) {
     solution.outcome = ContactOutcome::not_applicable;
