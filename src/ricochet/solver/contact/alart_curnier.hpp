@@ -50,7 +50,9 @@ class AlartCurnierStep {
   [[nodiscard]] static double iteration_work(double unknowns);
   /// The factor of many unknowns, see IterativeContactSolver.
   [[nodiscard]] const ReusedFactor& reused() const { return reused_; }
-  void take_memory(const std::vector<double>& memory) { reused_.take_memory(memory); }
+  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory) {
+    return reused_.take_memory(first, memory);
+  }
   /// The last step needed a new factor.
   [[nodiscard]] bool has_factored() const { return has_factored_; }
   /// The last two steps had the same states: with exact systems Newton converges from here on.

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ricochet/solver/contact/active_set.hpp"
@@ -108,13 +109,7 @@ class AutomaticSolver final : public IterativeContactSolver {
     for (const Index row : frictionless_.base()) memory.push_back(static_cast<double>(row));
     newton_.step().reused().append_memory(memory);
   }
-  void take_memory(const std::vector<double>& memory) override {
-    history_ = {memory.at(0), memory.at(1)};
-    const auto base = memory.begin() + 3;
-    const auto rest = base + static_cast<std::ptrdiff_t>(memory.at(2));
-    frictionless_.take_base(std::vector<Index>(base, rest));
-    newton_.take_memory(std::vector<double>(rest, memory.end()));
-  }
+  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory) override;
   [[nodiscard]] bool keeps_row(Index problem_row) const override {
     return frictionless_.keeps_row(problem_row) || newton_.step().reused().keeps_row(problem_row);
   }
@@ -151,6 +146,23 @@ class AutomaticSolver final : public IterativeContactSolver {
     double sweeps = 0.0, newton = 0.0;
   } history_;
 };
+
+bool AutomaticSolver::take_memory(const std::vector<Index>& first, const std::vector<double>& memory) {
+  constexpr std::size_t head = 3;
+  if (memory.size() < head || !(memory[0] >= 0.0 && memory[1] >= 0.0)) return false;
+  history_ = {memory[0], memory[1]};
+  std::vector<Index> base;
+  Index last_point = -1;
+  auto next = memory.begin() + head;
+  for (; static_cast<double>(base.size()) != memory[2]; ++next) {
+    const Index point = next != memory.end() ? point_with_first_row(first, *next) : -1;
+    if (point <= last_point) return false;
+    last_point = point;
+    base.push_back(first[static_cast<std::size_t>(point)]);
+  }
+  frictionless_.take_base(std::move(base));
+  return newton_.take_memory(first, std::vector<double>(next, memory.end()));
+}
 
 /// Entries of matrices that a sweep reads, and what its points cost besides.
 double AutomaticSolver::sweep_work(const ContactWork& work) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 
 #include "ricochet/base/error.hpp"
@@ -37,6 +36,7 @@ void IterativeContactSolver::analyse(const ContactProblem& problem) {
 
 void IterativeContactSolver::set_warm_start(const Vector& start) {
   forget();
+  warm_reaction_.resize(0);
   const Index rows = analysed_ != nullptr ? analysed_->rows() : start.size();
   if (start.size() > 0 && start.size() < rows) {
     throw Error(
@@ -45,17 +45,15 @@ void IterativeContactSolver::set_warm_start(const Vector& start) {
   }
   if (!start.allFinite())
     throw Error(ErrorKind::invalid_input, "contact solver: the warm start has entries that are no finite numbers");
-  warm_reaction_ = start.head(std::min(rows, start.size()));
-  if (start.size() <= rows) return;
-  try {
-    take_memory(std::vector<double>(start.begin() + rows, start.end()));
-  } catch (const std::exception&) {
+  if (start.size() > rows && !take_memory(analysed_first_, std::vector<double>(start.begin() + rows, start.end()))) {
+    forget();
     throw Error(
         ErrorKind::invalid_input,
         fmt::format("contact solver: the warm start has {} numbers, which are neither the {} reactions nor what "
                     "this solver's warm_start() gives",
                     start.size(), rows));
   }
+  warm_reaction_ = start.head(std::min(rows, start.size()));
 }
 
 Vector IterativeContactSolver::warm_start() const {

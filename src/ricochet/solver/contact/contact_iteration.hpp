@@ -34,9 +34,12 @@ class IterativeContactSolver : public ContactSolver {
   /// Another W, or another start: what was kept from earlier problems no longer holds.
   virtual void forget() {}
   /// What besides the reactions is kept from one problem to the next and decides bits (factors that are used again, by
-  /// what they were made of), and its return after `forget`.
+  /// what they were made of), and its return after `forget`. False: no append_memory gives this for a problem with
+  /// these points (ContactProblem::first); the caller then forgets what may have been taken.
   virtual void append_memory(std::vector<double>&) const {}
-  virtual void take_memory(const std::vector<double>&) {}
+  virtual bool take_memory(const std::vector<Index>& /* first */, const std::vector<double>& memory) {
+    return memory.empty();
+  }
   /// A point whose rows are wanted in the system though it may be open: something kept needs them.
   [[nodiscard]] virtual bool keeps_row(Index /* of the problem, a point's first */) const { return false; }
   /// Solve on the points that move into the obstacle or had a reaction, and take in others when they turn out to

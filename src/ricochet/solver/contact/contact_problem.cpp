@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
@@ -61,6 +62,13 @@ void ContactProblem::validate() const {
       fail(fmt::format("the friction bound of point {} is {}; it must be zero (none) or positive, and finite", i,
                        bound(i)));
   }
+}
+
+Index point_with_first_row(const std::vector<Index>& first, double row) {
+  const auto end = first.end() - 1;
+  const auto found = std::lower_bound(first.begin(), end, row,
+                                      [](Index one, double other) { return static_cast<double>(one) < other; });
+  return found != end && static_cast<double>(*found) == row ? found - first.begin() : -1;
 }
 
 }  // namespace ricochet

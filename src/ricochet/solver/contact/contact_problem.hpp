@@ -49,4 +49,7 @@ struct ContactProblem {
   void validate() const;
 };
 
+/// The point whose first row this is; −1: it is none's. `first` as above; `row` may be any number.
+[[nodiscard]] Index point_with_first_row(const std::vector<Index>& first, double row);
+
 }  // namespace ricochet

@@ -89,7 +89,8 @@ class ContactSolver {
   /// were made of). For a checkpoint: a solver that is given it goes on with the same bits. Empty: a cold start.
   [[nodiscard]] virtual Vector warm_start() const = 0;
   /// Reactions (one per row), or what warm_start() gave. An empty vector forgets. Throws Error(invalid_input) for any
-  /// other length and for numbers that are not finite.
+  /// other length, for numbers that are not finite, and for what no warm_start() of this solver gives after the
+  /// reactions; the next start is a cold one then.
   virtual void set_warm_start(const Vector& start) = 0;
 };
 

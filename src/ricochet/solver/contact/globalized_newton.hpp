@@ -47,7 +47,9 @@ class GlobalizedNewton {
   /// The factors are of another W.
   void reset();
   [[nodiscard]] const AlartCurnierStep& step() const { return step_; }
-  void take_memory(const std::vector<double>& memory) { step_.take_memory(memory); }
+  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory) {
+    return step_.take_memory(first, memory);
+  }
 
  private:
   [[nodiscard]] double next_reduction(const ContactWork& work) const;

@@ -30,7 +30,9 @@ class NewtonAlartCurnier final : public NewtonContactSolver {
     step_.reset();
   }
   void append_memory(std::vector<double>& memory) const override { step_.reused().append_memory(memory); }
-  void take_memory(const std::vector<double>& memory) override { step_.take_memory(memory); }
+  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory) override {
+    return step_.take_memory(first, memory);
+  }
   [[nodiscard]] bool keeps_row(Index problem_row) const override { return step_.reused().keeps_row(problem_row); }
 
  private:

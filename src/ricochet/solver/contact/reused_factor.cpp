@@ -1,6 +1,7 @@
 #include "ricochet/solver/contact/reused_factor.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ricochet/linear_algebra/dense_kernels.hpp"
 
@@ -66,13 +67,21 @@ void ReusedFactor::append_memory(std::vector<double>& memory) const {
   }
 }
 
-void ReusedFactor::take_memory(const std::vector<double>& memory) {
+bool ReusedFactor::take_memory(const std::vector<Index>& first, const std::vector<double>& memory) {
   unknowns_.clear();
   is_factored_ = false;
-  for (std::size_t at = 0; at + unknown_size <= memory.size(); at += unknown_size) {
+  if (memory.size() % unknown_size != 0) return false;
+  Index last_point = 0;
+  for (std::size_t at = 0; at < memory.size(); at += unknown_size) {
+    const Index point = point_with_first_row(first, memory[at]);
+    if (point < last_point) return false;
+    last_point = point;
     ContactUnknown unknown;
-    unknown.problem_row = static_cast<Index>(memory[at]);
-    unknown.size = static_cast<Index>(memory[at + 1]);
+    unknown.problem_row = first[static_cast<std::size_t>(point)];
+    const Index rows = first[static_cast<std::size_t>(point) + 1] - unknown.problem_row;
+    const double size = memory[at + 1];
+    if (!(size >= 1.0 && size <= static_cast<double>(rows)) || size != std::floor(size)) return false;
+    unknown.size = static_cast<Index>(size);
     for (std::size_t k = 0; k < 3; ++k) {
       unknown.trial[k] = memory[at + 2 + k];
       unknown.test[k] = memory[at + 5 + k];
@@ -80,6 +89,7 @@ void ReusedFactor::take_memory(const std::vector<double>& memory) {
     unknown.diagonal = memory[at + 8];
     unknowns_.push_back(unknown);
   }
+  return true;
 }
 
 /// They are in the order of their points.

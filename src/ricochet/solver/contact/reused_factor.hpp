@@ -46,9 +46,10 @@ class ReusedFactor {
   /// z ≈ (system of the unknowns given to `place`)⁻¹ b.
   void apply(const Vector& right, Vector& z) const;
 
-  /// The unknowns as numbers, and back: the factor is then made again at the next `place`, with the same bits.
+  /// The unknowns as numbers, and back: the factor is then made again at the next `place`, with the same bits. False:
+  /// these are no unknowns on points with these first rows (ContactProblem::first).
   void append_memory(std::vector<double>& memory) const;
-  void take_memory(const std::vector<double>& memory);
+  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory);
   /// One of the unknowns is of the point that begins with this row of the problem.
   [[nodiscard]] bool keeps_row(Index problem_row) const;
 

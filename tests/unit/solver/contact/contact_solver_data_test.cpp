@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ricochet/base/error.hpp"
 #include "support/contact_solver_test.hpp"
@@ -75,11 +76,81 @@ TEST_P(ContactSolverData, RefuseSizesAndOptionsThatDoNotFit) {
   expect_refused(nothing, {.iteration_limit = -1});
   EXPECT_THROW(solver->set_warm_start(Vector::Ones(7)), Error);
   EXPECT_THROW(solver->set_warm_start(Vector::Constant(problem.rows(), std::nan(""))), Error);
-  if (GetParam() == "automatic") {
-    EXPECT_THROW(solver->set_warm_start(Vector::Ones(problem.rows() + 1)), Error);
-  }
+  EXPECT_THROW(solver->set_warm_start(Vector::Ones(problem.rows() + 1)), Error);
   solver->set_warm_start(Vector::Ones(problem.rows()));
   solver->solve(problem, {}, solution);
+  EXPECT_TRUE(solution.solved());
+}
+
+/// A checkpoint of another program, version or problem: refused, and the solver then starts cold.
+TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
+  // The rows of the points: 0 to 2, 3, 4 to 6 (or one less for those with two).
+  FrictionProblem data({dimension(), 1, dimension()}, 0.3);
+  data.q.setConstant(-1.0);
+  const ContactProblem problem = data.contact();
+  const ContactOptions options{.tolerance = 1e-10};
+  const auto solver = make_contact_solver(GetParam());
+  solver->analyse(problem);
+  ContactSolution cold, solution;
+  solver->solve(problem, options, cold);
+  ASSERT_TRUE(cold.solved()) << cold.reason;
+  const Vector start = solver->warm_start();
+  const auto with = [&](const std::vector<double>& memory) {
+    Vector result(problem.rows() + static_cast<Index>(memory.size()));
+    result << cold.reaction, Eigen::Map<const Vector>(memory.data(), static_cast<Index>(memory.size()));
+    return result;
+  };
+  const auto expect_refused = [&](const std::vector<double>& memory) {
+    SCOPED_TRACE(testing::PrintToString(memory));
+    solver->set_warm_start(start);
+    EXPECT_THROW(solver->set_warm_start(with(memory)), Error);
+    solver->solve(problem, options, solution);
+    EXPECT_EQ(solution.reaction, cold.reaction);
+    EXPECT_EQ(solution.iterations, cold.iterations);
+  };
+  const auto unknown = [](double row, double size) {
+    return std::vector<double>{row, size, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  };
+  const auto joined = [](std::vector<double> one, const std::vector<double>& other) {
+    one.insert(one.end(), other.begin(), other.end());
+    return one;
+  };
+  std::vector<std::vector<double>> unknowns;  // that are none
+  unknowns.push_back({1.0});
+  unknowns.push_back(joined(unknown(0.0, 1.0), {0.0}));
+  for (const double row : {-1.0, 0.5, 1.0, static_cast<double>(problem.rows()), 1e300, -1e300})
+    unknowns.push_back(unknown(row, 1.0));
+  for (const double size : {-1.0, 0.0, 0.5, 1.5, 4.0, 1e300}) unknowns.push_back(unknown(0.0, size));
+  const auto second = static_cast<double>(dimension());
+  unknowns.push_back(unknown(second, 2.0));  // has one row
+  unknowns.push_back(joined(unknown(second, 1.0), unknown(0.0, 1.0)));
+  for (const std::vector<double>& memory : unknowns) {
+    expect_refused(memory);
+    expect_refused(joined({0.0, 0.0, 0.0}, memory));
+  }
+  // The costs, the size of a set of points, and its rows.
+  const std::vector<std::vector<double>> heads{{1.0, 1.0},
+                                               {-1.0, 1.0, 0.0},
+                                               {1.0, -1.0, 0.0},
+                                               {1.0, 1.0, 1.0},
+                                               {1.0, 1.0, 4.0, 0.0, second, second + 1.0},
+                                               {1.0, 1.0, -1.0},
+                                               {1.0, 1.0, -1.0, 0.0},
+                                               {1.0, 1.0, 0.5, 0.0},
+                                               {1.0, 1.0, 1e300, 0.0},
+                                               {1.0, 1.0, 1.0, 1.0},
+                                               {1.0, 1.0, 1.0, -1.0},
+                                               {1.0, 1.0, 1.0, 0.5},
+                                               {1.0, 1.0, 1.0, 1e300},
+                                               {1.0, 1.0, 2.0, 0.0, 0.0},
+                                               {1.0, 1.0, 2.0, second, 0.0}};
+  for (const std::vector<double>& memory : heads) expect_refused(memory);
+  // What is theirs is not.
+  solver->set_warm_start(start);
+  if (GetParam() == "newton-alart-curnier") solver->set_warm_start(with(unknown(second, 1.0)));
+  if (GetParam() == "automatic")
+    solver->set_warm_start(with(joined({1.0, 1.0, 2.0, 0.0, second}, unknown(second, 1.0))));
+  solver->solve(problem, options, solution);
   EXPECT_TRUE(solution.solved());
 }
 
