@@ -57,10 +57,14 @@ void IterativeContactSolver::set_warm_start(const Vector& start) {
 }
 
 Vector IterativeContactSolver::warm_start() const {
+  if (analysed_ == nullptr) return warm_reaction_;
   std::vector<double> memory;
   append_memory(memory);
-  Vector start(warm_reaction_.size() + static_cast<Index>(memory.size()));
-  start << warm_reaction_, Eigen::Map<const Vector>(memory.data(), static_cast<Index>(memory.size()));
+  const Index rows = analysed_->rows();
+  Vector start = Vector::Zero(rows + static_cast<Index>(memory.size()));  // without reactions: from zero
+  if (warm_reaction_.size() > 0) start.head(rows) = warm_reaction_;
+  start.tail(static_cast<Index>(memory.size())) =
+      Eigen::Map<const Vector>(memory.data(), static_cast<Index>(memory.size()));
   return start;
 }
 

@@ -86,7 +86,7 @@ class ContactSolver {
   virtual void solve(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution) = 0;
 
   /// What the next solve starts from: the last reactions, then what else decides its bits (kept factors, by what they
-  /// were made of). For a checkpoint: a solver that is given it goes on with the same bits. Empty: a cold start.
+  /// were made of). For a checkpoint: a solver that is given it goes on with the same bits. Empty before `analyse`.
   [[nodiscard]] virtual Vector warm_start() const = 0;
   /// Reactions (one per row), or what warm_start() gave. An empty vector forgets. Throws Error(invalid_input) for any
   /// other length, for numbers that are not finite, and for what no warm_start() of this solver gives after the

@@ -154,6 +154,26 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
   EXPECT_TRUE(solution.solved());
 }
 
+/// Of a solver that has solved nothing, too.
+TEST_P(ContactSolverData, TakeTheWarmStartTheyGive) {
+  for (const Index points : {1, 2, 30}) {
+    const ContactProblem problem = random_problem(points, dimension(), 0.3, 2).contact();
+    const auto solver = make_contact_solver(GetParam());
+    EXPECT_EQ(solver->warm_start().size(), 0);
+    const auto other = make_contact_solver(GetParam());
+    solver->analyse(problem);
+    other->analyse(problem);
+    ContactSolution solution, expected;
+    for (int k = 0; k < 2; ++k) {
+      other->set_warm_start(solver->warm_start());
+      solver->solve(problem, {.tolerance = 1e-6}, expected);
+      other->solve(problem, {.tolerance = 1e-6}, solution);
+      EXPECT_EQ(solution.reaction, expected.reaction);
+      EXPECT_EQ(solution.iterations, expected.iterations);
+    }
+  }
+}
+
 /// Squares of such numbers leave the range of numbers; the problem does not.
 TEST_P(ContactSolverData, SolveDataOfAnySize) {
   const FrictionProblem problem = random_problem(12, dimension(), 0.3, 3, 1.0);
