@@ -156,6 +156,7 @@ void ContactSystem::select(const ContactProblem& problem, const std::vector<char
     offset_[row] = scale * problem.offset[row_of_[at]];
     if (problem.offset_rounding.size() > 0) offset_rounding_[row] = scale * problem.offset_rounding[row_of_[at]];
   }
+  largest_offset_ = offset_.lpNorm<Eigen::Infinity>();
 }
 
 void ContactSystem::gather(const ContactProblem& problem, const std::vector<Index>& chosen) {
@@ -364,7 +365,7 @@ double violation(const ContactPoint& point, const ContactIterate& iterate) {
 
 ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) const {
   Measure result;
-  const double excused = largest_excuse * std::max(data_, offset_.lpNorm<Eigen::Infinity>());
+  const double excused = largest_excuse * std::max(data_, largest_offset_);
   for (const ContactPoint& point : points_) {
     const double value = residual(point, padded(point, iterate.reaction), padded(point, iterate.motion));
     const Floor of_motion = floor_of(point, iterate);
@@ -373,15 +374,18 @@ ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) con
         result.is_exact && value * std::sqrt(point.diagonal) <= (1.0 + point.coefficient) * of_motion.of_sums;
     result.residual = std::max(result.residual, value);
     result.rounding_floor = std::max(result.rounding_floor, floor);
-    if (!std::isfinite(value) || !std::isfinite(floor)) {
+    const bool is_finite = std::isfinite(value) && std::isfinite(floor);
+    const bool is_hidden = is_finite && value <= floor && value > loosest_residual * data_;
+    const bool is_steep = point.coefficient > steep_coefficient;
+    const bool is_violated = (is_hidden || is_steep) && violation(point, iterate) > excused;
+    if (!is_finite) {
       result.beyond_floor = std::numeric_limits<double>::infinity();
     } else if (value > floor) {
       result.beyond_floor = std::max(result.beyond_floor, value - floor);
-    } else if (value > loosest_residual * data_ && violation(point, iterate) > excused) {
+    } else if (is_hidden && is_violated) {
       result.beyond_floor = std::max(result.beyond_floor, value);
     }
-    if (point.coefficient > steep_coefficient && violation(point, iterate) > excused)
-      result.beyond_floor = std::max(result.beyond_floor, data_);
+    if (is_steep && is_violated) result.beyond_floor = std::max(result.beyond_floor, data_);
     // Where W has a zero block, r is in no sum.
     const double of_reaction = sum_rounding * point.diagonal * iterate.reaction[point.first];
     if (iterate.reaction[point.first] > 0.0 && std::max(of_motion.of_sums, of_reaction) > excused)

@@ -150,6 +150,7 @@ class ContactSystem {
   Eigen::MatrixXf single_;  ///< the same rounded, where there are many rows
   SparseMatrix sparse_;
   Vector offset_, offset_rounding_;
+  double largest_offset_ = 0.0;
   mutable Vector product_argument_, product_result_;
 };
 
