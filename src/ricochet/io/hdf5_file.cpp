@@ -10,38 +10,18 @@
 #include <cstring>
 #include <filesystem>
 #include <new>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/io/hdf5_handle.hpp"
 
 namespace ricochet {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Closes what it holds.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }  // NOLINT: used wherever HDF5 wants an identifier
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-/// Errors are reported by us, not printed by HDF5, which also must not tidy up at the program's end (a full disk).
-void quiet_library() {
-  H5dont_atexit();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
 
 const char* kind_name(H5T_class_t kind) {
   switch (kind) {
@@ -62,14 +42,33 @@ constexpr hsize_t chunk_entries = 1 << 17;
 
 }  // namespace
 
+static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);  // in hdf5_handle.hpp
+
+void quiet_hdf5() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Hdf5Handle timeless_hdf5_properties(std::int64_t of_class) {
+  const std::int64_t properties = H5Pcreate(of_class);
+  H5Pset_obj_track_times(properties, false);
+  return {properties, H5Pclose};
+}
+
+bool make_hdf5_group(std::int64_t file, const char* name) {
+  const Hdf5Handle properties = timeless_hdf5_properties(H5P_GROUP_CREATE);
+  const Hdf5Handle made(H5Gcreate2(file, name, H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose);
+  return made >= 0;
+}
+
 bool is_hdf5_file(const std::string& path) {
-  quiet_library();
+  quiet_hdf5();
   return fs::is_regular_file(path) && H5Fis_hdf5(path.c_str()) > 0;
 }
 
 struct Hdf5Reader::Dataset {
   std::string name;
-  Handle set, type, space;
+  Hdf5Handle set, type, space;
   Dataset(const Hdf5Reader& reader, const std::string& which)
       : name(which),
         set(reader.has_dataset(which) ? H5Dopen2(reader.file_, which.c_str(), H5P_DEFAULT) : -1, H5Dclose),
@@ -81,7 +80,7 @@ struct Hdf5Reader::Dataset {
 };
 
 Hdf5Reader::Hdf5Reader(std::string path) : path_(std::move(path)) {
-  quiet_library();
+  quiet_hdf5();
   std::error_code problem;
   if (!fs::exists(path_, problem)) throw Error(ErrorKind::file_access, fmt::format("{}: no such file", path_));
   if (fs::is_directory(path_, problem))
@@ -114,7 +113,7 @@ bool Hdf5Reader::has(const std::string& name, bool group) const {
     if (exists < 0) fail(part, "cannot be looked for: the file is damaged");
     if (end == std::string::npos) break;
   }
-  const Handle object(H5Oopen(file_, name.c_str(), H5P_DEFAULT), H5Oclose);
+  const Hdf5Handle object(H5Oopen(file_, name.c_str(), H5P_DEFAULT), H5Oclose);
   if (object < 0) fail(name, "cannot be opened: the file is damaged");
   return H5Iget_type(object) == (group ? H5I_GROUP : H5I_DATASET);
 }
@@ -144,7 +143,7 @@ void Hdf5Reader::check_size(const Dataset& set, std::int64_t expected_size, std:
   const std::int64_t found = size(set.name);
   if (found != expected_size) fail(set.name, fmt::format("has {} entries where {} are expected", found, expected_size));
   // A damaged header may claim more than there is: say so before memory is asked for it.
-  const Handle properties(H5Dget_create_plist(set.set), H5Pclose);
+  const Hdf5Handle properties(H5Dget_create_plist(set.set), H5Pclose);
   const bool filtered = properties < 0 || H5Pget_nfilters(properties) > 0;
   const auto stored = static_cast<std::uint64_t>(H5Dget_storage_size(set.set));
   std::error_code problem;
@@ -221,12 +220,11 @@ std::string Hdf5Reader::text(const std::string& name) const {
 }
 
 Hdf5Writer::Hdf5Writer(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
-  quiet_library();
+  quiet_hdf5();
   // The format that puts a checksum on everything but the data themselves.
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
-  const Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-  H5Pset_obj_track_times(properties, false);  // the same data give the same file
+  const Hdf5Handle properties = timeless_hdf5_properties(H5P_FILE_CREATE);
   errno = 0;
   file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, properties, access);
   if (file_ < 0) {
@@ -247,18 +245,14 @@ void Hdf5Writer::check(bool good, const std::string& what) const {
 }
 
 void Hdf5Writer::group(const std::string& name) {
-  const Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  H5Pset_obj_track_times(properties, false);  // the same data give the same file
-  const Handle made(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose);
-  check(made >= 0, name);
+  check(make_hdf5_group(file_, name.c_str()), name);
 }
 
 void Hdf5Writer::numbers(const std::string& name, bool real, const void* values, Index size) {
   const hid_t type = real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT;
   const auto count = static_cast<hsize_t>(size);
-  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(properties, false);
+  const Hdf5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Hdf5Handle properties = timeless_hdf5_properties(H5P_DATASET_CREATE);
   if (count * H5Tget_size(type) <= header_limit) {
     H5Pset_layout(properties, H5D_COMPACT);
   } else {
@@ -266,7 +260,7 @@ void Hdf5Writer::numbers(const std::string& name, bool real, const void* values,
     H5Pset_chunk(properties, 1, &chunk);
     H5Pset_fletcher32(properties);
   }
-  const Handle set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
   check(set >= 0 && (size == 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0), name);
 }
 
@@ -283,14 +277,13 @@ void Hdf5Writer::reals(const std::string& name, const double* values, Index size
 }
 
 void Hdf5Writer::text(const std::string& name, const std::string& value) {
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, value.size() + 1);
   H5Tset_strpad(type, H5T_STR_NULLTERM);
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(properties, false);
+  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle properties = timeless_hdf5_properties(H5P_DATASET_CREATE);
   if (value.size() < header_limit) H5Pset_layout(properties, H5D_COMPACT);
-  const Handle set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
   check(set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value.c_str()) >= 0, name);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/io/hdf5_handle.hpp"
 #include "ricochet/io/vtk_order.hpp"
 
 namespace ricochet {
@@ -48,24 +49,15 @@ constexpr const char* side_tail = "    </Grid>\n  </Domain>\n</Xdmf>\n";
 void ResultsWriter::Implementation::dataset(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t rows,
                                             hsize_t columns, const void* data) const {
   const hsize_t extents[2] = {rows, columns};
-  const hid_t space = H5Screate_simple(columns > 0 ? 2 : 1, extents, nullptr);
-  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
-  H5Pset_obj_track_times(properties, false);
-  const hid_t set = H5Dcreate2(file, name.c_str(), file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
-  H5Pclose(properties);
-  const bool good = set >= 0 && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
-  if (set >= 0) H5Dclose(set);
-  H5Sclose(space);
-  check(good, name.c_str());
+  const Hdf5Handle space(H5Screate_simple(columns > 0 ? 2 : 1, extents, nullptr), H5Sclose);
+  const Hdf5Handle properties = timeless_hdf5_properties(H5P_DATASET_CREATE);
+  const Hdf5Handle set(H5Dcreate2(file, name.c_str(), file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+                       H5Dclose);
+  check(set >= 0 && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0, name.c_str());
 }
 
 void ResultsWriter::Implementation::group(const std::string& name) const {
-  const hid_t properties = H5Pcreate(H5P_GROUP_CREATE);
-  H5Pset_obj_track_times(properties, false);
-  const hid_t made = H5Gcreate2(file, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT);
-  H5Pclose(properties);
-  check(made >= 0, name.c_str());
-  H5Gclose(made);
+  check(make_hdf5_group(file, name.c_str()), name.c_str());
 }
 
 void ResultsWriter::Implementation::write_mesh(const DisplacementSpace& space) {
@@ -196,17 +188,10 @@ ResultsWriter::ResultsWriter(const std::string& directory, const DisplacementSpa
   own.problem = &problem;
   own.path = directory + "/results.h5";
   own.side_path = directory + "/results.xdmf";
-  // After a disk has run full, HDF5 crashes when it tidies up at the program's end: our files are closed by then.
-  H5dont_atexit();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported by us, not printed by HDF5
-  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  quiet_hdf5();
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
-  // The same run gives the same file: no object carries the time at which it was made.
-  const hid_t properties = H5Pcreate(H5P_FILE_CREATE);
-  H5Pset_obj_track_times(properties, false);
-  own.file = H5Fcreate(own.path.c_str(), H5F_ACC_TRUNC, properties, access);
-  H5Pclose(properties);
-  H5Pclose(access);
+  own.file = H5Fcreate(own.path.c_str(), H5F_ACC_TRUNC, timeless_hdf5_properties(H5P_FILE_CREATE), access);
   own.check(own.file >= 0, "the file");
   own.write_mesh(space);
   own.side.open(own.side_path, std::ios::in | std::ios::out | std::ios::trunc | std::ios::binary);
