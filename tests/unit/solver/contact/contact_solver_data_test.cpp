@@ -202,7 +202,8 @@ TEST_P(ContactSolverData, DoNotTakePenetrationForRounding) {
   for (const double friction : {1e6, 1e7, 1e9}) {
     for (unsigned seed = 0; seed < seeds(10); ++seed) {
       const FrictionProblem problem = random_problem(10, dimension(), friction, seed, 1.0);
-      const ContactSolution solution = solve(problem, {.tolerance = 1e-8});
+      // Who solves these needs fewer than 50 iterations; who has the cone alone does not in 50 000.
+      const ContactSolution solution = solve(problem, {.tolerance = 1e-8, .iteration_limit = 200});
       if (!solution.solved()) continue;
       const Vector u = problem.q + problem.w * solution.reaction;
       for (Index i = 0; i < problem.points(); ++i)
