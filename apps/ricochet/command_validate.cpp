@@ -19,7 +19,7 @@ int validate(const std::string& case_file, const std::vector<std::string>& overr
   const std::unique_ptr<Model> model = build_model(input);
   // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
-  const Simulation simulation(model->problem, *scheme, model->initial);
+  const Simulation simulation(model->problem, *scheme, model->initial, step_solver_options(input));
   fmt::print("{}: valid: {} nodes, {} cells, {} contact points, {} supported dofs, {} steps\n", case_file,
              model->space.node_count(), model->mesh.cell_count(), model->problem.contact.size(),
              model->problem.supports.size(), step_count(input.time));

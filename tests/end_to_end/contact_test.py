@@ -114,8 +114,8 @@ class Contact(TestCase):
         process = self.expect_status(status, run("contact", path, "-o", output, *options))
         return Problem(output), process
 
-    def check_export(self, case, steps, values, dimension):
-        output, said = self.export(case, steps, values)
+    def check_export(self, case, steps, values, dimension, name="out"):
+        output, said = self.export(case, steps, values, name)
         files = sorted((output / "contact").iterdir())
         counts = dict(open=0, slip=0, stick=0)
         for path in files:
@@ -140,10 +140,15 @@ class Contact(TestCase):
     # --- exported by a run -------------------------------------------------------------------------------------------
 
     def test_export_in_two_dimensions(self):
-        """The thrown disc, in the middle of its impact."""
-        files, said, counts = self.check_export(OBLIQUE, "1,300,535,614:615", None, 2)
+        """The thrown disc, in the middle of its impact; far from the plane no point takes part unless all shall."""
+        files, said, counts = self.check_export(OBLIQUE, "1,300,535,614:615", {"solver.contact_points": "all"}, 2)
         self.assertEqual([path.name for path in files], [f"step-{k:06d}.hdf5" for k in (1, 300, 535, 614, 615)])
         self.assertIn("contact problems of 5 steps", said)
+        self.assertGreater(min(counts.values()), 0, f"open, sticking and slipping points are seen: {counts}")
+        files, said, counts = self.check_export(OBLIQUE, "1,535,614:615", None, 2, "near")
+        self.assertEqual([path.name for path in files], [f"step-{k:06d}.hdf5" for k in (535, 614, 615)])
+        self.assertIn("contact problems of 3 steps", said)
+        self.assertIn("1 had none", said)
         self.assertGreater(min(counts.values()), 0, f"open, sticking and slipping points are seen: {counts}")
 
     def test_export_in_three_dimensions(self):
@@ -230,17 +235,18 @@ class Contact(TestCase):
 
     def test_directories_and_force(self):
         case = self.write("block.toml", block_case())
-        output, _ = self.export(case, "1,2")
+        everywhere = {"solver.contact_points": "all"}  # also far from the floor, where these first steps are
+        output, _ = self.export(case, "1,2", everywhere)
         self.expect_status(4, run("run", case, "-o", output, "--quiet"))
         elsewhere = self.folder / "problems"
-        self.export(case, "3", name="second", options=("--export-contact-to", elsewhere))
+        self.export(case, "3", everywhere, name="second", options=("--export-contact-to", elsewhere))
         self.assertEqual([path.name for path in elsewhere.iterdir()], ["step-000003.hdf5"])
         self.assertFalse((self.folder / "second" / "contact").exists())
         process = self.expect_status(4, run("run", case, "-o", self.folder / "third", "--export-contact", "4",
                                             "--export-contact-to", elsewhere))
         self.assertIn("--force", process.stderr)
         (elsewhere / "notes.txt").write_text("mine", encoding="ascii")
-        self.export(case, "4", name="third", options=("--export-contact-to", elsewhere, "--force"))
+        self.export(case, "4", everywhere, name="third", options=("--export-contact-to", elsewhere, "--force"))
         self.assertEqual(sorted(path.name for path in elsewhere.iterdir()), ["notes.txt", "step-000004.hdf5"])
         self.simulate(case, "out", options=("--quiet", "--force"))
         self.assertFalse((output / "contact").exists(), "nothing of the old run stays")

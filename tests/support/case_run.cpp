@@ -40,7 +40,7 @@ CaseRun::CaseRun(const std::string& toml, const std::vector<std::string>& overri
   input_ = read_case(write_temporary("case.toml", toml), overrides);
   model_ = build_model(input_);
   scheme_ = make_scheme(input_.time);
-  simulation_ = std::make_unique<Simulation>(model_->problem, *scheme_, model_->initial);
+  simulation_ = std::make_unique<Simulation>(model_->problem, *scheme_, model_->initial, step_solver_options(input_));
   steps_ = step_count(input_.time);
 }
 

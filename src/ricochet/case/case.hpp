@@ -105,6 +105,13 @@ struct OutputSection {
   long history_every = 1;
 };
 
+struct SolverSection {
+  std::string method = "auto";
+  double tolerance = 1e-10;
+  std::optional<double> memory;  ///< GB
+  std::string contact_points = "near";
+};
+
 struct ExpectSection {
   std::string quantity;
   double value = 0.0;
@@ -127,6 +134,7 @@ struct Case {
   MassSection mass;
   TimeSection time;
   std::vector<ProbeSection> probes;
+  SolverSection solver;
   OutputSection output;
   std::vector<ExpectSection> expectations;
   std::vector<std::string> overridden;              ///< key paths given by --set

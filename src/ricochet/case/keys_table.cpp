@@ -336,6 +336,40 @@ Section probe_section() {
           }};
 }
 
+Section solver_section() {
+  return {
+      .name = "solver",
+      .doc = "How a step is solved. Nothing here needs to be given.",
+      .keys = {
+          {.name = "method",
+           .type = KeyType::choice,
+           .standard = "auto",
+           .choices = {"auto", "direct", "iterative"},
+           .doc = "\"direct\": a Cholesky factor, made once; exact to rounding. \"iterative\": conjugate gradients "
+                  "with a direct solve near the contact; takes little memory, and is quick for time steps in "
+                  "which a wave crosses a few cells. \"auto\": direct where the factor fits into memory."},
+          {.name = "tolerance",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "1e-10",
+           .range = {.above = 0.0, .at_most = 1e-3},
+           .doc = "Of the iterative method: the force left over in a step, relative to the forces of the step, in "
+                  "the energy norm. Contact and friction hold to rounding with any method."},
+          {.name = "memory",
+           .type = KeyType::number,
+           .unit = "GB",
+           .range = positive,
+           .doc = "What factors may take, for the choice of \"auto\"; absent: six tenths of the machine's memory."},
+          {.name = "contact_points",
+           .type = KeyType::choice,
+           .standard = "near",
+           .choices = {"near", "all"},
+           .doc = "\"near\": the points that may touch in a step take part in its contact problem; others are looked "
+                  "at after it, and where one has penetrated the step is solved again with it. \"all\": all do, which "
+                  "changes results by rounding only; for exported contact problems of one size."},
+      }};
+}
+
 Section output_section() {
   return {.name = "output",
           .doc = "How often results are written.",
@@ -400,7 +434,7 @@ const std::vector<Section>& case_sections() {
   static const std::vector<Section> sections{
       top_section(),     mesh_section(),     material_section(), obstacle_section(), contact_section(),
       support_section(), traction_section(), load_section(),     initial_section(),  mass_section(),
-      time_section(),    probe_section(),    output_section(),   expect_section()};
+      time_section(),    solver_section(),   probe_section(),    output_section(),   expect_section()};
   return sections;
 }
 

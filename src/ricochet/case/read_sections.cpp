@@ -251,6 +251,9 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems, Remar
   result.time = read_time(sections.one("time"), remarks);
   for (const SectionReader& reader : sections.all("probe")) result.probes.push_back(read_probe(reader));
   check_distinct(sections.all("probe"), "probe", "name");
+  const SectionReader solver = sections.one("solver");
+  result.solver = {solver.text("method"), solver.number("tolerance"), solver.optional_number("memory"),
+                   solver.text("contact_points")};
   const SectionReader output = sections.one("output");
   result.output = {output.optional_integer("fields_every"), output.integer("history_every")};
   for (const SectionReader& reader : sections.all("expect")) result.expectations.push_back(read_expectation(reader));

@@ -133,6 +133,8 @@ RunSummary describe(const Case& input, const Model& model, const Scheme& scheme,
   summary.contact_points = model.problem.contact.size();
   summary.supported_dofs = model.problem.supports.size();
   summary.factor_entries = simulation.factor_entries();
+  for (const ChosenMethod& chosen : simulation.methods())
+    summary.solver = chosen.method == SolverMethod::direct ? "direct" : "iterative";
   summary.step = scheme.step();
   summary.end_time = input.time.end;
   summary.energy_instant = scheme.energy_instant();
@@ -290,6 +292,16 @@ std::optional<Error> take_steps(Simulation& simulation, Recording& recording, Co
 
 }  // namespace
 
+StepSolverOptions step_solver_options(const Case& input) {
+  StepSolverOptions options;
+  if (input.solver.method == "direct") options.method = SolverMethod::direct;
+  if (input.solver.method == "iterative") options.method = SolverMethod::iterative;
+  options.tolerance = input.solver.tolerance;
+  options.memory = 1e9 * input.solver.memory.value_or(0.0);
+  options.all_points = input.solver.contact_points == "all";
+  return options;
+}
+
 std::vector<ContactDescription> describe_contacts(const Case& input) {
   std::vector<ContactDescription> result;
   for (const ContactSection& contact : input.contacts) {
@@ -315,7 +327,7 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   const std::unique_ptr<Model> model = build_model(input, &build);
   timer.restart();
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
-  Simulation simulation(model->problem, *scheme, model->initial);
+  Simulation simulation(model->problem, *scheme, model->initial, step_solver_options(input));
   const double start_seconds = timer.restart();
   const long steps = step_count(input.time);
   if (std::abs(static_cast<double>(steps) * input.time.step - input.time.end) > 1e-9 * input.time.end) {

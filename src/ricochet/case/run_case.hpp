@@ -6,9 +6,13 @@
 #include "ricochet/case/case.hpp"
 #include "ricochet/io/contact_export.hpp"
 #include "ricochet/io/summary.hpp"
+#include "ricochet/solver/step_solver.hpp"
 
 /// @file Running a case: everything between a case file and an output directory.
 namespace ricochet {
+
+/// What [solver] asks for.
+[[nodiscard]] StepSolverOptions step_solver_options(const Case& input);
 
 /// The contacts of a case as a summary lists them.
 [[nodiscard]] std::vector<ContactDescription> describe_contacts(const Case& input);

@@ -101,9 +101,9 @@ std::string ContactExport::description(const ContactProblem& problem) const {
       "u: gap and slip as lengths, (y/s, w/sigma) with y = q + s G delta and w = p + sigma B_T delta of the scheme's "
       "stage, delta the displacement increment. r = (r_N, -r_T): contact forces on the body, r_N >= 0 pressing, r_T "
       "opposed to the slip. W = H A^-1 H^T with H = [G; B_T], A the scheme's operator. Units are those of the case.\n"
-      "Points: the {} of {} contact points that may touch in this step; /fclib_local/info/points has their numbers, "
-      "counted from 0.",
-      step_, time(), provenance_.origin, eligible, problem.points());
+      "Points: the {} contact points that may touch in this step; /fclib_local/info/points has their numbers among "
+      "all, counted from 0. The others stay open.",
+      step_, time(), provenance_.origin, eligible);
 }
 
 void ContactExport::write(const ContactProblem& problem, const ContactSolution& solution) {

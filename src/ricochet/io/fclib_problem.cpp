@@ -199,7 +199,7 @@ FclibProblem make_fclib(const ContactProblem& problem, Index dimension, const Co
   const Selection selection = select_eligible(problem, dimension);
   FclibProblem result;
   result.dimension = dimension;
-  result.points = selection.points;
+  for (const Index point : selection.points) result.points.push_back(problem.number_of(point));
   result.w = select_matrix(*problem.contact_operator, selection, dimension);
   const Index rows = result.w.rows();
   result.v.resize(rows, 0);

@@ -120,6 +120,7 @@ std::string to_json(const RunSummary& s) {
                      {"dofs", s.dofs},
                      {"contact_points", s.contact_points},
                      {"supported_dofs", s.supported_dofs},
+                     {"solver", s.solver},
                      {"factor_entries", s.factor_entries},
                      {"time_step", s.step},
                      {"end_time", s.end_time},

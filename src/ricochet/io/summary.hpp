@@ -37,6 +37,7 @@ struct RunSummary {
   int degree = 1;
   Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
   std::size_t factor_entries = 0;
+  std::string solver = "direct";  ///< or "iterative"
   double step = 0.0, end_time = 0.0;
   long steps = 0;
   double energy_instant = 0.0, force_instant = 0.0;  ///< relative to a row's time, in steps

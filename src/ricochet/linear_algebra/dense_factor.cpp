@@ -1,5 +1,7 @@
 #include "ricochet/linear_algebra/dense_factor.hpp"
 
+#include <algorithm>
+
 #include "ricochet/linear_algebra/blas_threads.hpp"
 
 #if defined(__SSE__)
@@ -8,11 +10,9 @@
 
 // Fortran interfaces of BLAS and LAPACK, both in OpenBLAS; matrices by columns.
 extern "C" {
-void dtrsm_(const char* side, const char* part, const char* transposed, const char* unit, const int* rows,
-            const int* columns, const double* factor, const double* a, const int* a_stride, double* b,
-            const int* b_stride);
-void dsyrk_(const char* part, const char* transposed, const int* size, const int* depth, const double* factor,
-            const double* a, const int* a_stride, const double* c_factor, double* c, const int* c_stride);
+void dgemm_(const char* a_transposed, const char* b_transposed, const int* rows, const int* columns, const int* depth,
+            const double* factor, const double* a, const int* a_stride, const double* b, const int* b_stride,
+            const double* c_factor, double* c, const int* c_stride);
 void dgetrf_(const int* rows, const int* columns, double* a, const int* a_stride, int* pivots, int* info);
 void dgetrs_(const char* transposed, const int* size, const int* columns, const double* a, const int* a_stride,
              const int* pivots, double* b, const int* b_stride, int* info);
@@ -53,23 +53,22 @@ class TinyIsZero {
 };
 }  // namespace
 
-void solve_lower_triangular(const Matrix& factor, Matrix& columns) {
-  if (columns.size() == 0) return;
+void add_transposed_product(Index rows, Index left_columns, Index right_columns, const double* left, Index left_stride,
+                            const double* right, Index right_stride, double* result, Index result_stride) {
   use_one_blas_thread();
-  const int rows = static_cast<int>(columns.rows());
-  const int count = static_cast<int>(columns.cols());
-  dtrsm_("L", "L", "N", "N", &rows, &count, &one, factor.data(), &rows, columns.data(), &rows);
+  const int m = static_cast<int>(left_columns), n = static_cast<int>(right_columns), k = static_cast<int>(rows);
+  const int a = static_cast<int>(left_stride), b = static_cast<int>(right_stride), c = static_cast<int>(result_stride);
+  dgemm_("T", "N", &m, &n, &k, &one, left, &a, right, &b, &one, result, &c);
 }
 
-Matrix gram_matrix(const Matrix& columns) {
-  Matrix result = Matrix::Zero(columns.cols(), columns.cols());
-  if (columns.size() == 0) return result;
+void multiply_transposed(const Matrix& matrix, const Vector& x, double* y) {
   use_one_blas_thread();
-  const int size = static_cast<int>(columns.cols());
-  const int depth = static_cast<int>(columns.rows());
-  dsyrk_("L", "T", &size, &depth, &one, columns.data(), &depth, &zero, result.data(), &size);
-  result.triangularView<Eigen::StrictlyUpper>() = result.transpose();
-  return result;
+  const int rows = static_cast<int>(matrix.rows());
+  const int columns = static_cast<int>(matrix.cols());
+  const int step = 1;
+  if (rows == 0) std::fill_n(y, columns, 0.0);
+  if (rows == 0 || columns == 0) return;
+  dgemv_("T", &rows, &columns, &one, matrix.data(), &rows, x.data(), &step, &zero, y, &step);
 }
 
 void DenseLu::compute(const Matrix& matrix) {

@@ -8,11 +8,13 @@
 /// bits are always the same.
 namespace ricochet {
 
-/// Overwrites B with L⁻¹B, L lower triangular (what is above its diagonal is not read).
-void solve_lower_triangular(const Matrix& factor, Matrix& columns);
+/// C += AᵀB on parts of larger matrices: `rows` × `left_columns`, `rows` × `right_columns`, each with the distance
+/// from one column to the next.
+void add_transposed_product(Index rows, Index left_columns, Index right_columns, const double* left, Index left_stride,
+                            const double* right, Index right_stride, double* result, Index result_stride);
 
-/// YᵀY, symmetric to the bit.
-[[nodiscard]] Matrix gram_matrix(const Matrix& columns);
+/// y = Aᵀ x.
+void multiply_transposed(const Matrix& matrix, const Vector& x, double* y);
 
 /// P A = L U with partial pivoting.
 class DenseLu {

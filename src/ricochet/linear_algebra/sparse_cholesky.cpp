@@ -1,11 +1,13 @@
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 
 #include <cholmod.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <new>
 #include <stdexcept>
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/blas_threads.hpp"
 
 namespace ricochet {
@@ -38,9 +40,14 @@ SparseMatrix extract(const SparseMatrix& matrix, const std::vector<int>& row_num
 struct SparseCholesky::Implementation {
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
-  std::vector<int> permutation;  ///< position in the factor → unknown
-  Index trailing = 0;
+  std::vector<int> permutation;  ///< place in the factor → unknown
+  std::vector<int> places;       ///< unknown → place in the factor
   double scale = 1.0;
+  TriangularSolve solve = TriangularSolve::own;
+  SupernodalFactor supernodal;
+  std::size_t entries = 0;
+  Prediction prediction;
+  Index failed = -1;
   Vector permuted;
   // Workspace that cholmod_solve2 keeps between calls, so that a time loop allocates nothing.
   cholmod_dense* solution = nullptr;
@@ -64,9 +71,11 @@ struct SparseCholesky::Implementation {
     cholmod_finish(&common);
   }
 
-  void order(const SparseMatrix& matrix, const std::vector<Index>& last);
-  void factorize(const SparseMatrix& matrix);
-  void triangular_solve(int system, Vector& values);
+  void order(const SparseMatrix& matrix);
+  void analyse(const SparseMatrix& matrix);
+  void factorize(SparseMatrix matrix);
+  void take_factor();
+  void library_solve(int system, Vector& values);
 };
 
 namespace {
@@ -91,49 +100,62 @@ cholmod_sparse view(const SparseMatrix& matrix) {
 
 }  // namespace
 
-void SparseCholesky::Implementation::order(const SparseMatrix& matrix, const std::vector<Index>& last) {
-  const Index size = matrix.cols();
-  trailing = static_cast<Index>(last.size());
-  std::vector<int> number(static_cast<std::size_t>(size), 0);
-  for (const Index unknown : last) number[static_cast<std::size_t>(unknown)] = -1;
-  std::vector<int> leading;
-  for (Index i = 0; i < size; ++i) {
-    if (number[static_cast<std::size_t>(i)] < 0) continue;
-    number[static_cast<std::size_t>(i)] = static_cast<int>(leading.size());
-    leading.push_back(static_cast<int>(i));
-  }
-  permutation.clear();
-  if (!leading.empty()) {
-    const auto count = static_cast<Index>(leading.size());
-    const SparseMatrix interior = trailing == 0 ? matrix : extract(matrix, number, count, number, count);
-    cholmod_sparse shape = view(interior);
-    std::vector<int> order(leading.size());
-    if (cholmod_metis(&shape, nullptr, 0, 1, order.data(), &common) == 0) {
-      throw std::runtime_error("ordering the matrix failed (METIS)");
-    }
-    for (const int position : order) permutation.push_back(leading[static_cast<std::size_t>(position)]);
-  }
-  for (const Index unknown : last) permutation.push_back(static_cast<int>(unknown));
+void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
+  permutation.resize(static_cast<std::size_t>(matrix.cols()));
+  cholmod_sparse shape = view(matrix);
+  if (matrix.cols() > 0 && cholmod_metis(&shape, nullptr, 0, 1, permutation.data(), &common) == 0)
+    throw std::runtime_error("ordering the matrix failed (METIS)");
+  places.resize(permutation.size());
+  for (std::size_t i = 0; i < permutation.size(); ++i)
+    places[static_cast<std::size_t>(permutation[i])] = static_cast<int>(i);
 }
 
-void SparseCholesky::Implementation::factorize(const SparseMatrix& matrix) {
+void SparseCholesky::Implementation::analyse(const SparseMatrix& matrix) {
+  cholmod_sparse shape = view(matrix);
+  common.nmethods = 1;
+  common.method[0].ordering = CHOLMOD_GIVEN;
+  common.postorder = 0;  // the given order is postordered already
+  cholmod_free_factor(&factor, &common);
+  factor = cholmod_analyze_p(&shape, permutation.data(), nullptr, 0, &common);
+  prediction = {true, common.lnz, common.fl};
+  if (factor != nullptr && common.status != CHOLMOD_TOO_LARGE) {
+    entries = factor->xsize;
+    prediction.entries = static_cast<double>(entries);
+    return;
+  }
+  if (common.status != CHOLMOD_TOO_LARGE) throw std::bad_alloc();
+  prediction.possible = false;
+}
+
+void SparseCholesky::Implementation::factorize(SparseMatrix matrix) {
   double largest = 0.0;
   for (Index i = 0; i < matrix.cols(); ++i) largest = std::max(largest, std::abs(matrix.coeff(i, i)));
   int exponent = 0;
   std::frexp(largest, &exponent);
   scale = largest > 0.0 ? std::ldexp(1.0, -exponent) : 1.0;
-  SparseMatrix scaled = matrix * scale;
-  cholmod_sparse shape = view(scaled);
-  common.nmethods = 1;
-  common.method[0].ordering = CHOLMOD_GIVEN;
-  common.postorder = 0;  // the given order is postordered already, and the trailing unknowns must stay last
-  factor = cholmod_analyze_p(&shape, permutation.data(), nullptr, 0, &common);
-  if (factor == nullptr) throw std::bad_alloc();
+  matrix *= scale;
+  if (!prediction.possible)
+    throw Error(ErrorKind::invalid_input, fmt::format("the Cholesky factor of the operator would have {:.2g} entries, "
+                                                      "more than CHOLMOD can count: set solver.method = \"iterative\"",
+                                                      prediction.entries));
+  cholmod_sparse shape = view(matrix);
   cholmod_factorize(&shape, factor, &common);
   if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+  entries = factor->xsize;
+  failed = factor->minor < factor->n ? permutation[factor->minor] : -1;
 }
 
-void SparseCholesky::Implementation::triangular_solve(int system, Vector& values) {
+/// Our own solves have a copy of the factor; CHOLMOD's goes as it is made.
+void SparseCholesky::Implementation::take_factor() {
+  if (failed < 0) {
+    supernodal = SupernodalFactor({static_cast<Index>(factor->nsuper), static_cast<const int*>(factor->super),
+                                   static_cast<const int*>(factor->pi), static_cast<const int*>(factor->s),
+                                   static_cast<const int*>(factor->px), static_cast<double*>(factor->x)});
+  }
+  cholmod_free_factor(&factor, &common);
+}
+
+void SparseCholesky::Implementation::library_solve(int system, Vector& values) {
   cholmod_dense right{};
   right.nrow = right.d = right.nzmax = static_cast<std::size_t>(values.size());
   right.ncol = 1;
@@ -146,16 +168,32 @@ void SparseCholesky::Implementation::triangular_solve(int system, Vector& values
   values = Eigen::Map<const Vector>(static_cast<const double*>(solution->x), values.size());
 }
 
-SparseCholesky::SparseCholesky(const SparseMatrix& matrix, const std::vector<Index>& trailing)
-    : implementation_(std::make_unique<Implementation>()) {
-  implementation_->order(matrix, trailing);
-  if (matrix.cols() > 0) implementation_->factorize(matrix);
-  implementation_->permuted.resize(matrix.cols());
+SparseCholesky::SparseCholesky() : implementation_(std::make_unique<Implementation>()) {}
+
+SparseCholesky::SparseCholesky(SparseMatrix matrix, TriangularSolve solve) : SparseCholesky() {
+  analyse(matrix);
+  factorize(std::move(matrix), solve);
 }
 
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 SparseCholesky::~SparseCholesky() = default;
+
+void SparseCholesky::analyse(const SparseMatrix& matrix) {
+  implementation_->order(matrix);
+  if (matrix.cols() > 0) implementation_->analyse(matrix);
+}
+
+void SparseCholesky::factorize(SparseMatrix matrix, TriangularSolve solve) {
+  implementation_->solve = solve;
+  if (matrix.cols() == 0) return;
+  implementation_->factorize(std::move(matrix));
+  if (solve == TriangularSolve::own) implementation_->take_factor();
+}
+
+SparseCholesky::Prediction SparseCholesky::predicted() const {
+  return implementation_->prediction;
+}
 
 Index SparseCholesky::size() const {
   return static_cast<Index>(implementation_->permutation.size());
@@ -165,62 +203,69 @@ bool SparseCholesky::positive_definite() const {
 }
 
 Index SparseCholesky::failed_unknown() const {
-  const cholmod_factor* factor = implementation_->factor;
-  if (factor == nullptr || factor->minor >= factor->n) return -1;
-  return implementation_->permutation[factor->minor];
+  return implementation_->failed;
 }
 
 double SparseCholesky::scale() const {
   return implementation_->scale;
 }
 std::size_t SparseCholesky::factor_entries() const {
-  return implementation_->factor == nullptr ? 0 : implementation_->factor->xsize;
+  return implementation_->entries;
+}
+std::size_t SparseCholesky::factor_bytes() const {
+  const bool own = implementation_->solve == TriangularSolve::own;
+  return own ? implementation_->supernodal.bytes() : implementation_->entries * sizeof(double);
+}
+const std::vector<int>& SparseCholesky::permutation() const {
+  return implementation_->permutation;
+}
+Index SparseCholesky::place(Index unknown) const {
+  return implementation_->places[static_cast<std::size_t>(unknown)];
+}
+const SupernodalFactor& SparseCholesky::supernodal() const {
+  return implementation_->supernodal;
+}
+Index SparseCholesky::work_size() const {
+  return implementation_->solve == TriangularSolve::own ? implementation_->supernodal.work_size() : size();
+}
+
+void SparseCholesky::solve_lower(Vector& y) {
+  Implementation& own = *implementation_;
+  if (own.solve == TriangularSolve::own) {
+    own.supernodal.forward(y);
+  } else if (y.size() > 0) {
+    own.library_solve(CHOLMOD_L, y);
+  }
+}
+
+void SparseCholesky::solve_upper(Vector& y) {
+  Implementation& own = *implementation_;
+  if (own.solve == TriangularSolve::own) {
+    own.supernodal.backward(y);
+  } else if (y.size() > 0) {
+    own.library_solve(CHOLMOD_Lt, y);
+  }
 }
 
 void SparseCholesky::forward(const Vector& right_hand_side, Vector& y) {
-  Implementation& own = *implementation_;
-  y.resize(size());
-  for (Index i = 0; i < y.size(); ++i) y[i] = own.scale * right_hand_side[own.permutation[static_cast<std::size_t>(i)]];
-  if (y.size() > 0) own.triangular_solve(CHOLMOD_L, y);
+  const Implementation& own = *implementation_;
+  y.resize(work_size());
+  for (Index i = 0; i < size(); ++i) y[i] = own.scale * right_hand_side[own.permutation[static_cast<std::size_t>(i)]];
+  solve_lower(y);
 }
 
 void SparseCholesky::backward(const Vector& y, Vector& x) {
   Implementation& own = *implementation_;
   own.permuted = y;
-  if (y.size() > 0) own.triangular_solve(CHOLMOD_Lt, own.permuted);
+  solve_upper(own.permuted);
   x.resize(size());
-  for (Index i = 0; i < y.size(); ++i) x[own.permutation[static_cast<std::size_t>(i)]] = own.permuted[i];
+  for (Index i = 0; i < size(); ++i) x[own.permutation[static_cast<std::size_t>(i)]] = own.permuted[i];
 }
 
 void SparseCholesky::solve(const Vector& right_hand_side, Vector& x) {
   Vector y;
   forward(right_hand_side, y);
   backward(y, x);
-}
-
-Matrix SparseCholesky::trailing_factor() const {
-  const Implementation& own = *implementation_;
-  Matrix result = Matrix::Zero(own.trailing, own.trailing);
-  if (own.trailing == 0) return result;
-  const cholmod_factor& factor = *own.factor;
-  const auto* supernodes = static_cast<const int*>(factor.super);
-  const auto* row_starts = static_cast<const int*>(factor.pi);
-  const auto* value_starts = static_cast<const int*>(factor.px);
-  const auto* rows = static_cast<const int*>(factor.s);
-  const auto* values = static_cast<const double*>(factor.x);
-  const Index first = size() - own.trailing;
-  for (std::size_t s = 0; s < factor.nsuper; ++s) {
-    const int row_count = row_starts[s + 1] - row_starts[s];
-    for (int column = supernodes[s]; column < supernodes[s + 1]; ++column) {
-      if (column < first) continue;
-      const double* entries = values + value_starts[s] + static_cast<Index>(column - supernodes[s]) * row_count;
-      for (int k = 0; k < row_count; ++k) {
-        const int row = rows[row_starts[s] + k];
-        if (row >= column) result(row - first, column - first) = entries[k];
-      }
-    }
-  }
-  return result;
 }
 
 }  // namespace ricochet

@@ -3,21 +3,34 @@
 #include <memory>
 #include <vector>
 
-#include "ricochet/base/types.hpp"
+#include "ricochet/linear_algebra/supernodal_factor.hpp"
 
-/// @file Supernodal sparse Cholesky factorization (CHOLMOD, METIS), with chosen unknowns ordered last.
+/// @file Supernodal sparse Cholesky factorization (CHOLMOD, METIS).
 namespace ricochet {
 
 /// P (2ᵏA) Pᵀ = L Lᵀ. The power of two makes the factor the same bits in every unit system that differs by powers of
-/// two (a square root would not be). The trailing unknowns keep their given order and come last, so the trailing block
-/// of L is the Cholesky factor of the Schur complement on them.
+/// two (a square root would not be).
 class SparseCholesky {
  public:
+  /// Who solves with the factor: our own loops over a copy of it made for them, or CHOLMOD (to compare).
+  enum class TriangularSolve { own, library };
+
+  SparseCholesky();
   /// Analyses and factorizes a symmetric matrix stored whole. Does not throw when it is not positive definite: ask.
-  explicit SparseCholesky(const SparseMatrix& matrix, const std::vector<Index>& trailing = {});
+  explicit SparseCholesky(SparseMatrix matrix, TriangularSolve solve = TriangularSolve::own);
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
   ~SparseCholesky();
+
+  /// The two halves of the constructor. Between them `predicted` says what the second will take.
+  void analyse(const SparseMatrix& matrix);
+  void factorize(SparseMatrix matrix, TriangularSolve solve = TriangularSolve::own);
+  struct Prediction {
+    bool possible = true;     ///< false: more entries than the library can count
+    double entries = 0.0;     ///< of L
+    double operations = 0.0;  ///< additions and multiplications of the factorization
+  };
+  [[nodiscard]] Prediction predicted() const;
 
   [[nodiscard]] Index size() const;
   [[nodiscard]] bool positive_definite() const;
@@ -27,15 +40,27 @@ class SparseCholesky {
   [[nodiscard]] double scale() const;
   /// Entries of L as stored (supernodes are dense).
   [[nodiscard]] std::size_t factor_entries() const;
+  /// Memory that a triangular solve reads.
+  [[nodiscard]] std::size_t factor_bytes() const;
+  /// The unknown at each place of the factor: P.
+  [[nodiscard]] const std::vector<int>& permutation() const;
+  /// The place of an unknown in the factor.
+  [[nodiscard]] Index place(Index unknown) const;
 
-  /// y = L⁻¹ P 2ᵏ b, in factor order. Allocates on the first call only.
+  /// Length of the vectors y below: `size` entries in factor order, then work space.
+  [[nodiscard]] Index work_size() const;
+  /// y ← L⁻¹ y and y ← L⁻ᵀ y. Nothing is allocated.
+  void solve_lower(Vector& y);
+  void solve_upper(Vector& y);
+  /// y = L⁻¹ P 2ᵏ b, with work space behind it.
   void forward(const Vector& right_hand_side, Vector& y);
   /// x = Pᵀ L⁻ᵀ y.
   void backward(const Vector& y, Vector& x);
   /// x = A⁻¹ b.
   void solve(const Vector& right_hand_side, Vector& x);
-  /// The lower triangular trailing block of L, trailing × trailing.
-  [[nodiscard]] Matrix trailing_factor() const;
+
+  /// The factor for sparse right-hand sides; its rows are places in the factor. Empty with TriangularSolve::library.
+  [[nodiscard]] const SupernodalFactor& supernodal() const;
 
  private:
   struct Implementation;

@@ -6,11 +6,12 @@
 
 namespace ricochet {
 
-Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial)
-    : problem_(problem), scheme_(scheme), state_(make_starting_state(problem, initial, scheme.step())) {
+Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
+                       const StepSolverOptions& options)
+    : problem_(problem), scheme_(scheme), state_(make_starting_state(problem, initial, scheme.step(), options)) {
   scheme_.start(problem_, state_);
   const std::vector<OperatorCoefficients> operators = scheme_.operators(problem_);
-  solver_ = make_direct_step_solver(problem_, operators);
+  solver_ = make_step_solver(problem_, operators, options);
   solutions_.resize(operators.size());
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
 }

@@ -14,7 +14,8 @@ namespace ricochet {
 class Simulation {
  public:
   /// Finds the starting state and factorizes the scheme's operators. Keeps references to both arguments.
-  Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial);
+  Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
+             const StepSolverOptions& options = {});
 
   /// One step. Throws Error(not_converged) with the step, its time and what to try; the state is then that before the
   /// step.
@@ -28,6 +29,7 @@ class Simulation {
   [[nodiscard]] const Vector& increment() const { return increment_; }
   [[nodiscard]] std::size_t factor_entries() const { return solver_->factor_entries(); }
   [[nodiscard]] double contact_seconds() const { return solver_->contact_seconds(); }
+  [[nodiscard]] const std::vector<ChosenMethod>& methods() const { return solver_->methods(); }
 
  private:
   const SemidiscreteProblem& problem_;

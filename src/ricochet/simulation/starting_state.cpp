@@ -49,8 +49,9 @@ void take_supports(const SemidiscreteProblem& problem, double step, State& state
 /// Massless contact nodes are in equilibrium with their surroundings at every instant, the first included. Friction
 /// acts on their velocity with the relaxation taken over one step: where they slide at t = 0 it opposes that sliding,
 /// where they are at rest it opposes the relaxation.
-void relax_contact_nodes(const SemidiscreteProblem& problem, double step, State& state) {
-  const auto solver = make_direct_step_solver(problem, {{0.0, 1.0, 0.0, StageDofs::contact}});
+void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const StepSolverOptions& options,
+                         State& state) {
+  const auto solver = make_step_solver(problem, {{0.0, 1.0, 0.0, StageDofs::contact}}, options);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   require_friction(problem, state.velocity, obstacle_at_start(problem, state.displacement), 1.0 / step, stage);
   StageSolution solution;
@@ -88,8 +89,8 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
 
 /// Friction acts on the slip rate at the end of a step of this acceleration.
 void find_acceleration(const SemidiscreteProblem& problem, const Vector& support_acceleration, const Vector& pressed,
-                       double step, State& state) {
-  const auto solver = make_direct_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}});
+                       double step, const StepSolverOptions& options, State& state) {
+  const auto solver = make_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}}, options);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   stage.prescribed = support_acceleration;
   stage.eligible = resting_points(problem, state, pressed);
@@ -139,11 +140,13 @@ void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
 
 }  // namespace
 
-State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial, double step) {
+State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial, double step,
+                          const StepSolverOptions& options) {
   State state;
   Vector pressed;
   if (initial.static_equilibrium) {
-    StaticEquilibrium equilibrium = static_equilibrium(problem, Vector::Zero(problem.dof_count()), initial.velocity);
+    StaticEquilibrium equilibrium =
+        static_equilibrium(problem, Vector::Zero(problem.dof_count()), initial.velocity, options);
     state.displacement = std::move(equilibrium.displacement);
     pressed = std::move(equilibrium.normal_reaction);
     log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(state.displacement)));
@@ -160,8 +163,8 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   Vector support_acceleration;
   take_supports(problem, step, state, support_acceleration);
   if (!initial.static_equilibrium) warn_of_overlap(problem, state);
-  if (problem.has_singular_mass()) relax_contact_nodes(problem, step, state);
-  find_acceleration(problem, support_acceleration, pressed, step, state);
+  if (problem.has_singular_mass()) relax_contact_nodes(problem, step, options, state);
+  find_acceleration(problem, support_acceleration, pressed, step, options, state);
   find_support_reaction(problem, state);
   if (problem.loads.varies()) problem.loads.varying(0.0, state.forces.varying_load);
   if (problem.has_damping()) state.forces.damping_force = problem.damping * state.velocity;

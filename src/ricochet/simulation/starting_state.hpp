@@ -2,6 +2,7 @@
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/solver/step_solver.hpp"
 
 /// @file The state at t = 0.
 namespace ricochet {
@@ -19,6 +20,6 @@ struct InitialConditions {
 ///   has 0 ≤ r ⟂ G a ≥ 0.
 /// What it changes in the given displacement and velocity is said in the log.
 [[nodiscard]] State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial,
-                                        double step);
+                                        double step, const StepSolverOptions& options = {});
 
 }  // namespace ricochet

@@ -99,11 +99,12 @@ class StaticFriction {
 class ProximalPoint {
  public:
   /// ε as a fraction of the least K_ii/M_ii: of the softest region, where stiffnesses differ.
-  ProximalPoint(const SemidiscreteProblem& problem, const StaticFriction& friction, double fraction)
+  ProximalPoint(const SemidiscreteProblem& problem, const StaticFriction& friction, double fraction,
+                const StepSolverOptions& options)
       : problem_(problem),
         friction_(friction),
         epsilon_(fraction * lowest_local_frequency_squared(problem)),
-        solver_(make_direct_step_solver(problem, {{epsilon_, 1.0, 0.0, StageDofs::all}})) {
+        solver_(make_step_solver(problem, {{epsilon_, 1.0, 0.0, StageDofs::all}}, options)) {
     problem.supports.values(0.0, supported_);
   }
 
@@ -185,10 +186,10 @@ bool converges(ProximalPoint& point, const EquilibriumTest& test, bool give_up_e
 /// the iteration stalls. Friction starts with a larger one: where it is all that holds the body, a small ε leaves a
 /// condensed operator on which stick and slip of single points hardly show beside the rigid motion.
 bool find_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction, const EquilibriumTest& test,
-                      StaticEquilibrium& at, Vector& left_over) {
+                      const StepSolverOptions& options, StaticEquilibrium& at, Vector& left_over) {
   for (const double fraction : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
     if (fraction > 1e-8 && !problem.contact.has_friction()) continue;
-    ProximalPoint point(problem, friction, fraction);
+    ProximalPoint point(problem, friction, fraction, options);
     if (converges(point, test, false, at)) return true;
     left_over = point.left_over();
   }
@@ -197,8 +198,8 @@ bool find_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& 
 
 /// As find_equilibrium, for a body that slides: most have none.
 bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFriction& friction,
-                              const EquilibriumTest& test, StaticEquilibrium& at) {
-  ProximalPoint point(problem, friction, 1e-4);
+                              const EquilibriumTest& test, const StepSolverOptions& options, StaticEquilibrium& at) {
+  ProximalPoint point(problem, friction, 1e-4, options);
   try {
     return converges(point, test, true, at);
   } catch (const Error& problem_of_contact) {
@@ -209,18 +210,19 @@ bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFr
 
 }  // namespace
 
-StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess, const Vector& velocity) {
+StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess, const Vector& velocity,
+                                     const StepSolverOptions& options) {
   const StaticEquilibrium start{guess, Vector::Zero(problem.contact.size())};
   StaticEquilibrium result = start;
   StaticFriction friction(problem, velocity);
   const EquilibriumTest test(problem);
-  bool found = friction.sliding_points() > 0 && find_sliding_equilibrium(problem, friction, test, result);
+  bool found = friction.sliding_points() > 0 && find_sliding_equilibrium(problem, friction, test, options, result);
   if (!found) {
     result = start;
     friction.leave_out_sliding();
     Vector left_over;
     try {
-      found = find_equilibrium(problem, friction, test, result, left_over);
+      found = find_equilibrium(problem, friction, test, options, result, left_over);
     } catch (const Error& problem_of_contact) {
       if (problem_of_contact.kind() != ErrorKind::not_converged) throw;
       throw Error(ErrorKind::not_converged,
@@ -237,7 +239,7 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
   }
   // A small ε leaves rounding of the size of weight/ε in the gaps of a body that only contact holds. A large one, from
   // where we are now, takes it away.
-  ProximalPoint near(problem, friction, 1e-2);
+  ProximalPoint near(problem, friction, 1e-2, options);
   for (int polish = 0; polish < 3; ++polish) near.iterate(result);
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/solver/step_solver.hpp"
 
 /// @file Equilibrium with contact and friction.
 namespace ricochet {
@@ -17,6 +18,6 @@ struct StaticEquilibrium {
 /// the obstacle, that sliding; where no equilibrium holds that, friction is left out at the points that slide (said in
 /// the log). Throws Error(invalid_input) when there is none, with the force left over.
 [[nodiscard]] StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess,
-                                                   const Vector& velocity);
+                                                   const Vector& velocity, const StepSolverOptions& options = {});
 
 }  // namespace ricochet

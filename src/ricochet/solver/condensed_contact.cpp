@@ -3,132 +3,234 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/timer.hpp"
-#include "ricochet/linear_algebra/dense_factor.hpp"
 
 namespace ricochet {
 
-CondensedContact::CondensedContact(const SemidiscreteProblem& problem, const std::vector<int>& position,
-                                   const Matrix& trailing_factor, double scale)
-    : problem_(problem), scale_(scale), friction_(problem.contact.has_friction()) {
-  number_rows();
-  fill_columns(position, trailing_factor);
-  coefficient_ = problem.contact.friction_coefficient;
-  bound_ = scale * problem.contact.friction_bound;
+CondensedContact::CondensedContact(const SemidiscreteProblem& problem, std::vector<int> unknown,
+                                   const SparseCholesky& factor, bool all_points)
+    : problem_(problem),
+      factor_(factor),
+      unknown_(std::move(unknown)),
+      scale_(factor.scale()),
+      friction_(problem.contact.has_friction()),
+      all_points_(all_points),
+      candidates_(problem.contact.size()),
+      columns_(factor) {
+  contact_.reaction_scale = scale_;
+  std::vector<Index> points(all_points ? static_cast<std::size_t>(problem.contact.size()) : 0);
+  std::iota(points.begin(), points.end(), Index{0});
+  start_again_with(points);
+}
+
+Index CondensedContact::rows_of(Index point) const {
+  const ContactBoundary& contact = problem_.contact;
+  const bool has_friction = contact.friction_coefficient[point] > 0.0 || contact.friction_bound[point] > 0.0;
+  return has_friction ? problem_.dimension : 1;
+}
+
+/// Calls enter(row of the point, dof, value) for the entries of H.
+template <class Enter>
+void CondensedContact::visit_rows(Index point, const Enter& enter) const {
+  const ContactBoundary& contact = problem_.contact;
+  const Index tangents = problem_.dimension - 1;
+  for (SparseRowMatrix::InnerIterator entry(contact.gap_operator, point); entry; ++entry)
+    enter(Index{0}, static_cast<Index>(entry.col()), entry.value());
+  for (Index k = 1; k < rows_of(point); ++k) {
+    for (SparseRowMatrix::InnerIterator entry(contact.tangential_trace, point * tangents + k - 1); entry; ++entry)
+      enter(k, static_cast<Index>(entry.col()), entry.value());
+  }
+}
+
+void CondensedContact::start_again_with(const std::vector<Index>& points) {
+  candidates_.clear();
+  columns_.clear();
+  operator_.resize(0, 0);
+  contact_.first.assign(1, 0);
+  solver_.reset();
+  if (!points.empty()) take_up(points);
+}
+
+/// Points whose dofs lie close in the elimination tree have nearly the same columns.
+void CondensedContact::sort_by_place(std::vector<Index>& points) const {
+  std::vector<Index> place(points.size(), 0);
+  std::vector<std::size_t> order(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    order[i] = i;
+    visit_rows(points[i], [&](Index, Index dof, double) {
+      const int unknown = unknown_[static_cast<std::size_t>(dof)];
+      if (unknown >= 0) place[i] = std::max(place[i], factor_.place(unknown));
+    });
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(place[a], points[a]) < std::pair(place[b], points[b]);
+  });
+  std::vector<Index> sorted;
+  for (const std::size_t i : order) sorted.push_back(points[i]);
+  points = std::move(sorted);
+}
+
+void CondensedContact::take_up(const std::vector<Index>& points) {
+  Vector start = solver_ != nullptr ? contact_solution_.reaction : Vector();
+  std::vector<Index> added = points;
+  sort_by_place(added);
+  candidates_.take_up(added);
+  append_columns(added);
+  append_supported();
+  hold_directions_without_trace();
+  const auto count = static_cast<Index>(candidates_.points().size());
+  coefficient_.resize(count);
+  bound_.resize(count);
+  for (Index i = 0; i < count; ++i) {
+    const Index point = candidates_.points()[static_cast<std::size_t>(i)];
+    coefficient_[i] = problem_.contact.friction_coefficient[point];
+    bound_[i] = scale_ * problem_.contact.friction_bound[point];
+  }
+  contact_.point_numbers = candidates_.points();
   contact_.friction_coefficient = coefficient_;
   contact_.friction_bound = bound_;
-  contact_.reaction_scale = scale;
   contact_.offset.setZero(contact_.first.back());
-  solver_ = make_contact_solver();
+  contact_.offset_rounding.setZero(contact_.first.back());
+  contact_.eligible.assign(static_cast<std::size_t>(count), 1);
+  contact_.contact_operator = make_dense_operator(operator_);
+  if (solver_ == nullptr) solver_ = make_contact_solver();
   solver_->analyse(contact_);
+  // The reactions of those that were there already, and none on the others.
+  const Index before = start.size();
+  start.conservativeResize(contact_.first.back());
+  start.tail(start.size() - before).setZero();
+  solver_->set_warm_start(start);
+  contact_solution_.reaction = start;
 }
 
-void CondensedContact::number_rows() {
-  const ContactBoundary& contact = problem_.contact;
-  contact_.first.assign(1, 0);
-  for (Index i = 0; i < contact.size(); ++i) {
-    const bool has_friction = contact.friction_coefficient[i] > 0.0 || contact.friction_bound[i] > 0.0;
-    contact_.first.push_back(contact_.first.back() + (has_friction ? problem_.dimension : 1));
+void CondensedContact::append_columns(const std::vector<Index>& points) {
+  std::vector<Eigen::Triplet<double>> entries;
+  Index row = 0;
+  for (const Index point : points) {
+    visit_rows(point, [&](Index k, Index dof, double value) {
+      const int unknown = unknown_[static_cast<std::size_t>(dof)];
+      if (unknown >= 0) entries.emplace_back(unknown, static_cast<int>(row + k), value);
+    });
+    row += rows_of(point);
+    contact_.first.push_back(contact_.first.back() + rows_of(point));
   }
+  SparseMatrix transposed(factor_.size(), row);
+  transposed.setFromTriplets(entries.begin(), entries.end());
+  columns_.append(transposed, operator_);
 }
 
-void CondensedContact::fill_columns(const std::vector<int>& position, const Matrix& trailing_factor) {
-  const ContactBoundary& contact = problem_.contact;
-  columns_.setZero(trailing_factor.rows(), contact_.first.back());
-  std::vector<Eigen::Triplet<double>> supported;
-  const std::vector<Index>& supported_dofs = problem_.supports.dofs();
-  const auto enter = [&](const SparseRowMatrix& matrix, Index row_of_matrix, Index row) {
-    for (SparseRowMatrix::InnerIterator entry(matrix, row_of_matrix); entry; ++entry) {
-      const int at = position[static_cast<std::size_t>(entry.col())];
-      if (at >= 0) columns_(at, row) = entry.value();
-      const auto held = std::lower_bound(supported_dofs.begin(), supported_dofs.end(), static_cast<Index>(entry.col()));
-      if (held == supported_dofs.end() || *held != entry.col()) continue;
-      supported.emplace_back(static_cast<int>(row), static_cast<int>(held - supported_dofs.begin()), entry.value());
-    }
-  };
-  for (Index i = 0; i < contact.size(); ++i) {
-    const Index row = contact_.first[static_cast<std::size_t>(i)];
-    enter(contact.gap_operator, i, row);
-    for (Index k = 1; row + k < contact_.first[static_cast<std::size_t>(i + 1)]; ++k) {
-      enter(contact.tangential_trace, i * (problem_.dimension - 1) + k - 1, row + k);
-    }
+void CondensedContact::append_supported() {
+  std::vector<Eigen::Triplet<double>> entries;
+  const std::vector<Index>& dofs = problem_.supports.dofs();
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
+    visit_rows(candidates_.points()[i], [&](Index k, Index dof, double value) {
+      const auto held = std::lower_bound(dofs.begin(), dofs.end(), dof);
+      if (held == dofs.end() || *held != dof) return;
+      entries.emplace_back(static_cast<int>(contact_.first[i] + k), static_cast<int>(held - dofs.begin()), value);
+    });
   }
   supported_.resize(contact_.first.back(), problem_.supports.size());
-  supported_.setFromTriplets(supported.begin(), supported.end());
-  if (columns_.size() > 0) solve_lower_triangular(trailing_factor, columns_);
-  Matrix w = gram_matrix(columns_);
-  hold_directions_without_trace(w);
-  contact_.contact_operator = make_dense_operator(std::move(w));
+  supported_.setFromTriplets(entries.begin(), entries.end());
 }
 
 /// Where B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
 /// makes the friction along it zero.
-void CondensedContact::hold_directions_without_trace(Matrix& w) const {
-  for (Index i = 0; i < problem_.contact.size(); ++i) {
-    const Index row = contact_.first[static_cast<std::size_t>(i)];
-    for (Index k = row + 1; k < contact_.first[static_cast<std::size_t>(i + 1)]; ++k) {
-      if (w(k, k) == 0.0) w(k, k) = w(row, row);
+void CondensedContact::hold_directions_without_trace() {
+  for (std::size_t i = 0; i + 1 < contact_.first.size(); ++i) {
+    const Index row = contact_.first[i];
+    for (Index k = row + 1; k < contact_.first[i + 1]; ++k) {
+      if (operator_(k, k) == 0.0) operator_(k, k) = operator_(row, row);
     }
   }
 }
 
-void CondensedContact::find_offsets(const Stage& stage, const Eigen::Ref<Vector>& trailing) {
-  contact_.offset.noalias() = columns_.transpose() * trailing;
+void CondensedContact::find_offsets(const Stage& stage, const Vector& y) {
+  columns_.motion(y, contact_.offset);
   if (supported_.nonZeros() > 0) contact_.offset.noalias() += supported_ * stage.prescribed;
-  contact_.offset_rounding.resize(contact_.offset.size());
   const Index tangents = problem_.dimension - 1;
-  for (Index i = 0; i < problem_.contact.size(); ++i) {
-    const Index row = contact_.first[static_cast<std::size_t>(i)];
-    const Index count = contact_.first[static_cast<std::size_t>(i + 1)] - row - 1;
-    contact_.offset[row] += stage.gap_offset[i] / stage.gap_factor;
-    contact_.offset_rounding[row] = stage.gap_offset_rounding[i] / stage.gap_factor;
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
+    const Index point = candidates_.points()[i];
+    const Index row = contact_.first[i];
+    const Index count = contact_.first[i + 1] - row - 1;
+    contact_.offset[row] += stage.gap_offset[point] / stage.gap_factor;
+    contact_.offset_rounding[row] = stage.gap_offset_rounding[point] / stage.gap_factor;
     if (count == 0) continue;
     if (stage.slip_offset.size() == 0) {
       contact_.offset_rounding.segment(row + 1, count).setZero();
       continue;
     }
-    contact_.offset.segment(row + 1, count) += stage.slip_offset.segment(i * tangents, tangents) / stage.slip_factor;
-    contact_.offset_rounding.segment(row + 1, count).setConstant(stage.slip_offset_rounding[i] / stage.slip_factor);
+    contact_.offset.segment(row + 1, count) +=
+        stage.slip_offset.segment(point * tangents, tangents) / stage.slip_factor;
+    contact_.offset_rounding.segment(row + 1, count).setConstant(stage.slip_offset_rounding[point] / stage.slip_factor);
   }
 }
 
-void CondensedContact::solve(const Stage& stage, Eigen::Ref<Vector> trailing, StageSolution& solution) {
+void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solution) {
   const Index points = problem_.contact.size();
   solution.normal_reaction.setZero(points);
   if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
-  solution.iterations = 0;
-  if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
   if (stage.compliance.size() > 0)
     throw Error(ErrorKind::invalid_input, "contact compliance is not available in this version");
-  find_offsets(stage, trailing);
+  asked_ = false;
+  if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
+  if (!all_points_ && !choose_candidates(stage)) return;
+  find_offsets(stage, y);
   choose_friction(stage);
   solve_contact();
+  asked_ = true;
+  columns_.add_reaction(contact_solution_.reaction, y);
+  give(solution);
+}
+
+/// False: nothing can touch.
+bool CondensedContact::choose_candidates(const Stage& stage) {
+  if (!must_ask_ && !candidates_.some_may_touch(stage)) return false;
+  if (const std::vector<Index> kept = candidates_.worth_keeping(stage); !kept.empty()) start_again_with(kept);
+  if (const std::vector<Index> near = candidates_.approaching(stage); !near.empty()) take_up(near);
+  return !candidates_.points().empty();
+}
+
+void CondensedContact::give(StageSolution& solution) const {
   const Vector& reaction = contact_solution_.reaction;
-  for (Index row = 0; row < reaction.size(); ++row) {
-    if (reaction[row] != 0.0) trailing += reaction[row] * columns_.col(row);
-  }
-  solution.iterations = contact_solution_.iterations;
-  solution.contact_status = contact_solution_.status;
+  solution.iterations += contact_solution_.iterations;
   const Index tangents = problem_.dimension - 1;
-  for (Index i = 0; i < points; ++i) {
-    const Index row = contact_.first[static_cast<std::size_t>(i)];
-    solution.normal_reaction[i] = reaction[row] / scale_;
-    for (Index k = 1; row + k < contact_.first[static_cast<std::size_t>(i + 1)]; ++k)
-      solution.tangential_reaction[i * tangents + k - 1] = -reaction[row + k] / scale_;
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
+    const Index point = candidates_.points()[i];
+    const Index row = contact_.first[i];
+    solution.contact_status[static_cast<std::size_t>(point)] = contact_solution_.status[i];
+    solution.normal_reaction[point] = reaction[row] / scale_;
+    for (Index k = 1; row + k < contact_.first[i + 1]; ++k)
+      solution.tangential_reaction[point * tangents + k - 1] = -reaction[row + k] / scale_;
   }
+}
+
+bool CondensedContact::take_up_penetrating(const Stage& stage, const Vector& increment) {
+  motion_.noalias() = problem_.contact.gap_operator * increment;
+  std::vector<Index> found = candidates_.penetrating(stage, motion_, !asked_);
+  must_ask_ = !found.empty();
+  if (!must_ask_) {
+    candidates_.learn(stage, motion_);
+    return false;
+  }
+  std::erase_if(found, [&](Index point) { return candidates_.number(point) >= 0; });
+  if (!found.empty()) take_up(found);
+  return true;
 }
 
 /// With friction in stages that have a slip rate, and at points where they do not leave it out.
 void CondensedContact::choose_friction(const Stage& stage) {
-  contact_.eligible = stage.eligible;
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i)
+    contact_.eligible[i] = stage.eligible[static_cast<std::size_t>(candidates_.points()[i])];
   if (!friction_) return;
   contact_.friction_coefficient = coefficient_;
   contact_.friction_bound = bound_;
   for (Index i = 0; i < coefficient_.size(); ++i) {
-    const bool left_out = !stage.frictionless.empty() && stage.frictionless[static_cast<std::size_t>(i)] != 0;
+    const auto point = static_cast<std::size_t>(candidates_.points()[static_cast<std::size_t>(i)]);
+    const bool left_out = !stage.frictionless.empty() && stage.frictionless[point] != 0;
     if (stage.slip_offset.size() > 0 && !left_out) continue;
     contact_.friction_coefficient[i] = 0.0;
     contact_.friction_bound[i] = 0.0;
@@ -139,8 +241,13 @@ void CondensedContact::solve_contact() {
   const Timer timer;
   solver_->solve(contact_, {}, contact_solution_);
   solver_seconds_ += timer.seconds();
+  if (contact_solution_.solved()) return;
   if (observer_) observer_(contact_, contact_solution_);
-  if (!contact_solution_.solved()) throw_not_solved();
+  throw_not_solved();
+}
+
+void CondensedContact::report() const {
+  if (asked_ && observer_) observer_(contact_, contact_solution_);
 }
 
 void CondensedContact::throw_not_solved() const {
@@ -152,7 +259,7 @@ void CondensedContact::throw_not_solved() const {
       ErrorKind::not_converged,
       fmt::format("the contact problem{} of {} points was not solved in {} iterations (relative residual {:.3g}): "
                   "{}{}",
-                  friction_ ? " with friction" : "", problem_.contact.size(), contact_solution_.iterations,
+                  friction_ ? " with friction" : "", contact_.points(), contact_solution_.iterations,
                   contact_solution_.residual, contact_solution_.reason, advice));
 }
 

@@ -6,47 +6,73 @@
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
+#include "ricochet/solver/contact_candidates.hpp"
+#include "ricochet/solver/contact_columns.hpp"
 
-/// @file The contact conditions of a stage, condensed on the contact dofs.
+/// @file The contact conditions of a stage, condensed on its candidates for contact.
 ///
-/// With A = 2⁻ᵏ Pᵀ L Lᵀ P and the contact dofs last, y = L⁻¹P 2ᵏ b has the trailing part y_c, on which the free contact
-/// displacement is L_c⁻ᵀ y_c. With H = [G; B_T] (rows of a point together), a reaction ρ = 2ᵏ (r_N, −r_T) adds L_c⁻¹ Hᵀ
-/// ρ to y_c. So with Y = L_c⁻¹ Hᵀ and W = YᵀY the contact problem is stated on
-///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy_c + W ρ.
+/// With 2ᵏA = PᵀLLᵀP, y = L⁻¹P 2ᵏb and, for the rows H = [G; B_T] of the candidates (those of a point together),
+/// Y = L⁻¹PHᵀ and W = YᵀY, a reaction ρ = 2ᵏ (r_N, −r_T) adds Yρ to y, and the contact problem is stated on
+///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + W ρ.
 namespace ricochet {
 
 class CondensedContact {
  public:
-  /// `position` is per dof: its place among the contact dofs of the factor, or −1 where the stage does not solve for
-  /// it. `trailing_factor` is L_c, `scale` is 2ᵏ. Keeps a reference to the problem.
-  CondensedContact(const SemidiscreteProblem& problem, const std::vector<int>& position, const Matrix& trailing_factor,
-                   double scale);
+  /// `unknown` is per dof: its number among the unknowns of the factor, or −1 where the stage does not solve for it.
+  /// Keeps references to the problem and the factor.
+  /// `all_points`: every contact point is a candidate from the start.
+  CondensedContact(const SemidiscreteProblem& problem, std::vector<int> unknown, const SparseCholesky& factor,
+                   bool all_points = false);
 
-  /// Finds the reactions and adds Y ρ to y_c. Throws Error(not_converged).
-  void solve(const Stage& stage, Eigen::Ref<Vector> trailing, StageSolution& solution);
-  /// Called after every contact problem that has been solved; none if empty.
+  /// Finds the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
+  /// Error(not_converged).
+  void solve(const Stage& stage, Vector& y, StageSolution& solution);
+  /// With the increment that followed: false when no other point penetrates. True: those that do are candidates now,
+  /// and the stage must be solved again.
+  bool take_up_penetrating(const Stage& stage, const Vector& increment);
+
+  /// Shows the contact problem of a stage that is solved, if it had one, to the observer (one that could not be solved
+  /// is shown at once).
+  void report() const;
+  /// None if empty.
   void observe(ContactObserver observer) { observer_ = std::move(observer); }
   /// In the contact solver, all calls so far.
   [[nodiscard]] double solver_seconds() const { return solver_seconds_; }
 
  private:
-  void number_rows();
-  void fill_columns(const std::vector<int>& position, const Matrix& trailing_factor);
-  void hold_directions_without_trace(Matrix& w) const;
-  void find_offsets(const Stage& stage, const Eigen::Ref<Vector>& trailing);
+  [[nodiscard]] Index rows_of(Index point) const;
+  template <class Enter>
+  void visit_rows(Index point, const Enter& enter) const;
+  void take_up(const std::vector<Index>& points);
+  bool choose_candidates(const Stage& stage);
+  void start_again_with(const std::vector<Index>& points);
+  void sort_by_place(std::vector<Index>& points) const;
+  void append_columns(const std::vector<Index>& points);
+  void append_supported();
+  void hold_directions_without_trace();
+  void find_offsets(const Stage& stage, const Vector& y);
   void choose_friction(const Stage& stage);
   void solve_contact();
+  void give(StageSolution& solution) const;
   [[noreturn]] void throw_not_solved() const;
 
   const SemidiscreteProblem& problem_;
+  const SparseCholesky& factor_;
+  std::vector<int> unknown_;
   double scale_;
   bool friction_;
+  bool all_points_;
+  bool must_ask_ = false;  ///< points have penetrated where none was thought to touch
+  bool asked_ = false;     ///< the candidates took part in the last stage
+  ContactCandidates candidates_;
+  ContactColumns columns_;
+  Matrix operator_;             ///< W
   SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
-  Matrix columns_;              ///< Y, contact dofs × rows
-  Vector coefficient_, bound_;  ///< of friction, per point; the bound in units of r
+  Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r
   ContactProblem contact_;      ///< W, q, and the friction of the stage
   std::unique_ptr<ContactSolver> solver_;
   ContactSolution contact_solution_;
+  Vector motion_;  ///< G δ, per contact point
   ContactObserver observer_;
   double solver_seconds_ = 0.0;
 };

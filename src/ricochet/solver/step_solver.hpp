@@ -10,6 +10,29 @@
 /// @file Solving the stages of a step. A step solver knows nothing of time.
 namespace ricochet {
 
+enum class SolverMethod : char {
+  automatic,  ///< direct where the factor fits into memory
+  direct,     ///< a Cholesky factor, made once: forward solve, contact problem, back solve
+  iterative,  ///< conjugate gradients around a direct solve near the contact
+};
+
+struct StepSolverOptions {
+  SolverMethod method = SolverMethod::automatic;
+  /// Of the iterative method: the force that is left over, relative to the forces of the step, in the energy norm.
+  double tolerance = 1e-10;
+  /// Memory that factors may take, in bytes; 0: six tenths of the machine's.
+  double memory = 0.0;
+  /// All contact points take part in every contact problem, not only those that may touch. For comparisons.
+  bool all_points = false;
+};
+
+/// What was chosen for an operator, and why.
+struct ChosenMethod {
+  SolverMethod method = SolverMethod::direct;
+  double predicted_entries = 0.0;     ///< of the factor; 0: not asked
+  double predicted_operations = 0.0;  ///< of its factorization
+};
+
 class StepSolver {
  public:
   virtual ~StepSolver() = default;
@@ -21,12 +44,14 @@ class StepSolver {
   [[nodiscard]] virtual double contact_seconds() const = 0;
   /// Entries of all factors, for the summary.
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
+  /// Per operator.
+  [[nodiscard]] virtual const std::vector<ChosenMethod>& methods() const = 0;
 };
 
-/// Factorizes each operator once (supernodal Cholesky, contact dofs last) and condenses contact on the contact dofs:
-/// forward solve → dense contact problem on the trailing block → back solve.
-/// Throws Error(invalid_input) when an operator is not positive definite, with the dof at which this shows.
-[[nodiscard]] std::unique_ptr<StepSolver> make_direct_step_solver(const SemidiscreteProblem& problem,
-                                                                  const std::vector<OperatorCoefficients>& operators);
+/// Everything that is constant for these operators is computed now. Throws Error(invalid_input) when an operator is not
+/// positive definite, with the node at which this shows.
+[[nodiscard]] std::unique_ptr<StepSolver> make_step_solver(const SemidiscreteProblem& problem,
+                                                           const std::vector<OperatorCoefficients>& operators,
+                                                           const StepSolverOptions& options = {});
 
 }  // namespace ricochet

@@ -14,26 +14,22 @@ Matrix random_matrix(Index rows, Index columns, unsigned seed) {
   return Matrix::NullaryExpr(rows, columns, [&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; });
 }
 
-TEST(DenseFactor, SolvesTriangularSystems) {
-  for (const Index size : {1, 7, 130}) {
-    Matrix factor = random_matrix(size, size, 1);
-    factor.diagonal().array() += 0.6 * static_cast<double>(size);
-    const Matrix right = random_matrix(size, 5, 2);
-    Matrix found = right;
-    solve_lower_triangular(factor, found);  // what is above the diagonal must not matter
-    const Matrix lower = factor.triangularView<Eigen::Lower>();
-    EXPECT_LE((lower * found - right).cwiseAbs().maxCoeff(), 1e-13) << size;
-  }
-  Matrix nothing(3, 0);
-  solve_lower_triangular(Matrix::Identity(3, 3), nothing);
+TEST(DenseFactor, MultipliesPartsOfMatrices) {
+  const Matrix left = random_matrix(40, 9, 1), right = random_matrix(30, 8, 2), start = random_matrix(12, 12, 3);
+  Matrix found = start, expected = start;
+  add_transposed_product(20, 5, 6, &left(10, 2), left.rows(), &right(4, 1), right.rows(), &found(3, 2), found.rows());
+  expected.block(3, 2, 5, 6) += left.block(10, 2, 20, 5).transpose() * right.block(4, 1, 20, 6);
+  EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-TEST(DenseFactor, GramMatrixIsSymmetricToTheBit) {
-  const Matrix columns = random_matrix(40, 33, 3);
-  const Matrix gram = gram_matrix(columns);
-  EXPECT_LE((gram - columns.transpose() * columns).cwiseAbs().maxCoeff(), 1e-13);
-  EXPECT_TRUE(gram == gram.transpose());
-  EXPECT_EQ(gram_matrix(Matrix(0, 4)), Matrix::Zero(4, 4));
+TEST(DenseFactor, MultipliesByTheTranspose) {
+  const Matrix matrix = random_matrix(40, 9, 1);
+  const Vector x = random_matrix(40, 1, 2);
+  Vector y(9);
+  multiply_transposed(matrix, x, y.data());
+  EXPECT_LE((y - matrix.transpose() * x).cwiseAbs().maxCoeff(), 1e-14);
+  multiply_transposed(Matrix(0, 9), Vector(), y.data());
+  EXPECT_TRUE(y.isZero(0.0));
 }
 
 TEST(DenseFactor, LuSolvesAndShowsSingularity) {

@@ -29,8 +29,9 @@ struct ContactProblem {
   std::vector<Index> first;                                 ///< points + 1
   Vector friction_coefficient;                              ///< F ≥ 0, per point
   Vector friction_bound;                                    ///< per point, in units of r; 0: none. Empty: none anywhere
-  Vector offset_rounding;       ///< size of the rounding error of q, per row. Empty: q is exact
-  std::vector<char> eligible;   ///< per point: may have a reaction. Empty: all may
+  Vector offset_rounding;            ///< size of the rounding error of q, per row. Empty: q is exact
+  std::vector<char> eligible;        ///< per point: may have a reaction. Empty: all may
+  std::vector<Index> point_numbers;  ///< of the points where the problem comes from; empty: 0, 1, …. For reports
   double reaction_scale = 1.0;  ///< r is so many times the force (a power of two). For reports: no solver looks at it
 
   ContactProblem() = default;
@@ -42,6 +43,9 @@ struct ContactProblem {
   [[nodiscard]] Index rows() const { return offset.size(); }
   [[nodiscard]] bool is_eligible(Index point) const {
     return eligible.empty() || eligible[static_cast<std::size_t>(point)] != 0;
+  }
+  [[nodiscard]] Index number_of(Index point) const {
+    return point_numbers.empty() ? point : point_numbers[static_cast<std::size_t>(point)];
   }
   [[nodiscard]] double bound(Index point) const { return friction_bound.size() > 0 ? friction_bound[point] : 0.0; }
   /// Throws Error(invalid_input) where sizes do not agree, or a coefficient or bound is negative or not finite; names

@@ -1,0 +1,21 @@
+#include "ricochet/base/memory.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace ricochet {
+
+double physical_memory() {
+  double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  // "max" where there is no limit: not a number, and the stream fails.
+  for (const char* name : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::ifstream file(name);
+    double limit = 0.0;
+    if (file >> limit && limit > 0.0) bytes = std::min(bytes, limit);
+  }
+  return bytes;
+}
+
+}  // namespace ricochet

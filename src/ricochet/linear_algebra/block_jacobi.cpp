@@ -1,0 +1,52 @@
+#include "ricochet/linear_algebra/block_jacobi.hpp"
+
+#include <Eigen/LU>
+
+#include "ricochet/base/parallel.hpp"
+
+namespace ricochet {
+
+namespace {
+
+template <int d>
+class BlockJacobi final : public Preconditioner {
+ public:
+  BlockJacobi(const SparseMatrix& matrix, const std::vector<char>& solved)
+      : inverse_(static_cast<std::size_t>(matrix.cols() / d)) {
+    for (Index node = 0; node < nodes(); ++node) {
+      Block block = Block::Identity();
+      for (int k = 0; k < d; ++k) {
+        if (solved[static_cast<std::size_t>(node * d + k)] == 0) continue;
+        for (SparseMatrix::InnerIterator entry(matrix, node * d + k); entry; ++entry) {
+          if (entry.row() / d == node && solved[static_cast<std::size_t>(entry.row())] != 0)
+            block(entry.row() % d, k) = entry.value();
+        }
+      }
+      inverse_[static_cast<std::size_t>(node)] = block.inverse();
+    }
+  }
+
+  void apply(const Vector& r, Vector& z) const override {
+    z.resize(r.size());
+    parallel_ranges(nodes(), [&](Index begin, Index end) {
+      for (Index node = begin; node < end; ++node)
+        z.segment<d>(node * d) = inverse_[static_cast<std::size_t>(node)] * r.segment<d>(node * d);
+    });
+  }
+  [[nodiscard]] std::size_t bytes() const override { return inverse_.size() * sizeof(Block); }
+
+ private:
+  using Block = Eigen::Matrix<double, d, d>;
+  [[nodiscard]] Index nodes() const { return static_cast<Index>(inverse_.size()); }
+
+  std::vector<Block> inverse_;
+};
+
+}  // namespace
+
+std::unique_ptr<Preconditioner> make_block_jacobi(const SparseMatrix& matrix, int d, const std::vector<char>& solved) {
+  if (d == 2) return std::make_unique<BlockJacobi<2>>(matrix, solved);
+  return std::make_unique<BlockJacobi<3>>(matrix, solved);
+}
+
+}  // namespace ricochet

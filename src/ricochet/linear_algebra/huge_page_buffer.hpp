@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+/// @file Memory for arrays that are read from end to end in every time step.
+namespace ricochet {
+
+/// An array of doubles at a 64-byte boundary, on huge pages where the system has them (a factor of 200 MB has 50,000
+/// ordinary pages, more than a processor keeps addresses of). Not initialized. Throws std::bad_alloc.
+class HugePageBuffer {
+ public:
+  HugePageBuffer() = default;
+  explicit HugePageBuffer(std::size_t size);
+
+  [[nodiscard]] double* data() { return values_.get(); }
+  [[nodiscard]] const double* data() const { return values_.get(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+ private:
+  struct Release {
+    void operator()(double* values) const;
+  };
+  std::unique_ptr<double[], Release> values_;
+  std::size_t size_ = 0;
+};
+
+/// Gives the whole pages between two addresses back to the system, where it can: what was there is lost.
+void discard_pages(double* begin, double* end);
+
+}  // namespace ricochet

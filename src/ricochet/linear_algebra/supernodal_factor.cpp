@@ -1,0 +1,282 @@
+#include "ricochet/linear_algebra/supernodal_factor.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "ricochet/base/parallel.hpp"
+#include "ricochet/linear_algebra/supernodal_kernels.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Factors of fewer numbers are not divided: handing over to another thread would take longer than the solve.
+constexpr Index least_divided_size = Index{1} << 18;
+/// Subtrees hold at most this part of the factor.
+constexpr Index parts_per_factor = 16;
+/// Gives memory that has been read back to the system, a few MB at a time.
+class Discarding {
+ public:
+  ~Discarding() { discard_pages(begin_, end_); }
+  void has_read(double* begin, double* end) {
+    if (begin != end_ || end_ - begin_ > enough) {
+      discard_pages(begin_, end_);
+      begin_ = begin;
+    }
+    end_ = end;
+  }
+
+ private:
+  static constexpr Index enough = Index{1} << 20;
+  double* begin_ = nullptr;
+  double* end_ = nullptr;
+};
+
+}  // namespace
+
+SupernodalFactor::SupernodalFactor(const SupernodalView& view) {
+  read_shape(view);
+  divide();
+  copy_values(view);
+}
+
+void SupernodalFactor::read_shape(const SupernodalView& view) {
+  const auto count = static_cast<std::size_t>(view.supernodes);
+  size_ = view.supernodes == 0 ? 0 : view.first_column[view.supernodes];
+  supernodes_.resize(count);
+  std::vector<int> supernode_of_column(static_cast<std::size_t>(size_));
+  for (std::size_t s = 0; s < count; ++s) {
+    Supernode& node = supernodes_[s];
+    node.first = view.first_column[s];
+    node.columns = view.first_column[s + 1] - node.first;
+    node.below = view.row_start[s + 1] - view.row_start[s] - node.columns;
+    node.number = static_cast<int>(s);
+    std::fill_n(supernode_of_column.begin() + node.first, node.columns, node.number);
+  }
+  parent_.resize(count);
+  for (std::size_t s = 0; s < count; ++s) {
+    const Supernode& node = supernodes_[s];
+    const int* below = view.rows + view.row_start[s] + node.columns;
+    parent_[s] = node.below == 0 ? -1 : supernode_of_column[static_cast<std::size_t>(*below)];
+  }
+}
+
+/// Numbers in the stream of each supernode with all its descendants; −1 where these do not lie side by side before it.
+std::vector<Index> SupernodalFactor::subtree_sizes() const {
+  const std::size_t count = supernodes_.size();
+  std::vector<Index> size(count, 0), descendants(count, 0);
+  std::vector<int> first(count);
+  std::iota(first.begin(), first.end(), 0);
+  for (std::size_t s = 0; s < count; ++s) {
+    const Supernode& node = supernodes_[s];
+    size[s] += supernode_stream_size(node.columns, node.columns + node.below);
+    descendants[s] += 1;
+    if (parent_[s] < 0) continue;
+    const auto parent = static_cast<std::size_t>(parent_[s]);
+    size[parent] += size[s];
+    descendants[parent] += descendants[s];
+    first[parent] = std::min(first[parent], first[s]);
+  }
+  for (std::size_t s = 0; s < count; ++s) {
+    if (static_cast<Index>(s) - first[s] + 1 != descendants[s]) size[s] = -1;
+  }
+  return size;
+}
+
+/// The division depends on the factor alone. It is the order of sums, and so must not depend on the number of threads.
+void SupernodalFactor::divide() {
+  const std::vector<Index> size = subtree_sizes();
+  const std::size_t count = supernodes_.size();
+  Index total = 0;
+  for (std::size_t s = 0; s < count; ++s) total += parent_[s] < 0 ? std::max(size[s], Index{0}) : 0;
+  const Index limit = total < least_divided_size ? -1 : total / parts_per_factor;
+  // A subtree is a part if it is small enough and its parent's is not.
+  std::vector<int> part(count, -1);
+  for (std::size_t s = count; s-- > 0;) {
+    if (parent_[s] >= 0 && part[static_cast<std::size_t>(parent_[s])] >= 0) {
+      part[s] = part[static_cast<std::size_t>(parent_[s])];
+    } else if (size[s] >= 0 && size[s] <= limit) {
+      part[s] = static_cast<int>(s);
+    }
+  }
+  std::vector<Supernode> ordered;
+  ordered.reserve(count);
+  for (std::size_t s = 0; s < count; ++s) {
+    if (part[s] < 0) continue;
+    if (parts_.empty() || part[s] != part[s - 1]) parts_.push_back({ordered.size(), ordered.size(), {}, 0, {}});
+    ordered.push_back(supernodes_[s]);
+    parts_.back().end = ordered.size();
+  }
+  parts_.push_back({ordered.size(), count, {}, 0, {}});
+  for (std::size_t s = 0; s < count; ++s) {
+    if (part[s] < 0) ordered.push_back(supernodes_[s]);
+  }
+  supernodes_ = std::move(ordered);
+  place_.resize(count);
+  for (std::size_t k = 0; k < count; ++k) place_[static_cast<std::size_t>(supernodes_[k].number)] = static_cast<int>(k);
+}
+
+void SupernodalFactor::copy_values(const SupernodalView& view) {
+  Index stream_size = 0, row_count = 0;
+  for (Supernode& node : supernodes_) {
+    node.stream = stream_size;
+    node.rows = row_count;
+    stream_size += supernode_stream_size(node.columns, node.columns + node.below);
+    node.stream_end = stream_size;
+    row_count += node.below;
+  }
+  stream_ = HugePageBuffer(static_cast<std::size_t>(stream_size));
+  rows_.resize(static_cast<std::size_t>(row_count));
+  Discarding source;
+  for (const Supernode& node : supernodes_) {
+    const int* below = view.rows + view.row_start[node.number] + node.columns;
+    std::copy_n(below, node.below, rows_.begin() + node.rows);
+    double* const from = view.values + view.value_start[node.number];
+    const Index rows = node.columns + node.below;
+    write_supernode(from, node.columns, rows, stream_.data() + node.stream);
+    source.has_read(from, from + node.columns * rows);
+  }
+  work_size_ = size_;
+  row_of_work_.clear();
+  for (Part& part : parts_) number_boundary(part);
+}
+
+/// Rows beyond a part's own columns become places in the work space of y.
+void SupernodalFactor::number_boundary(Part& part) {
+  Index most_rows = 0;
+  for (std::size_t k = part.begin; k < part.end; ++k)
+    most_rows = std::max<Index>(most_rows, supernodes_[k].columns + supernodes_[k].below);
+  part.work.assign(static_cast<std::size_t>(most_rows) + 1, 0.0);
+  part.boundary_start = work_size_;
+  if (&part == &parts_.back()) return;
+  // The rows of a descendant beyond the root are among those of the root.
+  const Supernode& root = supernodes_[part.end - 1];
+  part.boundary.assign(rows_.begin() + root.rows, rows_.begin() + root.rows + root.below);
+  const int beyond = root.first + root.columns;
+  for (Index k = supernodes_[part.begin].rows; k < root.rows + root.below; ++k) {
+    int& row = rows_[static_cast<std::size_t>(k)];
+    if (row < beyond) continue;
+    const auto at = std::lower_bound(part.boundary.begin(), part.boundary.end(), row) - part.boundary.begin();
+    row = static_cast<int>(part.boundary_start + at);
+  }
+  row_of_work_.insert(row_of_work_.end(), part.boundary.begin(), part.boundary.end());
+  work_size_ += static_cast<Index>(part.boundary.size());
+}
+
+std::size_t SupernodalFactor::bytes() const {
+  return stream_.size() * sizeof(double) + rows_.size() * sizeof(int) + supernodes_.size() * sizeof(Supernode);
+}
+
+void SupernodalFactor::forward(const Part& part, double* y) const {
+  double* const w = part.work.data();
+  std::fill_n(y + part.boundary_start, part.boundary.size(), 0.0);
+  for (std::size_t k = part.begin; k < part.end; ++k) {
+    const Supernode& node = supernodes_[k];
+    const int* rows = rows_.data() + node.rows;
+    std::copy_n(y + node.first, node.columns, w);
+    double* const below = w + node.columns;
+    for (int i = 0; i < node.below; ++i) below[i] = y[rows[i]];
+    below[node.below] = 0.0;
+    supernode_forward(stream_.data() + node.stream, node.columns, node.columns + node.below, w);
+    std::copy_n(w, node.columns, y + node.first);
+    for (int i = 0; i < node.below; ++i) y[rows[i]] = below[i];
+  }
+}
+
+void SupernodalFactor::backward(const Part& part, double* y) const {
+  double* const w = part.work.data();
+  for (std::size_t i = 0; i < part.boundary.size(); ++i)
+    y[part.boundary_start + static_cast<Index>(i)] = y[part.boundary[i]];
+  for (std::size_t k = part.end; k-- > part.begin;) {
+    const Supernode& node = supernodes_[k];
+    const int* rows = rows_.data() + node.rows;
+    std::copy_n(y + node.first, node.columns, w);
+    double* const below = w + node.columns;
+    for (int i = 0; i < node.below; ++i) below[i] = y[rows[i]];
+    below[node.below] = 0.0;
+    const Index size = node.columns + node.below;
+    supernode_backward(stream_.data() + node.stream_end, node.columns, size, w);
+    std::copy_n(w, node.columns, y + node.first);
+  }
+}
+
+void SupernodalFactor::forward(Vector& y) const {
+  if (size_ == 0) return;
+  const auto subtrees = static_cast<Index>(parts_.size()) - 1;
+  parallel_ranges(subtrees, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) forward(parts_[static_cast<std::size_t>(k)], y.data());
+  });
+  for (Index k = 0; k < subtrees; ++k) {
+    const Part& part = parts_[static_cast<std::size_t>(k)];
+    for (std::size_t i = 0; i < part.boundary.size(); ++i)
+      y[part.boundary[i]] += y[part.boundary_start + static_cast<Index>(i)];
+  }
+  forward(parts_.back(), y.data());
+}
+
+void SupernodalFactor::backward(Vector& y) const {
+  if (size_ == 0) return;
+  backward(parts_.back(), y.data());
+  parallel_ranges(static_cast<Index>(parts_.size()) - 1, [&](Index begin, Index end) {
+    for (Index k = end; k-- > begin;) backward(parts_[static_cast<std::size_t>(k)], y.data());
+  });
+}
+
+FactorPath SupernodalFactor::path(const std::vector<Index>& rows) const {
+  std::vector<char> reached(supernodes_.size(), 0);
+  const auto first_beyond = [&](Index row) {
+    // Columns ascend with the supernode's number.
+    return std::partition_point(place_.begin(), place_.end(),
+                                [&](int place) { return supernodes_[static_cast<std::size_t>(place)].first <= row; });
+  };
+  for (const Index row : rows) {
+    auto s = static_cast<int>(first_beyond(row) - place_.begin()) - 1;
+    for (; s >= 0 && reached[static_cast<std::size_t>(s)] == 0; s = parent_[static_cast<std::size_t>(s)])
+      reached[static_cast<std::size_t>(s)] = 1;
+  }
+  FactorPath path;
+  path.offsets.push_back(0);
+  for (std::size_t s = 0; s < reached.size(); ++s) {
+    if (reached[s] == 0) continue;
+    const Supernode& node = supernodes_[static_cast<std::size_t>(place_[s])];
+    path.supernodes.push_back(static_cast<int>(s));
+    path.first.push_back(node.first);
+    path.offsets.push_back(path.offsets.back() + node.columns);
+  }
+  return path;
+}
+
+void SupernodalFactor::forward_on_path(const FactorPath& path, Matrix& columns) const {
+  std::vector<int> position(static_cast<std::size_t>(size_), -1);
+  for (std::size_t k = 0; k < path.supernodes.size(); ++k) {
+    for (Index i = path.offsets[k]; i < path.offsets[k + 1]; ++i)
+      position[static_cast<std::size_t>(path.first[k] + i - path.offsets[k])] = static_cast<int>(i);
+  }
+  const auto place_on_path = [&](int row) {
+    const int in_factor = row < size_ ? row : row_of_work_[static_cast<std::size_t>(row - size_)];
+    return position[static_cast<std::size_t>(in_factor)];
+  };
+  // Eight columns side by side.
+  using Rows = Eigen::Matrix<double, 8, Eigen::Dynamic>;
+  Rows eight(8, path.rows()), w;
+  for (Index first = 0; first < columns.cols(); first += 8) {
+    const Index count = std::min<Index>(8, columns.cols() - first);
+    eight.setZero();
+    eight.topRows(count) = columns.middleCols(first, count).transpose();
+    for (std::size_t k = 0; k < path.supernodes.size(); ++k) {
+      const Supernode& node =
+          supernodes_[static_cast<std::size_t>(place_[static_cast<std::size_t>(path.supernodes[k])])];
+      const int* rows = rows_.data() + node.rows;
+      w.setZero(8, node.columns + node.below + 1);
+      w.leftCols(node.columns) = eight.middleCols(path.offsets[k], node.columns);
+      for (int i = 0; i < node.below; ++i) w.col(node.columns + i) = eight.col(place_on_path(rows[i]));
+      supernode_forward_eight(stream_.data() + node.stream, node.columns, node.columns + node.below, w.data());
+      eight.middleCols(path.offsets[k], node.columns) = w.leftCols(node.columns);
+      for (int i = 0; i < node.below; ++i) eight.col(place_on_path(rows[i])) = w.col(node.columns + i);
+    }
+    columns.middleCols(first, count) = eight.topRows(count).transpose();
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,275 @@
+#include "ricochet/linear_algebra/supernodal_kernels.hpp"
+
+#include <algorithm>
+
+#include "ricochet/linear_algebra/instruction_sets.hpp"
+
+// How wide vectors are passed to functions depends on the instruction set; here all such calls are inlined.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+namespace ricochet {
+
+namespace {
+
+constexpr Index block_columns = 8;
+/// How far ahead of the stream to fetch, in numbers.
+constexpr Index fetch_ahead = 512;
+
+// H numbers side by side, aligned or anywhere in memory.
+template <int H>
+struct Lanes;
+#define RICOCHET_LANES(count)                                                       \
+  template <>                                                                       \
+  struct Lanes<count> {                                                             \
+    typedef double Value __attribute__((vector_size(8 * (count))));                 \
+    typedef double Unaligned __attribute__((vector_size(8 * (count)), aligned(8))); \
+  };
+RICOCHET_LANES(2)
+RICOCHET_LANES(4)
+RICOCHET_LANES(8)
+#undef RICOCHET_LANES
+template <int H>
+using Pack = typename Lanes<H>::Value;
+
+template <int H>
+RICOCHET_PART_OF_CALLER Pack<H> load(const double* from) {
+  return *reinterpret_cast<const typename Lanes<H>::Unaligned*>(from);
+}
+template <int H>
+RICOCHET_PART_OF_CALLER void store(double* to, const Pack<H>& value) {
+  *reinterpret_cast<typename Lanes<H>::Unaligned*>(to) = value;
+}
+RICOCHET_PART_OF_CALLER double sum(const Pack<2>& a) {
+  return a[0] + a[1];
+}
+RICOCHET_PART_OF_CALLER double sum(const Pack<4>& a) {
+  return (a[0] + a[2]) + (a[1] + a[3]);
+}
+RICOCHET_PART_OF_CALLER double sum(const Pack<8>& a) {
+  return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]));
+}
+
+/// Rows below a triangle with the zeros that fill its last panels: remainders of 1 to 7 take 2, 2, 4, 4, 6, 6, 8.
+RICOCHET_PART_OF_CALLER constexpr Index filled(Index rows) {
+  return (rows + 1) / 2 * 2;
+}
+/// Numbers in a column of the inverse of a triangle.
+constexpr int triangle_lanes(int columns) {
+  return columns <= 2 ? 2 : columns <= 4 ? 4 : 8;
+}
+
+Index block_stream_size(Index columns, Index rows_below) {
+  return (triangle_lanes(static_cast<int>(columns)) + filled(rows_below)) * columns;
+}
+
+/// The inverse of a lower triangle, by columns.
+void invert_triangle(const double* factor, Index stride, Index columns, double (&inverse)[8][8]) {
+  for (Index j = 0; j < columns; ++j) {
+    for (Index i = 0; i < block_columns; ++i) inverse[j][i] = 0.0;
+    inverse[j][j] = 1.0 / factor[j * stride + j];
+    for (Index i = j + 1; i < columns; ++i) {
+      double product = 0.0;
+      for (Index k = j; k < i; ++k) product += factor[k * stride + i] * inverse[j][k];
+      inverse[j][i] = -product / factor[i * stride + i];
+    }
+  }
+}
+
+double* write_block(const double* factor, Index stride, Index columns, Index rows_below, double* stream) {
+  double inverse[8][8];
+  invert_triangle(factor, stride, columns, inverse);
+  const int lanes = triangle_lanes(static_cast<int>(columns));
+  for (Index j = 0; j < columns; ++j) stream = std::copy_n(inverse[j], lanes, stream);
+  const Index end = filled(rows_below);
+  for (Index row = 0; row < end;) {
+    const Index height = end - row >= 8 ? 8 : end - row >= 4 ? 4 : 2;
+    for (Index j = 0; j < columns; ++j) {
+      const double* column = factor + j * stride + columns;
+      for (Index i = row; i < row + height; ++i) *stream++ = i < rows_below ? column[i] : 0.0;
+    }
+    row += height;
+  }
+  return stream;
+}
+
+template <int H, int C>
+RICOCHET_PART_OF_CALLER const double* forward_panel(const double* stream, const double (&x)[C], double* w) {
+  Pack<H> product = load<H>(stream) * x[0];
+  for (int j = 1; j < C; ++j) product += load<H>(stream + H * j) * x[j];
+  store<H>(w, load<H>(w) - product);
+  return stream + H * C;
+}
+
+template <int C>
+RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index rows_below, double* w) {
+  constexpr int lanes = triangle_lanes(C);
+  Pack<lanes> solved = load<lanes>(stream) * w[0];
+  for (int j = 1; j < C; ++j) solved += load<lanes>(stream + lanes * j) * w[j];
+  stream += lanes * C;
+  double x[C];
+  for (int j = 0; j < C; ++j) w[j] = x[j] = solved[j];
+  w += C;
+  const Index end = filled(rows_below);
+  Index row = 0;
+  for (; row + 8 <= end; row += 8) {
+    for (int j = 0; j < C; ++j) __builtin_prefetch(stream + fetch_ahead + 8 * j);
+    stream = forward_panel<8, C>(stream, x, w + row);
+  }
+  if ((end & 4) != 0) {
+    stream = forward_panel<4, C>(stream, x, w + row);
+    row += 4;
+  }
+  if ((end & 2) != 0) stream = forward_panel<2, C>(stream, x, w + row);
+  return stream;
+}
+
+/// Adds Lᵀw of the last rows, a panel of four or two.
+template <int H, int C>
+RICOCHET_PART_OF_CALLER const double* backward_panel(const double* stream, const double* w, double (&product)[C]) {
+  stream -= H * C;
+  const Pack<H> values = load<H>(w);
+  for (int j = 0; j < C; ++j) product[j] += sum(load<H>(stream + H * j) * values);
+  return stream;
+}
+
+template <int C>
+RICOCHET_PART_OF_CALLER const double* backward_block(const double* stream, Index rows_below, double* w) {
+  const Index end = filled(rows_below);
+  double* const below = w + C;
+  Index row = end;
+  double product[C] = {};
+  if ((end & 2) != 0) stream = backward_panel<2, C>(stream, below + (row -= 2), product);
+  if ((end & 4) != 0) stream = backward_panel<4, C>(stream, below + (row -= 4), product);
+  Pack<8> products[C];
+  for (int j = 0; j < C; ++j) products[j] = Pack<8>{};
+  while (row > 0) {
+    row -= 8;
+    stream -= 8 * C;
+    const Pack<8> values = load<8>(below + row);
+    for (int j = 0; j < C; ++j) __builtin_prefetch(stream - fetch_ahead + 8 * j);
+    for (int j = 0; j < C; ++j) products[j] += load<8>(stream + 8 * j) * values;
+  }
+  constexpr int lanes = triangle_lanes(C);
+  stream -= lanes * C;
+  Pack<lanes> right{};
+  for (int j = 0; j < C; ++j) right[j] = w[j] - (sum(products[j]) + product[j]);
+  for (int j = 0; j < C; ++j) w[j] = sum(load<lanes>(stream + lanes * j) * right);
+  return stream;
+}
+
+template <int H, int C>
+RICOCHET_PART_OF_CALLER const double* forward_panel_eight(const double* stream, const Pack<8> (&x)[C], double* w) {
+  for (int i = 0; i < H; ++i) {
+    Pack<8> product = stream[i] * x[0];
+    for (int j = 1; j < C; ++j) product += stream[H * j + i] * x[j];
+    store<8>(w + 8 * i, load<8>(w + 8 * i) - product);
+  }
+  return stream + H * C;
+}
+
+template <int C>
+RICOCHET_PART_OF_CALLER const double* forward_block_eight(const double* stream, Index rows_below, double* w) {
+  constexpr int lanes = triangle_lanes(C);
+  Pack<8> x[C];
+  for (int i = 0; i < C; ++i) {
+    x[i] = stream[i] * load<8>(w);
+    for (int j = 1; j < C; ++j) x[i] += stream[lanes * j + i] * load<8>(w + 8 * j);
+  }
+  stream += lanes * C;
+  for (int j = 0; j < C; ++j) store<8>(w + 8 * j, x[j]);
+  w += Index{8} * C;
+  const Index end = filled(rows_below);
+  Index row = 0;
+  for (; row + 8 <= end; row += 8) stream = forward_panel_eight<8, C>(stream, x, w + 8 * row);
+  if ((end & 4) != 0) {
+    stream = forward_panel_eight<4, C>(stream, x, w + 8 * row);
+    row += 4;
+  }
+  if ((end & 2) != 0) stream = forward_panel_eight<2, C>(stream, x, w + 8 * row);
+  return stream;
+}
+
+}  // namespace
+
+Index supernode_stream_size(Index columns, Index rows) {
+  Index size = 0;
+  for (Index first = 0; first < columns; first += block_columns) {
+    const Index count = std::min(block_columns, columns - first);
+    size += block_stream_size(count, rows - first - count);
+  }
+  return size;
+}
+
+double* write_supernode(const double* factor, Index columns, Index rows, double* stream) {
+  for (Index first = 0; first < columns; first += block_columns) {
+    const Index count = std::min(block_columns, columns - first);
+    stream = write_block(factor + first * rows + first, rows, count, rows - first - count, stream);
+  }
+  return stream;
+}
+
+// What follows a block's last full eight columns, by its number of columns.
+#define RICOCHET_REMAINDER(count, call) \
+  switch (count) {                      \
+    case 1:                             \
+      call(1);                          \
+      break;                            \
+    case 2:                             \
+      call(2);                          \
+      break;                            \
+    case 3:                             \
+      call(3);                          \
+      break;                            \
+    case 4:                             \
+      call(4);                          \
+      break;                            \
+    case 5:                             \
+      call(5);                          \
+      break;                            \
+    case 6:                             \
+      call(6);                          \
+      break;                            \
+    case 7:                             \
+      call(7);                          \
+      break;                            \
+    default:                            \
+      break;                            \
+  }
+
+RICOCHET_EACH_INSTRUCTION_SET
+const double* supernode_forward(const double* stream, Index columns, Index rows, double* w) {
+  Index first = 0;
+  for (; first + 8 <= columns; first += 8) stream = forward_block<8>(stream, rows - first - 8, w + first);
+#define RICOCHET_CALL(c) stream = forward_block<c>(stream, rows - first - (c), w + first)
+  RICOCHET_REMAINDER(columns - first, RICOCHET_CALL)
+#undef RICOCHET_CALL
+  return stream;
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
+const double* supernode_backward(const double* stream_end, Index columns, Index rows, double* w) {
+  Index first = columns / 8 * 8;
+#define RICOCHET_CALL(c) stream_end = backward_block<c>(stream_end, rows - first - (c), w + first)
+  RICOCHET_REMAINDER(columns - first, RICOCHET_CALL)
+#undef RICOCHET_CALL
+  while (first > 0) {
+    first -= 8;
+    stream_end = backward_block<8>(stream_end, rows - first - 8, w + first);
+  }
+  return stream_end;
+}
+
+RICOCHET_EACH_INSTRUCTION_SET
+const double* supernode_forward_eight(const double* stream, Index columns, Index rows, double* w) {
+  Index first = 0;
+  for (; first + 8 <= columns; first += 8) stream = forward_block_eight<8>(stream, rows - first - 8, w + 8 * first);
+#define RICOCHET_CALL(c) stream = forward_block_eight<c>(stream, rows - first - (c), w + 8 * first)
+  RICOCHET_REMAINDER(columns - first, RICOCHET_CALL)
+#undef RICOCHET_CALL
+  return stream;
+}
+#undef RICOCHET_REMAINDER
+
+}  // namespace ricochet

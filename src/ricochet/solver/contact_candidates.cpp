@@ -1,0 +1,107 @@
+#include "ricochet/solver/contact_candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet {
+
+namespace {
+
+/// A stage may move points this many times as far as the last one did.
+constexpr double reserve = 2.0;
+/// Points within so many reaches are taken up together.
+constexpr double ahead = 8.0;
+/// Of the points that penetrate, those by more than this part of the deepest are taken up at once, but not more than
+/// there are candidates: a body that nothing held has fallen through its obstacle with all points, and the deepest ones
+/// may be enough to hold it.
+constexpr double deep = 0.5;
+/// Candidates are dropped when they are so many times those near the obstacle, and more than these, for so long.
+constexpr std::size_t oversize = 3;
+constexpr std::size_t few_points = 32;
+constexpr int patience = 100;
+
+}  // namespace
+
+void ContactCandidates::take_up(const std::vector<Index>& points) {
+  for (const Index point : points) {
+    number_[static_cast<std::size_t>(point)] = static_cast<Index>(points_.size());
+    points_.push_back(point);
+  }
+}
+
+void ContactCandidates::clear() {
+  for (const Index point : points_) number_[static_cast<std::size_t>(point)] = -1;
+  points_.clear();
+  oversized_stages_ = 0;
+}
+
+/// In the units of y: what stages have moved points by, or what this one must, where points are inside at δ = 0.
+double ContactCandidates::reach(const Stage& stage) const {
+  double deepest = 0.0;
+  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
+    if (stage.eligible[static_cast<std::size_t>(i)] != 0) deepest = std::max(deepest, -stage.gap_offset[i]);
+  }
+  return reserve * std::max(deepest, stage.gap_factor * largest_motion_);
+}
+
+std::vector<Index> ContactCandidates::eligible_below(const Stage& stage, double limit, bool candidates) const {
+  std::vector<Index> result;
+  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const bool wanted = stage.eligible[at] != 0 && (number_[at] >= 0) == candidates;
+    if (wanted && stage.gap_offset[i] <= limit) result.push_back(i);
+  }
+  return result;
+}
+
+bool ContactCandidates::some_may_touch(const Stage& stage) const {
+  const double limit = reach(stage);
+  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
+    if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= limit) return true;
+  }
+  return false;
+}
+
+std::vector<Index> ContactCandidates::approaching(const Stage& stage) const {
+  const double limit = reach(stage);
+  std::vector<Index> near = eligible_below(stage, ahead * limit, false);
+  const bool needed =
+      std::any_of(near.begin(), near.end(), [&](Index point) { return stage.gap_offset[point] <= limit; });
+  if (!needed) near.clear();
+  return near;
+}
+
+std::vector<Index> ContactCandidates::penetrating(const Stage& stage, const Vector& motion, bool left_out) const {
+  std::vector<Index> result;
+  double deepest = 0.0;
+  const auto gap = [&](Index point) { return stage.gap_offset[point] + stage.gap_factor * motion[point]; };
+  for (Index i = 0; i < motion.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const bool was_asked = number_[at] >= 0 && !left_out;
+    if (stage.eligible[at] == 0 || was_asked || !(gap(i) < -stage.gap_offset_rounding[i])) continue;
+    result.push_back(i);
+    deepest = std::max(deepest, -gap(i));
+  }
+  std::erase_if(result, [&](Index point) { return -gap(point) < deep * deepest; });
+  std::stable_sort(result.begin(), result.end(), [&](Index a, Index b) { return gap(a) < gap(b); });
+  result.resize(std::min(result.size(), std::max(few_points, points_.size())));
+  return result;
+}
+
+void ContactCandidates::learn(const Stage& stage, const Vector& motion) {
+  largest_motion_ = 0.0;
+  for (Index i = 0; i < motion.size(); ++i) {
+    if (stage.eligible[static_cast<std::size_t>(i)] != 0)
+      largest_motion_ = std::max(largest_motion_, std::abs(motion[i]));
+  }
+}
+
+std::vector<Index> ContactCandidates::worth_keeping(const Stage& stage) {
+  if (points_.size() <= few_points) return {};
+  std::vector<Index> near = eligible_below(stage, ahead * reach(stage), true);
+  oversized_stages_ = points_.size() > oversize * std::max(near.size(), few_points) ? oversized_stages_ + 1 : 0;
+  if (oversized_stages_ < patience) near.clear();
+  return near;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/scheme/stage.hpp"
+
+/// @file Which contact points take part in the contact problem of a stage. Nothing is left out for good: after every
+/// stage the points that were not asked are looked at, and where one of them would penetrate it is taken up and the
+/// stage is solved again.
+namespace ricochet {
+
+class ContactCandidates {
+ public:
+  explicit ContactCandidates(Index points) : number_(static_cast<std::size_t>(points), -1) {}
+
+  /// In the order in which they were taken up.
+  [[nodiscard]] const std::vector<Index>& points() const { return points_; }
+  /// Place of a point among them, or −1.
+  [[nodiscard]] Index number(Index point) const { return number_[static_cast<std::size_t>(point)]; }
+  void take_up(const std::vector<Index>& points);
+  void clear();
+
+  /// Some eligible point may touch in this stage: its y at δ = 0 is within reach of what stages have moved points by.
+  [[nodiscard]] bool some_may_touch(const Stage& stage) const;
+  /// Points that may touch and are no candidates, with those near them in time, so that the set does not grow in every
+  /// step. Empty: there are none that may touch.
+  [[nodiscard]] std::vector<Index> approaching(const Stage& stage) const;
+  /// After a stage with these G δ (per point): eligible points that penetrate by more than rounding, of many the
+  /// deepest. Candidates are looked at only where they were `left_out` of the stage. Empty: the stage is solved.
+  [[nodiscard]] std::vector<Index> penetrating(const Stage& stage, const Vector& motion, bool left_out) const;
+  /// Remembers how far a solved stage has moved points.
+  void learn(const Stage& stage, const Vector& motion);
+  /// Many more candidates than points near the obstacle, for long: those that are worth keeping. Empty: nothing to do.
+  [[nodiscard]] std::vector<Index> worth_keeping(const Stage& stage);
+
+ private:
+  [[nodiscard]] double reach(const Stage& stage) const;
+  [[nodiscard]] std::vector<Index> eligible_below(const Stage& stage, double limit, bool candidates) const;
+
+  std::vector<Index> points_;
+  std::vector<Index> number_;  ///< per point
+  double largest_motion_ = 0.0;
+  int oversized_stages_ = 0;
+};
+
+}  // namespace ricochet

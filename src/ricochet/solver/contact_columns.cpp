@@ -1,0 +1,119 @@
+#include "ricochet/solver/contact_columns.hpp"
+
+#include <algorithm>
+
+#include "ricochet/linear_algebra/dense_factor.hpp"
+#include "ricochet/linear_algebra/dense_kernels.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Columns that are stored together: few enough for their paths to be alike, enough for dense products to be quick.
+constexpr Index block_size = 24;
+
+/// The rows of a path gathered from a vector in factor order.
+void gather(const FactorPath& path, const Vector& y, Vector& values) {
+  values.resize(path.rows());
+  for (std::size_t k = 0; k < path.supernodes.size(); ++k)
+    std::copy_n(y.data() + path.first[k], path.offsets[k + 1] - path.offsets[k], values.data() + path.offsets[k]);
+}
+
+void scatter(const FactorPath& path, const Vector& values, Vector& y) {
+  for (std::size_t k = 0; k < path.supernodes.size(); ++k)
+    std::copy_n(values.data() + path.offsets[k], path.offsets[k + 1] - path.offsets[k], y.data() + path.first[k]);
+}
+
+}  // namespace
+
+void ContactColumns::clear() {
+  blocks_.clear();
+  row_count_ = 0;
+}
+
+std::size_t ContactColumns::entries() const {
+  std::size_t sum = 0;
+  for (const Block& block : blocks_) sum += static_cast<std::size_t>(block.columns.size());
+  return sum;
+}
+
+void ContactColumns::append_block(const SparseMatrix& transposed, Index begin, Index end) {
+  Block block;
+  block.first = row_count_;
+  std::vector<Index> reached;
+  for (Index row = begin; row < end; ++row) {
+    for (SparseMatrix::InnerIterator entry(transposed, row); entry; ++entry)
+      reached.push_back(factor_.place(entry.row()));
+  }
+  block.path = factor_.supernodal().path(reached);
+  block.columns.setZero(block.path.rows(), end - begin);
+  const auto on_path = [&](Index place) {
+    const auto& first = block.path.first;
+    const auto k = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), place) - first.begin()) - 1;
+    return block.path.offsets[k] + place - first[k];
+  };
+  for (Index row = begin; row < end; ++row) {
+    for (SparseMatrix::InnerIterator entry(transposed, row); entry; ++entry)
+      block.columns(on_path(factor_.place(entry.row())), row - begin) = entry.value();
+  }
+  factor_.supernodal().forward_on_path(block.path, block.columns);
+  row_count_ += end - begin;
+  blocks_.push_back(std::move(block));
+}
+
+/// Adds YᵀY of two blocks: paths meet in whole supernodes.
+void ContactColumns::add_product(const Block& left, const Block& right, Matrix& w) {
+  std::size_t i = 0, j = 0;
+  while (i < left.path.supernodes.size() && j < right.path.supernodes.size()) {
+    if (left.path.supernodes[i] < right.path.supernodes[j]) {
+      ++i;
+    } else if (right.path.supernodes[j] < left.path.supernodes[i]) {
+      ++j;
+    } else {
+      const Index rows = left.path.offsets[i + 1] - left.path.offsets[i];
+      add_transposed_product(rows, left.columns.cols(), right.columns.cols(), &left.columns(left.path.offsets[i], 0),
+                             left.columns.rows(), &right.columns(right.path.offsets[j], 0), right.columns.rows(),
+                             &w(left.first, right.first), w.rows());
+      ++i;
+      ++j;
+    }
+  }
+}
+
+void ContactColumns::append(const SparseMatrix& transposed, Matrix& w) {
+  const std::size_t old_blocks = blocks_.size();
+  const Index old_rows = row_count_;
+  for (Index begin = 0; begin < transposed.cols(); begin += block_size)
+    append_block(transposed, begin, std::min(begin + block_size, transposed.cols()));
+  w.conservativeResize(row_count_, row_count_);
+  w.rightCols(row_count_ - old_rows).setZero();
+  w.bottomRows(row_count_ - old_rows).setZero();
+  for (std::size_t j = old_blocks; j < blocks_.size(); ++j) {
+    for (std::size_t i = 0; i <= j; ++i) add_product(blocks_[i], blocks_[j], w);
+  }
+  w.triangularView<Eigen::StrictlyLower>() = w.transpose();
+}
+
+void ContactColumns::motion(const Vector& y, Vector& result) {
+  result.resize(row_count_);
+  for (const Block& block : blocks_) {
+    gather(block.path, y, gathered_);
+    multiply_transposed(block.columns, gathered_, result.data() + block.first);
+  }
+}
+
+void ContactColumns::add_reaction(const Vector& r, Vector& y) {
+  for (const Block& block : blocks_) {
+    const Index count = block.columns.cols();
+    if (r.segment(block.first, count).isZero(0.0)) continue;
+    gather(block.path, y, gathered_);
+    for (Index k = 0; k < count; ++k) {
+      const double factor = r[block.first + k];
+      if (factor == 0.0) continue;
+      add_columns(block.columns.rows(), 1, &block.columns(0, k), block.columns.rows(), &factor, gathered_.data());
+    }
+    scatter(block.path, gathered_, y);
+  }
+}
+
+}  // namespace ricochet

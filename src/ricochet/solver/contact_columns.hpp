@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/linear_algebra/sparse_cholesky.hpp"
+
+/// @file The contact rows of a stage in the coordinates of its factor.
+///
+/// With 2ᵏA = PᵀLLᵀP and y = L⁻¹P 2ᵏ b, a row h of H = [G; B_T] sees A⁻¹b as (L⁻¹P hᵀ)·y. The column L⁻¹P hᵀ is zero
+/// but on the paths from the dofs of h to the root of the elimination tree: a few separators. So a contact point is
+/// known by short columns Y, and a few points in contact cost little whatever the number of points on the boundary and
+/// wherever their dofs lie in the factor.
+namespace ricochet {
+
+class ContactColumns {
+ public:
+  /// Keeps a reference to the factor.
+  explicit ContactColumns(const SparseCholesky& factor) : factor_(factor) {}
+
+  [[nodiscard]] Index rows() const { return row_count_; }
+  void clear();
+  /// Appends rows of H. `transposed` holds them as columns, unknowns of the factor × rows. Extends `w` by the new rows
+  /// and columns of YᵀY, symmetric to the bit. Columns that lie close in the tree should follow each other.
+  void append(const SparseMatrix& transposed, Matrix& w);
+
+  /// Yᵀ y, per row.
+  void motion(const Vector& y, Vector& result);
+  /// y += Y r: columns of rows with r = 0 are not read.
+  void add_reaction(const Vector& r, Vector& y);
+  /// Entries of Y.
+  [[nodiscard]] std::size_t entries() const;
+
+ private:
+  /// Columns with nearly the same path, stored on the union of their paths.
+  struct Block {
+    Index first = 0;  ///< row of H
+    FactorPath path;
+    Matrix columns;
+  };
+  void append_block(const SparseMatrix& transposed, Index begin, Index end);
+  static void add_product(const Block& left, const Block& right, Matrix& w);
+
+  const SparseCholesky& factor_;
+  std::vector<Block> blocks_;
+  Index row_count_ = 0;
+  Vector gathered_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,245 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/linear_algebra/block_jacobi.hpp"
+#include "ricochet/linear_algebra/node_matrix.hpp"
+#include "ricochet/solver/contact_zone.hpp"
+#include "ricochet/solver/stage_operator.hpp"
+#include "ricochet/solver/stage_solver.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Layers of nodes around the contact points of a zone, and around those that asked for it.
+constexpr int zone_layers = 6;
+constexpr int reserve_layers = 3;
+/// A round of conjugate gradients goes on to this part of what it began with: the zone has its say before the end.
+constexpr double round_reduction = 1e-2;
+constexpr int round_limit = 60;
+constexpr int iteration_limit = 5000;
+
+/// The stages of one operator without a factor of it: conjugate gradients on the whole body and the contact zone in
+/// turn. The zone comes last: contact and friction hold to rounding, and what is left over is a force of at most
+/// `tolerance` times the forces of the step, in the energy norm as the preconditioner sees it.
+class IterativeStage final : public StageSolver {
+ public:
+  IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                 const StepSolverOptions& options);
+
+  void solve(const Stage& stage, StageSolution& solution) override;
+  void observe_contact(const ContactObserver& observer) override {
+    observer_ = observer;
+    if (zone_) zone_->observe(observer);
+  }
+  [[nodiscard]] double contact_seconds() const override {
+    return earlier_contact_seconds_ + (zone_ ? zone_->contact_seconds() : 0.0);
+  }
+  [[nodiscard]] std::size_t factor_entries() const override { return zone_ ? zone_->factor_entries() : 0; }
+
+ private:
+  void begin(const Stage& stage, StageSolution& solution);
+  void make_zone(const std::vector<Index>& points);
+  [[nodiscard]] std::vector<Index> with_neighbours(const SparseMatrix& matrix, std::vector<Index> points) const;
+  void find_residual(const Stage& stage);
+  void add_reactions(const StageSolution& solution, Vector& force) const;
+  void mask(Vector& values) const;
+  [[nodiscard]] double forces(const Stage& stage, const StageSolution& solution);
+  void solve_linear(double target);
+  void end(const Stage& stage, StageSolution& solution);
+
+  const SemidiscreteProblem& problem_;
+  OperatorCoefficients coefficients_;
+  StepSolverOptions options_;
+  std::vector<char> solved_;   ///< per dof
+  std::vector<int> unsolved_;  ///< dofs
+  NodeMatrix matrix_;          ///< A
+  std::unique_ptr<Preconditioner> preconditioner_;
+  ConjugateGradients gradients_;
+  ContactCandidates near_;  ///< the points that the zone is made for
+  std::unique_ptr<ContactZone> zone_;
+  ContactObserver observer_;
+  double earlier_contact_seconds_ = 0.0;
+  Vector increment_, previous_;  ///< of this stage and the last one, for the guess
+  bool has_previous_ = false;
+  Vector guess_, residual_, work_, motion_;
+};
+
+IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                               const StepSolverOptions& options)
+    : problem_(problem), coefficients_(coefficients), options_(options), near_(problem.contact.size()) {
+  const auto count = static_cast<std::size_t>(problem.dof_count());
+  solved_.assign(count, 0);
+  for (const int dof : solved_dofs(problem, coefficients.dofs)) solved_[static_cast<std::size_t>(dof)] = 1;
+  for (std::size_t dof = 0; dof < count; ++dof) {
+    if (solved_[dof] == 0) unsolved_.push_back(static_cast<int>(dof));
+  }
+  const SparseMatrix matrix = combine_operator(problem, coefficients);
+  matrix_ = NodeMatrix(matrix, problem.dimension, std::make_shared<const NodeOrder>(order_nodes(problem.nodes)));
+  preconditioner_ = make_block_jacobi(matrix, problem.dimension, solved_);
+  increment_.setZero(problem.dof_count());
+  previous_ = increment_;
+}
+
+void IterativeStage::mask(Vector& values) const {
+  for (const int dof : unsolved_) values[dof] = 0.0;
+}
+
+/// Points whose nodes are within some layers of those of the given ones come along, so that a contact that grows does
+/// not ask for another zone in every step.
+std::vector<Index> IterativeStage::with_neighbours(const SparseMatrix& matrix, std::vector<Index> points) const {
+  const int d = problem_.dimension;
+  std::vector<char> reached(static_cast<std::size_t>(problem_.nodes.cols()), 0);
+  std::vector<Index> nodes;
+  const auto reach = [&](Index node) {
+    if (reached[static_cast<std::size_t>(node)] != 0) return;
+    reached[static_cast<std::size_t>(node)] = 1;
+    nodes.push_back(node);
+  };
+  const SparseRowMatrix& trace = problem_.contact.trace;
+  for (const Index point : points) {
+    for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry) reach(entry.col());
+  }
+  std::size_t begin = 0;
+  for (int layer = 0; layer < reserve_layers; ++layer) {
+    const std::size_t end = nodes.size();
+    for (; begin < end; ++begin) {
+      for (SparseMatrix::InnerIterator entry(matrix, nodes[begin] * d); entry; ++entry) reach(entry.row() / d);
+    }
+  }
+  std::vector<Index> result;
+  for (Index point = 0; point < problem_.contact.size(); ++point) {
+    bool inside = near_.number(point) >= 0;
+    for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry)
+      inside = inside || reached[static_cast<std::size_t>(entry.col())] != 0;
+    if (inside) result.push_back(point);
+  }
+  return result;
+}
+
+void IterativeStage::make_zone(const std::vector<Index>& points) {
+  if (zone_) earlier_contact_seconds_ += zone_->contact_seconds();
+  zone_.reset();
+  const SparseMatrix matrix = combine_operator(problem_, coefficients_);
+  const std::vector<Index> all = with_neighbours(matrix, points);
+  near_.clear();
+  near_.take_up(all);
+  zone_ = std::make_unique<ContactZone>(problem_, matrix, solved_, all, zone_layers, options_.all_points);
+  zone_->observe(observer_);
+}
+
+/// The guess: increments of a smooth motion go on as they did. Supports are exact.
+void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
+  guess_ = has_previous_ ? Vector(2.0 * increment_ - previous_) : increment_;
+  for (const int dof : unsolved_) guess_[dof] = 0.0;
+  for (Index i = 0; i < problem_.supports.size(); ++i)
+    guess_[problem_.supports.dofs()[static_cast<std::size_t>(i)]] = stage.prescribed[i];
+  const Index points = problem_.contact.size();
+  solution.normal_reaction.setZero(points);
+  if (problem_.contact.has_friction()) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
+  solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
+  solution.iterations = 0;
+  if (near_.some_may_touch(stage)) {
+    if (const std::vector<Index> approaching = near_.approaching(stage); !approaching.empty()) make_zone(approaching);
+  }
+}
+
+/// b − A x, on the dofs that are solved for.
+void IterativeStage::find_residual(const Stage& stage) {
+  matrix_.multiply(guess_, residual_);
+  residual_ = stage.right_hand_side - residual_;
+  mask(residual_);
+}
+
+void IterativeStage::add_reactions(const StageSolution& solution, Vector& force) const {
+  problem_.add_contact_force(solution.normal_reaction, solution.tangential_reaction, force);
+  mask(force);
+}
+
+/// The norm of all that acts: what the residual is small beside.
+double IterativeStage::forces(const Stage& stage, const StageSolution& solution) {
+  work_ = stage.right_hand_side;
+  mask(work_);
+  const double given = gradients_.norm(*preconditioner_, work_);
+  work_.setZero();
+  add_reactions(solution, work_);
+  return std::max(given, gradients_.norm(*preconditioner_, work_));
+}
+
+void IterativeStage::solve_linear(double target) {
+  const auto product = [&](const Vector& x, Vector& y) {
+    matrix_.multiply(x, y);
+    mask(y);
+  };
+  const auto result = gradients_.solve(product, *preconditioner_, target, iteration_limit, residual_, guess_);
+  if (result.converged) return;
+  throw Error(ErrorKind::not_converged,
+              fmt::format("conjugate gradients stopped after {} iterations at {:.2g} of the residual asked for; "
+                          "set solver.method = \"direct\" if memory allows",
+                          result.iterations, result.residual / target));
+}
+
+void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
+  begin(stage, solution);
+  double target = 0.0;
+  bool must_touch = false;  // points have penetrated where none was thought to touch
+  for (int round = 0; round < round_limit; ++round) {
+    find_residual(stage);
+    const bool touches = zone_ != nullptr && (must_touch || near_.some_may_touch(stage));
+    if (touches) {
+      zone_->solve(stage, residual_, guess_, solution);
+      find_residual(stage);
+      add_reactions(solution, residual_);
+    }
+    if (target == 0.0) target = options_.tolerance * forces(stage, solution);
+    const double norm = gradients_.norm(*preconditioner_, residual_);
+    if (norm <= target) {
+      motion_.noalias() = problem_.contact.gap_operator * guess_;
+      const std::vector<Index> penetrating = near_.penetrating(stage, motion_, !touches);
+      if (penetrating.empty()) {
+        if (touches) zone_->report();
+        return end(stage, solution);
+      }
+      must_touch = true;
+      if (std::any_of(penetrating.begin(), penetrating.end(), [&](Index p) { return near_.number(p) < 0; }))
+        make_zone(penetrating);
+      target = 0.0;
+      continue;
+    }
+    solve_linear(touches ? std::max(0.3 * target, round_reduction * norm) : 0.9 * target);
+  }
+  throw Error(ErrorKind::not_converged,
+              fmt::format("contact and the rest of the body did not come to terms in {} rounds; the time step is long "
+                          "beside the time in which a wave crosses {} cells: set solver.method = \"direct\" or take a "
+                          "smaller time.step",
+                          round_limit, zone_layers));
+}
+
+void IterativeStage::end(const Stage& stage, StageSolution& solution) {
+  near_.learn(stage, motion_);
+  previous_ = increment_;
+  increment_ = guess_;
+  has_previous_ = true;
+  solution.increment = guess_;
+  const std::vector<Index>& supported = problem_.supports.dofs();
+  solution.support_reaction.resize(problem_.supports.size());
+  if (supported.empty()) return;
+  matrix_.multiply(guess_, work_);
+  work_ -= stage.right_hand_side;
+  problem_.add_contact_force(-solution.normal_reaction, -solution.tangential_reaction, work_);
+  for (std::size_t i = 0; i < supported.size(); ++i)
+    solution.support_reaction[static_cast<Index>(i)] = work_[supported[i]];
+}
+
+}  // namespace
+
+std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
+                                                  const OperatorCoefficients& coefficients,
+                                                  const StepSolverOptions& options) {
+  return std::make_unique<IterativeStage>(problem, coefficients, options);
+}
+
+}  // namespace ricochet

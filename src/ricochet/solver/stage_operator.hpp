@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/stage.hpp"
+
+/// @file The matrix of a stage and the dofs it is solved for.
+namespace ricochet {
+
+/// A = αM + κK + ηC on all dofs.
+[[nodiscard]] SparseMatrix combine_operator(const SemidiscreteProblem& problem,
+                                            const OperatorCoefficients& coefficients);
+
+/// The dofs that a stage solves for, ascending: no supported ones, and of the others those that it names.
+[[nodiscard]] std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs);
+
+/// Says at which node an operator turned out not to be positive definite. Throws Error(invalid_input).
+[[noreturn]] void refuse_operator(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                                  Index dof);
+
+/// Numbers of the given dofs: per dof of the problem its place in the list, or −1.
+[[nodiscard]] std::vector<int> number_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs);
+
+}  // namespace ricochet

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/stage.hpp"
+#include "ricochet/solver/contact/contact_solver.hpp"
+#include "ricochet/solver/step_solver.hpp"
+
+/// @file Solvers of the stages of one operator. Everything that is constant is computed when they are made.
+namespace ricochet {
+
+class StageSolver {
+ public:
+  virtual ~StageSolver() = default;
+  /// Throws Error(not_converged) which says what failed.
+  virtual void solve(const Stage& stage, StageSolution& solution) = 0;
+  virtual void observe_contact(const ContactObserver& observer) = 0;
+  [[nodiscard]] virtual double contact_seconds() const = 0;
+  [[nodiscard]] virtual std::size_t factor_entries() const = 0;
+};
+
+/// A on the dofs that a stage solves for, and what its factorization would take.
+struct AnalysedOperator {
+  std::vector<int> dofs;      ///< ascending
+  SparseMatrix matrix;        ///< on them
+  SparseRowMatrix supported;  ///< A's rows of supported dofs: supports × all dofs
+  SparseCholesky factor;      ///< analysed
+};
+[[nodiscard]] AnalysedOperator analyse_operator(const SemidiscreteProblem& problem,
+                                                const OperatorCoefficients& coefficients);
+
+/// Forward solve, condensed contact, back solve. Throws Error(invalid_input) when A is not positive definite.
+[[nodiscard]] std::unique_ptr<StageSolver> make_direct_stage(const SemidiscreteProblem& problem,
+                                                             const OperatorCoefficients& coefficients,
+                                                             AnalysedOperator analysed,
+                                                             const StepSolverOptions& options);
+
+/// Conjugate gradients on all dofs around a direct solve near the contact.
+[[nodiscard]] std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
+                                                                const OperatorCoefficients& coefficients,
+                                                                const StepSolverOptions& options);
+
+}  // namespace ricochet

@@ -1,0 +1,77 @@
+#include "ricochet/solver/step_solver.hpp"
+
+#include "ricochet/base/memory.hpp"
+#include "ricochet/solver/stage_solver.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Part of the machine's memory that factors may take.
+constexpr double memory_part = 0.6;
+
+class StagesStepSolver final : public StepSolver {
+ public:
+  StagesStepSolver(const SemidiscreteProblem& problem, const std::vector<OperatorCoefficients>& operators,
+                   const StepSolverOptions& options) {
+    for (const OperatorCoefficients& coefficients : operators) add_stage(problem, coefficients, options);
+  }
+
+  void solve(std::size_t number, const Stage& stage, StageSolution& solution) override {
+    stages_.at(number)->solve(stage, solution);
+  }
+  void observe_contact(const ContactObserver& observer) override {
+    for (const auto& stage : stages_) stage->observe_contact(observer);
+  }
+  [[nodiscard]] double contact_seconds() const override {
+    double sum = 0.0;
+    for (const auto& stage : stages_) sum += stage->contact_seconds();
+    return sum;
+  }
+  [[nodiscard]] std::size_t factor_entries() const override {
+    std::size_t sum = 0;
+    for (const auto& stage : stages_) sum += stage->factor_entries();
+    return sum;
+  }
+  [[nodiscard]] const std::vector<ChosenMethod>& methods() const override { return methods_; }
+
+ private:
+  void add_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                 const StepSolverOptions& options) {
+    ChosenMethod chosen{options.method, 0.0, 0.0};
+    // The contact dofs alone are few, and their matrix has no inertia that would help an iteration.
+    if (coefficients.dofs == StageDofs::contact) chosen.method = SolverMethod::direct;
+    AnalysedOperator analysed;
+    if (chosen.method != SolverMethod::iterative) {
+      analysed = analyse_operator(problem, coefficients);
+      const SparseCholesky::Prediction predicted = analysed.factor.predicted();
+      chosen.predicted_entries = predicted.entries;
+      chosen.predicted_operations = predicted.operations;
+      const double limit = options.memory > 0.0 ? options.memory : memory_part * physical_memory();
+      if (chosen.method == SolverMethod::automatic) {
+        const bool fits = predicted.possible && sizeof(double) * predicted.entries <= limit;
+        chosen.method = fits ? SolverMethod::direct : SolverMethod::iterative;
+      }
+    }
+    if (chosen.method == SolverMethod::direct) {
+      stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options));
+    } else {
+      analysed = {};
+      stages_.push_back(make_iterative_stage(problem, coefficients, options));
+    }
+    methods_.push_back(chosen);
+  }
+
+  std::vector<std::unique_ptr<StageSolver>> stages_;
+  std::vector<ChosenMethod> methods_;
+};
+
+}  // namespace
+
+std::unique_ptr<StepSolver> make_step_solver(const SemidiscreteProblem& problem,
+                                             const std::vector<OperatorCoefficients>& operators,
+                                             const StepSolverOptions& options) {
+  return std::make_unique<StagesStepSolver>(problem, operators, options);
+}
+
+}  // namespace ricochet

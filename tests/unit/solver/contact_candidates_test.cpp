@@ -1,0 +1,117 @@
+#include "ricochet/solver/contact_candidates.hpp"
+
+#include <gtest/gtest.h>
+
+namespace ricochet {
+namespace {
+
+/// All points eligible, y = gap + Gδ.
+Stage stage_with_gaps(const Vector& gaps) {
+  Stage stage;
+  stage.gap_offset = gaps;
+  stage.gap_offset_rounding = Vector::Constant(gaps.size(), 1e-15);
+  stage.eligible.assign(static_cast<std::size_t>(gaps.size()), 1);
+  return stage;
+}
+
+Vector gaps(std::initializer_list<double> values) {
+  return Eigen::Map<const Vector>(values.begin(), static_cast<Index>(values.size()));
+}
+
+using Points = std::vector<Index>;
+
+TEST(ContactCandidates, AreNoneFarFromTheObstacle) {
+  ContactCandidates candidates(3);
+  const Stage stage = stage_with_gaps(gaps({1.0, 2.0, 3.0}));
+  EXPECT_FALSE(candidates.some_may_touch(stage));
+  EXPECT_EQ(candidates.approaching(stage), Points{});
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-0.9, -1.9, -2.9}), false), Points{});
+}
+
+TEST(ContactCandidates, TakeUpPointsInsideTheObstacleAndThoseWithinReachOfThem) {
+  ContactCandidates candidates(5);
+  // Inside by 1: the stage moves points by that, and by twice that at most; eight times that are taken up together.
+  const Stage stage = stage_with_gaps(gaps({20.0, -1.0, 15.9, 0.5, 1.9}));
+  EXPECT_TRUE(candidates.some_may_touch(stage));
+  EXPECT_EQ(candidates.approaching(stage), (Points{1, 2, 3, 4}));
+  candidates.take_up({1, 2, 3, 4});
+  EXPECT_EQ(candidates.approaching(stage), Points{});
+  EXPECT_EQ(candidates.number(1), 0);
+  EXPECT_EQ(candidates.number(4), 3);
+  EXPECT_EQ(candidates.number(0), -1);
+}
+
+TEST(ContactCandidates, ReachIsWhatTheLastStageMovedPointsBy) {
+  ContactCandidates candidates(2);
+  Stage stage = stage_with_gaps(gaps({1.5, 100.0}));
+  EXPECT_FALSE(candidates.some_may_touch(stage));
+  candidates.learn(stage, gaps({-1.0, 0.2}));
+  EXPECT_TRUE(candidates.some_may_touch(stage));
+  EXPECT_EQ(candidates.approaching(stage), (Points{0}));
+  stage.gap_factor = 0.5;  // y = q + s G δ
+  EXPECT_FALSE(candidates.some_may_touch(stage));
+}
+
+TEST(ContactCandidates, NeverAreWhatMayNotTouch) {
+  ContactCandidates candidates(2);
+  Stage stage = stage_with_gaps(gaps({-1.0, -1.0}));
+  stage.eligible = {0, 1};
+  EXPECT_EQ(candidates.approaching(stage), (Points{1}));
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-1.0, -1.0}), false), (Points{1}));
+  stage.eligible = {0, 0};
+  EXPECT_FALSE(candidates.some_may_touch(stage));
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-1.0, -1.0}), false), Points{});
+}
+
+TEST(ContactCandidates, AreAskedForWhereOthersPenetrate) {
+  ContactCandidates candidates(4);
+  const Stage stage = stage_with_gaps(gaps({1.0, 1.0, 1.0, 1.0}));
+  candidates.take_up({0});
+  // 0 is a candidate: its gap is the solver's business. 2 is deepest, 1 less than half as deep, 3 only rounding inside.
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, -1.4, -2.0, -1.0 - 5e-16}), false), (Points{2}));
+  EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, -1.6, -2.0, 0.0}), false), (Points{2, 1}));
+  EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, 0.0, 0.0, -1.0 - 5e-16}), false), Points{});
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, 0.0, 0.0, 0.0}), true), (Points{0})) << "nobody asked it";
+}
+
+/// A body that nothing held falls through its obstacle with all points; they are not all taken up at once.
+TEST(ContactCandidates, DoubleAtMost) {
+  const Index count = 1000;
+  ContactCandidates candidates(count);
+  const Stage stage = stage_with_gaps(Vector::LinSpaced(count, 0.0, 1.0));
+  const Vector fallen = Vector::Constant(count, -1e6);
+  std::size_t rounds = 0;
+  for (Points found = candidates.penetrating(stage, fallen, false); !found.empty();
+       found = candidates.penetrating(stage, fallen, false), ++rounds) {
+    EXPECT_LE(found.size(), std::max<std::size_t>(32, candidates.points().size()));
+    EXPECT_EQ(found.front(), static_cast<Index>(candidates.points().size())) << "the deepest first";
+    candidates.take_up(found);
+  }
+  EXPECT_EQ(candidates.points().size(), 1000U);
+  EXPECT_LE(rounds, 6U);
+}
+
+TEST(ContactCandidates, AreDroppedWhenTheyHaveBeenFarForLong) {
+  const Index count = 200;
+  ContactCandidates candidates(count);
+  Vector distance = Vector::Zero(count);
+  candidates.take_up(candidates.approaching(stage_with_gaps(distance)));
+  ASSERT_EQ(candidates.points().size(), 200U);
+  distance.tail(count - 3).setConstant(50.0);
+  distance[0] = -0.01;
+  Points kept;
+  int stages = 0;
+  while (kept.empty() && stages < 1000) {
+    kept = candidates.worth_keeping(stage_with_gaps(distance));
+    ++stages;
+  }
+  EXPECT_EQ(kept, (Points{0, 1, 2}));
+  EXPECT_GT(stages, 20) << "not at once: a body that bounces comes back";
+  EXPECT_LT(stages, 1000);
+  candidates.clear();
+  EXPECT_EQ(candidates.number(0), -1);
+  EXPECT_TRUE(candidates.points().empty());
+}
+
+}  // namespace
+}  // namespace ricochet

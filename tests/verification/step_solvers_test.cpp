@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
+
+// The ways to solve a step on the same cases: a factor of the whole body with the contact points that may touch, the
+// same with all contact points, and conjugate gradients around a patch. They must agree.
+
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+using test_support::thrown_bodies;
+using test_support::thrown_case;
+using test_support::ThrownBody;
+
+struct Variant {
+  std::string name, time, mass, contact;
+  bool smooth;  ///< does not amplify rounding when a contact opens
+};
+
+std::vector<Variant> variants() {
+  const std::string trapezoidal = "scheme = \"newmark\"\npreset = \"trapezoidal\"\n";
+  return {{"NewmarkEquivalent", trapezoidal, "equivalent", "", true},
+          {"NewmarkEquivalentFriction", trapezoidal, "equivalent", "friction = 0.3\n", true},
+          {"NewmarkConsistent", trapezoidal, "consistent", "", false},
+          {"KlrConserving", "scheme = \"klr-conserving\"\n", "consistent", "friction = 0.3\n", false},
+          {"Midpoint", "scheme = \"midpoint\"\n", "lumped", "", false}};
+}
+
+struct Frame {
+  Vector displacement, normal, tangential;
+};
+
+std::vector<Frame> frames(const std::string& text, const std::vector<std::string>& overrides, SolverMethod method) {
+  CaseRun run(text, overrides);
+  EXPECT_EQ(run.simulation().methods().front().method, method);
+  std::vector<Frame> result;
+  run.run([&] {
+    const State& state = run.state();
+    result.push_back({state.displacement, state.forces.normal_reaction, state.forces.tangential_reaction});
+  });
+  return result;
+}
+
+/// Frames before the first in which a contact opens again; all of them for smooth schemes.
+std::size_t comparable(const std::vector<Frame>& all, bool smooth) {
+  for (std::size_t k = 1; k < all.size() && !smooth; ++k) {
+    if (((all[k - 1].normal.array() > 0.0) && !(all[k].normal.array() > 0.0)).any()) return k;
+  }
+  return all.size();
+}
+
+/// Largest differences relative to the largest of each in the run.
+void expect_agreement(const std::vector<Frame>& expected, const std::vector<Frame>& found, bool smooth,
+                      double tolerance) {
+  ASSERT_EQ(expected.size(), found.size());
+  double u = 0.0, r = 0.0, u_size = 0.0, r_size = 0.0;
+  const std::size_t count = comparable(expected, smooth);
+  EXPECT_GT(count, 3U);
+  for (std::size_t k = 0; k < count; ++k) {
+    u_size = std::max(u_size, expected[k].displacement.lpNorm<Eigen::Infinity>());
+    r_size = std::max(r_size, expected[k].normal.lpNorm<Eigen::Infinity>());
+    u = std::max(u, (expected[k].displacement - found[k].displacement).lpNorm<Eigen::Infinity>());
+    r = std::max(r, (expected[k].normal - found[k].normal).lpNorm<Eigen::Infinity>());
+    if (expected[k].tangential.size() > 0)
+      r = std::max(r, (expected[k].tangential - found[k].tangential).lpNorm<Eigen::Infinity>());
+  }
+  EXPECT_GT(r_size, 0.0) << "no contact";
+  EXPECT_LE(u, tolerance * u_size);
+  EXPECT_LE(r, tolerance * r_size);
+}
+
+class StepSolvers : public testing::TestWithParam<Variant> {};
+
+TEST_P(StepSolvers, Agree) {
+  const Variant& variant = GetParam();
+  for (const ThrownBody& body : thrown_bodies()) {
+    SCOPED_TRACE(body.name);
+    const std::string text = thrown_case(body, variant.mass, variant.time, variant.contact);
+    const auto direct = frames(text, {"solver.method=direct"}, SolverMethod::direct);
+    const auto all = frames(text, {"solver.method=direct", "solver.contact_points=all"}, SolverMethod::direct);
+    expect_agreement(direct, all, variant.smooth, 1e-9);
+    // Errors of single steps add up over the run.
+    const auto iterative = frames(text, {"solver.method=iterative", "solver.tolerance=1e-12"}, SolverMethod::iterative);
+    expect_agreement(direct, iterative, variant.smooth, 1e-8);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StepSolvers, testing::ValuesIn(variants()),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace ricochet
