@@ -1,0 +1,174 @@
+"""The tables and plots of docs/performance.md from what run.py measured."""
+
+import datetime
+import math
+import pathlib
+import re
+import statistics
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+COLOURS = {"2D": "#2b6cb0", "3D": "#c53030", "3D iterative": "#b7791f"}
+PHASES = (("open", "open"), ("changing", "closing"), ("closed", "closed"))
+
+
+def table(head, rows):
+    return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head)] + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def body_text(record):
+    return f"{record['body'][0]}, {record['dofs']} dofs, {record['contact_points']} contact points"
+
+
+def ratio_table(records):
+    head = ["", "F", "contact", "pressed", "step, ms", "CHOLMOD's solve, ms", "step / solve", "our solve / CHOLMOD's", "reading the factor twice, ms",
+            "row of history, ms"]
+    rows = []
+    for record in records:
+        for key, name in PHASES:
+            phase = record.get(key)
+            if not phase or "ratio" not in phase:
+                continue
+            rows.append([body_text(record), f"{record['friction']:g}", name, str(phase["active"]), f"{phase['step_ms']:.3g}",
+                         f"{phase['library_solve_ms']:.3g}", f"**{phase['ratio']:.2f}**",
+                         f"{phase['own_solve_ms'] / phase['library_solve_ms']:.2f}", f"{phase['memory_limit_ms']:.3g}", f"{phase['row_ms']:.3g}"])
+    return table(head, rows)
+
+
+def memory_table(records):
+    rows = []
+    for record in records:
+        if record["friction"] > 0.0:
+            continue
+        needed = record["factor_mb"] + record["matrices_mb"]
+        rows.append([body_text(record), f"{record['factor_mb']:.0f}", f"{record['matrices_mb']:.0f}", f"{record['memory']:.0f}",
+                     f"**{record['memory'] / needed:.2f}**", f"{record['read_s']:.2f}", f"{record['assembly_s']:.2f}", f"{record['start_s']:.2f}"])
+    return table(["", "factor, MB", "K and M, MB", "peak of the process, MB", "peak / (factor + matrices)", "reading, s", "assembly, s",
+                  "ordering, factorization and start, s"], rows)
+
+
+def in_contact(force):
+    return [k for k, value in enumerate(force) if value > 0.0]
+
+
+def peer_times(entry):
+    """Milliseconds per step in contact, and how far the forces are apart."""
+    ours, result = entry["ours"], {}
+    steps = in_contact(ours["force"])
+    result["ours"] = statistics.median(ours["steps_ms"][k] for k in steps)
+    for name in ("users", "expert"):
+        theirs = entry.get(name)
+        if not theirs or "step_ms" not in theirs:
+            continue
+        # Our list begins with the second step.
+        result[name] = statistics.median(theirs["step_ms"][k + 1] for k in steps)
+        largest = max(ours["force"])
+        result[name + " difference"] = max(abs(theirs["force"][k + 1] - force) for k, force in enumerate(ours["force"])) / largest
+    return result
+
+
+def peer_table(entries):
+    rows = []
+    for entry in entries:
+        times = peer_times(entry)
+        cells = [body_text(dict(entry["ours"], body=entry["body"])), f"{entry['friction']:g}", f"{times['ours']:.3g}"]
+        for name in ("users", "expert"):
+            if name in times:
+                cells += [f"{times[name]:.4g}", f"**{times[name] / times['ours']:.0f}**", f"{times[name + ' difference']:.1e}"]
+            else:
+                cells += [entry.get(name, {}).get("failed", "–"), "–", "–"]
+        rows.append(cells)
+    return table(["", "F", "ours, ms", "GetFEM as its users run it, ms", "ratio", "forces differ by", "scripted by an expert, ms", "ratio", "forces differ by"], rows)
+
+
+def last_phase(record):
+    return record.get("closed") or record.get("changing") or record["open"]
+
+
+def scaling_groups(records):
+    groups = {}
+    for record in records:
+        name = f"{record['dimension']}D" + (" iterative" if record["method"] == "iterative" else "")
+        groups.setdefault(name, []).append(record)
+    return groups
+
+
+def exponent(records, value):
+    """Of the power law between the two halves of the sizes that matter: above 5,000 dofs."""
+    large = [r for r in records if r["dofs"] > 5000]
+    if len(large) < 2:
+        return None
+    x, y = [math.log(r["dofs"]) for r in large], [math.log(value(r)) for r in large]
+    mean_x, mean_y = statistics.mean(x), statistics.mean(y)
+    return sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum((a - mean_x) ** 2 for a in x)
+
+
+def scaling_table(records):
+    rows = []
+    for name, group in scaling_groups(records).items():
+        for record in group:
+            set_up = record["read_s"] + record["assembly_s"] + record["start_s"]
+            rows.append([name, str(record["dofs"]), f"{last_phase(record)['step_ms']:.3g}", f"{record['peak_mb']:.0f}", f"{set_up:.3g}"])
+        powers = [exponent(group, value) for value in (lambda r: last_phase(r)["step_ms"], lambda r: r["peak_mb"],
+                                                       lambda r: r["read_s"] + r["assembly_s"] + r["start_s"])]
+        if None not in powers:
+            rows.append([f"{name}: exponent", ""] + [f"**{power:.2f}**" for power in powers])
+    return table(["", "dofs", "step in contact, ms", "peak of the process, MB", "set-up, s"], rows)
+
+
+def thread_table(records):
+    rows = []
+    one = {(tuple(r["body"]), r["method"]): r for r in records if r["threads"] == 1}
+    for record in records:
+        if record["threads"] == 1:
+            continue
+        before, now = last_phase(one[tuple(record["body"]), record["method"]])["step_ms"], last_phase(record)["step_ms"]
+        rows.append([body_text(record), record["method"], f"{before:.3g}", f"{now:.3g}", f"{before / now:.2f}"])
+    return table(["", "method", "1 thread, ms per step", "2 threads, ms per step", "gain"], rows)
+
+
+def plot_scaling(records, path):
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.2))
+    for name, group in scaling_groups(records).items():
+        dofs = [r["dofs"] for r in group]
+        axes[0].loglog(dofs, [last_phase(r)["step_ms"] for r in group], "o-", color=COLOURS[name], label=name, markersize=4)
+        axes[1].loglog(dofs, [r["peak_mb"] for r in group], "o-", color=COLOURS[name], label=name, markersize=4)
+    for axis, label in zip(axes, ("ms per step in contact, one core", "peak memory of the process, MB")):
+        axis.set_xlabel("dofs")
+        axis.set_title(label, fontsize=10, loc="left")
+        axis.grid(True, which="major", color="#e2e8f0", linewidth=0.7)
+        for side in ("top", "right"):
+            axis.spines[side].set_visible(False)
+        axis.legend(frameon=False, fontsize=9)
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def machine():
+    processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown processor")
+    return f"Measured {datetime.date.today()} on a shared machine ({processor}), one core unless said."
+
+
+def report(everything, docs):
+    parts = {"machine": machine()}
+    if "ratios" in everything:
+        parts["ratios"], parts["memory"] = ratio_table(everything["ratios"]), memory_table(everything["ratios"])
+    if "peer" in everything:
+        parts["peer"] = peer_table(everything["peer"])
+    if "scaling" in everything:
+        parts["scaling"] = scaling_table(everything["scaling"])
+        plot_scaling(everything["scaling"], docs / "figures" / "step-scaling.png")
+    if "threads" in everything:
+        parts["threads"] = thread_table(everything["threads"])
+    page = docs / "performance.md"
+    text = page.read_text(encoding="utf-8")
+    for name, content in parts.items():
+        pattern = re.compile(f"(<!-- {name} -->\n).*?(<!-- end -->)", re.S)
+        if not pattern.search(text):
+            raise SystemExit(f"{page}: has no place for \"{name}\"")
+        text = pattern.sub(lambda match: match[1] + content + "\n" + match[2], text)
+    page.write_text(text, encoding="utf-8")

@@ -1,0 +1,136 @@
+#!/usr/bin/python3
+"""What a time step costs: against the plain triangular solve and the memory's speed, against GetFEM, by size and by threads.
+
+    run.py --help
+
+Makes the meshes (gmsh), runs ricochet_step_bench and getfem_steps.py, writes DIRECTORY/results.json, and the tables and plots of
+docs/performance.md.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+# (name, dimension, size of cells): about 18,000, 74,000 and 200,000 dofs in 2D, 12,000 and 100,000 in 3D.
+RATIO_BODIES = [("disc", 2, 0.0202), ("disc", 2, 0.0101), ("disc", 2, 0.00605), ("ball", 3, 0.101), ("ball", 3, 0.0475)]
+PEER_BODIES = [("disc", 2, 0.0202), ("disc", 2, 0.0101), ("ball", 3, 0.101)]
+SCALING_BODIES = ([("disc", 2, size) for size in (0.09, 0.05, 0.0275, 0.0155, 0.0086, 0.0048, 0.0027)]
+                  + [("ball", 3, size) for size in (0.25, 0.165, 0.107, 0.072, 0.0475, 0.032, 0.0212)])
+STEP = 1e-3
+STEPS = 160  # the body is in contact from step 92 on
+
+
+def mesh(directory, name, dimension, size):
+    path = directory / f"{name}-{size:g}.msh"
+    if not path.exists():
+        subprocess.run(["gmsh", str(HERE / f"{name}.geo"), f"-{dimension}", "-setnumber", "size", repr(size), "-format", "msh22",
+                        "-o", str(path), "-v", "0"], check=True)
+    return path
+
+
+def case(directory, body, mass="equivalent", friction=0.0, more=""):
+    name, dimension, size = body
+    zeros = ", ".join(["0.0"] * (dimension - 1))
+    path = directory / f"{name}-{size:g}-{mass}-{friction:g}{'-' + more.split('=')[-1].strip() if more else ''}.toml"
+    sliding = 0.5 if friction > 0.0 else 0.0
+    path.write_text(
+        f'[mesh]\nfile = "{mesh(directory, *body)}"\n[[material]]\ngroup = "body"\ndensity = 1.0\nlambda = 1e4\nmu = 5e3\n'
+        f'[obstacle.floor]\ntype = "plane"\npoint = [{zeros}, 0.0]\nnormal = [{zeros}, 1.0]\n'
+        f'[[contact]]\ngroup = "lower"\nobstacle = "floor"\nfriction = {friction}\n[load]\ngravity = [{zeros}, -9.81]\n'
+        f'[initial]\nvelocity = [{", ".join([repr(sliding)] + ["0.0"] * (dimension - 2))}, -1.0]\n[mass]\ntype = "{mass}"\n'
+        f'[time]\nscheme = "newmark"\npreset = "textbook-half"\nstep = {STEP}\nend = {STEP * STEPS}\n[output]\nfields_every = 0\n{more}')
+    return path
+
+
+def ours(arguments, path, *options):
+    command = [str(arguments.build / "ricochet_step_bench"), str(path), "--steps", str(STEPS), *map(str, options)]
+    result = subprocess.run(command, capture_output=True, text=True)
+    if result.returncode != 0:
+        sys.exit(f"{' '.join(command)}: {result.stderr.strip()}")
+    record = json.loads(result.stdout)
+    print(f"{path.stem:32s} {record['dofs']:8d} dofs {json.dumps(record.get('closed', {}))[:110]}", file=sys.stderr, flush=True)
+    return record
+
+
+def theirs(arguments, directory, body, steps, friction, *options):
+    command = [sys.executable, str(HERE / "getfem_steps.py"), str(mesh(directory, *body)), str(body[1]), repr(STEP), str(steps),
+               "--friction", repr(friction), *options]
+    result = subprocess.run(command, capture_output=True, text=True)
+    if result.returncode != 0:
+        return {"failed": result.stderr.strip().splitlines()[-1] if result.stderr else f"exit status {result.returncode}"}
+    return json.loads(result.stdout)
+
+
+def measure_ratios(arguments, directory):
+    records = []
+    for body in RATIO_BODIES:
+        for friction in (0.0, 0.3):
+            path = case(directory, body, friction=friction)
+            record = ours(arguments, path)
+            record["memory"] = ours(arguments, path, "--alone", "--steps", 3)["peak_mb"]
+            records.append(dict(record, body=body, friction=friction))
+    return records
+
+
+def measure_peer(arguments, directory):
+    """The same steps by both: forces are compared before times are."""
+    records = []
+    for body in PEER_BODIES:
+        for friction in (0.0, 0.3):
+            record = ours(arguments, case(directory, body, mass="consistent", friction=friction), "--alone", "--forces")
+            entry = {"body": body, "friction": friction, "ours": record, "users": theirs(arguments, directory, body, STEPS, friction)}
+            if friction == 0.0:
+                entry["expert"] = theirs(arguments, directory, body, STEPS, friction, "--expert")
+            records.append(entry)
+    return records
+
+
+def measure_scaling(arguments, directory):
+    records = []
+    for body in SCALING_BODIES:
+        methods = ("direct", "iterative") if body[1] == 3 else ("direct",)
+        for method in methods:
+            if method == "direct" and body[1] == 3 and body[2] < 0.03:
+                continue  # a factor of 20 GB
+            path = case(directory, body, more=f'[solver]\nmethod = "{method}"\n')
+            records.append(dict(ours(arguments, path, "--alone"), body=body, method=method))
+    return records
+
+
+def measure_threads(arguments, directory):
+    return [dict(ours(arguments, case(directory, body, more=f'[solver]\nmethod = "{method}"\n'), "--alone", "--threads", threads),
+                 body=body, method=method)
+            for body in RATIO_BODIES for method in ("direct", "iterative") for threads in (1, 2)]
+
+
+PARTS = {"ratios": measure_ratios, "peer": measure_peer, "scaling": measure_scaling, "threads": measure_threads}
+
+
+def main():
+    root = HERE.parents[1]
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--only", choices=PARTS, nargs="+", default=list(PARTS), help="these parts; the others stay as they were")
+    parser.add_argument("--report", action="store_true", help="only write the page anew from what was measured")
+    parser.add_argument("--directory", type=pathlib.Path, default=root / "build/bench-step", help="of meshes and results")
+    parser.add_argument("--build", type=pathlib.Path, default=root / "build", help="where ricochet_step_bench is")
+    parser.add_argument("--check", action="store_true", help="look at the options, and do nothing")
+    arguments = parser.parse_args()
+    if arguments.check:
+        return
+    directory = arguments.directory.resolve()
+    directory.mkdir(parents=True, exist_ok=True)
+    results = directory / "results.json"
+    everything = json.loads(results.read_text()) if results.exists() else {}
+    for part in [] if arguments.report else arguments.only:
+        everything[part] = PARTS[part](arguments, directory)
+        results.write_text(json.dumps(everything, indent=1))
+    import report  # needs matplotlib
+
+    report.report(everything, root / "docs")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,266 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "processor_timer.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/parallel.hpp"
+#include "ricochet/base/timer.hpp"
+#include "ricochet/case/model.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/case/run_case.hpp"
+#include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/simulation.hpp"
+
+// What the time steps of a case cost, as multiples of the plain triangular solve (CHOLMOD's, with the factor of the
+// same matrix) and of the time in which memory can be read: the limits that a step with contact should approach. Steps
+// and solves take turns, so that both see the same machine. Prints one JSON object.
+
+namespace {
+
+using namespace ricochet;
+
+struct Options {
+  std::string path;
+  int steps = 200;
+  int threads = 1;
+  bool compare = true;       ///< with the plain solve and the memory
+  bool forces = false;       ///< print the contact force and the time of every step
+  double largest_ratio = 0;  ///< of a step to the plain solve; above it the program fails
+};
+
+/// Processor time of one thread is not disturbed by other programs; of several it would be a sum.
+class StepTimer {
+ public:
+  [[nodiscard]] double seconds() const {
+    return thread_count() == 1 ? processor_.seconds() : std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  ProcessorTimer processor_;
+  Clock::time_point start_ = Clock::now();
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// Peak of the process so far, in MB.
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024e-6;
+}
+
+double megabytes(const SparseMatrix& matrix) {
+  return 1e-6 * (static_cast<double>(matrix.nonZeros()) * (sizeof(double) + sizeof(int)) +
+                 static_cast<double>(matrix.cols()) * sizeof(int));
+}
+
+/// Reads memory as fast as one thread can.
+class MemoryReader {
+ public:
+  explicit MemoryReader(std::size_t bytes) : values_(std::max<std::size_t>(bytes / sizeof(double), 1024), 1.0) {}
+  double seconds() {
+    const StepTimer timer;
+    double sums[32] = {};
+    for (std::size_t i = 0; i + 32 <= values_.size(); i += 32) {
+      for (std::size_t k = 0; k < 32; ++k) sums[k] += values_[i + k];
+    }
+    for (const double sum : sums) sink_ = sink_ + sum;
+    return timer.seconds();
+  }
+
+ private:
+  std::vector<double> values_;
+  volatile double sink_ = 0.0;
+};
+
+/// The limits, measured next to the steps.
+class Limits {
+ public:
+  explicit Limits(const SparseMatrix& matrix)
+      : library_(matrix, SparseCholesky::TriangularSolve::library),
+        own_(matrix),
+        memory_(own_.factor_bytes()),
+        right_(Vector::Ones(matrix.cols())) {}
+
+  void measure(std::vector<double>& library, std::vector<double>& own, std::vector<double>& memory) {
+    library.push_back(solve(library_));
+    own.push_back(solve(own_));
+    memory_.seconds();
+    memory.push_back(memory_.seconds());
+  }
+  [[nodiscard]] std::size_t factor_bytes() const { return own_.factor_bytes(); }
+  [[nodiscard]] std::size_t library_bytes() const { return library_.factor_bytes(); }
+
+ private:
+  /// The second of two: the caches are then as they are in a run of solves.
+  double solve(SparseCholesky& factor) {
+    double seconds = 0.0;
+    for (int k = 0; k < 2; ++k) {
+      const StepTimer timer;
+      factor.forward(right_, y_);
+      factor.backward(y_, x_);
+      seconds = timer.seconds();
+    }
+    return seconds;
+  }
+
+  SparseCholesky library_, own_;
+  MemoryReader memory_;
+  Vector right_, y_, x_;
+};
+
+SparseMatrix step_operator(const SemidiscreteProblem& problem, const Scheme& scheme) {
+  const OperatorCoefficients a = scheme.operators(problem).front();
+  return a.stiffness * problem.internal_force->tangent() + a.mass * problem.mass;
+}
+
+struct Phase {
+  std::vector<double> step, row, library, own, memory;
+  long iterations = 0, most_active = 0;
+};
+
+const char* phase_name(long active, long before) {
+  if (active == 0 && before == 0) return "open";
+  return active == before ? "closed" : "changing";
+}
+
+void print_phase(const std::string& name, const Phase& phase, double scale) {
+  const double step = median(phase.step), library = median(phase.library), own = median(phase.own);
+  fmt::print(R"(, "{}": {{"steps": {}, "active": {}, "step_ms": {:.5g}, "row_ms": {:.5g}, "iterations": {:.3g})", name,
+             phase.step.size(), phase.most_active, 1e3 * step, 1e3 * median(phase.row),
+             static_cast<double>(phase.iterations) / static_cast<double>(phase.step.size()));
+  if (library > 0.0) {
+    fmt::print(R"(, "library_solve_ms": {:.5g}, "own_solve_ms": {:.5g}, "memory_limit_ms": {:.5g}, "ratio": {:.4g})",
+               1e3 * library, 1e3 * own, 1e3 * scale * median(phase.memory), step / library);
+  }
+  fmt::print("}}");
+}
+
+/// Steps in groups, each followed by the limits.
+double run(const Options& options) {
+  const Case input = read_case(options.path);
+  Timer timer;
+  BuildTimes build;
+  const auto model = build_model(input, &build);
+  const auto scheme = make_scheme(input.time);
+  timer.restart();
+  Simulation simulation(model->problem, *scheme, model->initial, step_solver_options(input));
+  const double start = timer.seconds();
+  HistoryRecorder recorder(model->problem, *model->rotation, model->probes);
+  const double matrices = megabytes(model->problem.internal_force->tangent()) + megabytes(model->problem.mass);
+  simulation.advance();
+  const double peak = peak_memory();
+  std::unique_ptr<Limits> limits;
+  if (options.compare) limits = std::make_unique<Limits>(step_operator(model->problem, *scheme));
+
+  std::map<std::string, Phase> phases;
+  long before = 0;
+  std::vector<double> force, milliseconds;
+  for (int k = 1; k < options.steps; ++k) {
+    const StepTimer step_timer;
+    simulation.advance();
+    const double step = step_timer.seconds();
+    const StepTimer row_timer;
+    const std::vector<double>& row = recorder.row(simulation.state(), simulation.account());
+    const double row_seconds = row_timer.seconds();
+    const auto active = static_cast<long>((simulation.state().forces.normal_reaction.array() > 0.0).count());
+    force.push_back(simulation.state().forces.normal_reaction.sum());
+    milliseconds.push_back(1e3 * step);
+    Phase& phase = phases[phase_name(active, before)];
+    before = active;
+    // The first step after the limits have been through the caches would not be typical.
+    if (limits && k % 6 == 0) limits->measure(phase.library, phase.own, phase.memory);
+    if (limits && k % 6 == 1) continue;
+    phase.step.push_back(step);
+    phase.row.push_back(row_seconds);
+    phase.iterations += simulation.state().iterations;
+    phase.most_active = std::max(phase.most_active, active);
+    static_cast<void>(row);
+  }
+
+  const SemidiscreteProblem& problem = model->problem;
+  fmt::print(R"({{"case": "{}", "dimension": {}, "dofs": {}, "contact_points": {}, "threads": {}, )", options.path,
+             problem.dimension, problem.dof_count(), problem.contact.size(), thread_count());
+  fmt::print(
+      R"("read_s": {:.4g}, "assembly_s": {:.4g}, "start_s": {:.4g}, "factor_entries": {}, "matrices_mb": {:.4g}, )",
+      build.read_mesh, build.assembly, start, simulation.factor_entries(), matrices);
+  fmt::print(R"("peak_mb": {:.5g})", peak);
+  if (limits) {
+    fmt::print(R"(, "factor_mb": {:.5g}, "library_factor_mb": {:.5g})",
+               1e-6 * static_cast<double>(limits->factor_bytes()), 1e-6 * static_cast<double>(limits->library_bytes()));
+  }
+  double worst = 0.0;
+  for (const auto& [name, phase] : phases) {
+    if (phase.step.empty()) continue;
+    print_phase(name, phase, 2.0);
+    if (!phase.library.empty()) worst = std::max(worst, median(phase.step) / median(phase.library));
+  }
+  if (options.forces)
+    fmt::print(R"(, "force": [{:.12g}], "steps_ms": [{:.5g}])", fmt::join(force, ", "), fmt::join(milliseconds, ", "));
+  fmt::print("}}\n");
+  return worst;
+}
+
+Options parse(int count, char** arguments) {
+  Options options;
+  for (int i = 1; i < count; ++i) {
+    const std::string word = arguments[i];
+    const auto value = [&] {
+      return i + 1 < count ? arguments[++i] : throw Error(ErrorKind::usage, word + ": a value is missing");
+    };
+    if (word == "--steps") {
+      options.steps = std::stoi(value());
+    } else if (word == "--threads") {
+      options.threads = std::stoi(value());
+    } else if (word == "--alone") {
+      options.compare = false;
+    } else if (word == "--forces") {
+      options.forces = true;
+    } else if (word == "--at-most") {
+      options.largest_ratio = std::stod(value());
+    } else {
+      options.path = word;
+    }
+  }
+  if (options.path.empty())
+    throw Error(ErrorKind::usage,
+                "usage: ricochet_step_bench CASE.toml [--steps N] [--threads N] [--alone] [--forces] "
+                "[--at-most RATIO]");
+  return options;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  log::set_level(log::Level::error);
+  try {
+    const Options options = parse(count, arguments);
+    set_thread_count(options.threads);
+    const double worst = run(options);
+    if (options.largest_ratio > 0.0 && !(worst <= options.largest_ratio)) {
+      fmt::print(stderr, "a step takes {:.3g} times the plain triangular solve; at most {:g} is allowed\n", worst,
+                 options.largest_ratio);
+      return 1;
+    }
+  } catch (const std::exception& problem) {
+    fmt::print(stderr, "{}\n", problem.what());
+    return 2;
+  }
+  return 0;
+}
