@@ -12,9 +12,13 @@ namespace ricochet {
 
 /// What a mass is built from.
 struct MassInput {
-  const SparseMatrix* consistent = nullptr;  ///< ∫ρ N_i N_j, nodes × nodes
+  const SparseMatrix* consistent = nullptr;  ///< ∫ρ N_i N_j, nodes × nodes; or ∫aρ N_i N_j, damping with rates a ≥ 0
   const Points* nodes = nullptr;             ///< positions, d × nodes
   std::vector<Index> contact_nodes;          ///< ascending, each once
+  /// ∫ρ N_i N_j when `consistent` is damping, which may vanish somewhere; null: the same.
+  const SparseMatrix* inertia = nullptr;
+
+  [[nodiscard]] const SparseMatrix& inertia_matrix() const { return inertia != nullptr ? *inertia : *consistent; }
 };
 
 /// A way to distribute the mass of a body over its nodes.
