@@ -42,10 +42,18 @@ class MassConstruction {
 [[nodiscard]] std::unique_ptr<MassConstruction> make_lumped_mass();
 [[nodiscard]] std::unique_ptr<MassConstruction> make_equivalent_mass();
 [[nodiscard]] std::unique_ptr<MassConstruction> make_nearest_equivalent_mass();
+[[nodiscard]] std::unique_ptr<MassConstruction> make_lumped_equivalent_mass();
+
+/// A diagonal mass: row sums where they are all positive (degree 1: total mass and centre of gravity are kept), else
+/// the diagonal of the consistent mass, scaled to keep the total.
+[[nodiscard]] Vector lumped_diagonal(const SparseMatrix& consistent);
 
 /// Total mass, first and second moments: PᵃᵀmPᵇ with P = (1, x, y[, z]), (d+1) × (d+1). The conditions of an equivalent
 /// mass.
 [[nodiscard]] Matrix mass_moments(const SparseMatrix& mass, const Points& nodes);
+
+/// True when no entry off the diagonal is stored but zeros.
+[[nodiscard]] bool is_diagonal(const SparseMatrix& matrix);
 
 /// Proof by factorization that the block of the given nodes (all when empty) is positive definite.
 [[nodiscard]] bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes);
