@@ -7,11 +7,14 @@
 #include "commands.hpp"
 #include "contact_text.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/case/model.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
+#include "ricochet/mass/mass.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
+#include "ricochet/scheme/critical_step.hpp"
 
 namespace ricochet::program {
 
@@ -45,6 +48,10 @@ void describe_mesh(const std::string& path) {
   }
 }
 
+void print_critical_step(double step, double critical) {
+  fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", critical, step / critical);
+}
+
 void describe_case(const std::string& path) {
   const Case input = read_case(path);
   fmt::print("{}: {}\n", path, input.title.empty() ? "a case" : input.title);
@@ -55,6 +62,10 @@ void describe_case(const std::string& path) {
   print_contacts(describe_contacts(input));
   fmt::print("  scheme {}, mass {}, {} steps of {:g} to {:g}\n", input.time.scheme, input.mass.type,
              step_count(input.time), input.time.step, input.time.end);
+  // A .geo file can run shell commands: only `run` hands one to gmsh.
+  if (input.time.scheme != "semi-explicit" || needs_gmsh_program(input.mesh.file)) return;
+  const std::unique_ptr<Model> model = build_model(input);
+  if (is_diagonal(model->problem.mass)) print_critical_step(input.time.step, central_difference_limit(model->problem));
 }
 
 double ratio(double a, double b) {
@@ -71,6 +82,7 @@ void describe_result(const std::string& directory) {
   fmt::print("  {} nodes, {} cells, {} contact points, {} steps of {:g}, {} frames\n", s.nodes, s.cells,
              s.contact_points, s.steps, s.step, s.frames);
   print_contacts(s.contacts);
+  if (std::isfinite(s.critical_step)) print_critical_step(s.step, s.critical_step);
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
              energy.maximum);
   fmt::print("  energy account closes to {:.1e} of the largest energy\n",

@@ -16,8 +16,9 @@ SOURCE = pathlib.Path(os.environ["RICOCHET_SOURCE_DIR"])
 MESHES = SOURCE / "tests" / "data" / "meshes"
 DISC = SOURCE / "cases" / "disc" / "disc.toml"
 
-# Each scheme of the source with the mass that it is shown with.
-SCHEMES = {"midpoint": "consistent", "klr-conserving": "consistent", "newmark": "equivalent"}
+# Each scheme with the mass that it is shown with.
+SCHEMES = {"midpoint": "consistent", "klr-conserving": "consistent", "newmark": "equivalent",
+           "semi-explicit": "equivalent-lumped"}
 
 # A block of quadrilaterals (the parallelogram of quadrilateral.geo) that falls on a floor.
 BLOCK_CASE = """title = "A block falls"

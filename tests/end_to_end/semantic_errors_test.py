@@ -166,7 +166,7 @@ class SemanticErrors(TestCase):
     def test_equivalent_mass_without_a_free_node(self):
         mesh = self.write("all_around.msh", TWO_TRIANGLES)
         text = block_case().replace(str(MESHES / "quadrilateral_o1_msh41_ascii.msh"), str(mesh))
-        for mass in ("equivalent", "equivalent-nearest"):
+        for mass in ("equivalent", "equivalent-nearest", "equivalent-lumped"):
             with self.subTest(mass):
                 self.refuse(text.replace('"consistent"', f'"{mass}"'), f'"{mass}"', "contact")
 

@@ -68,7 +68,8 @@ TEST(ObliqueImpact, MomentumAndAngularMomentumBalanceInEveryStep) {
                              {"scheme = \"midpoint\"\n", "equivalent", 1.0},
                              {"scheme = \"midpoint\"\n", "consistent", 1.0},
                              {"scheme = \"klr-conserving\"\n", "consistent", 1.0},
-                             {"scheme = \"klr-conserving\"\n", "lumped", 1.0}}) {
+                             {"scheme = \"klr-conserving\"\n", "lumped", 1.0},
+                             {"scheme = \"semi-explicit\"\n", "equivalent-lumped", 0.5}}) {
       CaseRun run(test_support::thrown_case(body, method.mass, method.time, "friction = 0.3\n"));
       Balance before(run.problem(), momentum(run));
       const double linear_size = before.linear.norm(), angular_size = linear_size;  // radius and height are 1

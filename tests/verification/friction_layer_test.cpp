@@ -287,7 +287,8 @@ TEST(SlidingLayer, OtherSchemesAndMasses) {
                            {"midpoint, consistent", "scheme = \"midpoint\"\n", "consistent"},
                            {"midpoint, lumped", "scheme = \"midpoint\"\n", "lumped"},
                            {"klr-conserving, consistent", "scheme = \"klr-conserving\"\n", "consistent"},
-                           {"klr-conserving, lumped", "scheme = \"klr-conserving\"\n", "lumped"}}) {
+                           {"klr-conserving, lumped", "scheme = \"klr-conserving\"\n", "lumped"},
+                           {"semi-explicit", "scheme = \"semi-explicit\"\n", "equivalent-lumped"}}) {
     const std::vector<Errors> all = table(layer, method, refinements);
     EXPECT_GT(mean_order(all, &Errors::velocity), 0.25) << method.name;
     EXPECT_GT(mean_order(all, &Errors::traction), 0.25) << method.name;

@@ -73,6 +73,7 @@ const std::vector<SchemeChoice>& scheme_choices() {
       {"scheme = \"klr-conserving\"\n", "consistent", false},
       {"scheme = \"newmark\"\npreset = \"textbook-half\"\n", "equivalent", true},
       {"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "equivalent", true},
+      {"scheme = \"semi-explicit\"\n", "equivalent-lumped", true},
   };
   return all;
 }

@@ -268,15 +268,15 @@ Section initial_section() {
 }
 
 Section mass_section() {
-  return {
-      .name = "mass",
-      .doc = "The mass matrix.",
-      .keys = {{.name = "type",
-                .type = KeyType::choice,
-                .standard = "equivalent",
-                .choices = mass_names(),
-                .doc = "The equivalent masses have no inertia on contact nodes, and keep total mass, centre of gravity "
-                       "and moments of inertia."}}};
+  return {.name = "mass",
+          .doc = "The mass matrix.",
+          .keys = {
+              {.name = "type",
+               .type = KeyType::choice,
+               .standard = "equivalent",
+               .choices = mass_names(),
+               .doc = "The equivalent masses have no inertia on contact nodes, and keep total mass, centre of gravity "
+                      "and moments of inertia. \"equivalent-lumped\" is diagonal, for the scheme \"semi-explicit\"."}}};
 }
 
 Section time_section() {
@@ -310,7 +310,8 @@ Section time_section() {
            .unit = "time",
            .required = true,
            .range = positive,
-           .doc = "Length of a time step."},
+           .doc = "Length of a time step; \"semi-explicit\" refuses one above its critical step, which `ricochet "
+                  "info` shows."},
           {.name = "end",
            .type = KeyType::number,
            .unit = "time",

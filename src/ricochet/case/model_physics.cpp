@@ -122,7 +122,7 @@ void assemble_operators(const Case& input, Model& model) {
   const int d = model.mesh.dimension;
   const SparseMatrix consistent = assemble_scalar_mass(model.body, graph);
   const std::unique_ptr<MassConstruction> construction = make_mass(input.mass.type);
-  MassInput mass_input{&consistent, &model.space.nodes, model.problem.contact.unique_nodes()};
+  MassInput mass_input{&consistent, &model.space.nodes, model.problem.contact.unique_nodes(), &consistent};
   const auto build = [&](const SparseMatrix& from) {
     mass_input.consistent = &from;
     try {

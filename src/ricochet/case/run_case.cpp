@@ -137,6 +137,7 @@ RunSummary describe(const Case& input, const Model& model, const Scheme& scheme,
     summary.solver = chosen.method == SolverMethod::direct ? "direct" : "iterative";
   summary.step = scheme.step();
   summary.end_time = input.time.end;
+  summary.critical_step = scheme.critical_step();
   summary.energy_instant = scheme.energy_instant();
   summary.force_instant = scheme.force_instant();
   summary.contacts = describe_contacts(input);
@@ -247,7 +248,7 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
         largest("energy_residual") / scale));
   }
   if (summary.digest("contact_work").maximum > 0.01 * scale) {
-    const bool best = summary.scheme == "newmark" && problem.has_singular_mass();
+    const bool best = (summary.scheme == "newmark" || summary.scheme == "semi-explicit") && problem.has_singular_mass();
     log::warning(
         fmt::format("contact forces have created energy: contact_work reaches {:.2g} of the largest energy; {}",
                     summary.digest("contact_work").maximum / scale,
@@ -258,8 +259,8 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
   if (summary.digest("friction_work").maximum > 0.01 * scale) {
     log::warning(fmt::format(
         "friction has created energy: friction_work reaches {:.2g} of the largest energy; it comes from the "
-        "weights that newmark gives to the forces at the two ends of a step: take a smaller time.step",
-        summary.digest("friction_work").maximum / scale));
+        "weights that {} gives to the forces at the two ends of a step: take a smaller time.step",
+        summary.digest("friction_work").maximum / scale, summary.scheme));
   }
   if (summary.digest("max_rotation").maximum > large_rotation) {
     log::warning(

@@ -124,6 +124,8 @@ std::string to_json(const RunSummary& s) {
                      {"factor_entries", s.factor_entries},
                      {"time_step", s.step},
                      {"end_time", s.end_time},
+                     {"critical_time_step", std::isfinite(s.critical_step) ? Json(s.critical_step) : Json()},
+                     {"critical_fraction", std::isfinite(s.critical_step) ? Json(s.step / s.critical_step) : Json()},
                      {"steps", s.steps},
                      {"instants",
                       {{"energy", fmt::format("t {:+g} time_step", s.energy_instant)},
@@ -173,6 +175,8 @@ RunSummary read_summary(const std::string& path) {
     s.contact_points = json.at("contact_points");
     s.step = json.at("time_step");
     s.end_time = json.at("end_time");
+    const Json& critical = json.at("critical_time_step");
+    if (critical.is_number()) s.critical_step = critical.get<double>();
     s.steps = json.at("steps");
     s.frames = json.at("frames");
     s.time_per_step = json.at("seconds_per_step");

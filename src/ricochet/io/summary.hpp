@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +40,8 @@ struct RunSummary {
   std::size_t factor_entries = 0;
   std::string solver = "direct";  ///< or "iterative"
   double step = 0.0, end_time = 0.0;
+  double critical_step =
+      std::numeric_limits<double>::infinity();  ///< above it the scheme is unstable; none if infinite
   long steps = 0;
   double energy_instant = 0.0, force_instant = 0.0;  ///< relative to a row's time, in steps
   long frames = 0;

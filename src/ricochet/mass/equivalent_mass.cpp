@@ -31,7 +31,7 @@ class EquivalentMass final : public MassConstruction {
     const Index count = consistent.cols();
     std::vector<char> is_contact(static_cast<std::size_t>(count), 0);
     for (const Index node : input.contact_nodes) is_contact[static_cast<std::size_t>(node)] = 1;
-    const Vector diagonal = consistent.diagonal();
+    const Vector diagonal = input.inertia_matrix().diagonal();
     std::vector<Eigen::Triplet<double>> entries;
     std::vector<Index> seen_from(static_cast<std::size_t>(count), -1);
     for (Index node = 0; node < count; ++node) {

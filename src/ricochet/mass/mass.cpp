@@ -23,6 +23,7 @@ const std::vector<Registration>& registrations() {
       {"lumped", make_lumped_mass},
       {"equivalent", make_equivalent_mass},
       {"equivalent-nearest", make_nearest_equivalent_mass},
+      {"equivalent-lumped", make_lumped_equivalent_mass},
   };
   return all;
 }
@@ -56,6 +57,15 @@ Matrix mass_moments(const SparseMatrix& mass, const Points& nodes) {
   monomials.col(0).setOnes();
   monomials.rightCols(nodes.rows()) = nodes.transpose();
   return monomials.transpose() * (mass * monomials);
+}
+
+bool is_diagonal(const SparseMatrix& matrix) {
+  for (Index column = 0; column < matrix.cols(); ++column) {
+    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
+      if (entry.row() != column && entry.value() != 0.0) return false;
+    }
+  }
+  return true;
 }
 
 bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes) {

@@ -12,9 +12,13 @@ namespace ricochet {
 
 /// What a mass is built from.
 struct MassInput {
-  const SparseMatrix* consistent = nullptr;  ///< ∫ρ N_i N_j, nodes × nodes
+  const SparseMatrix* consistent = nullptr;  ///< ∫ρ N_i N_j, nodes × nodes; or ∫aρ N_i N_j, damping with rates a ≥ 0
   const Points* nodes = nullptr;             ///< positions, d × nodes
   std::vector<Index> contact_nodes;          ///< ascending, each once
+  /// ∫ρ N_i N_j when `consistent` is damping, which may vanish somewhere; null: the same.
+  const SparseMatrix* inertia = nullptr;
+
+  [[nodiscard]] const SparseMatrix& inertia_matrix() const { return inertia != nullptr ? *inertia : *consistent; }
 };
 
 /// A way to distribute the mass of a body over its nodes.
@@ -38,10 +42,18 @@ class MassConstruction {
 [[nodiscard]] std::unique_ptr<MassConstruction> make_lumped_mass();
 [[nodiscard]] std::unique_ptr<MassConstruction> make_equivalent_mass();
 [[nodiscard]] std::unique_ptr<MassConstruction> make_nearest_equivalent_mass();
+[[nodiscard]] std::unique_ptr<MassConstruction> make_lumped_equivalent_mass();
+
+/// A diagonal mass: row sums where they are all positive (degree 1: total mass and centre of gravity are kept), else
+/// the diagonal of the consistent mass, scaled to keep the total.
+[[nodiscard]] Vector lumped_diagonal(const SparseMatrix& consistent);
 
 /// Total mass, first and second moments: PᵃᵀmPᵇ with P = (1, x, y[, z]), (d+1) × (d+1). The conditions of an equivalent
 /// mass.
 [[nodiscard]] Matrix mass_moments(const SparseMatrix& mass, const Points& nodes);
+
+/// True when no entry off the diagonal is stored but zeros.
+[[nodiscard]] bool is_diagonal(const SparseMatrix& matrix);
 
 /// Proof by factorization that the block of the given nodes (all when empty) is positive definite.
 [[nodiscard]] bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes);

@@ -13,7 +13,8 @@ namespace ricochet {
 #define RICOCHET_SCHEMES(scheme)                \
   scheme("midpoint", make_midpoint)             \
   scheme("klr-conserving", make_klr_conserving) \
-  scheme("newmark", make_newmark)
+  scheme("newmark", make_newmark)               \
+  scheme("semi-explicit", make_semi_explicit)
 // clang-format on
 
 #define RICOCHET_DECLARE(name, make) std::unique_ptr<Scheme> make(const SchemeParameters&);

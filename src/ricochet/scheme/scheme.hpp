@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct SchemeParameters {
   double step = 0.0;   ///< h
   double beta = 0.25;  ///< newmark
   double gamma = 0.5;  ///< newmark
+  /// semi-explicit: refuse a step above the critical one. Only tests of instability go without.
+  bool check_critical_step = true;
 };
 
 /// How a step's forces and displacement enter the balance of energy:
@@ -41,6 +44,8 @@ class Scheme {
   [[nodiscard]] virtual double energy_instant() const { return 0.0; }
   [[nodiscard]] virtual double force_instant() const { return 0.0; }
   [[nodiscard]] virtual WorkRule work_rule() const { return {}; }
+  /// Steps below this one are stable; infinite without such a limit. Known after start().
+  [[nodiscard]] virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }
 
   /// Completes a starting state whose displacement, velocity, acceleration and forces satisfy the momentum equation at
   /// t = 0.

@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/mass/mass.hpp"
 #include "ricochet/scheme/contact_conditions.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 #include "ricochet/simulation/static_equilibrium.hpp"
@@ -87,13 +88,38 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
   return resting;
 }
 
+/// A diagonal mass needs no factorization where no contact point is at rest on its obstacle. False when it does.
+bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vector& support_acceleration,
+                                 const std::vector<char>& resting, State& state) {
+  if (std::find(resting.begin(), resting.end(), 1) != resting.end() || !is_diagonal(problem.mass)) return false;
+  const Vector mass = problem.mass.diagonal();
+  Vector acceleration = residual_force(problem, state.displacement, state.velocity);
+  for (Index dof = 0; dof < mass.size(); ++dof) {
+    if (problem.is_massless[static_cast<std::size_t>(dof)] != 0) {
+      acceleration[dof] = 0.0;
+    } else if (mass[dof] > 0.0) {
+      acceleration[dof] /= mass[dof];
+    } else if (!problem.supports.contains(dof)) {
+      return false;
+    }
+  }
+  for (Index i = 0; i < problem.supports.size(); ++i) {
+    acceleration[problem.supports.dofs()[static_cast<std::size_t>(i)]] = support_acceleration[i];
+  }
+  for (const Index dof : problem.massless_dofs) acceleration[dof] = 0.0;
+  state.acceleration = std::move(acceleration);
+  return true;
+}
+
 /// Friction acts on the slip rate at the end of a step of this acceleration.
 void find_acceleration(const SemidiscreteProblem& problem, const Vector& support_acceleration, const Vector& pressed,
                        double step, const StepSolverOptions& options, State& state) {
+  std::vector<char> resting = resting_points(problem, state, pressed);
+  if (find_acceleration_pointwise(problem, support_acceleration, resting, state)) return;
   const auto solver = make_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}}, options);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   stage.prescribed = support_acceleration;
-  stage.eligible = resting_points(problem, state, pressed);
+  stage.eligible = std::move(resting);
   stage.gap_offset.setZero();  // the condition is on G a
   stage.gap_offset_rounding.setZero();
   require_friction(problem, state.velocity, obstacle_at_start(problem, state.displacement), step, stage);

@@ -149,7 +149,8 @@ TEST(MalformedCase, References) {
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"time.shceme\" = \"midpoint\" }",
        "15:10: \"when\" names \"time.shceme\": unknown key \"shceme\" in [time]; did you mean \"scheme\"?"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"time.scheme\" = \"midpont\" }",
-       "15:26: \"time.scheme\" must be one of \"midpoint\", \"klr-conserving\" or \"newmark\"; found the text "
+       "15:26: \"time.scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\" or \"semi-explicit\"; "
+       "found the text "
        "\"midpont\"; did you mean \"midpoint\"?"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"contact.0.friction\" = 0 }",
        "15:10: \"when\" names \"contact.0.friction\": there is no entry 0 of [[contact]]: the case has none"},
@@ -163,7 +164,8 @@ TEST(MalformedCase, References) {
       {0,
        "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { mass.type = \"lumpd\", time.step = \"a\" "
        "}",
-       "15:22: \"mass.type\" must be one of \"consistent\", \"lumped\", \"equivalent\" or \"equivalent-nearest\"; "
+       "15:22: \"mass.type\" must be one of \"consistent\", \"lumped\", \"equivalent\", \"equivalent-nearest\" or "
+       "\"equivalent-lumped\"; "
        "found the text \"lumpd\"; did you mean \"lumped\"?\n15:43: \"time.step\" must be a positive number (unit: "
        "time); found the text \"a\""},
       {0, "[[expect]]\nquantity = \"history.time\"\nminimum = 3.0",

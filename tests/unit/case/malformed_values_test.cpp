@@ -36,14 +36,18 @@ TEST(MalformedCase, Values) {
       {7, "mu = 1.0\ndamping = { mass = -1.0 }",
        "8:20: \"mass\" must be a number of at least 0 (unit: 1/time); found the number -1.0"},
       {9, "scheme = \"newmrk\"",
-       "9:10: \"scheme\" must be one of \"midpoint\", \"klr-conserving\" or \"newmark\"; found the text \"newmrk\"; "
+       "9:10: \"scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\" or \"semi-explicit\"; found the "
+       "text \"newmrk\"; "
        "did you mean \"newmark\"?"},
       {9, "scheme = \"euler\"",
-       "9:10: \"scheme\" must be one of \"midpoint\", \"klr-conserving\" or \"newmark\"; found the text \"euler\""},
+       "9:10: \"scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\" or \"semi-explicit\"; found the "
+       "text \"euler\""},
       {9, "scheme = 3",
-       "9:10: \"scheme\" must be one of \"midpoint\", \"klr-conserving\" or \"newmark\"; found the integer 3"},
+       "9:10: \"scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\" or \"semi-explicit\"; found the "
+       "integer 3"},
       {0, "[mass]\ntype = \"equivalent_nearest\"",
-       "13:8: \"type\" must be one of \"consistent\", \"lumped\", \"equivalent\" or \"equivalent-nearest\"; found the "
+       "13:8: \"type\" must be one of \"consistent\", \"lumped\", \"equivalent\", \"equivalent-nearest\" or "
+       "\"equivalent-lumped\"; found the "
        "text \"equivalent_nearest\"; did you mean \"equivalent-nearest\"?"},
       {0, "[output]\nhistory_every = 0",
        "13:17: \"history_every\" must be an integer of at least 1 (unit: steps); found the integer 0"},

@@ -3,108 +3,15 @@
 #include <cstdio>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/fem/assembly.hpp"
-#include "ricochet/mass/mass.hpp"
-#include "ricochet/mesh/read_mesh.hpp"
-#include "support/case_run.hpp"
+#include "support/mass_bodies.hpp"
 
-// The equivalent masses on meshes of every kind: thin strips and plates, coarse balls, contact all around,
-// quadrilaterals and hexahedra, curved second-order cells. Meshed by the gmsh program from the descriptions below.
+// The equivalent masses on meshes of every kind.
 
 namespace ricochet {
 namespace {
 
-constexpr const char* strip =
-    "Rectangle(1)={0,0,0,10,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
-constexpr const char* strip_around =
-    "Rectangle(1)={0,0,0,10,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1,2,3,4};";
-constexpr const char* disc = "Disk(1)={0,0,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
-constexpr const char* ring =
-    "Disk(1)={0,0,0,1}; Disk(2)={0,0,0,0.6}; BooleanDifference(3)={Surface{1};Delete;}{Surface{2};Delete;}; "
-    "Physical Surface(\"body\")={3}; Physical Curve(\"contact\")={Boundary{Surface{3};}};";
-constexpr const char* ball = "Sphere(1)={0,0,0,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1};";
-constexpr const char* plate =
-    "Box(1)={0,0,0,10,10,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={5};";
-constexpr const char* plate_around =
-    "Box(1)={0,0,0,10,10,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1,2,3,4,5,6};";
-constexpr const char* cylinder =
-    "Cylinder(1)={0,0,0,0,0,3,0.5}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1,2,3};";
-constexpr const char* brick = "Box(1)={0,0,0,2,1,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={5};";
-constexpr const char* brick_around =
-    "Box(1)={0,0,0,2,1,1}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={1,2,3,4,5,6};";
-constexpr const char* quadrilaterals = " Recombine Surface{:};";
-constexpr const char* hexahedra = " Transfinite Surface{:}; Recombine Surface{:}; Transfinite Volume{:};";
-
-struct Description {
-  std::string name;
-  int order;
-  double size;
-  std::string geometry;
-};
-
-const std::vector<Description>& bodies() {
-  static const std::vector<Description> all{
-      {"strip, 2 thick", 1, 0.5, strip},
-      {"strip, 3 thick", 1, 0.34, strip},
-      {"strip, 6 thick", 1, 0.17, strip},
-      {"strip, 2 thick, quads", 1, 0.5, std::string(strip) + quadrilaterals},
-      {"strip, 3 thick, around", 1, 0.34, strip_around},
-      {"strip, 6 thick, around", 1, 0.17, strip_around},
-      {"strip, 4 thick, quads, around", 1, 0.25, std::string(strip_around) + quadrilaterals},
-      {"strip, 3 thick, degree 2, around", 2, 0.34, strip_around},
-      {"disc, h 0.5", 1, 0.5, disc},
-      {"disc, h 0.25", 1, 0.25, disc},
-      {"disc, h 0.1", 1, 0.1, disc},
-      {"disc, h 0.5, degree 2", 2, 0.5, disc},
-      {"disc, h 0.25, degree 2", 2, 0.25, disc},
-      {"disc, h 0.12, degree 2", 2, 0.12, disc},
-      {"disc, quads", 1, 0.25, std::string(disc) + quadrilaterals},
-      {"disc, quads, degree 2", 2, 0.25, std::string(disc) + quadrilaterals},
-      {"ring", 1, 0.1, ring},
-      {"ring, degree 2", 2, 0.13, ring},
-      {"ball, h 0.6", 1, 0.6, ball},
-      {"ball, h 0.4", 1, 0.4, ball},
-      {"ball, h 0.25", 1, 0.25, ball},
-      {"ball, h 0.15", 1, 0.15, ball},
-      {"ball, h 0.6, degree 2", 2, 0.6, ball},
-      {"ball, h 0.4, degree 2", 2, 0.4, ball},
-      {"plate, 1 thick", 1, 1.0, plate},
-      {"plate, 2 thick", 1, 0.5, plate},
-      {"plate, 3 thick, around", 1, 0.33, plate_around},
-      {"plate, degree 2", 2, 0.7, plate},
-      {"cylinder, h 0.3", 1, 0.3, cylinder},
-      {"cylinder, h 0.2", 1, 0.2, cylinder},
-      {"cylinder, degree 2", 2, 0.3, cylinder},
-      {"brick, hexahedra", 1, 0.33, std::string(brick) + hexahedra},
-      {"brick, hexahedra, around", 1, 0.2, std::string(brick_around) + hexahedra},
-      {"brick, hexahedra, degree 2", 2, 0.5, std::string(brick) + hexahedra},
-      {"brick, hexahedra, degree 2, around", 2, 0.34, std::string(brick_around) + hexahedra},
-  };
-  return all;
-}
-
-/// Meshes a body and assembles its consistent mass.
-struct Assembled {
-  Mesh mesh;
-  DisplacementSpace space;
-  SparseMatrix consistent;
-  MassInput input;
-
-  explicit Assembled(const Description& description) {
-    const std::string path =
-        test_support::write_temporary("body.geo", "SetFactory(\"OpenCASCADE\");\n" + description.geometry + "\n");
-    MeshFile file;
-    file.path = path;
-    file.size = description.size;
-    file.geometry_degree = description.order;
-    mesh = read_mesh(file);
-    space = make_displacement_space(mesh, description.order);
-    Body body{&mesh, &space, PlaneState::strain, {{"body", 3.0, 1.0, 1.0, 0.0, 0.0}}, {}};
-    body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), 0);
-    consistent = assemble_scalar_mass(body, node_graph(space));
-    input = {&consistent, &space.nodes, facet_nodes(space, mesh.group("contact", mesh.dimension - 1).members)};
-  }
-};
+using Assembled = test_support::AssembledBody;
+using Description = test_support::BodyDescription;
 
 /// Largest eigenvalue of D⁻¹ m on the nodes with mass, D the diagonal of the consistent mass, by power iteration.
 double top_eigenvalue(const SparseMatrix& mass, const Vector& scale) {
@@ -135,7 +42,7 @@ void expect_equivalent(const SparseMatrix& mass, const Assembled& body, const st
 TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKind) {
   int refused = 0;
   std::printf("%-38s %6s %8s %12s %12s %12s\n", "body", "nodes", "contact", "consistent", "equivalent", "nearest");
-  for (const Description& description : bodies()) {
+  for (const Description& description : test_support::bodies_of_every_kind()) {
     const Assembled body(description);
     const Vector scale = body.consistent.diagonal();
     const SparseMatrix mass = make_equivalent_mass()->build(body.input);
@@ -162,8 +69,8 @@ TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKi
 }
 
 TEST(EquivalentMass, DegreeOneSpaceOnSecondOrderCells) {
-  for (const char* geometry : {disc, ball}) {
-    Assembled body({"", 2, 0.4, geometry});
+  for (const char* name : {"disc, h 0.25, degree 2", "ball, h 0.4, degree 2"}) {
+    Assembled body(test_support::body_of_kind(name));
     const DisplacementSpace linear = make_displacement_space(body.mesh, 1);
     Body same{&body.mesh, &linear, PlaneState::strain, {{"body", 3.0, 1.0, 1.0, 0.0, 0.0}}, {}};
     same.cell_material.assign(static_cast<std::size_t>(body.mesh.cell_count()), 0);
@@ -171,8 +78,19 @@ TEST(EquivalentMass, DegreeOneSpaceOnSecondOrderCells) {
     body.space = linear;
     body.input = {&body.consistent, &body.space.nodes,
                   facet_nodes(linear, body.mesh.group("contact", body.mesh.dimension - 1).members)};
-    expect_equivalent(make_equivalent_mass()->build(body.input), body, geometry);
+    expect_equivalent(make_equivalent_mass()->build(body.input), body, name);
   }
+}
+
+TEST(EquivalentMass, OfDampingThatVanishesAroundContactNodes) {
+  // Rayleigh damping of one of two materials: its matrix has zeros where the weights of contact nodes are looked for.
+  const Assembled body(test_support::body_of_kind("disc, h 0.1"));
+  Vector inside(body.space.nodes.cols());
+  for (Index i = 0; i < inside.size(); ++i) inside[i] = body.space.nodes.col(i).norm() < 0.3 ? 1.0 : 0.0;
+  const SparseMatrix damping = inside.asDiagonal() * body.consistent * inside.asDiagonal();
+  const SparseMatrix found =
+      make_equivalent_mass()->build({&damping, &body.space.nodes, body.input.contact_nodes, &body.consistent});
+  EXPECT_NEAR(found.sum(), damping.sum(), 1e-13 * damping.sum());
 }
 
 TEST(EquivalentMass, SaysWhereTheInertiaHasNowhereToGo) {

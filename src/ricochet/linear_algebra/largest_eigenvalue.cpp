@@ -1,0 +1,74 @@
+#include "ricochet/linear_algebra/largest_eigenvalue.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr double failure_probability = 1e-9;
+
+/// Uniformly distributed on the sphere.
+Vector start_vector(Index size) {
+  std::mt19937_64 generator(20110901);
+  std::normal_distribution<double> normal;
+  Vector start(size);
+  for (Index i = 0; i < size; ++i) start[i] = normal(generator);
+  return start / start.norm();
+}
+
+}  // namespace
+
+EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(const Vector&, Vector&)>& multiply,
+                                          double spread) {
+  EigenvalueBounds bounds;
+  if (size == 0) return bounds;
+  const double odds = 1.648 * std::sqrt(static_cast<double>(size)) / failure_probability;
+  const auto enough = static_cast<Index>(std::ceil(0.5 * (1.0 + std::log(odds) / std::sqrt(spread))));
+  Vector previous = Vector::Zero(size);
+  Vector current = start_vector(size);
+  Vector next(size);
+  std::vector<double> diagonal, beside;  // of the tridiagonal projection
+  // Without reorthogonalization: rounding repeats Ritz values that have converged, it makes none beyond the spectrum.
+  while (true) {
+    multiply(current, next);
+    ++bounds.products;
+    diagonal.push_back(current.dot(next));
+    if (!beside.empty()) next -= beside.back() * previous;
+    next -= diagonal.back() * current;
+    const double length = next.norm();
+    const double largest = *std::max_element(diagonal.begin(), diagonal.end());
+    // An invariant space is exhausted: it holds a part of every eigenvector.
+    const bool exhausted = !(length > 64.0 * std::numeric_limits<double>::epsilon() * largest);
+    if (bounds.products == enough || exhausted) break;
+    beside.push_back(length);
+    std::swap(previous, current);
+    current = next / length;
+  }
+  // Eigen's iteration ends on matrices near 1 only. A power of two changes no bit.
+  int exponent = 0;
+  std::frexp(*std::max_element(diagonal.begin(), diagonal.end()), &exponent);
+  for (double& entry : diagonal) entry = std::ldexp(entry, -exponent);
+  for (double& entry : beside) entry = std::ldexp(entry, -exponent);
+  const auto count = static_cast<Index>(diagonal.size());
+  const Eigen::Map<const Vector> d(diagonal.data(), count);
+  const Eigen::Map<const Vector> e(beside.data(), count - 1);
+  Eigen::SelfAdjointEigenSolver<Matrix> solver;
+  solver.computeFromTridiagonal(d, e, Eigen::EigenvaluesOnly);
+  if (solver.info() != Eigen::Success) {
+    throw Error(ErrorKind::not_converged,
+                "the largest eigenvalue of the stiffness was not found: it may not be finite");
+  }
+  bounds.lower = std::ldexp(solver.eigenvalues()[count - 1], exponent);
+  bounds.upper = bounds.lower / (1.0 - spread);
+  return bounds;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/fem/assembly.hpp"
+#include "ricochet/mass/mass.hpp"
+
+/// @file Bodies on whose meshes masses are tested: thin strips and plates, coarse balls, contact all around,
+/// quadrilaterals and hexahedra, curved second-order cells. Meshed by the gmsh program.
+namespace ricochet::test_support {
+
+struct BodyDescription {
+  std::string name;
+  int order;
+  double size;
+  std::string geometry;  ///< Gmsh, OpenCASCADE kernel; groups "body" and "contact"
+};
+
+[[nodiscard]] const std::vector<BodyDescription>& bodies_of_every_kind();
+/// The one of this name.
+[[nodiscard]] const BodyDescription& body_of_kind(const std::string& name);
+
+/// Meshes a body and assembles its consistent mass.
+struct AssembledBody {
+  Mesh mesh;
+  DisplacementSpace space;
+  SparseMatrix consistent;
+  MassInput input;
+
+  explicit AssembledBody(const BodyDescription& description);
+};
+
+}  // namespace ricochet::test_support
