@@ -1,6 +1,11 @@
 #include "ricochet/base/parallel.hpp"
 
+#include <atomic>
+#include <chrono>
+#include <cstdint>
 #include <exception>
+#include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -9,8 +14,123 @@
 namespace ricochet {
 
 namespace {
+
 int configured_thread_count = 1;
+
+/// True on a thread that is inside of some range's work.
+thread_local bool inside_range = false;
+
+/// Tells the processor that a loop only waits.
+void pause() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#endif
 }
+
+/// Looks for `ready` again and again for a while; false when it did not come.
+template <class Ready>
+bool spin_until(const Ready& ready) {
+  using clock = std::chrono::steady_clock;
+  constexpr std::chrono::microseconds patience{50};
+  if (ready()) return true;
+  const clock::time_point start = clock::now();
+  do {
+    for (int i = 0; i < 64; ++i) {
+      if (ready()) return true;
+      pause();
+    }
+  } while (clock::now() - start < patience);
+  return false;
+}
+
+/// Threads that take the parts of one call after another. The caller takes part in the work, so a call never waits for
+/// a thread that has not woken up yet.
+class Pool {
+ public:
+  /// `count` threads, the caller's included.
+  explicit Pool(int count) : count_(count), problems_(static_cast<std::size_t>(count * parts_per_thread)) {
+    threads_.reserve(static_cast<std::size_t>(count - 1));
+    for (int i = 1; i < count; ++i) threads_.emplace_back([this] { serve(); });
+  }
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+  ~Pool() {
+    ending_.store(true);
+    call_.fetch_add(1);
+    call_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  [[nodiscard]] int count() const { return count_; }
+
+  void run(Index count, const detail::RangeWork& work) {
+    const Index parts = std::min<Index>(count, static_cast<Index>(count_) * parts_per_thread);
+    size_ = count;
+    work_ = work;
+    unfinished_.store(static_cast<int>(parts));
+    const std::uint32_t call = call_.load(std::memory_order_relaxed) + 1;
+    ticket_.store(std::uint64_t{call} << 32 | static_cast<std::uint64_t>(parts) << 16, std::memory_order_release);
+    call_.store(call, std::memory_order_release);
+    call_.notify_all();
+    take_parts();
+    if (!spin_until([&] { return unfinished_.load(std::memory_order_acquire) == 0; })) {
+      for (int left = unfinished_.load(); left != 0; left = unfinished_.load()) unfinished_.wait(left);
+    }
+    std::exception_ptr first;
+    for (Index part = 0; part < parts; ++part) {
+      std::exception_ptr& problem = problems_[static_cast<std::size_t>(part)];
+      if (problem && !first) first = problem;
+      problem = nullptr;
+    }
+    if (first) std::rethrow_exception(first);
+  }
+
+ private:
+  /// More than one, so that a thread which is late or disturbed does not hold up the others.
+  static constexpr int parts_per_thread = 4;
+
+  /// Takes the next part of the present call until none is left. The number of the call, its number of parts and the
+  /// next part are one atomic number: who gets a part that exists has the call alive until that part is done.
+  void take_parts() {
+    while (true) {
+      const std::uint64_t ticket = ticket_.fetch_add(1, std::memory_order_acq_rel);
+      const auto part = static_cast<Index>(ticket & 0xffff);
+      const auto parts = static_cast<Index>(ticket >> 16 & 0xffff);
+      if (part >= parts) return;
+      inside_range = true;
+      try {
+        work_.call(work_.object, size_ * part / parts, size_ * (part + 1) / parts);
+      } catch (...) {
+        problems_[static_cast<std::size_t>(part)] = std::current_exception();
+      }
+      inside_range = false;
+      if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_all();
+    }
+  }
+
+  void serve() {
+    std::uint32_t seen = 0;
+    while (true) {
+      const auto called = [&] { return call_.load(std::memory_order_acquire) != seen; };
+      if (!spin_until(called)) call_.wait(seen, std::memory_order_acquire);
+      seen = call_.load(std::memory_order_acquire);
+      if (ending_.load()) return;
+      take_parts();
+    }
+  }
+
+  int count_;
+  std::vector<std::exception_ptr> problems_;  ///< per part
+  std::vector<std::thread> threads_;
+  Index size_ = 0;
+  detail::RangeWork work_;
+  std::atomic<std::uint64_t> ticket_{0};
+  std::atomic<std::uint32_t> call_{0};
+  std::atomic<int> unfinished_{0};
+  std::atomic<bool> ending_{false};
+};
+
+}  // namespace
 
 void set_thread_count(int count) {
   if (count < 1 || count > 1024) throw Error(ErrorKind::usage, "the number of threads must be from 1 to 1024");
@@ -21,28 +141,21 @@ int thread_count() {
   return configured_thread_count;
 }
 
-void parallel_ranges(Index count, const std::function<void(Index, Index)>& work) {
-  const Index parts = std::min<Index>(configured_thread_count, count);
-  if (parts <= 1) {
-    if (count > 0) work(0, count);
+void detail::run_ranges(Index count, const RangeWork& work) {
+  if (count <= 0) return;
+  static std::mutex in_use;
+  std::unique_lock<std::mutex> lock(in_use, std::defer_lock);
+  const int wanted = configured_thread_count;
+  if (wanted == 1 || count == 1 || inside_range || !lock.try_lock()) {
+    work.call(work.object, 0, count);
     return;
   }
-  std::vector<std::exception_ptr> problems(static_cast<std::size_t>(parts));
-  std::vector<std::thread> threads;
-  threads.reserve(static_cast<std::size_t>(parts));
-  for (Index part = 0; part < parts; ++part) {
-    threads.emplace_back([&, part] {
-      try {
-        work(count * part / parts, count * (part + 1) / parts);
-      } catch (...) {
-        problems[static_cast<std::size_t>(part)] = std::current_exception();
-      }
-    });
+  static std::unique_ptr<Pool> pool;
+  if (!pool || pool->count() != wanted) {
+    pool.reset();
+    pool = std::make_unique<Pool>(wanted);
   }
-  for (std::thread& thread : threads) thread.join();
-  for (const std::exception_ptr& problem : problems) {
-    if (problem) std::rethrow_exception(problem);
-  }
+  pool->run(count, work);
 }
 
 }  // namespace ricochet

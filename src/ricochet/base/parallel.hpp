@@ -1,19 +1,57 @@
 #pragma once
 
-#include <functional>
+#include <algorithm>
+#include <array>
 
 #include "ricochet/base/types.hpp"
 
 /// @file Threads. Whatever their number, results are the same bits: work is split so that each output entry is computed
-/// by one thread, in an order that does not depend on the split.
+/// by one thread, in an order that does not depend on the split, and sums are split in the same way always.
+///
+/// The threads are made once and wait between calls: first by looking again and again, for some tens of microseconds,
+/// then asleep. A call costs a few microseconds when they still look, some tens when they sleep; it allocates nothing.
 namespace ricochet {
 
 /// Number of threads used by parallel_ranges (1 unless set). Throws Error(usage) unless 1 ≤ count ≤ 1024.
 void set_thread_count(int count);
 [[nodiscard]] int thread_count();
 
-/// Calls `work(begin, end)` on consecutive ranges that cover [0, count), at once. An exception of any range is rethrown
-/// (that of the first range, so that messages do not depend on timing).
-void parallel_ranges(Index count, const std::function<void(Index begin, Index end)>& work);
+namespace detail {
+/// A function to be called with a range, without the allocation of std::function.
+struct RangeWork {
+  const void* object = nullptr;
+  void (*call)(const void* object, Index begin, Index end) = nullptr;
+};
+void run_ranges(Index count, const RangeWork& work);
+}  // namespace detail
+
+/// Calls `work(begin, end)` on consecutive ranges that cover [0, count), several at once. An exception of any range is
+/// rethrown (that of the first range, so that messages do not depend on timing) when all have ended. Inside of `work`,
+/// and while another thread is in such a call, it runs on the calling thread alone.
+template <class Work>
+void parallel_ranges(Index count, const Work& work) {
+  detail::run_ranges(count, {&work, [](const void* object, Index begin, Index end) {
+                               (*static_cast<const Work*>(object))(begin, end);
+                             }});
+}
+
+/// Σ of `work(begin, end)` over ranges that cover [0, count) and depend on `count` only, added in their order: the same
+/// bits for any number of threads. `Sum{}` is zero.
+template <class Sum, class Work>
+[[nodiscard]] Sum parallel_sum(Index count, const Work& work) {
+  constexpr Index most_parts = 64;
+  constexpr Index least_size = 2048;
+  const Index size = std::max(least_size, (count + most_parts - 1) / most_parts);
+  const Index parts = (count + size - 1) / size;
+  std::array<Sum, most_parts> sums;
+  parallel_ranges(parts, [&](Index first, Index last) {
+    for (Index part = first; part < last; ++part) {
+      sums[static_cast<std::size_t>(part)] = work(part * size, std::min(count, (part + 1) * size));
+    }
+  });
+  Sum total{};
+  for (Index part = 0; part < parts; ++part) total += sums[static_cast<std::size_t>(part)];
+  return total;
+}
 
 }  // namespace ricochet
