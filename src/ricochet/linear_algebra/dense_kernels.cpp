@@ -2,13 +2,7 @@
 
 #include <cmath>
 
-// The program is compiled for any x86-64; these loops take wider registers where the processor has them. The rounding
-// of an entry does not depend on the width: fused operations are off.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define RICOCHET_EACH_INSTRUCTION_SET __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define RICOCHET_EACH_INSTRUCTION_SET
-#endif
+#include "ricochet/linear_algebra/instruction_sets.hpp"
 
 namespace ricochet {
 

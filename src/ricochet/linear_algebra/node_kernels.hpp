@@ -1,0 +1,22 @@
+#pragma once
+
+#include "ricochet/base/types.hpp"
+
+/// @file The loops of NodeMatrix over the rows of one part. Not part of the public interface.
+namespace ricochet {
+
+/// Rows [begin, end) of a NodeMatrix, see there. Vectors are in its order.
+struct NodeRows {
+  Index begin = 0, end = 0;
+  const Index* row_begin = nullptr;
+  const Index* one_sided = nullptr;
+  const int* column = nullptr;
+  const double* values = nullptr;
+};
+
+/// y = A x on these rows, and what their two-sided blocks add to other rows of the range. `scalar`: A = m ⊗ I.
+void multiply_rows(const NodeRows& rows, int d, bool scalar, const double* x, double* y);
+/// Σ over these rows i of x_iᵀ (2 Σ two-sided A_ij x_j + Σ one-sided A_ij x_j).
+[[nodiscard]] double form_rows(const NodeRows& rows, int d, bool scalar, const double* x);
+
+}  // namespace ricochet

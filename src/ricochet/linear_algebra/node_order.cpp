@@ -1,0 +1,63 @@
+#include "ricochet/linear_algebra/node_order.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ricochet {
+
+namespace {
+
+/// Sorts the nodes [begin, end) so that those of the first half come before those of the second along the longest side
+/// of the box around them, and so on within the halves down to a few nodes.
+void bisect(const Points& nodes, int* begin, int* end) {
+  constexpr Index few = 16;
+  if (end - begin <= few) return;
+  const Index dimension = nodes.rows();
+  Eigen::Array3d low = Eigen::Array3d::Zero(), high = Eigen::Array3d::Zero();
+  low.head(dimension) = high.head(dimension) = nodes.col(*begin).array();
+  for (const int* node = begin; node != end; ++node) {
+    low.head(dimension) = low.head(dimension).min(nodes.col(*node).array());
+    high.head(dimension) = high.head(dimension).max(nodes.col(*node).array());
+  }
+  Index axis = 0;
+  (high - low).maxCoeff(&axis);
+  int* middle = begin + (end - begin) / 2;
+  std::nth_element(begin, middle, end, [&](int a, int b) {
+    return nodes(axis, a) < nodes(axis, b) || (nodes(axis, a) == nodes(axis, b) && a < b);
+  });
+  bisect(nodes, begin, middle);
+  bisect(nodes, middle, end);
+}
+
+/// The places at which the first `levels` bisections cut.
+void cuts(Index begin, Index end, int levels, std::vector<Index>& begins) {
+  if (levels == 0) {
+    begins.push_back(begin);
+    return;
+  }
+  const Index middle = begin + (end - begin) / 2;
+  cuts(begin, middle, levels - 1, begins);
+  cuts(middle, end, levels - 1, begins);
+}
+
+}  // namespace
+
+NodeOrder order_nodes(const Points& nodes) {
+  // Parts this large read little of one another; no more than this are needed to keep threads busy.
+  constexpr Index least_part = 1024;
+  constexpr int most_levels = 6;
+  NodeOrder order;
+  order.node.resize(static_cast<std::size_t>(nodes.cols()));
+  std::iota(order.node.begin(), order.node.end(), 0);
+  bisect(nodes, order.node.data(), order.node.data() + order.node.size());
+  order.place.resize(order.node.size());
+  for (std::size_t i = 0; i < order.node.size(); ++i)
+    order.place[static_cast<std::size_t>(order.node[i])] = static_cast<int>(i);
+  int levels = 0;
+  while (levels < most_levels && (nodes.cols() >> (levels + 1)) >= least_part) ++levels;
+  cuts(0, nodes.cols(), levels, order.begins);
+  order.begins.push_back(nodes.cols());
+  return order;
+}
+
+}  // namespace ricochet

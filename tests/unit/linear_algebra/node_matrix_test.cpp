@@ -1,0 +1,199 @@
+#include "ricochet/linear_algebra/node_matrix.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/parallel.hpp"
+#include "ricochet/fem/assembly.hpp"
+#include "support/box_mesh.hpp"
+
+namespace ricochet {
+namespace {
+
+using test_support::BoxMesh;
+using test_support::make_box_mesh;
+using test_support::make_meshed_body;
+using test_support::MeshedBody;
+
+/// Large enough for several parts.
+std::unique_ptr<MeshedBody> body_of(int d) {
+  return make_meshed_body(make_box_mesh(d == 2 ? BoxMesh{CellShape::triangle, {70, 61}, 1, 0.15, {}}
+                                               : BoxMesh{CellShape::tetrahedron, {17, 16, 15}, 1, 0.15, {}}),
+                          1);
+}
+
+std::shared_ptr<const NodeOrder> order_of(const MeshedBody& test) {
+  return std::make_shared<const NodeOrder>(order_nodes(test.space.nodes));
+}
+
+SparseMatrix stiffness_of(const MeshedBody& test) {
+  return assemble_stiffness(test.body, node_graph(test.space));
+}
+SparseMatrix mass_of(const MeshedBody& test) {
+  return expand_to_components(assemble_scalar_mass(test.body, node_graph(test.space)), test.space.dimension);
+}
+
+/// Each entry is a sum of at most `terms` products, in another order: rounding of a few times |A| |x|.
+void expect_product(const NodeMatrix& matrix, const SparseMatrix& whole, const Vector& x) {
+  Vector y;
+  matrix.multiply(x, y);
+  const Vector expected = whole * x;
+  const Vector terms = whole.cwiseAbs() * x.cwiseAbs();
+  ASSERT_EQ(y.size(), expected.size());
+  constexpr double rounding = 20.0 * std::numeric_limits<double>::epsilon();
+  for (Index i = 0; i < y.size(); ++i) EXPECT_LE(std::abs(y[i] - expected[i]), rounding * terms[i]) << i;
+  EXPECT_LE(std::abs(matrix.form(x) - x.dot(expected)), rounding * x.cwiseAbs().dot(terms));
+}
+
+TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
+  for (const int d : {2, 3}) {
+    const auto test = body_of(d);
+    const auto order = order_of(*test);
+    EXPECT_GE(order->parts(), 4);
+    const SparseMatrix stiffness = stiffness_of(*test);
+    const SparseMatrix mass = mass_of(*test);
+    const NodeMatrix blocks(stiffness, d, order), scalars(mass, d, order);
+    EXPECT_FALSE(blocks.is_scalar());
+    EXPECT_TRUE(scalars.is_scalar());
+    const Vector x = Vector::Random(stiffness.cols());
+    expect_product(blocks, stiffness, x);
+    expect_product(scalars, mass, x);
+    EXPECT_LT(static_cast<double>(blocks.bytes()), 0.6 * 12.0 * static_cast<double>(stiffness.nonZeros()));
+    // What was stored is what was given, entry by entry.
+    for (const auto& [stored, given] : {std::pair{&blocks, &stiffness}, std::pair{&scalars, &mass}}) {
+      const SparseMatrix whole = stored->whole();
+      ASSERT_EQ(whole.nonZeros(), given->nonZeros());
+      for (Index k = 0; k < whole.nonZeros(); ++k) {
+        ASSERT_EQ(whole.innerIndexPtr()[k], given->innerIndexPtr()[k]);
+        ASSERT_EQ(whole.valuePtr()[k], given->valuePtr()[k]);
+      }
+    }
+  }
+}
+
+/// xᵀ(A y) = yᵀ(A x), to rounding of the two sums.
+TEST(NodeMatrix, IsSymmetric) {
+  for (const int d : {2, 3}) {
+    const auto test = body_of(d);
+    const SparseMatrix stiffness = stiffness_of(*test);
+    const NodeMatrix matrix(stiffness, d, order_of(*test));
+    const Vector x = Vector::Random(stiffness.cols()), y = Vector::Random(stiffness.cols());
+    Vector ax, ay;
+    matrix.multiply(x, ax);
+    matrix.multiply(y, ay);
+    const double terms = x.cwiseAbs().dot(stiffness.cwiseAbs() * y.cwiseAbs());
+    EXPECT_NEAR(x.dot(ay), y.dot(ax), 1e-15 * terms);
+  }
+}
+
+TEST(NodeMatrix, GivesTheSameBitsForAnyNumberOfThreads) {
+  for (const int d : {2, 3}) {
+    const auto test = body_of(d);
+    const NodeMatrix stiffness(stiffness_of(*test), d, order_of(*test)), mass(mass_of(*test), d, order_of(*test));
+    const Vector x = Vector::Random(stiffness.size());
+    for (const NodeMatrix* matrix : {&stiffness, &mass}) {
+      Vector alone, several;
+      matrix->multiply(x, alone);
+      const double form = matrix->form(x);
+      for (const int threads : {2, 3}) {
+        set_thread_count(threads);
+        matrix->multiply(x, several);
+        EXPECT_EQ(alone, several) << threads;
+        EXPECT_EQ(matrix->form(x), form) << threads;
+        const NodeMatrix again(matrix->whole(), d, order_of(*test));
+        again.multiply(x, several);
+        EXPECT_EQ(alone, several) << "made by " << threads;
+        set_thread_count(1);
+      }
+    }
+  }
+}
+
+TEST(NodeMatrix, ScalesByPowersOfTwoToTheBit) {
+  const auto test = body_of(3);
+  const SparseMatrix stiffness = stiffness_of(*test);
+  const NodeMatrix matrix(stiffness, 3, order_of(*test));
+  const auto far = std::make_shared<const NodeOrder>(order_nodes(Points(std::ldexp(1.0, -40) * test->space.nodes)));
+  const NodeMatrix scaled(SparseMatrix(std::ldexp(1.0, 70) * stiffness), 3, far);
+  const Vector x = Vector::Random(matrix.size());
+  Vector y, scaled_y;
+  matrix.multiply(x, y);
+  scaled.multiply(std::ldexp(1.0, -33) * x, scaled_y);
+  EXPECT_EQ(Vector(std::ldexp(1.0, 37) * y), scaled_y);
+  EXPECT_EQ(std::ldexp(1.0, 4) * matrix.form(x), scaled.form(std::ldexp(1.0, -33) * x));
+}
+
+/// Matrices that are not of the form m ⊗ I, although they begin as it, or whose blocks are not full.
+TEST(NodeMatrix, TakesAnySymmetricPattern) {
+  const auto test = body_of(2);
+  const auto order = order_of(*test);
+  const Vector x = Vector::Random(test->space.dof_count());
+  const SparseMatrix mass = mass_of(*test);
+  {
+    SparseMatrix other = mass;  // one component of one node is heavier
+    other.coeffRef(11, 11) *= 2.0;
+    const NodeMatrix matrix(other, 2, order);
+    EXPECT_FALSE(matrix.is_scalar());
+    expect_product(matrix, other, x);
+  }
+  {
+    SparseMatrix other = mass;  // two components of one node are coupled
+    other.coeffRef(10, 11) = other.coeffRef(11, 10) = 0.5 * mass.coeff(11, 11);
+    EXPECT_FALSE(other.isCompressed());
+    const NodeMatrix matrix(other, 2, order);
+    EXPECT_FALSE(matrix.is_scalar());
+    expect_product(matrix, other, x);
+  }
+  {
+    SparseMatrix diagonal(mass.rows(), mass.cols());
+    diagonal.setIdentity();
+    const NodeMatrix matrix(diagonal, 2, order);
+    EXPECT_TRUE(matrix.is_scalar());
+    Vector y;
+    matrix.multiply(x, y);
+    EXPECT_EQ(x, y);
+  }
+  {
+    const SparseMatrix empty(mass.rows(), mass.cols());
+    const NodeMatrix matrix(empty, 2, order);
+    Vector y;
+    matrix.multiply(x, y);
+    EXPECT_EQ(y, Vector(Vector::Zero(x.size())));
+    EXPECT_EQ(matrix.form(x), 0.0);
+    EXPECT_EQ(matrix.whole().nonZeros(), 0);
+  }
+}
+
+/// Near nodes get near numbers: most neighbours are in the same part.
+TEST(NodeOrder, KeepsNeighboursTogether) {
+  for (const int d : {2, 3}) {
+    const auto test = body_of(d);
+    const NodeOrder order = order_nodes(test->space.nodes);
+    EXPECT_EQ(order.begins.front(), 0);
+    EXPECT_EQ(order.begins.back(), test->space.node_count());
+    std::vector<Index> part(static_cast<std::size_t>(order.size()));
+    for (Index k = 0; k < order.parts(); ++k) {
+      for (Index i = order.begins[static_cast<std::size_t>(k)]; i < order.begins[static_cast<std::size_t>(k) + 1];
+           ++i) {
+        part[static_cast<std::size_t>(order.node[static_cast<std::size_t>(i)])] = k;
+        EXPECT_EQ(order.place[static_cast<std::size_t>(order.node[static_cast<std::size_t>(i)])], i);
+      }
+    }
+    const NodeGraph graph = node_graph(test->space);
+    Index across = 0;
+    for (Index node = 0; node < order.size(); ++node) {
+      for (Index k = graph.offsets[static_cast<std::size_t>(node)];
+           k < graph.offsets[static_cast<std::size_t>(node) + 1]; ++k) {
+        const auto neighbour = static_cast<std::size_t>(graph.neighbours[static_cast<std::size_t>(k)]);
+        across += part[static_cast<std::size_t>(node)] != part[neighbour] ? 1 : 0;
+      }
+    }
+    const double share = static_cast<double>(across) / static_cast<double>(graph.neighbours.size());
+    EXPECT_LT(share, d == 2 ? 0.06 : 0.15);
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
