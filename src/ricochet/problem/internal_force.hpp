@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ricochet/base/types.hpp"
+#include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/rigid_motion.hpp"
 
 /// @file The body's elastic response: internal force, tangent and energy behind one small interface. Linear elasticity
@@ -12,26 +13,31 @@ class InternalForce {
   virtual ~InternalForce() = default;
   /// Nodal forces of the stress at displacement U (for linear elasticity K U).
   virtual void evaluate(const Vector& displacement, Vector& force) const = 0;
+  /// The same, and the strain energy at U: cheaper than asking for both.
+  [[nodiscard]] virtual double evaluate_with_energy(const Vector& displacement, Vector& force) const = 0;
   /// Strain energy (½UᵀKU).
   [[nodiscard]] virtual double energy(const Vector& displacement) const = 0;
-  /// ∂force/∂U, symmetric.
-  [[nodiscard]] virtual const SparseMatrix& tangent() const = 0;
+  /// ∂force/∂U, symmetric. Made anew by every call, which takes the time of some tens of evaluations: ask once, and do
+  /// not keep it longer than needed.
+  [[nodiscard]] virtual SparseMatrix tangent() const = 0;
 };
 
 /// K U, computed from U less its rigid motion, which has no part in it.
 class LinearElasticity final : public InternalForce {
  public:
-  /// `nodes`: reference positions, d × count.
-  LinearElasticity(SparseMatrix stiffness, const Points& nodes)
-      : stiffness_(std::move(stiffness)), rigid_(nodes, stiffness_) {}
+  /// K symmetric to the bit, dofs × dofs; `nodes`: reference positions, d × count.
+  LinearElasticity(const SparseMatrix& stiffness, const Points& nodes);
   void evaluate(const Vector& displacement, Vector& force) const override;
+  [[nodiscard]] double evaluate_with_energy(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
-  [[nodiscard]] const SparseMatrix& tangent() const override { return stiffness_; }
+  [[nodiscard]] SparseMatrix tangent() const override { return stiffness_.whole(); }
+  /// Memory that K takes.
+  [[nodiscard]] std::size_t bytes() const { return stiffness_.bytes(); }
 
  private:
-  SparseMatrix stiffness_;
   RigidMotion rigid_;
-  mutable Vector deformation_, work_;
+  NodeMatrix stiffness_;
+  mutable Vector deformation_, force_;  ///< in the order of the matrix
 };
 
 }  // namespace ricochet

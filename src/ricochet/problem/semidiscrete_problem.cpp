@@ -104,6 +104,8 @@ void finish_problem(SemidiscreteProblem& problem, bool mass_without_contact_iner
       problem.is_massless[static_cast<std::size_t>(dof)] = 1;
     }
   }
+  problem.inertia =
+      NodeMatrix(problem.mass, problem.dimension, std::make_shared<const NodeOrder>(order_nodes(problem.nodes)));
 }
 
 }  // namespace ricochet

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ricochet/contact/contact_boundary.hpp"
+#include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/internal_force.hpp"
 #include "ricochet/problem/loads.hpp"
 
@@ -25,6 +26,7 @@ struct SemidiscreteProblem {
   SparseMatrix mass;     ///< M, or M₀ of an equivalent mass; dofs × dofs
   SparseMatrix damping;  ///< C of Rayleigh's form; empty (0 × 0) when there is none
   std::shared_ptr<const InternalForce> internal_force;
+  NodeMatrix inertia;  ///< M for products: several times as fast, one scalar per pair of nodes
   Loads loads;
   Supports supports;
   ContactBoundary contact;
@@ -56,7 +58,7 @@ struct SemidiscreteProblem {
   void add_contact_force(const Vector& normal, const Vector& tangential, Vector& force) const;
 };
 
-/// Fills massless_dofs, is_massless and contact_dofs from contact and supports.
+/// Fills massless_dofs, is_massless and contact_dofs from contact and supports, and inertia from the mass.
 void finish_problem(SemidiscreteProblem& problem, bool mass_without_contact_inertia);
 
 }  // namespace ricochet

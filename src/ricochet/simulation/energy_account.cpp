@@ -53,7 +53,7 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
 
 Energies EnergyAccount::energies(const State& state) {
   scheme_.energy_state(state, displacement_, velocity_);
-  momentum_.noalias() = problem_.mass * velocity_;
+  problem_.inertia.multiply(velocity_, momentum_);
   Energies result;
   result.kinetic = 0.5 * velocity_.dot(momentum_);
   result.elastic = problem_.internal_force->energy(displacement_);

@@ -152,6 +152,9 @@ TEST(LinearElasticity, HasItsForceEnergyAndTangent) {
   elasticity.evaluate(u, force);
   EXPECT_EQ(force, Vector(Eigen::Vector4d(-6.0, 0.0, 6.0, 0.0)));
   EXPECT_EQ(elasticity.energy(u), 9.0);
+  force.setZero();
+  EXPECT_EQ(elasticity.evaluate_with_energy(u, force), 9.0);
+  EXPECT_EQ(force, Vector(Eigen::Vector4d(-6.0, 0.0, 6.0, 0.0)));
   EXPECT_EQ(Matrix(elasticity.tangent()), Matrix(stiffness));
 }
 
