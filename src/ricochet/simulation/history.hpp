@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/fem/assembly.hpp"
+#include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/simulation/energy_account.hpp"
 
 /// @file One row of numbers per step: energies, works, forces, momenta, counts, probes.
