@@ -33,7 +33,8 @@ struct Model {
 /// Seconds spent in the phases of building a model.
 struct BuildTimes {
   double read_mesh = 0.0;
-  double assembly = 0.0;
+  double model = 0.0;     ///< numbering, groups, contact boundary, loads, initial conditions, checks
+  double assembly = 0.0;  ///< mass and stiffness, the mass construction included
 };
 
 /// Reads the mesh and builds the semi-discrete problem. Throws Error(invalid_input) with file:line:column of the entry

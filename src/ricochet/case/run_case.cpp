@@ -354,13 +354,10 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   recording.close(summary);
   summary.steps = simulation.state().step;
   summary.time_per_step = summary.steps > 0 ? step_seconds / static_cast<double>(summary.steps) : 0.0;
-  summary.timings = {{"read_mesh", build.read_mesh},
-                     {"assembly", build.assembly},
-                     {"start_and_factorization", start_seconds},
-                     {"steps", step_seconds},
-                     {"contact_solver", simulation.contact_seconds() - contact_before},
-                     {"output", recording.seconds()},
-                     {"total", total.seconds()}};
+  summary.timings = {{"read_mesh", build.read_mesh},  {"model", build.model},
+                     {"assembly", build.assembly},    {"start_and_factorization", start_seconds},
+                     {"steps", step_seconds},         {"contact_solver", simulation.contact_seconds() - contact_before},
+                     {"output", recording.seconds()}, {"total", total.seconds()}};
   if (!failure) judge_energy(summary, model->problem, simulation.state());
   if (contact_export) summary.contact_export = contact_export->report();
   summary.warnings = log::warnings();

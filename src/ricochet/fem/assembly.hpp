@@ -5,6 +5,7 @@
 
 #include "ricochet/fem/displacement_space.hpp"
 #include "ricochet/fem/material.hpp"
+#include "ricochet/fem/node_graph.hpp"
 
 /// @file Assembly of the matrices and vectors of eq. (2) of the source, by quadrature over cells and facets.
 namespace ricochet {
@@ -18,14 +19,8 @@ struct Body {
   std::vector<int> cell_material;  ///< per cell, numbered through all blocks: index into materials
 };
 
-/// Which nodes share a cell, each with itself; row by row, ascending.
-struct NodeGraph {
-  std::vector<Index> offsets;
-  std::vector<int> neighbours;
-};
-[[nodiscard]] NodeGraph node_graph(const DisplacementSpace& space);
-
 /// ∫ w ρ N_i N_j, one scalar per pair of nodes: the mass matrix is M = m ⊗ I. `weight` is per material (empty: 1).
+/// Exactly symmetric.
 [[nodiscard]] SparseMatrix assemble_scalar_mass(const Body& body, const NodeGraph& graph,
                                                 const std::vector<double>& weight = {});
 
@@ -44,22 +39,5 @@ void add_body_load(const Body& body, const ForceDensity& force, Vector& load);
 
 /// Adds ∫ f·v over facets (numbered through all blocks) to `load`; f is a force per undeformed area.
 void add_facet_load(const Body& body, const std::vector<Index>& facets, const ForceDensity& force, Vector& load);
-
-/// Largest rotation of any cell, in rad, from the displacement gradient at its centre: the angle of the rotation
-/// closest to I + ∇u in the sense of atan2(|axial part|, trace part), exact for a rigid rotation of any size below π.
-class RotationGauge {
- public:
-  explicit RotationGauge(const Body& body);
-  [[nodiscard]] double largest(const Vector& displacement) const;
-
- private:
-  struct Block {
-    int nodes_per_cell = 0;
-    std::vector<Index> nodes;
-    std::vector<double> gradients;  ///< cells × nodes × dimension, physical gradients at the centre
-  };
-  int dimension_;
-  std::vector<Block> blocks_;
-};
 
 }  // namespace ricochet

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "ricochet/linear_algebra/instruction_sets.hpp"
+#include "ricochet/base/instruction_sets.hpp"
 
 namespace ricochet {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/linear_algebra/instruction_sets.hpp"
+#include "ricochet/base/instruction_sets.hpp"
 
 namespace ricochet {
 

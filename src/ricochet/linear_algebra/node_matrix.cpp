@@ -27,6 +27,55 @@ bool acts_on_components_alike(const SparseMatrix& matrix, int d) {
   return true;
 }
 
+/// The blocks that are stored for one row after another.
+class RowPattern {
+ public:
+  /// Looks at `columns` columns of the matrix per node: its d components, or 1 where they are alike.
+  RowPattern(const SparseMatrix& matrix, int columns, int d, const NodeOrder& order)
+      : matrix_(matrix), columns_(columns), d_(d), order_(order) {}
+
+  /// Of the node at a place of the part [begin, end).
+  void read(Index place, Index begin, Index end) {
+    const Index node = order_.node[static_cast<std::size_t>(place)];
+    nodes_.clear();
+    for (int a = 0; a < columns_; ++a) {
+      // The columns of a node mostly have the same rows, ascending: then nothing is added by the second.
+      std::size_t known = 0;
+      int last = -1;
+      for (SparseMatrix::InnerIterator entry(matrix_, node * d_ + a); entry; ++entry) {
+        const int other = static_cast<int>(entry.row()) / d_;
+        if (other == last) continue;
+        last = other;
+        if (a > 0 && known < nodes_.size() && nodes_[known] == other) {
+          ++known;
+        } else {
+          nodes_.push_back(other);
+        }
+      }
+    }
+    two_sided_.clear();
+    one_sided_.clear();
+    for (const int other : nodes_) {
+      const int at = order_.place[static_cast<std::size_t>(other)];
+      if (at < begin || at >= end || at == place) one_sided_.push_back(at);
+      if (at > place && at < end) two_sided_.push_back(at);
+    }
+    for (std::vector<int>* places : {&two_sided_, &one_sided_}) {
+      std::sort(places->begin(), places->end());
+      places->erase(std::unique(places->begin(), places->end()), places->end());
+    }
+  }
+  /// Places of the columns, ascending.
+  [[nodiscard]] const std::vector<int>& two_sided() const { return two_sided_; }
+  [[nodiscard]] const std::vector<int>& one_sided() const { return one_sided_; }
+
+ private:
+  const SparseMatrix& matrix_;
+  int columns_, d_;
+  const NodeOrder& order_;
+  std::vector<int> nodes_, two_sided_, one_sided_;
+};
+
 }  // namespace
 
 NodeMatrix::NodeMatrix(const SparseMatrix& matrix, int d, std::shared_ptr<const NodeOrder> order)
@@ -43,53 +92,32 @@ NodeMatrix::NodeMatrix(const SparseMatrix& matrix, int d, std::shared_ptr<const 
 }
 
 void NodeMatrix::read_pattern(const SparseMatrix& matrix) {
-  const int d = dimension_;
-  // Places of the nodes that share an entry with the node at a place: those that serve both sides first.
-  const auto row_of = [&](Index place, Index part_end, std::vector<int>& row) {
-    row.clear();
-    const Index node = order_->node[static_cast<std::size_t>(place)];
-    for (int a = 0; a < d; ++a) {
-      int last = -1;
-      for (SparseMatrix::InnerIterator entry(matrix, node * d + a); entry; ++entry) {
-        const int other = static_cast<int>(entry.row()) / d;
-        if (other != last) row.push_back(order_->place[static_cast<std::size_t>(other)]);
-        last = other;
-      }
-      if (a == 0 && stride_ == 1) break;
-    }
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    return std::stable_partition(row.begin(), row.end(), [&](int other) { return other > place && other < part_end; });
-  };
   const Index count = order_->size();
   row_begin_.assign(static_cast<std::size_t>(count) + 1, 0);
   one_sided_.assign(static_cast<std::size_t>(count), 0);
   const auto each_row = [&](const auto& enter) {
     parallel_ranges(order_->parts(), [&](Index first, Index last) {
-      std::vector<int> row;
-      for (Index part = first; part < last; ++part) {
-        const Index begin = order_->begins[static_cast<std::size_t>(part)];
-        const Index end = order_->begins[static_cast<std::size_t>(part) + 1];
-        for (Index place = begin; place < end; ++place) {
-          const auto middle = row_of(place, end, row);
-          const auto kept =
-              std::remove_if(middle, row.end(), [&](int other) { return other >= begin && other < place; });
-          enter(static_cast<std::size_t>(place), row.begin(), middle, kept);
+      RowPattern row(matrix, is_scalar() ? 1 : dimension_, dimension_, *order_);
+      for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) {
+        for (Index place = order_->begins[part]; place < order_->begins[part + 1]; ++place) {
+          row.read(place, order_->begins[part], order_->begins[part + 1]);
+          enter(static_cast<std::size_t>(place), row);
         }
       }
     });
   };
-  each_row([&](std::size_t place, auto begin, auto middle, auto end) {
-    row_begin_[place + 1] = end - begin;
-    one_sided_[place] = middle - begin;
+  each_row([&](std::size_t place, const RowPattern& row) {
+    one_sided_[place] = static_cast<Index>(row.two_sided().size());
+    row_begin_[place + 1] = static_cast<Index>(row.two_sided().size() + row.one_sided().size());
   });
   for (std::size_t place = 0; place < one_sided_.size(); ++place) {
     row_begin_[place + 1] += row_begin_[place];
     one_sided_[place] += row_begin_[place];
   }
   column_.resize(static_cast<std::size_t>(row_begin_.back()));
-  each_row([&](std::size_t place, auto begin, auto, auto end) {
-    std::copy(begin, end, column_.begin() + row_begin_[place]);
+  each_row([&](std::size_t place, const RowPattern& row) {
+    std::copy(row.two_sided().begin(), row.two_sided().end(), column_.begin() + row_begin_[place]);
+    std::copy(row.one_sided().begin(), row.one_sided().end(), column_.begin() + one_sided_[place]);
   });
 }
 
@@ -102,16 +130,22 @@ void NodeMatrix::read_values(const SparseMatrix& matrix) {
       const int* begin = column_.data() + row_begin_[static_cast<std::size_t>(place)];
       const int* middle = column_.data() + one_sided_[static_cast<std::size_t>(place)];
       const int* end = column_.data() + row_begin_[static_cast<std::size_t>(place) + 1];
-      for (int a = 0; a < (stride_ == 1 ? 1 : d); ++a) {
+      for (int a = 0; a < (is_scalar() ? 1 : d); ++a) {
+        int last = -1;
+        const int* at = end;
         // Columns are rows: the matrix is symmetric.
         for (SparseMatrix::InnerIterator entry(matrix, node * d + a); entry; ++entry) {
-          const int other = order_->place[static_cast<std::size_t>(entry.row() / d)];
-          const int* at = std::lower_bound(begin, middle, other);
-          if (at == middle || *at != other) at = std::lower_bound(middle, end, other);
-          if (at == end || *at != other) continue;
-          const Index block = at - column_.data();
-          const Index in_block = stride_ == 1 ? 0 : (entry.row() % d) * d + a;
-          values_[static_cast<std::size_t>(block * stride_ + in_block)] = entry.value();
+          const int other = static_cast<int>(entry.row()) / d;
+          if (other != last) {
+            const int other_place = order_->place[static_cast<std::size_t>(other)];
+            at = std::lower_bound(begin, middle, other_place);
+            if (at == middle || *at != other_place) at = std::lower_bound(middle, end, other_place);
+            if (at != end && *at != other_place) at = end;
+            last = other;
+          }
+          if (at == end) continue;
+          const Index in_block = is_scalar() ? 0 : (entry.row() - Index{other} * d) * d + a;
+          values_[static_cast<std::size_t>((at - column_.data()) * stride_ + in_block)] = entry.value();
         }
       }
     }
@@ -157,7 +191,7 @@ void NodeMatrix::multiply_ordered(const Vector& x, Vector& y) const {
 }
 
 double NodeMatrix::form_ordered(const Vector& x) const {
-  std::array<double, 64> sums{};
+  std::array<double, NodeOrder::most_parts> sums{};
   parallel_ranges(order_->parts(), [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
       sums[static_cast<std::size_t>(part)] =

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "ricochet/base/node_order.hpp"
 #include "ricochet/base/types.hpp"
-#include "ricochet/linear_algebra/node_order.hpp"
 
 /// @file Products with a symmetric matrix on the dofs of nodes, at the price of reading about half of it once.
 namespace ricochet {

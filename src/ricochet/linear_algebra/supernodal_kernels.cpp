@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/linear_algebra/instruction_sets.hpp"
+#include "ricochet/base/instruction_sets.hpp"
 
 // How wide vectors are passed to functions depends on the instruction set; here all such calls are inlined.
 #if defined(__GNUC__) && !defined(__clang__)

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/parallel.hpp"
 #include "ricochet/mass/mass.hpp"
 
 namespace ricochet {
@@ -16,6 +17,164 @@ struct Extrapolation {
   std::vector<Index> nodes;
   Vector weights;
 };
+
+/// The rows of E that differ from the identity, and the columns.
+class ExtensionRows {
+ public:
+  explicit ExtensionRows(Index count) : row_(static_cast<std::size_t>(count), -1), column_(row_.size()) {}
+  void set(Index node, Extrapolation extrapolation) {
+    row_[static_cast<std::size_t>(node)] = static_cast<int>(rows_.size());
+    for (std::size_t k = 0; k < extrapolation.nodes.size(); ++k) {
+      column_[static_cast<std::size_t>(extrapolation.nodes[k])].push_back(
+          {node, extrapolation.weights[static_cast<Index>(k)]});
+    }
+    rows_.push_back(std::move(extrapolation));
+  }
+  struct Entry {
+    Index node;
+    double weight;
+  };
+  /// The contact nodes that give some of their mass to a free node.
+  [[nodiscard]] const std::vector<Entry>& column(Index node) const { return column_[static_cast<std::size_t>(node)]; }
+  /// Of a contact node.
+  [[nodiscard]] const Extrapolation& row(Index node) const {
+    return rows_[static_cast<std::size_t>(row_[static_cast<std::size_t>(node)])];
+  }
+
+ private:
+  std::vector<int> row_;  ///< per node: its entry in rows_, or −1
+  std::vector<Extrapolation> rows_;
+  std::vector<std::vector<Entry>> column_;
+};
+
+/// A sparse row.
+struct SparseRow {
+  std::vector<int> columns;
+  std::vector<double> values;
+};
+
+/// One row of EᵀME at a time.
+class CongruenceRow {
+ public:
+  /// `products`: rows of ME of the contact nodes, by node; those of other nodes are empty.
+  CongruenceRow(const SparseMatrix& mass, const std::vector<char>& is_contact, const ExtensionRows& extension,
+                const std::vector<SparseRow>& products)
+      : mass_(mass),
+        is_contact_(is_contact),
+        extension_(extension),
+        products_(products),
+        values_(Vector::Zero(mass.cols())),
+        present_(is_contact.size(), 0) {}
+
+  /// Columns of the row, ascending; `value` gives its entries until the next call.
+  const std::vector<int>& compute(Index node) {
+    clear();
+    if (is_contact_[static_cast<std::size_t>(node)] != 0) return columns_;
+    add_product(node);
+    for (const ExtensionRows::Entry& entry : extension_.column(node)) {
+      const SparseRow& row = products_[static_cast<std::size_t>(entry.node)];
+      for (std::size_t k = 0; k < row.columns.size(); ++k) add(row.columns[k], entry.weight * row.values[k]);
+    }
+    std::sort(columns_.begin(), columns_.end());
+    return columns_;
+  }
+  [[nodiscard]] double value(int column) const { return values_[column]; }
+
+  /// (ME)(node, ·).
+  SparseRow product(Index node) {
+    clear();
+    add_product(node);
+    SparseRow row{columns_, {}};
+    for (const int column : columns_) row.values.push_back(values_[column]);
+    return row;
+  }
+
+ private:
+  void clear() {
+    for (const int column : columns_) {
+      present_[static_cast<std::size_t>(column)] = 0;
+      values_[column] = 0.0;
+    }
+    columns_.clear();
+  }
+  void add(Index column, double value) {
+    values_[column] += value;
+    if (present_[static_cast<std::size_t>(column)] != 0) return;
+    present_[static_cast<std::size_t>(column)] = 1;
+    columns_.push_back(static_cast<int>(column));
+  }
+  void add_product(Index node) {
+    for (SparseMatrix::InnerIterator entry(mass_, node); entry; ++entry) {
+      if (is_contact_[static_cast<std::size_t>(entry.row())] == 0) {
+        add(entry.row(), entry.value());
+        continue;
+      }
+      const Extrapolation& row = extension_.row(entry.row());
+      for (std::size_t k = 0; k < row.nodes.size(); ++k) {
+        add(row.nodes[k], entry.value() * row.weights[static_cast<Index>(k)]);
+      }
+    }
+  }
+
+  const SparseMatrix& mass_;
+  const std::vector<char>& is_contact_;
+  const ExtensionRows& extension_;
+  const std::vector<SparseRow>& products_;
+  Vector values_;
+  std::vector<char> present_;
+  std::vector<int> columns_;
+};
+
+/// (A + Aᵀ)/2 of a matrix whose pattern is symmetric.
+void symmetrize(SparseMatrix& matrix) {
+  const int* outer = matrix.outerIndexPtr();
+  const int* inner = matrix.innerIndexPtr();
+  double* values = matrix.valuePtr();
+  parallel_ranges(matrix.cols(), [&](Index first, Index last) {
+    for (Index column = first; column < last; ++column) {
+      for (int k = outer[column]; k < outer[column + 1] && inner[k] < column; ++k) {
+        // Each pair is met once, from its larger index.
+        const int* other =
+            std::lower_bound(inner + outer[inner[k]], inner + outer[inner[k] + 1], static_cast<int>(column));
+        double& transposed = values[other - inner];
+        values[k] = transposed = 0.5 * (values[k] + transposed);
+      }
+    }
+  });
+}
+
+/// EᵀME, exactly symmetric.
+SparseMatrix congruence(const SparseMatrix& mass, const std::vector<char>& is_contact, const ExtensionRows& extension) {
+  const Index count = mass.cols();
+  SparseMatrix result(count, count);
+  int* outer = result.outerIndexPtr();
+  std::vector<SparseRow> products(static_cast<std::size_t>(count));
+  parallel_ranges(count, [&](Index first, Index last) {
+    CongruenceRow row(mass, is_contact, extension, products);
+    for (Index node = first; node < last; ++node) {
+      if (is_contact[static_cast<std::size_t>(node)] != 0) products[static_cast<std::size_t>(node)] = row.product(node);
+    }
+  });
+  parallel_ranges(count, [&](Index first, Index last) {
+    CongruenceRow row(mass, is_contact, extension, products);
+    for (Index node = first; node < last; ++node) outer[node + 1] = static_cast<int>(row.compute(node).size());
+  });
+  for (Index node = 0; node < count; ++node) outer[node + 1] += outer[node];
+  result.resizeNonZeros(outer[count]);
+  parallel_ranges(count, [&](Index first, Index last) {
+    CongruenceRow row(mass, is_contact, extension, products);
+    for (Index node = first; node < last; ++node) {
+      Index position = outer[node];
+      for (const int column : row.compute(node)) {
+        result.innerIndexPtr()[position] = column;
+        result.valuePtr()[position++] = row.value(column);
+      }
+    }
+  });
+  // Entries (i, j) and (j, i) are sums in different orders; what follows relies on exact symmetry.
+  symmetrize(result);
+  return result;
+}
 
 /// M₀ = EᵀME. E is the identity on free nodes; the row of a contact node holds the weights on nearby free nodes which
 /// reproduce affine functions and are least in the norm Σ w_j²/m_jj. So PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ exactly, M₀ is positive
@@ -32,27 +191,12 @@ class EquivalentMass final : public MassConstruction {
     std::vector<char> is_contact(static_cast<std::size_t>(count), 0);
     for (const Index node : input.contact_nodes) is_contact[static_cast<std::size_t>(node)] = 1;
     const Vector diagonal = input.inertia_matrix().diagonal();
-    std::vector<Eigen::Triplet<double>> entries;
+    ExtensionRows extension(count);
     std::vector<Index> seen_from(static_cast<std::size_t>(count), -1);
-    for (Index node = 0; node < count; ++node) {
-      if (is_contact[static_cast<std::size_t>(node)] == 0) {
-        entries.emplace_back(static_cast<int>(node), static_cast<int>(node), 1.0);
-        continue;
-      }
-      const Extrapolation row = extrapolate(input, is_contact, diagonal, node, seen_from);
-      for (std::size_t k = 0; k < row.nodes.size(); ++k) {
-        entries.emplace_back(static_cast<int>(node), static_cast<int>(row.nodes[k]),
-                             row.weights[static_cast<Index>(k)]);
-      }
+    for (const Index node : input.contact_nodes) {
+      extension.set(node, extrapolate(input, is_contact, diagonal, node, seen_from));
     }
-    SparseMatrix extension(count, count);
-    extension.setFromTriplets(entries.begin(), entries.end());
-    SparseMatrix result = extension.transpose() * (consistent * extension);
-    // The product is symmetric only to rounding; what follows relies on exact symmetry.
-    const SparseMatrix transposed = result.transpose();
-    result = 0.5 * (result + transposed);
-    result.makeCompressed();
-    return result;
+    return congruence(consistent, is_contact, extension);
   }
 
  private:

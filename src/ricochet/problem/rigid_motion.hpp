@@ -2,8 +2,9 @@
 
 #include <vector>
 
+#include "ricochet/base/node_order.hpp"
 #include "ricochet/base/types.hpp"
-#include "ricochet/linear_algebra/node_order.hpp"
+#include "ricochet/base/node_order.hpp"
 
 /// @file Taking the rigid part out of a displacement.
 namespace ricochet {

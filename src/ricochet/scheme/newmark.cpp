@@ -69,8 +69,7 @@ class Newmark final : public Scheme {
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
     const double factor = 0.5 * step() * step() * (beta_ - 0.5 * gamma_);
     if (factor == 0.0) return 0.0;
-    work_.noalias() = problem.mass * state.acceleration;
-    return factor * state.acceleration.dot(work_);
+    return factor * problem.inertia.form(state.acceleration);
   }
 
   [[nodiscard]] double numerical_dissipation(const SemidiscreteProblem&) const override { return dissipation_; }
@@ -101,15 +100,14 @@ class Newmark final : public Scheme {
     problem.internal_force->evaluate(increment, force_);  // linear: K ΔU
     dissipation_ = (gamma_ - 0.5) * increment.dot(force_);
     difference_ = acceleration_ - state.acceleration;
-    work_.noalias() = problem.mass * difference_;
-    dissipation_ += 0.5 * step() * step() * (beta_ - 0.5 * gamma_) * (2.0 * gamma_ - 1.0) * difference_.dot(work_);
+    dissipation_ +=
+        0.5 * step() * step() * (beta_ - 0.5 * gamma_) * (2.0 * gamma_ - 1.0) * problem.inertia.form(difference_);
   }
 
   double beta_, gamma_, alpha_;
   double dissipation_ = 0.0;
   Vector base_, force_, supported_, predicted_increment_, acceleration_, velocity_, difference_, rate_, middle_;
   ObstacleMotion obstacle_velocity_;
-  mutable Vector work_;
 };
 
 }  // namespace

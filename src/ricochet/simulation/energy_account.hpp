@@ -39,10 +39,8 @@ class EnergyAccount {
   [[nodiscard]] const Works& works() const { return works_; }
   /// total + algorithmic − initial values − Σ works + numerical dissipation: zero to rounding.
   [[nodiscard]] double residual(const Energies& now) const;
-  /// Displacement and velocity that `energies` was last computed from.
+  /// The velocity that `energies` was last computed from.
   [[nodiscard]] const Vector& velocity() const { return velocity_; }
-  /// M times that velocity.
-  [[nodiscard]] const Vector& momentum() const { return momentum_; }
 
  private:
   struct StepWorks {
@@ -56,7 +54,7 @@ class EnergyAccount {
   Works works_;
   StepForces previous_;
   double initial_ = 0.0;
-  Vector displacement_, velocity_, momentum_, gap_increment_, slip_increment_;
+  Vector displacement_, velocity_, gap_increment_, slip_increment_;
 };
 
 }  // namespace ricochet

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "ricochet/base/parallel.hpp"
+
 namespace ricochet {
 
 namespace {
@@ -27,6 +29,35 @@ SpaceVector contact_force(const ContactBoundary& contact, const StepForces& forc
                        forces.tangential_reaction.segment(point * tangents, tangents);
   }
   return force;
+}
+
+/// One number for each rigid motion.
+struct RigidVector {
+  Eigen::Matrix<double, 6, 1> values = Eigen::Matrix<double, 6, 1>::Zero();
+  RigidVector& operator+=(const RigidVector& other) {
+    values += other.values;
+    return *this;
+  }
+};
+
+/// M times the rigid velocities, see HistoryRecorder::momentum_of_.
+Matrix momenta_of_rigid_velocities(const SemidiscreteProblem& problem) {
+  const int d = problem.dimension;
+  const int rotations = d == 2 ? 1 : 3;
+  Matrix result(problem.dof_count(), d + rotations);
+  Vector velocity(problem.dof_count()), momentum;
+  for (int k = 0; k < d + rotations; ++k) {
+    for (Index node = 0; node < problem.nodes.cols(); ++node) {
+      Eigen::Vector3d position = Eigen::Vector3d::Zero();
+      position.head(d) = problem.nodes.col(node);
+      const Eigen::Vector3d rigid =
+          k < d ? Eigen::Vector3d(Eigen::Vector3d::Unit(k)) : Eigen::Vector3d::Unit(d == 2 ? 2 : k - d).cross(position);
+      velocity.segment(node * d, d) = rigid.head(d);
+    }
+    problem.inertia.multiply(velocity, momentum);
+    result.col(k) = momentum;
+  }
+  return result;
 }
 
 }  // namespace
@@ -57,6 +88,7 @@ HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const Rotat
       rotation_(rotation),
       probes_(std::move(probes)),
       columns_(standard_columns(problem.dimension)),
+      momentum_of_(momenta_of_rigid_velocities(problem)),
       trace_transposed_(problem.contact.trace.transpose()) {
   for (const Probe& probe : probes_) {
     add_vector_columns(columns_, probe.name + ".displacement", problem.dimension);
@@ -74,31 +106,29 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
   row_.assign({static_cast<double>(state.step), state.time, energies.kinetic, energies.elastic, energies.load_potential,
                energies.algorithmic, energies.total(), works.load, works.contact, works.friction, works.support,
                works.obstacle, works.damping, works.numerical_dissipation, account.residual(energies)});
-  add_force_and_momentum(state, account.momentum());
+  add_contact_force(state);
+  add_momentum(account.velocity());
   add_contact_state(state);
   for (const Probe& probe : probes_) add_probe(state, probe);
   return row_;
 }
 
-void HistoryRecorder::add_force_and_momentum(const State& state, const Vector& momentum) {
-  const int d = problem_.dimension;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  for (Index i = 0; i < problem_.contact.size(); ++i) {
-    force.head(d) += contact_force(problem_.contact, state.forces, i);
-  }
-  add_vector(force.head(d));
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero();
-  Eigen::Vector3d angular = Eigen::Vector3d::Zero();
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d nodal = Eigen::Vector3d::Zero();
-  for (Index node = 0; node < problem_.nodes.cols(); ++node) {
-    position.head(d) = problem_.nodes.col(node);
-    nodal.head(d) = momentum.segment(node * d, d);
-    linear += nodal;
-    angular += position.cross(nodal);
-  }
-  add_vector(linear.head(d));
-  add_vector(d == 2 ? angular.tail(1) : angular.head(3));
+void HistoryRecorder::add_contact_force(const State& state) {
+  SpaceVector force = SpaceVector::Zero(problem_.dimension);
+  for (Index i = 0; i < problem_.contact.size(); ++i) force += contact_force(problem_.contact, state.forces, i);
+  add_vector(force);
+}
+
+void HistoryRecorder::add_momentum(const Vector& velocity) {
+  // Linear, then angular: the order of the columns.
+  add_vector(parallel_sum<RigidVector>(velocity.size(), [&](Index first, Index last) {
+               RigidVector part;
+               for (Index k = 0; k < momentum_of_.cols(); ++k) {
+                 part.values[k] =
+                     momentum_of_.col(k).segment(first, last - first).dot(velocity.segment(first, last - first));
+               }
+               return part;
+             }).values.head(momentum_of_.cols()));
 }
 
 void HistoryRecorder::add_contact_state(const State& state) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/fem/assembly.hpp"
+#include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/simulation/energy_account.hpp"
 
 /// @file One row of numbers per step: energies, works, forces, momenta, counts, probes.
@@ -33,7 +33,8 @@ class HistoryRecorder {
   void add_vector(const Values& values) {
     for (Index k = 0; k < values.size(); ++k) row_.push_back(values[k]);
   }
-  void add_force_and_momentum(const State& state, const Vector& momentum);
+  void add_contact_force(const State& state);
+  void add_momentum(const Vector& velocity);
   void add_contact_state(const State& state);
   void add_probe(const State& state, const Probe& probe);
 
@@ -42,6 +43,9 @@ class HistoryRecorder {
   std::vector<Probe> probes_;
   std::vector<std::string> columns_;
   std::vector<double> row_;
+  /// M times the rigid velocities: translations along the axes, and rotations about the axes through the origin (in 2D
+  /// about z). Products of the velocity with them are the momenta, since M is symmetric. dofs × 3 or 6.
+  Matrix momentum_of_;
   Vector gap_, pressure_;
   SparseRowMatrix trace_transposed_;  ///< nodes × points
 };

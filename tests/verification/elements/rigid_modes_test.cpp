@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "ricochet/fem/rotation_gauge.hpp"
 #include "support/box_mesh.hpp"
 
 /// @file Rigid motions: the null space of the stiffness, symmetry of the operators, the measured rotation.

@@ -1,4 +1,4 @@
-#include "ricochet/linear_algebra/node_order.hpp"
+#include "ricochet/base/node_order.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -45,7 +45,6 @@ void cuts(Index begin, Index end, int levels, std::vector<Index>& begins) {
 NodeOrder order_nodes(const Points& nodes) {
   // Parts this large read little of one another; no more than this are needed to keep threads busy.
   constexpr Index least_part = 1024;
-  constexpr int most_levels = 6;
   NodeOrder order;
   order.node.resize(static_cast<std::size_t>(nodes.cols()));
   std::iota(order.node.begin(), order.node.end(), 0);
@@ -54,7 +53,7 @@ NodeOrder order_nodes(const Points& nodes) {
   for (std::size_t i = 0; i < order.node.size(); ++i)
     order.place[static_cast<std::size_t>(order.node[i])] = static_cast<int>(i);
   int levels = 0;
-  while (levels < most_levels && (nodes.cols() >> (levels + 1)) >= least_part) ++levels;
+  while (Index{2} << levels <= NodeOrder::most_parts && (nodes.cols() >> (levels + 1)) >= least_part) ++levels;
   cuts(0, nodes.cols(), levels, order.begins);
   order.begins.push_back(nodes.cols());
   return order;

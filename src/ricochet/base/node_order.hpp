@@ -10,6 +10,8 @@ namespace ricochet {
 /// Nodes in the order of a recursive bisection by their coordinates, cut into consecutive parts. Depends on positions
 /// only relative to one another, and not on the number of threads.
 struct NodeOrder {
+  static constexpr Index most_parts = 64;
+
   std::vector<int> node;      ///< the node at each place
   std::vector<int> place;     ///< the place of each node
   std::vector<Index> begins;  ///< of the parts, and after them the number of nodes
@@ -17,7 +19,7 @@ struct NodeOrder {
   [[nodiscard]] Index parts() const { return static_cast<Index>(begins.size()) - 1; }
 };
 
-/// Positions: d × count. A power of two of parts: 1 for some thousand nodes, at most 64.
+/// Positions: d × count. A power of two of parts: 1 for a thousand nodes, at most `most_parts`.
 [[nodiscard]] NodeOrder order_nodes(const Points& nodes);
 
 }  // namespace ricochet

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "ricochet/fem/cell_integration.hpp"
+
+/// @file Mass and stiffness of one cell. Not part of the public interface.
+///
+/// A cell's matrix is symmetric: only its blocks for pairs of nodes i ≤ j are computed, in the order (0,0), (0,1),
+/// (1,1), (0,2), …, each row by row. Loops over the nodes of common cells have a length known to the compiler.
+namespace ricochet {
+
+/// Place of the pair i ≤ j; pair_number(0, n) is the number of pairs of n nodes.
+constexpr int pair_number(int i, int j) {
+  return j * (j + 1) / 2 + i;
+}
+
+/// What the mass needs of a block of cells.
+struct MassIntegration {
+  BlockIntegration block;
+  /// The map is affine, with one Jacobian per cell.
+  bool affine = false;
+  /// ∫ N_i N_j over the reference cell, per pair.
+  std::vector<double> reference;
+
+  MassIntegration(CellShape shape, int geometry_degree, int displacement_degree)
+      : block(shape, geometry_degree, displacement_degree,
+              product_quadrature_degree(shape, geometry_degree, displacement_degree)),
+        affine(geometry_degree == 1 && (shape == CellShape::triangle || shape == CellShape::tetrahedron)) {
+    const Matrix& values = block.displacement.values;
+    for (Index j = 0; j < values.rows(); ++j) {
+      for (Index i = 0; i <= j; ++i) {
+        double sum = 0.0;
+        for (Index q = 0; q < values.cols(); ++q) sum += block.rule.weights[q] * (values(i, q) * values(j, q));
+        reference.push_back(sum);
+      }
+    }
+  }
+};
+
+/// ∫ ρ N_i N_j over a cell: one number per pair of nodes. `nodes` are the geometry's.
+template <int d>
+void element_mass(const MassIntegration& integration, const Points& coordinates, const Index* nodes, double density,
+                  double* result) {
+  const Matrix& values = integration.block.displacement.values;
+  const auto measure = [&](std::size_t q) {
+    return density * jacobian<d>(coordinates, nodes, integration.block.geometry.gradients[q]).determinant();
+  };
+  if (integration.affine) {
+    const double factor = measure(0);
+    for (std::size_t pair = 0; pair < integration.reference.size(); ++pair)
+      result[pair] = factor * integration.reference[pair];
+    return;
+  }
+  std::fill_n(result, integration.reference.size(), 0.0);
+  for (Index q = 0; q < values.cols(); ++q) {
+    const double factor = integration.block.rule.weights[q] * measure(static_cast<std::size_t>(q));
+    double* pair = result;
+    for (Index j = 0; j < values.rows(); ++j) {
+      for (Index i = 0; i <= j; ++i) *pair++ += factor * (values(i, q) * values(j, q));
+    }
+  }
+}
+
+/// Adds measure · (λ g_i g_jᵀ + μ g_j g_iᵀ + μ g_i·g_j I) for all pairs of nodes with the gradients g, node by node.
+template <int d, int fixed_count>
+void add_elastic_pairs(const double* gradients, int count, double lambda, double mu, double* result) {
+  const int nodes = fixed_count > 0 ? fixed_count : count;
+  for (int j = 0; j < nodes; ++j) {
+    for (int i = 0; i <= j; ++i, result += d * d) {
+      const double* gi = gradients + i * d;
+      const double* gj = gradients + j * d;
+      double product = 0.0;
+      for (int a = 0; a < d; ++a) product += gi[a] * gj[a];
+      for (int a = 0; a < d; ++a) {
+        for (int b = 0; b < d; ++b) {
+          result[a * d + b] += lambda * (gi[a] * gj[b]) + mu * (gi[b] * gj[a]);
+        }
+        result[a * d + a] += mu * product;
+      }
+    }
+  }
+}
+
+/// ∫ A ε(N_i e_a) : ε(N_j e_b) over a cell, d × d numbers per pair of nodes. `nodes` are the geometry's.
+template <int d>
+void element_stiffness(const BlockIntegration& integration, const Points& coordinates, const Index* nodes,
+                       double lambda, double mu, double* result) {
+  constexpr int most_nodes = 27;
+  const int count = static_cast<int>(integration.displacement.values.rows());
+  std::array<double, most_nodes * d> gradients;
+  std::fill_n(result, pair_number(0, count) * d * d, 0.0);
+  for (std::size_t q = 0; q < integration.geometry.gradients.size(); ++q) {
+    const Eigen::Matrix<double, d, d> map = jacobian<d>(coordinates, nodes, integration.geometry.gradients[q]);
+    const Eigen::Matrix<double, d, d> inverse = map.inverse();
+    const double measure = integration.rule.weights[static_cast<Index>(q)] * map.determinant();
+    const Matrix& reference = integration.displacement.gradients[q];
+    for (int i = 0; i < count; ++i) {
+      for (int a = 0; a < d; ++a) {
+        double sum = reference(i, 0) * inverse(0, a);
+        for (int k = 1; k < d; ++k) sum += reference(i, k) * inverse(k, a);
+        gradients[static_cast<std::size_t>(i * d + a)] = sum;
+      }
+    }
+    if (count == d + 1) {
+      add_elastic_pairs<d, d + 1>(gradients.data(), count, measure * lambda, measure * mu, result);
+    } else if (count == (d + 1) * (d + 2) / 2) {
+      add_elastic_pairs<d, (d + 1) * (d + 2) / 2>(gradients.data(), count, measure * lambda, measure * mu, result);
+    } else {
+      add_elastic_pairs<d, 0>(gradients.data(), count, measure * lambda, measure * mu, result);
+    }
+  }
+}
+
+}  // namespace ricochet

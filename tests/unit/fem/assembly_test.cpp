@@ -1,0 +1,121 @@
+#include "ricochet/fem/assembly.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ricochet/base/parallel.hpp"
+#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/mass/mass.hpp"
+#include "support/box_mesh.hpp"
+
+namespace ricochet {
+namespace {
+
+using namespace test_support;
+
+/// More than 2048 nodes, so that the work has several parts.
+std::unique_ptr<MeshedBody> large_body(const ElementKind& kind) {
+  const int per_axis = kind.dimension() == 2 ? 48 : 14;
+  const int count = per_axis / kind.displacement_degree + 1;
+  const BoxMesh box{
+      kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), count), kind.geometry_degree, 0.15, {}};
+  return make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+}
+
+void expect_same_bits(const SparseMatrix& a, const SparseMatrix& b) {
+  ASSERT_EQ(a.nonZeros(), b.nonZeros());
+  for (Index k = 0; k < a.nonZeros(); ++k) {
+    ASSERT_EQ(a.innerIndexPtr()[k], b.innerIndexPtr()[k]);
+    ASSERT_EQ(a.valuePtr()[k], b.valuePtr()[k]);
+  }
+}
+
+class Assembly : public testing::TestWithParam<ElementKind> {};
+
+TEST_P(Assembly, IsExactlySymmetricAndTheSameBitsForAnyNumberOfThreads) {
+  const auto test = large_body(GetParam());
+  const NodeGraph graph = node_graph(test->space);
+  EXPECT_GT(graph.order.parts(), 1);
+  const SparseMatrix mass = assemble_scalar_mass(test->body, graph);
+  const SparseMatrix stiffness = assemble_stiffness(test->body, graph);
+  expect_same_bits(mass, mass.transpose());
+  expect_same_bits(stiffness, stiffness.transpose());
+  for (const int threads : {2, 3}) {
+    set_thread_count(threads);
+    const NodeGraph again = node_graph(test->space);
+    EXPECT_EQ(again.offsets, graph.offsets);
+    EXPECT_EQ(again.neighbours, graph.neighbours);
+    expect_same_bits(assemble_scalar_mass(test->body, again), mass);
+    expect_same_bits(assemble_stiffness(test->body, again), stiffness);
+    set_thread_count(1);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, Assembly, testing::ValuesIn(all_element_kinds()),
+                         [](const auto& info) { return info.param.label(); });
+
+/// Every pair of nodes of a cell is there, and nothing else.
+TEST(NodeGraph, HoldsTheNodesThatShareACell) {
+  const auto test = large_body({CellShape::tetrahedron, 1, 1});
+  const NodeGraph graph = node_graph(test->space);
+  SparseMatrix expected(test->space.node_count(), test->space.node_count());
+  std::vector<Eigen::Triplet<double>> pairs;
+  for (const CellBlock& block : test->space.cells) {
+    for (Index cell = 0; cell < block.size(); ++cell) {
+      for (int i = 0; i < block.nodes_per_cell; ++i) {
+        for (int j = 0; j < block.nodes_per_cell; ++j) {
+          pairs.emplace_back(static_cast<int>(block.cell(cell)[i]), static_cast<int>(block.cell(cell)[j]), 1.0);
+        }
+      }
+    }
+  }
+  expected.setFromTriplets(pairs.begin(), pairs.end());
+  ASSERT_EQ(static_cast<Index>(graph.neighbours.size()), expected.nonZeros());
+  for (Index k = 0; k < expected.nonZeros(); ++k)
+    ASSERT_EQ(graph.neighbours[static_cast<std::size_t>(k)], expected.innerIndexPtr()[k]);
+}
+
+TEST(EquivalentMass, IsTheSameBitsForAnyNumberOfThreads) {
+  const auto test = large_body({CellShape::tetrahedron, 1, 1});
+  const SparseMatrix consistent = assemble_scalar_mass(test->body, node_graph(test->space));
+  MassInput input{&consistent, &test->space.nodes, facet_nodes(test->space, test->mesh.group("y0", 2).members)};
+  const SparseMatrix mass = make_mass("equivalent")->build(input);
+  expect_same_bits(mass, mass.transpose());
+  set_thread_count(3);
+  expect_same_bits(make_mass("equivalent")->build(input), mass);
+  set_thread_count(1);
+}
+
+/// One cell turned by more than the others is found, whichever it is, on straight simplices and on other cells.
+TEST(RotationGauge, FindsTheCellThatTurnsMost) {
+  for (const ElementKind& kind :
+       {ElementKind{CellShape::triangle, 1, 1}, ElementKind{CellShape::tetrahedron, 1, 1},
+        ElementKind{CellShape::tetrahedron, 2, 2}, ElementKind{CellShape::quadrilateral, 1, 1}}) {
+    const auto test = large_body(kind);
+    const int d = kind.dimension();
+    const RotationGauge gauge(test->body);
+    // A rotation of the whole by 0.3, which is exact for any size below π.
+    Matrix turn = Matrix::Identity(d, d);
+    turn.topLeftCorner(2, 2) << std::cos(0.3), -std::sin(0.3), std::sin(0.3), std::cos(0.3);
+    Vector u(test->space.dof_count());
+    for (Index node = 0; node < test->space.node_count(); ++node) {
+      const Vector x = test->space.nodes.col(node);
+      u.segment(node * d, d) = turn * x - x + Vector::Constant(d, 7.0);
+    }
+    EXPECT_NEAR(gauge.largest(u), 0.3, 1e-11) << kind.label();
+    // One node moved: the cell that turns most is one of its cells.
+    const Index node = test->space.node_count() - 1;
+    u.setZero();
+    u[node * d] = 0.01;
+    const double alone = gauge.largest(u);
+    EXPECT_GT(alone, 0.05);
+    set_thread_count(3);
+    EXPECT_EQ(gauge.largest(u), alone);
+    set_thread_count(1);
+    EXPECT_EQ(gauge.largest(Vector(Vector::Zero(u.size()))), 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
