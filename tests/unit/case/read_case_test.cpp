@@ -187,6 +187,9 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"time.scheme", "midpoint"},
                                                              {"time.step", "0.1"},
                                                              {"time.end", "1"},
+                                                             {"solver.method", "auto"},
+                                                             {"solver.tolerance", "1e-10"},
+                                                             {"solver.contact_points", "near"},
                                                              {"output.history_every", "1"}}));
 }
 
