@@ -4,7 +4,6 @@
 
 #include "ricochet/base/node_order.hpp"
 #include "ricochet/base/types.hpp"
-#include "ricochet/base/node_order.hpp"
 
 /// @file Taking the rigid part out of a displacement.
 namespace ricochet {
