@@ -17,6 +17,7 @@ namespace ricochet {
 namespace {
 
 using test::FrictionProblem;
+using test::is_sanitized;
 using test::judge;
 using test::Judgement;
 using test::rigid_box;
@@ -150,7 +151,7 @@ Count count_wedges(double push, double softness, double preload) {
     for (const Index points : {3, 4, 8, 30}) {
       for (const double angle : {10.0, 20.0, 30.0, 45.0, 60.0, 70.0, 80.0}) {
         for (const double friction : {0.5, 1.0, 2.0, 3.0}) {
-          if (++seed % (seeds(10) < 10 ? 5 : 1) != 0) continue;
+          if (++seed % (is_sanitized ? 17 : 1) != 0) continue;
           SCOPED_TRACE(testing::Message() << dimension << "D, " << points << " points, " << angle << " degrees, F "
                                           << friction << ", softness " << softness << ", " << seed);
           const ContactProblem problem =
@@ -190,6 +191,7 @@ TEST(HardContact, WhatHasNoSolutionIsNotSolved) {
   for (const Index dimension : {2, 3}) {
     for (const double friction : {0.0, 0.5, 3.0}) {
       for (const int pairs : {1, 2, 5}) {
+        if (is_sanitized && (friction != 0.5 || pairs != 1)) continue;
         std::vector<test::RigidPoint> places;
         for (int k = 0; k < pairs; ++k) {
           for (const double side : {-1.0, 1.0}) places.push_back({{side, 0.0, 0.2 * k}, {-side, 0.0, 0.0}});
@@ -213,6 +215,7 @@ TEST(HardContact, PainlevesRod) {
   for (const Index dimension : {2, 3}) {
     for (const double slope : {0.5, 2.0}) {
       for (const double softness : {0.0, 1e-14, 1e-6, 1e-2}) {
+        if (is_sanitized && softness == 1e-14) continue;
         SCOPED_TRACE(testing::Message() << dimension << "D, slope " << slope << ", softness " << softness);
         FrictionProblem problem(std::vector<Index>{dimension}, 1.0);
         Vector column = Vector::Zero(dimension);
@@ -327,13 +330,14 @@ TEST(HardContact, OnePoint) {
   }
 }
 
-/// 5041 points, 15123 rows in three dimensions.
+/// 5041 points, 15123 rows in three dimensions (under the sanitizers a tenth).
 TEST(HardContact, FiveThousandPoints) {
   for (const Index dimension : {1, 2, 3}) {
     for (const double coupling : {1.0, -1.0}) {
       for (const double friction : {0.5, 3.0}) {
         SCOPED_TRACE(testing::Message() << dimension << "D, coupling " << coupling << ", F " << friction);
-        const ContactProblem problem = test::lattice_problem(71, dimension, friction, coupling, 0.5, 1);
+        const ContactProblem problem =
+            test::lattice_problem(is_sanitized ? 23 : 71, dimension, friction, coupling, 0.5, 1);
         const ContactSolution solution = solve(problem, 1e-8);
         EXPECT_TRUE(solution.solved()) << solution.reason;
         expect_truth(problem, solution, 1e-8);
@@ -361,6 +365,7 @@ TEST(HardContact, ThousandsOfPointsByProducts) {
   };
   for (const auto [side, dimension] : {Size{71, 1}, Size{32, 3}}) {
     for (const double coupling : {1.0, -1.0}) {
+      if (is_sanitized && (dimension != 3 || coupling < 0.0)) continue;
       constexpr double tolerance = 1e-12;
       SCOPED_TRACE(testing::Message() << dimension << "D, coupling " << coupling);
       const ContactProblem problem = test::lattice_problem(side, dimension, 0.5, coupling, 0.5, 1);
