@@ -57,6 +57,17 @@ TEST(MalformedCase, Values) {
        "13:16: \"fields_every\" must be an integer of at least 0 (unit: steps); found the number 2.5"},
       {0, "[output]\nhistory_every = \"1\"",
        "13:17: \"history_every\" must be an integer of at least 1 (unit: steps); found the text \"1\""},
+      {0, "[solver]\nmethod = \"iteratve\"",
+       "13:10: \"method\" must be one of \"auto\", \"direct\" or \"iterative\"; found the text \"iteratve\"; did you "
+       "mean "
+       "\"iterative\"?"},
+      {0, "[solver]\ntolerance = 0.0",
+       "13:13: \"tolerance\" must be a number above 0 and of at most 0.001; found the number 0.0"},
+      {0, "[solver]\ntolerance = 0.01",
+       "13:13: \"tolerance\" must be a number above 0 and of at most 0.001; found the number 0.01"},
+      {0, "[solver]\nmemory = 0", "13:10: \"memory\" must be a positive number (unit: GB); found the integer 0"},
+      {0, "[solver]\ncontact_points = \"none\"",
+       "13:18: \"contact_points\" must be \"near\" or \"all\"; found the text \"none\""},
       {1, "title = 3\n[mesh]", "1:9: \"title\" must be a text; found the integer 3"},
       // materials
       {6, "", "3:1: [[material]] needs either \"lambda\" and \"mu\" or \"young\" and \"poisson\"; found \"mu\""},
