@@ -12,7 +12,6 @@
 #include "ricochet/case/run_case.hpp"
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
-#include "ricochet/mass/mass.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/scheme/critical_step.hpp"
 
@@ -65,7 +64,7 @@ void describe_case(const std::string& path) {
   // A .geo file can run shell commands: only `run` hands one to gmsh.
   if (input.time.scheme != "semi-explicit" || needs_gmsh_program(input.mesh.file)) return;
   const std::unique_ptr<Model> model = build_model(input);
-  if (is_diagonal(model->problem.mass)) print_critical_step(input.time.step, central_difference_limit(model->problem));
+  if (model->problem.mass.is_diagonal()) print_critical_step(input.time.step, central_difference_limit(model->problem));
 }
 
 double ratio(double a, double b) {

@@ -127,7 +127,7 @@ class Limits {
 
 SparseMatrix step_operator(const SemidiscreteProblem& problem, const Scheme& scheme) {
   const OperatorCoefficients a = scheme.operators(problem).front();
-  return a.stiffness * problem.internal_force->tangent() + a.mass * problem.mass;
+  return a.stiffness * problem.internal_force->tangent() + a.mass * problem.mass.whole();
 }
 
 struct Phase {
@@ -163,7 +163,7 @@ double run(const Options& options) {
   Simulation simulation(model->problem, *scheme, model->initial, step_solver_options(input));
   const double start = timer.seconds();
   HistoryRecorder recorder(model->problem, *model->rotation, model->probes);
-  const double matrices = megabytes(model->problem.internal_force->tangent()) + megabytes(model->problem.mass);
+  const double matrices = megabytes(model->problem.internal_force->tangent()) + megabytes(model->problem.mass.whole());
   simulation.advance();
   const double peak = peak_memory();
   std::unique_ptr<Limits> limits;

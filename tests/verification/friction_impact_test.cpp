@@ -40,7 +40,7 @@ struct Balance {
 Vector momentum(CaseRun& run) {
   Vector displacement, velocity;
   run.scheme().energy_state(run.state(), displacement, velocity);
-  return run.problem().mass * velocity;
+  return run.problem().mass.whole() * velocity;
 }
 
 /// Contact force and loads, per dof.

@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <fstream>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace ricochet {
 
 double physical_memory() {
@@ -16,6 +20,12 @@ double physical_memory() {
     if (file >> limit && limit > 0.0) bytes = std::min(bytes, limit);
   }
   return bytes;
+}
+
+void release_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 }  // namespace ricochet

@@ -348,7 +348,8 @@ Section solver_section() {
            .choices = {"auto", "direct", "iterative"},
            .doc = "\"direct\": a Cholesky factor, made once; exact to rounding. \"iterative\": conjugate gradients "
                   "with a direct solve near the contact; takes little memory, and is quick for time steps in "
-                  "which a wave crosses a few cells. \"auto\": direct where the factor fits into memory."},
+                  "which a wave crosses a few cells. \"auto\": direct where the factor fits into memory and takes "
+                  "minutes, not hours, to make."},
           {.name = "tolerance",
            .type = KeyType::number,
            .unit = "1",
@@ -360,7 +361,7 @@ Section solver_section() {
            .type = KeyType::number,
            .unit = "GB",
            .range = positive,
-           .doc = "What factors may take, for the choice of \"auto\"; absent: six tenths of the machine's memory."},
+           .doc = "What factors may take, for the choice of \"auto\"; absent: half of the machine's memory."},
           {.name = "contact_points",
            .type = KeyType::choice,
            .standard = "near",

@@ -131,7 +131,7 @@ void assemble_operators(const Case& input, Model& model) {
       refuse(input, "mass.type", problem.what());
     }
   };
-  model.problem.mass = expand_to_components(build(consistent), d);
+  const SparseMatrix mass = expand_to_components(build(consistent), d);
   model.problem.internal_force =
       std::make_shared<LinearElasticity>(assemble_stiffness(model.body, graph), model.space.nodes);
   std::vector<double> mass_damping, stiffness_damping;
@@ -148,7 +148,7 @@ void assemble_operators(const Case& input, Model& model) {
     const SparseMatrix part = assemble_stiffness(model.body, graph, stiffness_damping);
     model.problem.damping = model.problem.has_damping() ? SparseMatrix(model.problem.damping + part) : part;
   }
-  finish_problem(model.problem, construction->removes_contact_inertia());
+  finish_problem(model.problem, mass, construction->removes_contact_inertia());
   warn_of_creep(input, model.problem);
 }
 
@@ -204,7 +204,9 @@ void add_loads(const Case& input, Model& model) {
     // undeformed with every mass, and weight and its moments are those of the body.
     Vector acceleration(dofs);
     for (Index i = 0; i < dofs; ++i) acceleration[i] = input.load.gravity[static_cast<std::size_t>(i % d)];
-    loads.add_constant(model.problem.mass * acceleration);
+    Vector weight;
+    model.problem.mass.multiply(acceleration, weight);
+    loads.add_constant(weight);
   }
   const Body& body = model.body;
   try {

@@ -133,8 +133,11 @@ RunSummary describe(const Case& input, const Model& model, const Scheme& scheme,
   summary.contact_points = model.problem.contact.size();
   summary.supported_dofs = model.problem.supports.size();
   summary.factor_entries = simulation.factor_entries();
-  for (const ChosenMethod& chosen : simulation.methods())
-    summary.solver = chosen.method == SolverMethod::direct ? "direct" : "iterative";
+  const std::vector<ChosenMethod>& methods = simulation.methods();
+  const bool iterative = std::any_of(methods.begin(), methods.end(), [](const ChosenMethod& chosen) {
+    return chosen.method == SolverMethod::iterative;
+  });
+  summary.solver = iterative ? "iterative" : "direct";
   summary.step = scheme.step();
   summary.end_time = input.time.end;
   summary.critical_step = scheme.critical_step();
@@ -354,10 +357,17 @@ RunSummary run_case(const Case& input, const RunOptions& options) {
   recording.close(summary);
   summary.steps = simulation.state().step;
   summary.time_per_step = summary.steps > 0 ? step_seconds / static_cast<double>(summary.steps) : 0.0;
-  summary.timings = {{"read_mesh", build.read_mesh},  {"model", build.model},
-                     {"assembly", build.assembly},    {"start_and_factorization", start_seconds},
-                     {"steps", step_seconds},         {"contact_solver", simulation.contact_seconds() - contact_before},
-                     {"output", recording.seconds()}, {"total", total.seconds()}};
+  double ordering = 0.0, factorization = 0.0;
+  for (const ChosenMethod& chosen : simulation.methods()) {
+    ordering += chosen.ordering_seconds;
+    factorization += chosen.factorization_seconds;
+  }
+  summary.timings = {
+      {"read_mesh", build.read_mesh},   {"model", build.model},
+      {"assembly", build.assembly},     {"ordering", ordering},
+      {"factorization", factorization}, {"start", start_seconds - ordering - factorization},
+      {"steps", step_seconds},          {"contact_solver", simulation.contact_seconds() - contact_before},
+      {"output", recording.seconds()},  {"total", total.seconds()}};
   if (!failure) judge_energy(summary, model->problem, simulation.state());
   if (contact_export) summary.contact_export = contact_export->report();
   summary.warnings = log::warnings();

@@ -33,7 +33,6 @@ class BlockJacobi final : public Preconditioner {
         z.segment<d>(node * d) = inverse_[static_cast<std::size_t>(node)] * r.segment<d>(node * d);
     });
   }
-  [[nodiscard]] std::size_t bytes() const override { return inverse_.size() * sizeof(Block); }
 
  private:
   using Block = Eigen::Matrix<double, d, d>;

@@ -14,8 +14,6 @@ class Preconditioner {
   virtual ~Preconditioner() = default;
   /// z = P⁻¹ r. The same bits for any number of threads.
   virtual void apply(const Vector& r, Vector& z) const = 0;
-  /// Memory that it takes.
-  [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
 
 /// aᵀb in a fixed order of sums, by all threads.

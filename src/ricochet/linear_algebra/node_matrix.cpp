@@ -179,13 +179,16 @@ void NodeMatrix::from_order(const Vector& ordered, Vector& x) const {
   });
 }
 
+NodeRows NodeMatrix::rows_of(Index part) const {
+  const auto begin = order_->begins.begin() + part;
+  return {begin[0], begin[1], row_begin_.data(), one_sided_.data(), column_.data(), values_.data()};
+}
+
 void NodeMatrix::multiply_ordered(const Vector& x, Vector& y) const {
   y.resize(size());
   parallel_ranges(order_->parts(), [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
-      multiply_rows({order_->begins[static_cast<std::size_t>(part)], order_->begins[static_cast<std::size_t>(part) + 1],
-                     row_begin_.data(), one_sided_.data(), column_.data(), values_.data()},
-                    dimension_, is_scalar(), x.data(), y.data());
+      multiply_rows(rows_of(part), dimension_, is_scalar(), x.data(), y.data());
     }
   });
 }
@@ -194,10 +197,7 @@ double NodeMatrix::form_ordered(const Vector& x) const {
   std::array<double, NodeOrder::most_parts> sums{};
   parallel_ranges(order_->parts(), [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
-      sums[static_cast<std::size_t>(part)] =
-          form_rows({order_->begins[static_cast<std::size_t>(part)], order_->begins[static_cast<std::size_t>(part) + 1],
-                     row_begin_.data(), one_sided_.data(), column_.data(), values_.data()},
-                    dimension_, is_scalar(), x.data());
+      sums[static_cast<std::size_t>(part)] = form_rows(rows_of(part), dimension_, is_scalar(), x.data());
     }
   });
   double total = 0.0;
@@ -214,6 +214,36 @@ void NodeMatrix::multiply(const Vector& x, Vector& y) const {
 double NodeMatrix::form(const Vector& x) const {
   to_order(x, ordered_x_);
   return form_ordered(ordered_x_);
+}
+
+/// Calls enter(place of the row, place of the column, its numbers) for every block that is stored.
+template <class Enter>
+void NodeMatrix::visit_blocks(const Enter& enter) const {
+  for (std::size_t place = 0; place + 1 < row_begin_.size(); ++place) {
+    for (Index k = row_begin_[place]; k < row_begin_[place + 1]; ++k)
+      enter(static_cast<int>(place), column_[static_cast<std::size_t>(k)], values_.data() + k * stride_);
+  }
+}
+
+Vector NodeMatrix::diagonal() const {
+  const int d = dimension_;
+  Vector result = Vector::Zero(size());
+  visit_blocks([&](int row, int column, const double* block) {
+    if (row != column) return;
+    const Index first = Index{order_->node[static_cast<std::size_t>(row)]} * d;
+    for (int a = 0; a < d; ++a) result[first + a] = block[is_scalar() ? 0 : a * d + a];
+  });
+  return result;
+}
+
+bool NodeMatrix::is_diagonal() const {
+  const int d = dimension_;
+  bool result = true;
+  visit_blocks([&](int row, int column, const double* block) {
+    for (Index k = 0; k < stride_; ++k)
+      result = result && (block[k] == 0.0 || (row == column && (is_scalar() || k % (d + 1) == 0)));
+  });
+  return result;
 }
 
 SparseMatrix NodeMatrix::whole() const {

@@ -9,6 +9,8 @@
 /// @file Products with a symmetric matrix on the dofs of nodes, at the price of reading about half of it once.
 namespace ricochet {
 
+struct NodeRows;
+
 /// A symmetric matrix A with d dofs per node (dof of component k at node i: i·d + k), stored in blocks of d × d with
 /// one index each, or, where A = m ⊗ I, in single numbers m that act on d components at once.
 ///
@@ -27,6 +29,7 @@ class NodeMatrix {
   NodeMatrix(const SparseMatrix& matrix, int d, std::shared_ptr<const NodeOrder> order);
 
   [[nodiscard]] const NodeOrder& order() const { return *order_; }
+  [[nodiscard]] std::shared_ptr<const NodeOrder> shared_order() const { return order_; }
   [[nodiscard]] Index size() const { return order_ ? order_->size() * dimension_ : 0; }
   /// True where the matrix is m ⊗ I.
   [[nodiscard]] bool is_scalar() const { return stride_ == 1; }
@@ -44,10 +47,16 @@ class NodeMatrix {
   void to_order(const Vector& x, Vector& ordered) const;
   void from_order(const Vector& ordered, Vector& x) const;
 
+  [[nodiscard]] Vector diagonal() const;
+  /// True when no entry off the diagonal is other than zero.
+  [[nodiscard]] bool is_diagonal() const;
   /// The matrix as it was given: whole, in compressed columns.
   [[nodiscard]] SparseMatrix whole() const;
 
  private:
+  [[nodiscard]] NodeRows rows_of(Index part) const;
+  template <class Enter>
+  void visit_blocks(const Enter& enter) const;
   void read_pattern(const SparseMatrix& matrix);
   void read_values(const SparseMatrix& matrix);
 

@@ -8,6 +8,19 @@ namespace ricochet {
 namespace {
 /// A change of this part of the base set, or less, borders the factor; a larger one makes a new factor.
 constexpr std::size_t part = 8;
+
+/// Numbers that are in one of the two only, both ascending.
+std::size_t count_differences(const std::vector<Index>& a, const std::vector<Index>& b) {
+  std::size_t common = 0;
+  for (auto left = a.begin(), right = b.begin(); left != a.end() && right != b.end();) {
+    common += *left == *right ? 1 : 0;
+    const bool left_is_behind = *left <= *right, right_is_behind = *right <= *left;
+    if (left_is_behind) ++left;
+    if (right_is_behind) ++right;
+  }
+  return a.size() + b.size() - 2 * common;
+}
+
 }  // namespace
 
 void PrincipalFactor::reset() {
@@ -50,9 +63,7 @@ void PrincipalFactor::renumber_base(const std::vector<Index>& indices) {
 bool PrincipalFactor::set_indices(const Matrix& w, const std::vector<Index>& indices) {
   has_factored_ = false;
   if (indices == indices_ && !indices_.empty()) return true;
-  std::vector<Index> common;
-  std::set_intersection(indices.begin(), indices.end(), base_.begin(), base_.end(), std::back_inserter(common));
-  const std::size_t changes = (indices.size() - common.size()) + (base_.size() - common.size());
+  const std::size_t changes = count_differences(indices, base_);
   if (!base_.empty() && changes * part <= base_.size() && border(w, indices)) return true;
   has_factored_ = true;
   return set_base(w, indices);
@@ -107,7 +118,8 @@ void PrincipalFactor::solve(const Vector& right, Vector& x) const {
   x.resize(right.size());
   if (changes > 0) {
     // (S)(x_D, λ) = (b_D, 0) − (W_DB; E_Rᵀ) W_BB⁻¹ b_B.
-    border_right_.noalias() = -(border_.transpose() * base_right_);
+    border_right_.noalias() = border_.transpose() * base_right_;
+    border_right_ = -border_right_;  // a product with a sign would be evaluated into a new vector
     for (Index k = 0; k < arrivals; ++k) border_right_[k] += scale_ * right[came_[static_cast<std::size_t>(k)]];
     border_solution_ = schur_.solve(border_right_);
     base_right_.noalias() -= solved_ * border_solution_;

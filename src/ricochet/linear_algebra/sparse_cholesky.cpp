@@ -8,40 +8,17 @@
 #include <stdexcept>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/memory.hpp"
 #include "ricochet/linear_algebra/blas_threads.hpp"
 
 namespace ricochet {
 
-SparseMatrix extract(const SparseMatrix& matrix, const std::vector<int>& row_number, Index rows,
-                     const std::vector<int>& column_number, Index columns) {
-  SparseMatrix result(rows, columns);
-  if (columns == 0) return result;  // Eigen's makeCompressed reads and writes a first column without asking
-  std::vector<int> counts(static_cast<std::size_t>(columns), 0);
-  for (Index j = 0; j < matrix.cols(); ++j) {
-    const int column = column_number[static_cast<std::size_t>(j)];
-    if (column < 0) continue;
-    for (SparseMatrix::InnerIterator entry(matrix, j); entry; ++entry) {
-      counts[static_cast<std::size_t>(column)] += row_number[static_cast<std::size_t>(entry.row())] >= 0 ? 1 : 0;
-    }
-  }
-  result.reserve(counts);
-  for (Index j = 0; j < matrix.cols(); ++j) {
-    const int column = column_number[static_cast<std::size_t>(j)];
-    if (column < 0) continue;
-    for (SparseMatrix::InnerIterator entry(matrix, j); entry; ++entry) {
-      const int row = row_number[static_cast<std::size_t>(entry.row())];
-      if (row >= 0) result.insert(row, column) = entry.value();
-    }
-  }
-  result.makeCompressed();
-  return result;
-}
-
 struct SparseCholesky::Implementation {
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
-  std::vector<int> permutation;  ///< place in the factor → unknown
-  std::vector<int> places;       ///< unknown → place in the factor
+  cholmod_sparse* ordered = nullptr;  ///< lower triangle of P A Pᵀ, from the analysis to the factorization
+  std::vector<int> permutation;       ///< place in the factor → unknown
+  std::vector<int> places;            ///< unknown → place in the factor
   double scale = 1.0;
   TriangularSolve solve = TriangularSolve::own;
   SupernodalFactor supernodal;
@@ -68,19 +45,20 @@ struct SparseCholesky::Implementation {
     cholmod_free_dense(&work_y, &common);
     cholmod_free_dense(&work_e, &common);
     cholmod_free_factor(&factor, &common);
+    cholmod_free_sparse(&ordered, &common);
     cholmod_finish(&common);
   }
 
   void order(const SparseMatrix& matrix);
-  void analyse(const SparseMatrix& matrix);
-  void factorize(SparseMatrix matrix);
+  void analyse();
+  void factorize();
   void take_factor();
   void library_solve(int system, Vector& values);
 };
 
 namespace {
 
-/// A view of the lower triangle of a symmetric Eigen matrix, no copy.
+/// A view of the upper triangle of a symmetric matrix stored whole, no copy.
 cholmod_sparse view(const SparseMatrix& matrix) {
   cholmod_sparse result{};
   result.nrow = static_cast<std::size_t>(matrix.rows());
@@ -89,7 +67,7 @@ cholmod_sparse view(const SparseMatrix& matrix) {
   result.p = const_cast<int*>(matrix.outerIndexPtr());
   result.i = const_cast<int*>(matrix.innerIndexPtr());
   result.x = const_cast<double*>(matrix.valuePtr());
-  result.stype = -1;
+  result.stype = 1;
   result.itype = CHOLMOD_INT;
   result.xtype = CHOLMOD_REAL;
   result.dtype = CHOLMOD_DOUBLE;
@@ -100,23 +78,26 @@ cholmod_sparse view(const SparseMatrix& matrix) {
 
 }  // namespace
 
+/// The permutation, and the lower triangle of P A Pᵀ. Given in the order of the factor, it is not copied again.
 void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
   permutation.resize(static_cast<std::size_t>(matrix.cols()));
-  cholmod_sparse shape = view(matrix);
-  if (matrix.cols() > 0 && cholmod_metis(&shape, nullptr, 0, 1, permutation.data(), &common) == 0)
+  cholmod_sparse upper = view(matrix);
+  if (cholmod_metis(&upper, nullptr, 0, 1, permutation.data(), &common) == 0)
     throw std::runtime_error("ordering the matrix failed (METIS)");
   places.resize(permutation.size());
   for (std::size_t i = 0; i < permutation.size(); ++i)
     places[static_cast<std::size_t>(permutation[i])] = static_cast<int>(i);
+  cholmod_free_sparse(&ordered, &common);
+  ordered = cholmod_ptranspose(&upper, 1, permutation.data(), nullptr, 0, &common);
+  if (ordered == nullptr) throw std::bad_alloc();
 }
 
-void SparseCholesky::Implementation::analyse(const SparseMatrix& matrix) {
-  cholmod_sparse shape = view(matrix);
+void SparseCholesky::Implementation::analyse() {
   common.nmethods = 1;
-  common.method[0].ordering = CHOLMOD_GIVEN;
+  common.method[0].ordering = CHOLMOD_NATURAL;
   common.postorder = 0;  // the given order is postordered already
   cholmod_free_factor(&factor, &common);
-  factor = cholmod_analyze_p(&shape, permutation.data(), nullptr, 0, &common);
+  factor = cholmod_analyze(ordered, &common);
   prediction = {true, common.lnz, common.fl};
   if (factor != nullptr && common.status != CHOLMOD_TOO_LARGE) {
     entries = factor->xsize;
@@ -127,19 +108,26 @@ void SparseCholesky::Implementation::analyse(const SparseMatrix& matrix) {
   prediction.possible = false;
 }
 
-void SparseCholesky::Implementation::factorize(SparseMatrix matrix) {
-  double largest = 0.0;
-  for (Index i = 0; i < matrix.cols(); ++i) largest = std::max(largest, std::abs(matrix.coeff(i, i)));
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  scale = largest > 0.0 ? std::ldexp(1.0, -exponent) : 1.0;
-  matrix *= scale;
+void SparseCholesky::Implementation::factorize() {
   if (!prediction.possible)
     throw Error(ErrorKind::invalid_input, fmt::format("the Cholesky factor of the operator would have {:.2g} entries, "
                                                       "more than CHOLMOD can count: set solver.method = \"iterative\"",
                                                       prediction.entries));
-  cholmod_sparse shape = view(matrix);
-  cholmod_factorize(&shape, factor, &common);
+  const auto* begins = static_cast<const int*>(ordered->p);
+  const auto* rows = static_cast<const int*>(ordered->i);
+  auto* values = static_cast<double*>(ordered->x);
+  double largest = 0.0;
+  for (int column = 0; column < static_cast<int>(ordered->ncol); ++column) {
+    for (int k = begins[column]; k < begins[column + 1]; ++k)
+      if (rows[k] == column) largest = std::max(largest, std::abs(values[k]));
+  }
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  scale = largest > 0.0 ? std::ldexp(1.0, -exponent) : 1.0;
+  for (int k = 0; k < begins[ordered->ncol]; ++k) values[k] *= scale;
+  release_freed_memory();  // the most that a run takes is taken here
+  cholmod_factorize(ordered, factor, &common);
+  cholmod_free_sparse(&ordered, &common);
   if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
   entries = factor->xsize;
   failed = factor->minor < factor->n ? permutation[factor->minor] : -1;
@@ -170,9 +158,9 @@ void SparseCholesky::Implementation::library_solve(int system, Vector& values) {
 
 SparseCholesky::SparseCholesky() : implementation_(std::make_unique<Implementation>()) {}
 
-SparseCholesky::SparseCholesky(SparseMatrix matrix, TriangularSolve solve) : SparseCholesky() {
+SparseCholesky::SparseCholesky(const SparseMatrix& matrix, TriangularSolve solve) : SparseCholesky() {
   analyse(matrix);
-  factorize(std::move(matrix), solve);
+  factorize(solve);
 }
 
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
@@ -180,14 +168,15 @@ SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 SparseCholesky::~SparseCholesky() = default;
 
 void SparseCholesky::analyse(const SparseMatrix& matrix) {
+  if (matrix.cols() == 0) return;
   implementation_->order(matrix);
-  if (matrix.cols() > 0) implementation_->analyse(matrix);
+  implementation_->analyse();
 }
 
-void SparseCholesky::factorize(SparseMatrix matrix, TriangularSolve solve) {
+void SparseCholesky::factorize(TriangularSolve solve) {
   implementation_->solve = solve;
-  if (matrix.cols() == 0) return;
-  implementation_->factorize(std::move(matrix));
+  if (size() == 0) return;
+  implementation_->factorize();
   if (solve == TriangularSolve::own) implementation_->take_factor();
 }
 

@@ -17,14 +17,15 @@ class SparseCholesky {
 
   SparseCholesky();
   /// Analyses and factorizes a symmetric matrix stored whole. Does not throw when it is not positive definite: ask.
-  explicit SparseCholesky(SparseMatrix matrix, TriangularSolve solve = TriangularSolve::own);
+  explicit SparseCholesky(const SparseMatrix& matrix, TriangularSolve solve = TriangularSolve::own);
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
   ~SparseCholesky();
 
-  /// The two halves of the constructor. Between them `predicted` says what the second will take.
+  /// The two halves of the constructor. Between them `predicted` says what the second will take, and the lower triangle
+  /// of the matrix is kept.
   void analyse(const SparseMatrix& matrix);
-  void factorize(SparseMatrix matrix, TriangularSolve solve = TriangularSolve::own);
+  void factorize(TriangularSolve solve = TriangularSolve::own);
   struct Prediction {
     bool possible = true;     ///< false: more entries than the library can count
     double entries = 0.0;     ///< of L
@@ -66,9 +67,5 @@ class SparseCholesky {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
-
-/// The rows and columns of a symmetric matrix whose `number` is not negative, renumbered by it (`size` of them).
-[[nodiscard]] SparseMatrix extract(const SparseMatrix& matrix, const std::vector<int>& row_number, Index rows,
-                                   const std::vector<int>& column_number, Index columns);
 
 }  // namespace ricochet

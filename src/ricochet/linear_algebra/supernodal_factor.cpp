@@ -168,19 +168,25 @@ std::size_t SupernodalFactor::bytes() const {
   return stream_.size() * sizeof(double) + rows_.size() * sizeof(int) + supernodes_.size() * sizeof(Supernode);
 }
 
+/// w ← the entries of y at a supernode's columns and rows below, and the place behind them, which kernels may read.
+void SupernodalFactor::gather(const Supernode& node, const double* y, double* w) const {
+  const int* rows = rows_.data() + node.rows;
+  std::copy_n(y + node.first, node.columns, w);
+  double* const below = w + node.columns;
+  for (int i = 0; i < node.below; ++i) below[i] = y[rows[i]];
+  below[node.below] = 0.0;
+}
+
 void SupernodalFactor::forward(const Part& part, double* y) const {
   double* const w = part.work.data();
   std::fill_n(y + part.boundary_start, part.boundary.size(), 0.0);
   for (std::size_t k = part.begin; k < part.end; ++k) {
     const Supernode& node = supernodes_[k];
-    const int* rows = rows_.data() + node.rows;
-    std::copy_n(y + node.first, node.columns, w);
-    double* const below = w + node.columns;
-    for (int i = 0; i < node.below; ++i) below[i] = y[rows[i]];
-    below[node.below] = 0.0;
+    gather(node, y, w);
     supernode_forward(stream_.data() + node.stream, node.columns, node.columns + node.below, w);
     std::copy_n(w, node.columns, y + node.first);
-    for (int i = 0; i < node.below; ++i) y[rows[i]] = below[i];
+    const int* rows = rows_.data() + node.rows;
+    for (int i = 0; i < node.below; ++i) y[rows[i]] = w[node.columns + i];
   }
 }
 
@@ -190,11 +196,7 @@ void SupernodalFactor::backward(const Part& part, double* y) const {
     y[part.boundary_start + static_cast<Index>(i)] = y[part.boundary[i]];
   for (std::size_t k = part.end; k-- > part.begin;) {
     const Supernode& node = supernodes_[k];
-    const int* rows = rows_.data() + node.rows;
-    std::copy_n(y + node.first, node.columns, w);
-    double* const below = w + node.columns;
-    for (int i = 0; i < node.below; ++i) below[i] = y[rows[i]];
-    below[node.below] = 0.0;
+    gather(node, y, w);
     const Index size = node.columns + node.below;
     supernode_backward(stream_.data() + node.stream_end, node.columns, size, w);
     std::copy_n(w, node.columns, y + node.first);

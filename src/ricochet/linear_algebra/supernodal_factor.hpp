@@ -76,6 +76,7 @@ class SupernodalFactor {
   std::vector<Index> subtree_sizes() const;
   void copy_values(const SupernodalView& view);
   void number_boundary(Part& part);
+  void gather(const Supernode& node, const double* y, double* w) const;
   void forward(const Part& part, double* y) const;
   void backward(const Part& part, double* y) const;
 

@@ -7,6 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
 
 namespace ricochet {
 
@@ -57,15 +58,6 @@ Matrix mass_moments(const SparseMatrix& mass, const Points& nodes) {
   monomials.col(0).setOnes();
   monomials.rightCols(nodes.rows()) = nodes.transpose();
   return monomials.transpose() * (mass * monomials);
-}
-
-bool is_diagonal(const SparseMatrix& matrix) {
-  for (Index column = 0; column < matrix.cols(); ++column) {
-    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
-      if (entry.row() != column && entry.value() != 0.0) return false;
-    }
-  }
-  return true;
 }
 
 bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes) {

@@ -52,9 +52,6 @@ class MassConstruction {
 /// mass.
 [[nodiscard]] Matrix mass_moments(const SparseMatrix& mass, const Points& nodes);
 
-/// True when no entry off the diagonal is stored but zeros.
-[[nodiscard]] bool is_diagonal(const SparseMatrix& matrix);
-
 /// Proof by factorization that the block of the given nodes (all when empty) is positive definite.
 [[nodiscard]] bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes);
 

@@ -31,8 +31,6 @@ class LinearElasticity final : public InternalForce {
   [[nodiscard]] double evaluate_with_energy(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   [[nodiscard]] SparseMatrix tangent() const override { return stiffness_.whole(); }
-  /// Memory that K takes.
-  [[nodiscard]] std::size_t bytes() const { return stiffness_.bytes(); }
 
  private:
   RigidMotion rigid_;

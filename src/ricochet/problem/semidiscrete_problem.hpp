@@ -23,10 +23,9 @@ struct ObstacleMotion {
 struct SemidiscreteProblem {
   int dimension = 2;
   Points nodes;          ///< reference positions, d × nodes
-  SparseMatrix mass;     ///< M, or M₀ of an equivalent mass; dofs × dofs
+  NodeMatrix mass;       ///< M, or M₀ of an equivalent mass
   SparseMatrix damping;  ///< C of Rayleigh's form; empty (0 × 0) when there is none
   std::shared_ptr<const InternalForce> internal_force;
-  NodeMatrix inertia;  ///< M for products: several times as fast, one scalar per pair of nodes
   Loads loads;
   Supports supports;
   ContactBoundary contact;
@@ -58,7 +57,8 @@ struct SemidiscreteProblem {
   void add_contact_force(const Vector& normal, const Vector& tangential, Vector& force) const;
 };
 
-/// Fills massless_dofs, is_massless and contact_dofs from contact and supports, and inertia from the mass.
-void finish_problem(SemidiscreteProblem& problem, bool mass_without_contact_inertia);
+/// Fills massless_dofs, is_massless and contact_dofs from contact and supports, and takes the mass: dofs × dofs,
+/// symmetric to the bit.
+void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, bool mass_without_contact_inertia);
 
 }  // namespace ricochet

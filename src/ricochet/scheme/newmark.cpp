@@ -69,7 +69,7 @@ class Newmark final : public Scheme {
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
     const double factor = 0.5 * step() * step() * (beta_ - 0.5 * gamma_);
     if (factor == 0.0) return 0.0;
-    return factor * problem.inertia.form(state.acceleration);
+    return factor * problem.mass.form(state.acceleration);
   }
 
   [[nodiscard]] double numerical_dissipation(const SemidiscreteProblem&) const override { return dissipation_; }
@@ -101,7 +101,7 @@ class Newmark final : public Scheme {
     dissipation_ = (gamma_ - 0.5) * increment.dot(force_);
     difference_ = acceleration_ - state.acceleration;
     dissipation_ +=
-        0.5 * step() * step() * (beta_ - 0.5 * gamma_) * (2.0 * gamma_ - 1.0) * problem.inertia.form(difference_);
+        0.5 * step() * step() * (beta_ - 0.5 * gamma_) * (2.0 * gamma_ - 1.0) * problem.mass.form(difference_);
   }
 
   double beta_, gamma_, alpha_;

@@ -6,6 +6,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/scheme/contact_conditions.hpp"
 #include "ricochet/scheme/critical_step.hpp"
@@ -94,7 +95,7 @@ class SemiExplicit final : public Scheme {
  private:
   static void refuse_other_masses(const SemidiscreteProblem& problem) {
     const char* const advice = "set mass.type = \"equivalent-lumped\", or use scheme \"newmark\", which takes any mass";
-    if (!is_diagonal(problem.mass)) {
+    if (!problem.mass.is_diagonal()) {
       throw Error(
           ErrorKind::invalid_input,
           fmt::format("scheme \"semi-explicit\" needs a diagonal mass without inertia on the contact nodes, and "

@@ -54,7 +54,7 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
 Energies EnergyAccount::energies(const State& state) {
   scheme_.energy_state(state, displacement_, velocity_);
   Energies result;
-  result.kinetic = 0.5 * problem_.inertia.form(velocity_);
+  result.kinetic = 0.5 * problem_.mass.form(velocity_);
   result.elastic = problem_.internal_force->energy(displacement_);
   result.load_potential = -problem_.loads.constant().dot(displacement_);
   result.algorithmic = scheme_.algorithmic_energy(problem_, state);

@@ -54,7 +54,7 @@ Matrix momenta_of_rigid_velocities(const SemidiscreteProblem& problem) {
           k < d ? Eigen::Vector3d(Eigen::Vector3d::Unit(k)) : Eigen::Vector3d::Unit(d == 2 ? 2 : k - d).cross(position);
       velocity.segment(node * d, d) = rigid.head(d);
     }
-    problem.inertia.multiply(velocity, momentum);
+    problem.mass.multiply(velocity, momentum);
     result.col(k) = momentum;
   }
   return result;

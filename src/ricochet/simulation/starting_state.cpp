@@ -91,7 +91,7 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
 /// A diagonal mass needs no factorization where no contact point is at rest on its obstacle. False when it does.
 bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vector& support_acceleration,
                                  const std::vector<char>& resting, State& state) {
-  if (std::find(resting.begin(), resting.end(), 1) != resting.end() || !is_diagonal(problem.mass)) return false;
+  if (std::find(resting.begin(), resting.end(), 1) != resting.end() || !problem.mass.is_diagonal()) return false;
   const Vector mass = problem.mass.diagonal();
   Vector acceleration = residual_force(problem, state.displacement, state.velocity);
   for (Index dof = 0; dof < mass.size(); ++dof) {
@@ -132,8 +132,9 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
 
 /// Support reactions from the momentum equation itself: R = M a + C V + K U − L − Gᵀ r_N + B_Tᵀ r_T.
 void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
-  Vector force = -residual_force(problem, state.displacement, state.velocity);
-  force += problem.mass * state.acceleration;
+  Vector force;
+  problem.mass.multiply(state.acceleration, force);
+  force -= residual_force(problem, state.displacement, state.velocity);
   problem.add_contact_force(-state.forces.normal_reaction, -state.forces.tangential_reaction, force);
   state.forces.support_reaction.resize(problem.supports.size());
   for (Index i = 0; i < problem.supports.size(); ++i) {

@@ -117,7 +117,8 @@ class ProximalPoint {
     solver_->solve(0, stage, solution_);
     at.displacement += solution_.increment;
     at.normal_reaction = solution_.normal_reaction;
-    left_over_ = epsilon_ * (problem_.mass * solution_.increment);
+    problem_.mass.multiply(solution_.increment, left_over_);
+    left_over_ *= epsilon_;
     for (const Index dof : problem_.supports.dofs()) left_over_[dof] = 0.0;
   }
 

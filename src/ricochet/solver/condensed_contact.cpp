@@ -48,7 +48,7 @@ void CondensedContact::visit_rows(Index point, const Enter& enter) const {
 void CondensedContact::start_again_with(const std::vector<Index>& points) {
   candidates_.clear();
   columns_.clear();
-  operator_.resize(0, 0);
+  contact_.contact_operator.reset();
   contact_.first.assign(1, 0);
   solver_.reset();
   if (!points.empty()) take_up(points);
@@ -78,9 +78,10 @@ void CondensedContact::take_up(const std::vector<Index>& points) {
   std::vector<Index> added = points;
   sort_by_place(added);
   candidates_.take_up(added);
-  append_columns(added);
+  Matrix w = contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
+  append_columns(added, w);
   append_supported();
-  hold_directions_without_trace();
+  hold_directions_without_trace(w);
   const auto count = static_cast<Index>(candidates_.points().size());
   coefficient_.resize(count);
   bound_.resize(count);
@@ -95,7 +96,7 @@ void CondensedContact::take_up(const std::vector<Index>& points) {
   contact_.offset.setZero(contact_.first.back());
   contact_.offset_rounding.setZero(contact_.first.back());
   contact_.eligible.assign(static_cast<std::size_t>(count), 1);
-  contact_.contact_operator = make_dense_operator(operator_);
+  contact_.contact_operator = make_dense_operator(std::move(w));
   if (solver_ == nullptr) solver_ = make_contact_solver();
   solver_->analyse(contact_);
   // The reactions of those that were there already, and none on the others.
@@ -106,7 +107,7 @@ void CondensedContact::take_up(const std::vector<Index>& points) {
   contact_solution_.reaction = start;
 }
 
-void CondensedContact::append_columns(const std::vector<Index>& points) {
+void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& w) {
   std::vector<Eigen::Triplet<double>> entries;
   Index row = 0;
   for (const Index point : points) {
@@ -119,7 +120,7 @@ void CondensedContact::append_columns(const std::vector<Index>& points) {
   }
   SparseMatrix transposed(factor_.size(), row);
   transposed.setFromTriplets(entries.begin(), entries.end());
-  columns_.append(transposed, operator_);
+  columns_.append(transposed, w);
 }
 
 void CondensedContact::append_supported() {
@@ -138,11 +139,11 @@ void CondensedContact::append_supported() {
 
 /// Where B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
 /// makes the friction along it zero.
-void CondensedContact::hold_directions_without_trace() {
+void CondensedContact::hold_directions_without_trace(Matrix& w) const {
   for (std::size_t i = 0; i + 1 < contact_.first.size(); ++i) {
     const Index row = contact_.first[i];
     for (Index k = row + 1; k < contact_.first[i + 1]; ++k) {
-      if (operator_(k, k) == 0.0) operator_(k, k) = operator_(row, row);
+      if (w(k, k) == 0.0) w(k, k) = w(row, row);
     }
   }
 }

@@ -47,9 +47,9 @@ class CondensedContact {
   bool choose_candidates(const Stage& stage);
   void start_again_with(const std::vector<Index>& points);
   void sort_by_place(std::vector<Index>& points) const;
-  void append_columns(const std::vector<Index>& points);
+  void append_columns(const std::vector<Index>& points, Matrix& w);
   void append_supported();
-  void hold_directions_without_trace();
+  void hold_directions_without_trace(Matrix& w) const;
   void find_offsets(const Stage& stage, const Vector& y);
   void choose_friction(const Stage& stage);
   void solve_contact();
@@ -66,7 +66,6 @@ class CondensedContact {
   bool asked_ = false;     ///< the candidates took part in the last stage
   ContactCandidates candidates_;
   ContactColumns columns_;
-  Matrix operator_;             ///< W
   SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
   Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r
   ContactProblem contact_;      ///< W, q, and the friction of the stage

@@ -44,12 +44,21 @@ double ContactCandidates::reach(const Stage& stage) const {
   return reserve * std::max(deepest, stage.gap_factor * largest_motion_);
 }
 
+bool ContactCandidates::is_below(const Stage& stage, Index point, double limit, bool candidates) const {
+  const auto at = static_cast<std::size_t>(point);
+  return stage.eligible[at] != 0 && (number_[at] >= 0) == candidates && stage.gap_offset[point] <= limit;
+}
+
+std::size_t ContactCandidates::count_below(const Stage& stage, double limit, bool candidates) const {
+  std::size_t count = 0;
+  for (Index i = 0; i < stage.gap_offset.size(); ++i) count += is_below(stage, i, limit, candidates) ? 1 : 0;
+  return count;
+}
+
 std::vector<Index> ContactCandidates::eligible_below(const Stage& stage, double limit, bool candidates) const {
   std::vector<Index> result;
   for (Index i = 0; i < stage.gap_offset.size(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const bool wanted = stage.eligible[at] != 0 && (number_[at] >= 0) == candidates;
-    if (wanted && stage.gap_offset[i] <= limit) result.push_back(i);
+    if (is_below(stage, i, limit, candidates)) result.push_back(i);
   }
   return result;
 }
@@ -64,11 +73,7 @@ bool ContactCandidates::some_may_touch(const Stage& stage) const {
 
 std::vector<Index> ContactCandidates::approaching(const Stage& stage) const {
   const double limit = reach(stage);
-  std::vector<Index> near = eligible_below(stage, ahead * limit, false);
-  const bool needed =
-      std::any_of(near.begin(), near.end(), [&](Index point) { return stage.gap_offset[point] <= limit; });
-  if (!needed) near.clear();
-  return near;
+  return count_below(stage, limit, false) > 0 ? eligible_below(stage, ahead * limit, false) : std::vector<Index>{};
 }
 
 std::vector<Index> ContactCandidates::penetrating(const Stage& stage, const Vector& motion, bool left_out) const {
@@ -98,10 +103,10 @@ void ContactCandidates::learn(const Stage& stage, const Vector& motion) {
 
 std::vector<Index> ContactCandidates::worth_keeping(const Stage& stage) {
   if (points_.size() <= few_points) return {};
-  std::vector<Index> near = eligible_below(stage, ahead * reach(stage), true);
-  oversized_stages_ = points_.size() > oversize * std::max(near.size(), few_points) ? oversized_stages_ + 1 : 0;
-  if (oversized_stages_ < patience) near.clear();
-  return near;
+  const double limit = ahead * reach(stage);
+  const bool oversized = points_.size() > oversize * std::max(count_below(stage, limit, true), few_points);
+  oversized_stages_ = oversized ? oversized_stages_ + 1 : 0;
+  return oversized_stages_ < patience ? std::vector<Index>{} : eligible_below(stage, limit, true);
 }
 
 }  // namespace ricochet

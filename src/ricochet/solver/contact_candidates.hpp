@@ -35,6 +35,9 @@ class ContactCandidates {
 
  private:
   [[nodiscard]] double reach(const Stage& stage) const;
+  /// The point is eligible, a candidate or not, and its gap at δ = 0 is at most `limit`.
+  [[nodiscard]] bool is_below(const Stage& stage, Index point, double limit, bool candidates) const;
+  [[nodiscard]] std::size_t count_below(const Stage& stage, double limit, bool candidates) const;
   [[nodiscard]] std::vector<Index> eligible_below(const Stage& stage, double limit, bool candidates) const;
 
   std::vector<Index> points_;

@@ -12,9 +12,9 @@ namespace {
 /// Columns that are stored together: few enough for their paths to be alike, enough for dense products to be quick.
 constexpr Index block_size = 24;
 
-/// The rows of a path gathered from a vector in factor order.
+/// The rows of a path gathered from a vector in factor order, into the first of `values`, which grows only.
 void gather(const FactorPath& path, const Vector& y, Vector& values) {
-  values.resize(path.rows());
+  if (values.size() < path.rows()) values.resize(path.rows());
   for (std::size_t k = 0; k < path.supernodes.size(); ++k)
     std::copy_n(y.data() + path.first[k], path.offsets[k + 1] - path.offsets[k], values.data() + path.offsets[k]);
 }

@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include "ricochet/linear_algebra/sparse_cholesky.hpp"
-#include "ricochet/solver/condensed_contact.hpp"
+#include "ricochet/solver/factored_stage.hpp"
 
 /// @file The part of a body near its contact, solved directly.
 ///
@@ -16,34 +15,30 @@ namespace ricochet {
 
 class ContactZone {
  public:
-  /// Around the nodes that the traces of these contact points reach. `matrix` is A on all dofs, `solved` tells per dof
-  /// whether the stage solves for it. Keeps references to the problem only.
-  ContactZone(const SemidiscreteProblem& problem, const SparseMatrix& matrix, const std::vector<char>& solved,
-              const std::vector<Index>& points, int layers, bool all_candidates);
+  /// On these nodes, for these contact points; `solved` tells per dof whether the stage solves for it. Keeps a
+  /// reference to the problem only.
+  ContactZone(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+              const std::vector<char>& solved, const std::vector<Index>& nodes, const std::vector<Index>& points,
+              bool all_candidates);
 
   /// With the residual b − A x of the whole body, reactions left out: x_P and the reactions.
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution);
   /// The point is one that the zone was made for.
   [[nodiscard]] bool has(Index point) const { return has_[static_cast<std::size_t>(point)] != 0; }
 
-  void report() const { contact_->report(); }
-  void observe(const ContactObserver& observer) { contact_->observe(observer); }
-  [[nodiscard]] double contact_seconds() const { return contact_->solver_seconds(); }
-  [[nodiscard]] std::size_t factor_entries() const { return factor_.factor_entries(); }
-  [[nodiscard]] std::size_t dof_count() const { return dof_at_.size(); }
+  void report() const { zone_->report(); }
+  void observe(const ContactObserver& observer) { zone_->observe(observer); }
+  [[nodiscard]] double contact_seconds() const { return zone_->contact_seconds(); }
+  [[nodiscard]] std::size_t factor_entries() const { return zone_->factor_entries(); }
 
  private:
-  void choose_dofs(const SparseMatrix& matrix, const std::vector<char>& solved, const std::vector<Index>& points,
-                   int layers, std::vector<int>& dofs) const;
   void state_locally(const Stage& stage, const Vector& x);
 
   const SemidiscreteProblem& problem_;
-  std::vector<char> has_;    ///< per contact point
-  std::vector<int> dof_at_;  ///< per place in the factor
-  SparseCholesky factor_;
-  std::unique_ptr<CondensedContact> contact_;
-  Stage stage_;  ///< on the correction c, of the points of the zone
-  Vector correction_, at_start_, factor_vector_;
+  std::vector<char> has_;  ///< per contact point
+  std::unique_ptr<FactoredStage> zone_;
+  Stage stage_;                        ///< on the correction c, of the points of the zone
+  Vector correction_, motion_, slip_;  ///< c, and G x and B_T x of the start
 };
 
 }  // namespace ricochet

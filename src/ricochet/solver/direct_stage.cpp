@@ -1,8 +1,7 @@
-#include <fmt/format.h>
-
 #include <numeric>
 
-#include "ricochet/solver/condensed_contact.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
+#include "ricochet/solver/factored_stage.hpp"
 #include "ricochet/solver/stage_operator.hpp"
 #include "ricochet/solver/stage_solver.hpp"
 
@@ -10,41 +9,33 @@ namespace ricochet {
 
 namespace {
 
-/// Everything that is constant for the stages of one operator: forward solve, condensed contact, back solve.
+/// A factor of the whole operator. Supports are on the right-hand side.
 class DirectStage final : public StageSolver {
  public:
   DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, AnalysedOperator analysed,
               const StepSolverOptions& options);
 
   void solve(const Stage& stage, StageSolution& solution) override;
-  void observe_contact(const ContactObserver& observer) override { contact_->observe(observer); }
-  [[nodiscard]] double contact_seconds() const override { return contact_->solver_seconds(); }
-  [[nodiscard]] std::size_t factor_entries() const override { return factor_.factor_entries(); }
+  void observe_contact(const ContactObserver& observer) override { stage_.observe(observer); }
+  [[nodiscard]] double contact_seconds() const override { return stage_.contact_seconds(); }
+  [[nodiscard]] std::size_t factor_entries() const override { return stage_.factor_entries(); }
 
  private:
-  void solve_free(const Stage& stage);
-  void give_increment(const Stage& stage, Vector& increment) const;
+  [[nodiscard]] const Vector& right_hand_side(const Stage& stage);
+  void prescribe(const Stage& stage, Vector& increment) const;
   void recover_support_reaction(const Stage& stage, StageSolution& solution);
 
   const SemidiscreteProblem& problem_;
-  std::vector<int> dof_at_;    ///< per place in the factor
   SparseRowMatrix supported_;  ///< A's rows of supported dofs: supports × dofs
-  SparseCholesky factor_;
-  std::unique_ptr<CondensedContact> contact_;
-  Vector factor_vector_, right_hand_side_, supported_force_, contact_force_;
+  FactoredStage stage_;
+  Vector right_hand_side_, supported_force_, contact_force_;
 };
 
 DirectStage::DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                          AnalysedOperator analysed, const StepSolverOptions& options)
-    : problem_(problem), supported_(std::move(analysed.supported)), factor_(std::move(analysed.factor)) {
-  factor_.factorize(std::move(analysed.matrix));
-  const std::vector<int>& dofs = analysed.dofs;
-  if (!factor_.positive_definite())
-    refuse_operator(problem, coefficients, dofs[static_cast<std::size_t>(factor_.failed_unknown())]);
-  for (const int unknown : factor_.permutation()) dof_at_.push_back(dofs[static_cast<std::size_t>(unknown)]);
-  factor_vector_.setZero(factor_.work_size());
-  contact_ = std::make_unique<CondensedContact>(problem, number_dofs(problem, dofs), factor_, options.all_points);
-}
+    : problem_(problem),
+      supported_(std::move(analysed.supported)),
+      stage_(problem, coefficients, analysed.dofs, std::move(analysed.factor), options.all_points) {}
 
 void DirectStage::recover_support_reaction(const Stage& stage, StageSolution& solution) {
   const std::vector<Index>& dofs = problem_.supports.dofs();
@@ -59,36 +50,27 @@ void DirectStage::recover_support_reaction(const Stage& stage, StageSolution& so
   }
 }
 
-/// y = L⁻¹P 2ᵏ (b − A_fs δ_s).
-void DirectStage::solve_free(const Stage& stage) {
-  const Vector* right = &stage.right_hand_side;
-  if (problem_.supports.size() > 0 && !stage.prescribed.isZero(0.0)) {
-    right_hand_side_ = stage.right_hand_side;
-    right_hand_side_.noalias() -= supported_.transpose() * stage.prescribed;
-    right = &right_hand_side_;
-  }
-  const double scale = factor_.scale();
-  for (std::size_t i = 0; i < dof_at_.size(); ++i) factor_vector_[static_cast<Index>(i)] = scale * (*right)[dof_at_[i]];
-  factor_.solve_lower(factor_vector_);
+/// b − A_fs δ_s.
+const Vector& DirectStage::right_hand_side(const Stage& stage) {
+  if (problem_.supports.size() == 0 || stage.prescribed.isZero(0.0)) return stage.right_hand_side;
+  right_hand_side_ = stage.right_hand_side;
+  right_hand_side_.noalias() -= supported_.transpose() * stage.prescribed;
+  return right_hand_side_;
 }
 
-void DirectStage::give_increment(const Stage& stage, Vector& increment) const {
+/// δ on the dofs that the factor does not solve for.
+void DirectStage::prescribe(const Stage& stage, Vector& increment) const {
   increment.resize(problem_.dof_count());
-  if (static_cast<Index>(dof_at_.size()) < problem_.dof_count()) increment.setZero();
-  for (std::size_t i = 0; i < dof_at_.size(); ++i) increment[dof_at_[i]] = factor_vector_[static_cast<Index>(i)];
+  if (static_cast<Index>(stage_.dofs().size()) < problem_.dof_count()) increment.setZero();
   const std::vector<Index>& supported = problem_.supports.dofs();
   for (std::size_t i = 0; i < supported.size(); ++i) increment[supported[i]] = stage.prescribed[static_cast<Index>(i)];
 }
 
 void DirectStage::solve(const Stage& stage, StageSolution& solution) {
   solution.iterations = 0;
-  do {
-    solve_free(stage);
-    contact_->solve(stage, factor_vector_, solution);
-    factor_.solve_upper(factor_vector_);
-    give_increment(stage, solution.increment);
-  } while (contact_->take_up_penetrating(stage, solution.increment));
-  contact_->report();
+  prescribe(stage, solution.increment);
+  stage_.solve(stage, right_hand_side(stage), solution, solution.increment);
+  stage_.report();
   recover_support_reaction(stage, solution);
 }
 
@@ -106,11 +88,9 @@ AnalysedOperator analyse_operator(const SemidiscreteProblem& problem, const Oper
   const auto count = static_cast<Index>(result.dofs.size());
   if (count < problem.dof_count()) {
     const std::vector<int> number = number_dofs(problem, result.dofs);
-    result.matrix = extract(matrix, number, count, number, count);
-  } else {
-    result.matrix = std::move(matrix);
+    extract(matrix, number, count, number, count).swap(matrix);
   }
-  result.factor.analyse(result.matrix);
+  result.factor.analyse(matrix);
   return result;
 }
 

@@ -5,9 +5,9 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/block_jacobi.hpp"
-#include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/solver/contact_zone.hpp"
 #include "ricochet/solver/stage_operator.hpp"
+#include "ricochet/solver/stage_product.hpp"
 #include "ricochet/solver/stage_solver.hpp"
 
 namespace ricochet {
@@ -18,7 +18,7 @@ namespace {
 constexpr int zone_layers = 6;
 constexpr int reserve_layers = 3;
 /// A round of conjugate gradients goes on to this part of what it began with: the zone has its say before the end.
-constexpr double round_reduction = 1e-2;
+constexpr double round_reduction = 1e-3;
 constexpr int round_limit = 60;
 constexpr int iteration_limit = 5000;
 
@@ -43,7 +43,7 @@ class IterativeStage final : public StageSolver {
  private:
   void begin(const Stage& stage, StageSolution& solution);
   void make_zone(const std::vector<Index>& points);
-  [[nodiscard]] std::vector<Index> with_neighbours(const SparseMatrix& matrix, std::vector<Index> points) const;
+  [[nodiscard]] std::vector<Index> with_neighbours(const std::vector<Index>& nodes) const;
   void find_residual(const Stage& stage);
   void add_reactions(const StageSolution& solution, Vector& force) const;
   void mask(Vector& values) const;
@@ -56,7 +56,7 @@ class IterativeStage final : public StageSolver {
   StepSolverOptions options_;
   std::vector<char> solved_;   ///< per dof
   std::vector<int> unsolved_;  ///< dofs
-  NodeMatrix matrix_;          ///< A
+  StageProduct product_;       ///< with A
   std::unique_ptr<Preconditioner> preconditioner_;
   ConjugateGradients gradients_;
   ContactCandidates near_;  ///< the points that the zone is made for
@@ -78,7 +78,7 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
     if (solved_[dof] == 0) unsolved_.push_back(static_cast<int>(dof));
   }
   const SparseMatrix matrix = combine_operator(problem, coefficients);
-  matrix_ = NodeMatrix(matrix, problem.dimension, std::make_shared<const NodeOrder>(order_nodes(problem.nodes)));
+  product_ = StageProduct(problem, coefficients, matrix);
   preconditioner_ = make_block_jacobi(matrix, problem.dimension, solved_);
   increment_.setZero(problem.dof_count());
   previous_ = increment_;
@@ -90,30 +90,13 @@ void IterativeStage::mask(Vector& values) const {
 
 /// Points whose nodes are within some layers of those of the given ones come along, so that a contact that grows does
 /// not ask for another zone in every step.
-std::vector<Index> IterativeStage::with_neighbours(const SparseMatrix& matrix, std::vector<Index> points) const {
-  const int d = problem_.dimension;
+std::vector<Index> IterativeStage::with_neighbours(const std::vector<Index>& nodes) const {
   std::vector<char> reached(static_cast<std::size_t>(problem_.nodes.cols()), 0);
-  std::vector<Index> nodes;
-  const auto reach = [&](Index node) {
-    if (reached[static_cast<std::size_t>(node)] != 0) return;
-    reached[static_cast<std::size_t>(node)] = 1;
-    nodes.push_back(node);
-  };
-  const SparseRowMatrix& trace = problem_.contact.trace;
-  for (const Index point : points) {
-    for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry) reach(entry.col());
-  }
-  std::size_t begin = 0;
-  for (int layer = 0; layer < reserve_layers; ++layer) {
-    const std::size_t end = nodes.size();
-    for (; begin < end; ++begin) {
-      for (SparseMatrix::InnerIterator entry(matrix, nodes[begin] * d); entry; ++entry) reach(entry.row() / d);
-    }
-  }
+  for (const Index node : nodes) reached[static_cast<std::size_t>(node)] = 1;
   std::vector<Index> result;
   for (Index point = 0; point < problem_.contact.size(); ++point) {
     bool inside = near_.number(point) >= 0;
-    for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry)
+    for (SparseRowMatrix::InnerIterator entry(problem_.contact.trace, point); entry; ++entry)
       inside = inside || reached[static_cast<std::size_t>(entry.col())] != 0;
     if (inside) result.push_back(point);
   }
@@ -123,17 +106,23 @@ std::vector<Index> IterativeStage::with_neighbours(const SparseMatrix& matrix, s
 void IterativeStage::make_zone(const std::vector<Index>& points) {
   if (zone_) earlier_contact_seconds_ += zone_->contact_seconds();
   zone_.reset();
-  const SparseMatrix matrix = combine_operator(problem_, coefficients_);
-  const std::vector<Index> all = with_neighbours(matrix, points);
+  std::vector<Index> nodes, all;
+  {
+    // Layers of cells: an equivalent mass has neighbours farther away.
+    const SparseMatrix stiffness = problem_.internal_force->tangent();
+    all = with_neighbours(nodes_near(problem_, stiffness, points, reserve_layers));
+    nodes = nodes_near(problem_, stiffness, all, zone_layers);
+  }
   near_.clear();
   near_.take_up(all);
-  zone_ = std::make_unique<ContactZone>(problem_, matrix, solved_, all, zone_layers, options_.all_points);
+  zone_ = std::make_unique<ContactZone>(problem_, coefficients_, solved_, nodes, all, options_.all_points);
   zone_->observe(observer_);
 }
 
 /// The guess: increments of a smooth motion go on as they did. Supports are exact.
 void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
-  guess_ = has_previous_ ? Vector(2.0 * increment_ - previous_) : increment_;
+  guess_ = increment_;
+  if (has_previous_) guess_ += increment_ - previous_;
   for (const int dof : unsolved_) guess_[dof] = 0.0;
   for (Index i = 0; i < problem_.supports.size(); ++i)
     guess_[problem_.supports.dofs()[static_cast<std::size_t>(i)]] = stage.prescribed[i];
@@ -149,7 +138,7 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
 
 /// b − A x, on the dofs that are solved for.
 void IterativeStage::find_residual(const Stage& stage) {
-  matrix_.multiply(guess_, residual_);
+  product_.multiply(guess_, residual_);
   residual_ = stage.right_hand_side - residual_;
   mask(residual_);
 }
@@ -171,7 +160,7 @@ double IterativeStage::forces(const Stage& stage, const StageSolution& solution)
 
 void IterativeStage::solve_linear(double target) {
   const auto product = [&](const Vector& x, Vector& y) {
-    matrix_.multiply(x, y);
+    product_.multiply(x, y);
     mask(y);
   };
   const auto result = gradients_.solve(product, *preconditioner_, target, iteration_limit, residual_, guess_);
@@ -227,7 +216,7 @@ void IterativeStage::end(const Stage& stage, StageSolution& solution) {
   const std::vector<Index>& supported = problem_.supports.dofs();
   solution.support_reaction.resize(problem_.supports.size());
   if (supported.empty()) return;
-  matrix_.multiply(guess_, work_);
+  product_.multiply(guess_, work_);
   work_ -= stage.right_hand_side;
   problem_.add_contact_force(-solution.normal_reaction, -solution.tangential_reaction, work_);
   for (std::size_t i = 0; i < supported.size(); ++i)

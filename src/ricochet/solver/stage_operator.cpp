@@ -5,17 +5,49 @@
 #include <algorithm>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
 
 namespace ricochet {
 
 SparseMatrix combine_operator(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients) {
-  SparseMatrix result = coefficients.stiffness * problem.internal_force->tangent();
-  if (coefficients.mass != 0.0) result = SparseMatrix(result + coefficients.mass * problem.mass);
-  if (coefficients.damping != 0.0 && problem.has_damping()) {
-    result = SparseMatrix(result + coefficients.damping * problem.damping);
-  }
-  if (coefficients.stiffness == 0.0) result.prune(0.0, 0.0);
+  SparseMatrix result;
+  const auto add = [&](double factor, const auto& matrix) {
+    if (factor == 0.0) return;
+    SparseMatrix term = matrix();
+    term *= factor;
+    if (result.cols() > 0) add_sparse(result, term).swap(term);
+    result.swap(term);
+  };
+  add(coefficients.stiffness, [&] { return problem.internal_force->tangent(); });
+  add(coefficients.mass, [&] { return problem.mass.whole(); });
+  if (problem.has_damping()) add(coefficients.damping, [&] { return problem.damping; });
   return result;
+}
+
+std::vector<Index> nodes_near(const SemidiscreteProblem& problem, const SparseMatrix& matrix,
+                              const std::vector<Index>& points, int layers) {
+  std::vector<char> reached(static_cast<std::size_t>(problem.nodes.cols()), 0);
+  std::vector<Index> nodes;
+  const auto reach = [&](Index node) {
+    if (reached[static_cast<std::size_t>(node)] != 0) return;
+    reached[static_cast<std::size_t>(node)] = 1;
+    nodes.push_back(node);
+  };
+  for (const Index point : points) {
+    for (SparseRowMatrix::InnerIterator entry(problem.contact.trace, point); entry; ++entry) reach(entry.col());
+  }
+  const Index d = problem.dimension;
+  std::size_t begin = 0;
+  for (int layer = 0; layer < layers; ++layer) {
+    const std::size_t end = nodes.size();
+    for (; begin < end; ++begin) {
+      for (Index dof = nodes[begin] * d; dof < (nodes[begin] + 1) * d; ++dof) {
+        for (SparseMatrix::InnerIterator entry(matrix, dof); entry; ++entry) reach(entry.row() / d);
+      }
+    }
+  }
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
 }
 
 std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs) {

@@ -25,9 +25,8 @@ class StageSolver {
 /// A on the dofs that a stage solves for, and what its factorization would take.
 struct AnalysedOperator {
   std::vector<int> dofs;      ///< ascending
-  SparseMatrix matrix;        ///< on them
   SparseRowMatrix supported;  ///< A's rows of supported dofs: supports × all dofs
-  SparseCholesky factor;      ///< analysed
+  SparseCholesky factor;      ///< of A on these dofs, analysed
 };
 [[nodiscard]] AnalysedOperator analyse_operator(const SemidiscreteProblem& problem,
                                                 const OperatorCoefficients& coefficients);

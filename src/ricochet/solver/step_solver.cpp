@@ -1,14 +1,18 @@
 #include "ricochet/solver/step_solver.hpp"
 
 #include "ricochet/base/memory.hpp"
+#include "ricochet/base/timer.hpp"
 #include "ricochet/solver/stage_solver.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// Part of the machine's memory that factors may take.
-constexpr double memory_part = 0.6;
+/// Part of the machine's memory that factors may take. While one is made, half as much again is needed.
+constexpr double memory_part = 0.5;
+/// Of a factorization: some ten minutes of one core. Reading a factor that takes longer to make is slower, too, than
+/// the iterations of most time steps.
+constexpr double most_operations = 2e13;
 
 class StagesStepSolver final : public StepSolver {
  public:
@@ -38,28 +42,34 @@ class StagesStepSolver final : public StepSolver {
  private:
   void add_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                  const StepSolverOptions& options) {
-    ChosenMethod chosen{options.method, 0.0, 0.0};
+    ChosenMethod chosen{.method = options.method};
     // The contact dofs alone are few, and their matrix has no inertia that would help an iteration.
     if (coefficients.dofs == StageDofs::contact) chosen.method = SolverMethod::direct;
     AnalysedOperator analysed;
+    Timer timer;
     if (chosen.method != SolverMethod::iterative) {
       analysed = analyse_operator(problem, coefficients);
-      const SparseCholesky::Prediction predicted = analysed.factor.predicted();
-      chosen.predicted_entries = predicted.entries;
-      chosen.predicted_operations = predicted.operations;
-      const double limit = options.memory > 0.0 ? options.memory : memory_part * physical_memory();
-      if (chosen.method == SolverMethod::automatic) {
-        const bool fits = predicted.possible && sizeof(double) * predicted.entries <= limit;
-        chosen.method = fits ? SolverMethod::direct : SolverMethod::iterative;
-      }
+      chosen.ordering_seconds = timer.restart();
+      decide(analysed.factor.predicted(), options, chosen);
     }
     if (chosen.method == SolverMethod::direct) {
       stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options));
+      chosen.factorization_seconds = timer.seconds();
     } else {
       analysed = {};
       stages_.push_back(make_iterative_stage(problem, coefficients, options));
     }
     methods_.push_back(chosen);
+  }
+
+  static void decide(const SparseCholesky::Prediction& predicted, const StepSolverOptions& options,
+                     ChosenMethod& chosen) {
+    chosen.predicted_entries = predicted.entries;
+    chosen.predicted_operations = predicted.operations;
+    if (chosen.method != SolverMethod::automatic) return;
+    const double limit = options.memory > 0.0 ? options.memory : memory_part * physical_memory();
+    const bool fits = predicted.possible && sizeof(double) * predicted.entries <= limit;
+    chosen.method = fits && predicted.operations <= most_operations ? SolverMethod::direct : SolverMethod::iterative;
   }
 
   std::vector<std::unique_ptr<StageSolver>> stages_;

@@ -11,7 +11,7 @@
 namespace ricochet {
 
 enum class SolverMethod : char {
-  automatic,  ///< direct where the factor fits into memory
+  automatic,  ///< direct where the factor fits into memory and is made in minutes
   direct,     ///< a Cholesky factor, made once: forward solve, contact problem, back solve
   iterative,  ///< conjugate gradients around a direct solve near the contact
 };
@@ -20,7 +20,7 @@ struct StepSolverOptions {
   SolverMethod method = SolverMethod::automatic;
   /// Of the iterative method: the force that is left over, relative to the forces of the step, in the energy norm.
   double tolerance = 1e-10;
-  /// Memory that factors may take, in bytes; 0: six tenths of the machine's.
+  /// Memory that factors may take, in bytes; 0: half of the machine's.
   double memory = 0.0;
   /// All contact points take part in every contact problem, not only those that may touch. For comparisons.
   bool all_points = false;
@@ -31,6 +31,8 @@ struct ChosenMethod {
   SolverMethod method = SolverMethod::direct;
   double predicted_entries = 0.0;     ///< of the factor; 0: not asked
   double predicted_operations = 0.0;  ///< of its factorization
+  double ordering_seconds = 0.0;      ///< with the analysis that predicts
+  double factorization_seconds = 0.0;
 };
 
 class StepSolver {

@@ -63,6 +63,8 @@ TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
     EXPECT_LT(static_cast<double>(blocks.bytes()), 0.6 * 12.0 * static_cast<double>(stiffness.nonZeros()));
     // What was stored is what was given, entry by entry.
     for (const auto& [stored, given] : {std::pair{&blocks, &stiffness}, std::pair{&scalars, &mass}}) {
+      EXPECT_EQ(stored->diagonal(), Vector(given->diagonal()));
+      EXPECT_FALSE(stored->is_diagonal());
       const SparseMatrix whole = stored->whole();
       ASSERT_EQ(whole.nonZeros(), given->nonZeros());
       for (Index k = 0; k < whole.nonZeros(); ++k) {
@@ -151,9 +153,21 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
     diagonal.setIdentity();
     const NodeMatrix matrix(diagonal, 2, order);
     EXPECT_TRUE(matrix.is_scalar());
+    EXPECT_TRUE(matrix.is_diagonal());
+    EXPECT_EQ(matrix.diagonal(), Vector(Vector::Ones(x.size())));
     Vector y;
     matrix.multiply(x, y);
     EXPECT_EQ(x, y);
+  }
+  {
+    // Blocks on the diagonal only, which are full or not.
+    SparseMatrix blocks(mass.rows(), mass.cols());
+    for (Index i = 0; i < mass.rows(); ++i) blocks.insert(i, i) = 2.0 + static_cast<double>(i % 2);
+    EXPECT_TRUE(NodeMatrix(blocks, 2, order).is_diagonal());
+    EXPECT_EQ(NodeMatrix(blocks, 2, order).diagonal(), Vector(blocks.diagonal()));
+    blocks.insert(0, 1) = blocks.insert(1, 0) = 0.5;
+    EXPECT_FALSE(NodeMatrix(blocks, 2, order).is_diagonal());
+    EXPECT_EQ(NodeMatrix(blocks, 2, order).diagonal(), Vector(blocks.diagonal()));
   }
   {
     const SparseMatrix empty(mass.rows(), mass.cols());
@@ -163,6 +177,7 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
     EXPECT_EQ(y, Vector(Vector::Zero(x.size())));
     EXPECT_EQ(matrix.form(x), 0.0);
     EXPECT_EQ(matrix.whole().nonZeros(), 0);
+    EXPECT_EQ(matrix.diagonal(), Vector(Vector::Zero(x.size())));
   }
 }
 

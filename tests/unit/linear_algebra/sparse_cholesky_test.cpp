@@ -68,7 +68,7 @@ TEST(SparseCholesky, PredictsWhatTheFactorizationTakes) {
   factor.analyse(matrix);
   const auto predicted = factor.predicted();
   EXPECT_GT(predicted.operations, 300.0);
-  factor.factorize(matrix);
+  factor.factorize();
   EXPECT_EQ(predicted.entries, static_cast<double>(factor.factor_entries()));
   Vector x;
   factor.solve(matrix * Vector::Ones(300), x);
@@ -152,17 +152,6 @@ TEST(SparseCholesky, MayBeMoved) {
   Vector x;
   second.solve(matrix * Vector::Ones(20), x);
   EXPECT_LE((x - Vector::Ones(20)).norm(), 1e-12);
-}
-
-TEST(Extract, TakesTheNumberedRowsAndColumns) {
-  const SparseMatrix matrix = random_matrix(6, 61);
-  const std::vector<int> rows{1, -1, 0, -1, 2, -1};
-  const std::vector<int> columns{-1, 0, -1, 1, -1, -1};
-  const Matrix found = extract(matrix, rows, 3, columns, 2);
-  const Matrix dense = matrix;
-  const std::vector<Index> row_of{2, 0, 4};
-  const std::vector<Index> column_of{1, 3};
-  EXPECT_TRUE(found == Matrix(dense(row_of, column_of)));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "support/box_mesh.hpp"
 
 /// @file Patch tests: an affine displacement is reproduced, its stress is that of the law and in equilibrium.

@@ -6,6 +6,7 @@
 
 #include "ricochet/linear_algebra/dense_cholesky.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/contact/cone_formulation.hpp"
 #include "ricochet/solver/contact/contact_iteration.hpp"
 

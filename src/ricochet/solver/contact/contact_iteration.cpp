@@ -304,9 +304,7 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
     solution.residual = 1.0;
     return;
   }
-  solution.reaction = warm_reaction_.size() == problem.rows() && warm_reaction_.allFinite()
-                          ? warm_reaction_
-                          : Vector(Vector::Zero(problem.rows()));
+  if (warm_reaction_.size() == problem.rows() && warm_reaction_.allFinite()) solution.reaction = warm_reaction_;
   do {
     system_.take_reaction(solution.reaction, current_.reaction);
     if (!current_.reaction.allFinite()) current_.reaction.setZero();  // scaled beyond the range of numbers

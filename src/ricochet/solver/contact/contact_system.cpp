@@ -142,12 +142,12 @@ void ContactSystem::set_data(const ContactProblem& problem) {
 }
 
 void ContactSystem::select(const ContactProblem& problem, const std::vector<char>& wanted) {
-  std::vector<Index> chosen;
+  chosen_.clear();
   for (Index i = 0; i < problem.points(); ++i) {
     // Sparse and product operators keep all points: a selection would cost more than they do.
-    if (mode_ != Mode::dense || wanted[static_cast<std::size_t>(i)] != 0) chosen.push_back(i);
+    if (mode_ != Mode::dense || wanted[static_cast<std::size_t>(i)] != 0) chosen_.push_back(i);
   }
-  gather(problem, chosen);
+  gather(problem);
   offset_.resize(static_cast<Index>(row_of_.size()));
   offset_rounding_.setZero(offset_.size());
   for (Index row = 0; row < offset_.size(); ++row) {
@@ -159,23 +159,23 @@ void ContactSystem::select(const ContactProblem& problem, const std::vector<char
   largest_offset_ = offset_.lpNorm<Eigen::Infinity>();
 }
 
-void ContactSystem::gather(const ContactProblem& problem, const std::vector<Index>& chosen) {
+void ContactSystem::gather(const ContactProblem& problem) {
   last_points_.swap(points_);
   points_.clear();
-  std::vector<Index> rows;
-  for (const Index i : chosen) {
+  rows_.clear();
+  for (const Index i : chosen_) {
     ContactPoint point = make_point(problem, i);
     const Index first = point.first;
     // Sparse and product operators keep all of their rows.
     const Index size = mode_ == Mode::dense ? point.size : problem_first_[static_cast<std::size_t>(i) + 1] - first;
-    point.first = static_cast<Index>(rows.size());
-    for (Index k = 0; k < size; ++k) rows.push_back(first + k);
+    point.first = static_cast<Index>(rows_.size());
+    for (Index k = 0; k < size; ++k) rows_.push_back(first + k);
     if (problem.is_eligible(i)) points_.push_back(point);
   }
-  const bool same = rows == row_of_ && chosen == gathered_;
+  const bool same = rows_ == row_of_ && chosen_ == gathered_;
   if (!same) {
-    gathered_ = chosen;
-    row_of_ = std::move(rows);
+    gathered_ = chosen_;
+    row_of_ = rows_;
     row_scale_.assign(row_of_.size(), 1.0);
     std::size_t point = 0;
     for (std::size_t row = 0; row < row_of_.size(); ++row) {
@@ -208,7 +208,8 @@ void ContactSystem::copy_dense() {
   const Matrix& w = *operator_->dense();
   const auto count = static_cast<Index>(row_of_.size());
   if (matrix_.rows() != count) matrix_.resize(count, count);
-  std::vector<Index> runs;
+  std::vector<Index>& runs = runs_;
+  runs.clear();
   for (Index i = 0; i < count; ++i) {
     if (i == 0 || problem_row(i) != problem_row(i - 1) + 1) runs.push_back(i);
   }

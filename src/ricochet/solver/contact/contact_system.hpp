@@ -123,7 +123,7 @@ class ContactSystem {
   [[nodiscard]] double reaction_scale(Index i) const {
     return data_scale_ / operator_scale_ / scale_[static_cast<std::size_t>(i)];
   }
-  void gather(const ContactProblem& problem, const std::vector<Index>& points);
+  void gather(const ContactProblem& problem);
   void copy_dense();
   void note_sum(double sum);
   void copy_sparse();
@@ -142,6 +142,9 @@ class ContactSystem {
   std::string fault_;
 
   std::vector<Index> gathered_;    ///< points of the problem in the system, eligible or not
+  std::vector<Index> chosen_;      ///< those that the system is asked for
+  std::vector<Index> rows_;        ///< of these, of the problem
+  std::vector<Index> runs_;        ///< work space of copy_dense
   std::vector<Index> row_of_;      ///< per row of the system: the problem's row
   std::vector<double> row_scale_;  ///< per row of the system: D
   std::vector<ContactPoint> points_, last_points_;

@@ -1,0 +1,88 @@
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
+
+#include "ricochet/base/parallel.hpp"
+
+namespace ricochet {
+
+SparseMatrix extract(const SparseMatrix& matrix, const std::vector<int>& row_number, Index rows,
+                     const std::vector<int>& column_number, Index columns) {
+  SparseMatrix result(rows, columns);
+  if (columns == 0) return result;  // Eigen's makeCompressed reads and writes a first column without asking
+  std::vector<int> counts(static_cast<std::size_t>(columns), 0);
+  for (Index j = 0; j < matrix.cols(); ++j) {
+    const int column = column_number[static_cast<std::size_t>(j)];
+    if (column < 0) continue;
+    for (SparseMatrix::InnerIterator entry(matrix, j); entry; ++entry) {
+      counts[static_cast<std::size_t>(column)] += row_number[static_cast<std::size_t>(entry.row())] >= 0 ? 1 : 0;
+    }
+  }
+  result.reserve(counts);
+  for (Index j = 0; j < matrix.cols(); ++j) {
+    const int column = column_number[static_cast<std::size_t>(j)];
+    if (column < 0) continue;
+    for (SparseMatrix::InnerIterator entry(matrix, j); entry; ++entry) {
+      const int row = row_number[static_cast<std::size_t>(entry.row())];
+      if (row >= 0) result.insert(row, column) = entry.value();
+    }
+  }
+  result.makeCompressed();
+  return result;
+}
+
+namespace {
+
+/// Calls enter(row, value) for the entries of a column of a + b, ascending.
+template <class Enter>
+void merge_column(const SparseMatrix& a, const SparseMatrix& b, Index column, const Enter& enter) {
+  SparseMatrix::InnerIterator left(a, column), right(b, column);
+  while (left || right) {
+    if (!right || (left && left.row() < right.row())) {
+      enter(left.row(), left.value());
+      ++left;
+    } else if (!left || right.row() < left.row()) {
+      enter(right.row(), right.value());
+      ++right;
+    } else {
+      enter(left.row(), left.value() + right.value());
+      ++left;
+      ++right;
+    }
+  }
+}
+
+}  // namespace
+
+SparseMatrix add_sparse(const SparseMatrix& a, const SparseMatrix& b) {
+  SparseMatrix result(a.rows(), a.cols());
+  int* begins = result.outerIndexPtr();
+  parallel_ranges(a.cols(), [&](Index first, Index last) {
+    for (Index column = first; column < last; ++column) {
+      int count = 0;
+      merge_column(a, b, column, [&](Index, double) { ++count; });
+      begins[column + 1] = count;
+    }
+  });
+  for (Index column = 0; column < a.cols(); ++column) begins[column + 1] += begins[column];
+  result.resizeNonZeros(begins[a.cols()]);
+  parallel_ranges(a.cols(), [&](Index first, Index last) {
+    for (Index column = first; column < last; ++column) {
+      int at = begins[column];
+      merge_column(a, b, column, [&](Index row, double value) {
+        result.innerIndexPtr()[at] = static_cast<int>(row);
+        result.valuePtr()[at++] = value;
+      });
+    }
+  });
+  return result;
+}
+
+bool is_diagonal(const SparseMatrix& matrix) {
+  for (Index column = 0; column < matrix.cols(); ++column) {
+    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
+      if (entry.row() != column && entry.value() != 0.0) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace ricochet

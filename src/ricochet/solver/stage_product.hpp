@@ -1,0 +1,29 @@
+#pragma once
+
+#include "ricochet/linear_algebra/node_matrix.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/stage.hpp"
+
+/// @file Products with the matrix of a stage.
+namespace ricochet {
+
+/// A = αM + κK + ηC on all dofs. A mass that couples more nodes than the stiffness (an equivalent mass) is not added up
+/// with it: one number per pair of nodes is read for it then, and not d².
+class StageProduct {
+ public:
+  StageProduct() = default;
+  /// Keeps a reference to the problem. `matrix`: A.
+  StageProduct(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+               const SparseMatrix& matrix);
+
+  /// y = A x. Allocates on the first call only.
+  void multiply(const Vector& x, Vector& y) const;
+
+ private:
+  NodeMatrix matrix_;                 ///< A, or κK
+  const NodeMatrix* mass_ = nullptr;  ///< where M is apart
+  double mass_factor_ = 0.0;          ///< α
+  mutable Vector ordered_x_, ordered_y_, inertia_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <ostream>
+
+#include "allocation_count.hpp"
+#include "ricochet/base/parallel.hpp"
+#include "ricochet/simulation/history.hpp"
+#include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
+
+// A time step allocates nothing once its work space has grown to what the contact needs.
+
+namespace ricochet {
+namespace {
+
+using test_support::allocation_count;
+using test_support::CaseRun;
+using test_support::thrown_bodies;
+using test_support::thrown_case;
+
+TEST(AllocationCount, CountsWhatIsAllocated) {
+  const long before = allocation_count();
+  auto number = std::make_unique<int>(3);
+  EXPECT_EQ(allocation_count(), before + 1);
+  Vector vector = Vector::Zero(100);
+  EXPECT_EQ(allocation_count(), before + 2);
+  EXPECT_EQ(*number + vector[99], 3.0);
+}
+
+struct Variant {
+  std::string name, time, mass, contact;
+  std::vector<std::string> overrides;
+  bool is_steady = true;  ///< the contact stays as it is for many steps
+};
+
+void PrintTo(const Variant& variant, std::ostream* stream) {
+  *stream << variant.name;
+}
+
+std::vector<Variant> variants() {
+  const std::string trapezoidal = "scheme = \"newmark\"\npreset = \"trapezoidal\"\n";
+  return {{"Newmark", trapezoidal, "equivalent", "", {}},
+          {"NewmarkFriction", trapezoidal, "equivalent", "friction = 0.3\n", {}},
+          {"NewmarkAllPoints", trapezoidal, "equivalent", "friction = 0.3\n", {"solver.contact_points=all"}},
+          {"NewmarkIterative", trapezoidal, "equivalent", "friction = 0.3\n", {"solver.method=iterative"}},
+          {"KlrConserving", "scheme = \"klr-conserving\"\n", "consistent", "friction = 0.3\n", {}, false},
+          {"Midpoint", "scheme = \"midpoint\"\n", "lumped", "", {}, false},
+          {"SemiExplicit", "scheme = \"semi-explicit\"\n", "equivalent-lumped", "friction = 0.3\n", {}}};
+}
+
+class StepAllocations : public testing::TestWithParam<Variant> {};
+
+/// Steps in which something was allocated, out of those that were looked at.
+struct Tally {
+  long steps = 0, allocating = 0;
+  void add(long count) {
+    ++steps;
+    allocating += count > 0 ? 1 : 0;
+  }
+};
+
+/// None at all while nothing touches. In contact, work space grows with the points that may touch and with those that
+/// press, which come and go; where the same points press, stick and slip as in the two steps before, steps that
+/// allocate are the exception (new points come near).
+TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
+  const auto bodies = thrown_bodies();
+  for (const std::size_t body : {0u, 3u}) {
+    for (const int threads : {1, 2}) {
+      set_thread_count(threads);
+      std::vector<std::string> overrides = GetParam().overrides;
+      overrides.push_back("time.end=3.0");
+      CaseRun run(thrown_case(bodies[body], GetParam().mass, GetParam().time, GetParam().contact), overrides);
+      HistoryRecorder recorder(run.problem(), *run.model().rotation, run.model().probes);
+      std::vector<ContactStatus> status;
+      long same = 0;
+      Tally apart, in_contact;
+      for (int step = 0; step < 300; ++step) {
+        const long before = allocation_count();
+        run.simulation().advance();
+        (void)recorder.row(run.state(), run.simulation().account());
+        const long count = allocation_count() - before;
+        same = run.state().contact_status == status ? same + 1 : 0;
+        status = run.state().contact_status;
+        if (step < 3 || same < 2) continue;
+        const bool touches = (run.state().forces.normal_reaction.array() > 0.0).any();
+        (touches ? in_contact : apart).add(count);
+      }
+      const std::string where = bodies[body].name + ", " + std::to_string(threads) + " threads";
+      EXPECT_GT(apart.steps, 50) << where;
+      EXPECT_EQ(apart.allocating, 0) << where;
+      if (!GetParam().is_steady) continue;
+      EXPECT_GT(in_contact.steps, 50) << where;
+      EXPECT_LE(static_cast<double>(in_contact.allocating), 0.2 * static_cast<double>(in_contact.steps)) << where;
+    }
+  }
+  set_thread_count(1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, StepAllocations, testing::ValuesIn(variants()),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace ricochet
