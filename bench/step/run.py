@@ -21,6 +21,7 @@ SCALING_BODIES = ([("disc", 2, size) for size in (0.09, 0.05, 0.0275, 0.0155, 0.
                   + [("ball", 3, size) for size in (0.25, 0.165, 0.107, 0.072, 0.0475, 0.032, 0.0212)])
 STEP = 1e-3
 STEPS = 160  # the body is in contact from step 92 on
+SCALING_STEPS = 112
 
 
 def mesh(directory, name, dimension, size):
@@ -34,7 +35,8 @@ def mesh(directory, name, dimension, size):
 def case(directory, body, mass="equivalent", friction=0.0, more=""):
     name, dimension, size = body
     zeros = ", ".join(["0.0"] * (dimension - 1))
-    path = directory / f"{name}-{size:g}-{mass}-{friction:g}{'-' + more.split('=')[-1].strip() if more else ''}.toml"
+    method = "-" + more.split('"')[1] if more else ""  # more: [solver] with its method
+    path = directory / f"{name}-{size:g}-{mass}-{friction:g}{method}.toml"
     sliding = 0.5 if friction > 0.0 else 0.0
     path.write_text(
         f'[mesh]\nfile = "{mesh(directory, *body)}"\n[[material]]\ngroup = "body"\ndensity = 1.0\nlambda = 1e4\nmu = 5e3\n'
@@ -96,7 +98,7 @@ def measure_scaling(arguments, directory):
             if method == "direct" and body[1] == 3 and body[2] < 0.03:
                 continue  # a factor of 20 GB
             path = case(directory, body, more=f'[solver]\nmethod = "{method}"\n')
-            records.append(dict(ours(arguments, path, "--alone"), body=body, method=method))
+            records.append(dict(ours(arguments, path, "--alone", "--steps", SCALING_STEPS), body=body, method=method))
     return records
 
 

@@ -163,9 +163,8 @@ double run(const Options& options) {
   Simulation simulation(model->problem, *scheme, model->initial, step_solver_options(input));
   const double start = timer.seconds();
   HistoryRecorder recorder(model->problem, *model->rotation, model->probes);
-  const double matrices = megabytes(model->problem.internal_force->tangent()) + megabytes(model->problem.mass.whole());
   simulation.advance();
-  const double peak = peak_memory();
+  const double peak_alone = peak_memory();
   std::unique_ptr<Limits> limits;
   if (options.compare) limits = std::make_unique<Limits>(step_operator(model->problem, *scheme));
 
@@ -194,7 +193,9 @@ double run(const Options& options) {
     static_cast<void>(row);
   }
 
+  const double peak = limits ? peak_alone : peak_memory();
   const SemidiscreteProblem& problem = model->problem;
+  const double matrices = megabytes(problem.internal_force->tangent()) + megabytes(problem.mass.whole());
   fmt::print(R"({{"case": "{}", "dimension": {}, "dofs": {}, "contact_points": {}, "threads": {}, )", options.path,
              problem.dimension, problem.dof_count(), problem.contact.size(), thread_count());
   fmt::print(

@@ -16,6 +16,11 @@ namespace {
 constexpr Index block_columns = 8;
 /// How far ahead of the stream to fetch, in numbers.
 constexpr Index fetch_ahead = 512;
+/// Tall blocks are read in so many places at once: the processor fetches ahead in each of them, and one core gets a
+/// third more from memory than in one place.
+constexpr Index streams = 4;
+/// Panels in each place from which on that is worth it.
+constexpr Index fewest_panels = 4;
 
 // H numbers side by side, aligned or anywhere in memory.
 template <int H>
@@ -113,6 +118,17 @@ RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index 
   w += C;
   const Index end = filled(rows_below);
   Index row = 0;
+  if (const Index panels = end / 8 / streams; panels >= fewest_panels) {
+    const Index apart = panels * 8;
+    for (; row < apart; row += 8, stream += 8 * C) {
+      for (Index k = 0; k < streams; ++k) {
+        for (int j = 0; j < C; ++j) __builtin_prefetch(stream + k * apart * C + fetch_ahead + 8 * j);
+        forward_panel<8, C>(stream + k * apart * C, x, w + k * apart + row);
+      }
+    }
+    stream += (streams - 1) * apart * C;
+    row = streams * apart;
+  }
   for (; row + 8 <= end; row += 8) {
     for (int j = 0; j < C; ++j) __builtin_prefetch(stream + fetch_ahead + 8 * j);
     stream = forward_panel<8, C>(stream, x, w + row);
@@ -144,13 +160,24 @@ RICOCHET_PART_OF_CALLER const double* backward_block(const double* stream, Index
   if ((end & 4) != 0) stream = backward_panel<4, C>(stream, below + (row -= 4), product);
   Pack<8> products[C];
   for (int j = 0; j < C; ++j) products[j] = Pack<8>{};
-  while (row > 0) {
+  const auto add_panel = [&](const double* panel, const double* rows) {
+    const Pack<8> values = load<8>(rows);
+    for (int j = 0; j < C; ++j) __builtin_prefetch(panel - fetch_ahead + 8 * j);
+    for (int j = 0; j < C; ++j) products[j] += load<8>(panel + 8 * j) * values;
+  };
+  const Index panels = end / 8 / streams;
+  const Index apart = panels >= fewest_panels ? panels * 8 : 0;
+  while (row > streams * apart) {
     row -= 8;
     stream -= 8 * C;
-    const Pack<8> values = load<8>(below + row);
-    for (int j = 0; j < C; ++j) __builtin_prefetch(stream - fetch_ahead + 8 * j);
-    for (int j = 0; j < C; ++j) products[j] += load<8>(stream + 8 * j) * values;
+    add_panel(stream, below + row);
   }
+  while (row > (streams - 1) * apart) {
+    row -= 8;
+    stream -= 8 * C;
+    for (Index k = 0; k < streams; ++k) add_panel(stream - k * apart * C, below + row - k * apart);
+  }
+  stream -= (streams - 1) * apart * C;
   constexpr int lanes = triangle_lanes(C);
   stream -= lanes * C;
   Pack<lanes> right{};
