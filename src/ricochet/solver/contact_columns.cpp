@@ -105,7 +105,7 @@ void ContactColumns::motion(const Vector& y, Vector& result) {
 void ContactColumns::add_reaction(const Vector& r, Vector& y) {
   for (const Block& block : blocks_) {
     const Index count = block.columns.cols();
-    if (r.segment(block.first, count).isZero(0.0)) continue;
+    if (block.columns.rows() == 0 || r.segment(block.first, count).isZero(0.0)) continue;
     gather(block.path, y, gathered_);
     for (Index k = 0; k < count; ++k) {
       const double factor = r[block.first + k];
