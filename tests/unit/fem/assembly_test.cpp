@@ -107,7 +107,7 @@ TEST(RotationGauge, FindsTheCellThatTurnsMost) {
     u.setZero();
     u[node * d] = 0.01;
     const double alone = gauge.largest(u);
-    EXPECT_GT(alone, 0.05);
+    EXPECT_GT(alone, 0.03);  // cells are 0.02 to 0.17 wide
     set_thread_count(3);
     EXPECT_EQ(gauge.largest(u), alone);
     set_thread_count(1);
