@@ -50,7 +50,16 @@ TEST_P(Assembly, IsExactlySymmetricAndTheSameBitsForAnyNumberOfThreads) {
   set_thread_count(1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Elements, Assembly, testing::ValuesIn(all_element_kinds()),
+/// Without thousands of curved cells that have few nodes each: minutes under the sanitizers.
+std::vector<ElementKind> assembled_kinds() {
+  std::vector<ElementKind> result = all_element_kinds();
+  std::erase_if(result, [](const ElementKind& kind) {
+    return kind.dimension() == 3 && kind.geometry_degree > kind.displacement_degree;
+  });
+  return result;
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, Assembly, testing::ValuesIn(assembled_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
 /// Every pair of nodes of a cell is there, and nothing else.
