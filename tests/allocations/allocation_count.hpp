@@ -7,7 +7,4 @@ namespace ricochet::test_support {
 /// Calls of malloc and its relatives, operator new included, by all threads since the start.
 [[nodiscard]] long allocation_count();
 
-/// The next allocation ends the program, so that a debugger shows where it comes from.
-void stop_at_next_allocation(bool stop);
-
 }  // namespace ricochet::test_support

@@ -18,11 +18,11 @@ void each_part(std::uint64_t set, const Work& work) {
 
 /// Fills graph.cell_begins and graph.cells.
 void list_cells_of_parts(const DisplacementSpace& space, NodeGraph& graph) {
-  const auto parts = static_cast<std::size_t>(graph.order.parts());
+  const auto parts = static_cast<std::size_t>(graph.order->parts());
   std::vector<std::uint8_t> part_of_node(static_cast<std::size_t>(space.node_count()));
   for (std::size_t part = 0; part < parts; ++part) {
-    for (Index place = graph.order.begins[part]; place < graph.order.begins[part + 1]; ++place) {
-      part_of_node[static_cast<std::size_t>(graph.order.node[static_cast<std::size_t>(place)])] =
+    for (Index place = graph.order->begins[part]; place < graph.order->begins[part + 1]; ++place) {
+      part_of_node[static_cast<std::size_t>(graph.order->node[static_cast<std::size_t>(place)])] =
           static_cast<std::uint8_t>(part);
     }
   }
@@ -56,8 +56,8 @@ struct PartRows {
 
 /// `seen` is work space, −1 for every node: the node from whose row a node was last seen.
 PartRows rows_of_part(const DisplacementSpace& space, const NodeGraph& graph, Index part, std::vector<int>& seen) {
-  const Index begin = graph.order.begins[static_cast<std::size_t>(part)];
-  const Index end = graph.order.begins[static_cast<std::size_t>(part) + 1];
+  const Index begin = graph.order->begins[static_cast<std::size_t>(part)];
+  const Index end = graph.order->begins[static_cast<std::size_t>(part) + 1];
   const auto first_cell = graph.cells.begin() + graph.cell_begins[static_cast<std::size_t>(part)];
   const auto last_cell = graph.cells.begin() + graph.cell_begins[static_cast<std::size_t>(part) + 1];
   // The nodes of the cells around each place, with repetitions.
@@ -66,7 +66,7 @@ PartRows rows_of_part(const DisplacementSpace& space, const NodeGraph& graph, In
     for (auto number = first_cell; number != last_cell; ++number) {
       cell.go_to(*number);
       for (int k = 0; k < cell.node_count(); ++k) {
-        const Index place = graph.order.place[static_cast<std::size_t>(cell.nodes()[k])];
+        const Index place = graph.order->place[static_cast<std::size_t>(cell.nodes()[k])];
         if (place >= begin && place < end) enter(static_cast<std::size_t>(place - begin), cell);
       }
     }
@@ -83,7 +83,7 @@ PartRows rows_of_part(const DisplacementSpace& space, const NodeGraph& graph, In
   PartRows rows;
   rows.lengths.reserve(offsets.size() - 1);
   for (std::size_t place = 0; place + 1 < offsets.size(); ++place) {
-    const int node = graph.order.node[static_cast<std::size_t>(begin) + place];
+    const int node = graph.order->node[static_cast<std::size_t>(begin) + place];
     const auto row_begin = static_cast<std::ptrdiff_t>(rows.neighbours.size());
     for (Index k = offsets[place]; k < offsets[place + 1]; ++k) {
       const int neighbour = around[static_cast<std::size_t>(k)];
@@ -101,9 +101,9 @@ PartRows rows_of_part(const DisplacementSpace& space, const NodeGraph& graph, In
 
 NodeGraph node_graph(const DisplacementSpace& space) {
   NodeGraph graph;
-  graph.order = order_nodes(space.nodes);
+  graph.order = std::make_shared<const NodeOrder>(order_nodes(space.nodes));
   list_cells_of_parts(space, graph);
-  const Index parts = graph.order.parts();
+  const Index parts = graph.order->parts();
   std::vector<PartRows> rows(static_cast<std::size_t>(parts));
   graph.offsets.assign(static_cast<std::size_t>(space.node_count()) + 1, 0);
   parallel_ranges(parts, [&](Index first, Index last) {
@@ -112,7 +112,7 @@ NodeGraph node_graph(const DisplacementSpace& space) {
       PartRows& own = rows[static_cast<std::size_t>(part)] = rows_of_part(space, graph, part, seen);
       for (std::size_t k = 0; k < own.lengths.size(); ++k) {
         const int node =
-            graph.order.node[static_cast<std::size_t>(graph.order.begins[static_cast<std::size_t>(part)]) + k];
+            graph.order->node[static_cast<std::size_t>(graph.order->begins[static_cast<std::size_t>(part)]) + k];
         graph.offsets[static_cast<std::size_t>(node) + 1] = own.lengths[k];
       }
     }
@@ -125,7 +125,7 @@ NodeGraph node_graph(const DisplacementSpace& space) {
       auto from = own.neighbours.begin();
       for (std::size_t k = 0; k < own.lengths.size(); ++k, from += own.lengths[k - 1]) {
         const int node =
-            graph.order.node[static_cast<std::size_t>(graph.order.begins[static_cast<std::size_t>(part)]) + k];
+            graph.order->node[static_cast<std::size_t>(graph.order->begins[static_cast<std::size_t>(part)]) + k];
         std::copy(from, from + own.lengths[k],
                   graph.neighbours.begin() + graph.offsets[static_cast<std::size_t>(node)]);
       }

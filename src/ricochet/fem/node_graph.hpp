@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "ricochet/base/node_order.hpp"
@@ -14,7 +15,7 @@ struct NodeGraph {
   std::vector<int> neighbours;
 
   /// Parts of near nodes. One thread at a time works on the rows of a part.
-  NodeOrder order;
+  std::shared_ptr<const NodeOrder> order;
   /// The cells (numbered through all blocks) that touch the nodes of each part, ascending. Those between two parts are
   /// listed in both.
   std::vector<Index> cell_begins;

@@ -1,12 +1,12 @@
 #include "ricochet/problem/internal_force.hpp"
 
-#include "ricochet/base/parallel.hpp"
+#include "ricochet/linear_algebra/conjugate_gradients.hpp"
 
 namespace ricochet {
 
-LinearElasticity::LinearElasticity(const SparseMatrix& stiffness, const Points& nodes)
-    : rigid_(nodes, stiffness),
-      stiffness_(stiffness, static_cast<int>(nodes.rows()), std::make_shared<const NodeOrder>(order_nodes(nodes))) {}
+LinearElasticity::LinearElasticity(const SparseMatrix& stiffness, const Points& nodes,
+                                   std::shared_ptr<const NodeOrder> order)
+    : rigid_(nodes, stiffness), stiffness_(stiffness, static_cast<int>(nodes.rows()), std::move(order)) {}
 
 void LinearElasticity::evaluate(const Vector& displacement, Vector& force) const {
   rigid_.remove(displacement, stiffness_.order(), deformation_);
@@ -16,9 +16,7 @@ void LinearElasticity::evaluate(const Vector& displacement, Vector& force) const
 
 double LinearElasticity::evaluate_with_energy(const Vector& displacement, Vector& force) const {
   evaluate(displacement, force);
-  return 0.5 * parallel_sum<double>(deformation_.size(), [&](Index begin, Index end) {
-           return deformation_.segment(begin, end - begin).dot(force_.segment(begin, end - begin));
-         });
+  return 0.5 * dot_product(deformation_, force_);
 }
 
 double LinearElasticity::energy(const Vector& displacement) const {

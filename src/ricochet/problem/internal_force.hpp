@@ -25,8 +25,8 @@ class InternalForce {
 /// K U, computed from U less its rigid motion, which has no part in it.
 class LinearElasticity final : public InternalForce {
  public:
-  /// K symmetric to the bit, dofs × dofs; `nodes`: reference positions, d × count.
-  LinearElasticity(const SparseMatrix& stiffness, const Points& nodes);
+  /// K symmetric to the bit, dofs × dofs; `nodes`: reference positions, d × count; `order`: of them, for products.
+  LinearElasticity(const SparseMatrix& stiffness, const Points& nodes, std::shared_ptr<const NodeOrder> order);
   void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double evaluate_with_energy(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;

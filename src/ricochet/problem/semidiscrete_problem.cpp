@@ -91,7 +91,8 @@ void SemidiscreteProblem::add_contact_force(const Vector& normal, const Vector& 
   }
 }
 
-void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, bool mass_without_contact_inertia) {
+void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, std::shared_ptr<const NodeOrder> order,
+                    bool mass_without_contact_inertia) {
   problem.is_massless.assign(static_cast<std::size_t>(problem.dof_count()), 0);
   problem.massless_dofs.clear();
   problem.contact_dofs.clear();
@@ -104,7 +105,7 @@ void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, bool
       problem.is_massless[static_cast<std::size_t>(dof)] = 1;
     }
   }
-  problem.mass = NodeMatrix(mass, problem.dimension, std::make_shared<const NodeOrder>(order_nodes(problem.nodes)));
+  problem.mass = NodeMatrix(mass, problem.dimension, std::move(order));
 }
 
 }  // namespace ricochet

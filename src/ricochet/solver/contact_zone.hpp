@@ -23,8 +23,6 @@ class ContactZone {
 
   /// With the residual b − A x of the whole body, reactions left out: x_P and the reactions.
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution);
-  /// The point is one that the zone was made for.
-  [[nodiscard]] bool has(Index point) const { return has_[static_cast<std::size_t>(point)] != 0; }
 
   void report() const { zone_->report(); }
   void observe(const ContactObserver& observer) { zone_->observe(observer); }

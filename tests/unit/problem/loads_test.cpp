@@ -146,7 +146,7 @@ TEST(LinearElasticity, HasItsForceEnergyAndTangent) {
   const SparseMatrix stiffness = dense.sparseView();
   Points nodes(2, 2);
   nodes << 0.0, 1.0, 0.0, 0.0;
-  const LinearElasticity elasticity(stiffness, nodes);
+  const LinearElasticity elasticity(stiffness, nodes, std::make_shared<const NodeOrder>(order_nodes(nodes)));
   Vector force;
   const Vector u = Eigen::Vector4d(1.0, 5.0, 4.0, 5.0);
   elasticity.evaluate(u, force);
