@@ -3,14 +3,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "processor_timer.hpp"
+#include "limits.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
@@ -18,38 +18,24 @@
 #include "ricochet/case/model.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
-#include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/simulation.hpp"
 
-// What the time steps of a case cost, as multiples of the plain triangular solve (CHOLMOD's, with the factor of the
-// same matrix) and of the time in which memory can be read: the limits that a step with contact should approach. Steps
-// and solves take turns, so that both see the same machine. Prints one JSON object.
+// What the time steps of a case cost, next to the limits that a step with contact should approach (limits.hpp). Steps
+// and limits take turns, so that both see the same machine. Prints one JSON object.
 
 namespace {
 
 using namespace ricochet;
+using namespace ricochet::bench;
 
 struct Options {
   std::string path;
   int steps = 200;
   int threads = 1;
-  bool compare = true;       ///< with the plain solve and the memory
+  bool compare = true;       ///< with the limits
   bool forces = false;       ///< print the contact force and the time of every step
   double largest_ratio = 0;  ///< of a step to the plain solve; above it the program fails
-};
-
-/// Processor time of one thread is not disturbed by other programs; of several it would be a sum.
-class StepTimer {
- public:
-  [[nodiscard]] double seconds() const {
-    return thread_count() == 1 ? processor_.seconds() : std::chrono::duration<double>(Clock::now() - start_).count();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  ProcessorTimer processor_;
-  Clock::time_point start_ = Clock::now();
 };
 
 double median(std::vector<double> values) {
@@ -70,68 +56,16 @@ double megabytes(const SparseMatrix& matrix) {
                  static_cast<double>(matrix.cols()) * sizeof(int));
 }
 
-/// Reads memory as fast as one thread can.
-class MemoryReader {
- public:
-  explicit MemoryReader(std::size_t bytes) : values_(std::max<std::size_t>(bytes / sizeof(double), 1024), 1.0) {}
-  double seconds() {
-    const StepTimer timer;
-    double sums[32] = {};
-    for (std::size_t i = 0; i + 32 <= values_.size(); i += 32) {
-      for (std::size_t k = 0; k < 32; ++k) sums[k] += values_[i + k];
-    }
-    for (const double sum : sums) sink_ = sink_ + sum;
-    return timer.seconds();
-  }
-
- private:
-  std::vector<double> values_;
-  volatile double sink_ = 0.0;
-};
-
-/// The limits, measured next to the steps.
-class Limits {
- public:
-  explicit Limits(const SparseMatrix& matrix)
-      : library_(matrix, SparseCholesky::TriangularSolve::library),
-        own_(matrix),
-        memory_(own_.factor_bytes()),
-        right_(Vector::Ones(matrix.cols())) {}
-
-  void measure(std::vector<double>& library, std::vector<double>& own, std::vector<double>& memory) {
-    library.push_back(solve(library_));
-    own.push_back(solve(own_));
-    memory_.seconds();
-    memory.push_back(memory_.seconds());
-  }
-  [[nodiscard]] std::size_t factor_bytes() const { return own_.factor_bytes(); }
-  [[nodiscard]] std::size_t library_bytes() const { return library_.factor_bytes(); }
-
- private:
-  /// The second of two: the caches are then as they are in a run of solves.
-  double solve(SparseCholesky& factor) {
-    double seconds = 0.0;
-    for (int k = 0; k < 2; ++k) {
-      const StepTimer timer;
-      factor.forward(right_, y_);
-      factor.backward(y_, x_);
-      seconds = timer.seconds();
-    }
-    return seconds;
-  }
-
-  SparseCholesky library_, own_;
-  MemoryReader memory_;
-  Vector right_, y_, x_;
-};
-
-SparseMatrix step_operator(const SemidiscreteProblem& problem, const Scheme& scheme) {
+std::unique_ptr<Limits> make_limits(const SemidiscreteProblem& problem, const Scheme& scheme) {
+  if (std::isfinite(scheme.critical_step())) return std::make_unique<ExplicitLimits>(problem);
   const OperatorCoefficients a = scheme.operators(problem).front();
-  return a.stiffness * problem.internal_force->tangent() + a.mass * problem.mass.whole();
+  return std::make_unique<DirectLimits>(a.stiffness * problem.internal_force->tangent() +
+                                        a.mass * problem.mass.whole());
 }
 
 struct Phase {
-  std::vector<double> step, row, library, own, memory;
+  std::vector<double> step, row;
+  LimitTimes limits;
   long iterations = 0, most_active = 0;
 };
 
@@ -140,14 +74,15 @@ const char* phase_name(long active, long before) {
   return active == before ? "closed" : "changing";
 }
 
-void print_phase(const std::string& name, const Phase& phase, double scale) {
-  const double step = median(phase.step), library = median(phase.library), own = median(phase.own);
+void print_phase(const std::string& name, const Phase& phase) {
+  const double step = median(phase.step), library = median(phase.limits.library);
   fmt::print(R"(, "{}": {{"steps": {}, "active": {}, "step_ms": {:.5g}, "row_ms": {:.5g}, "iterations": {:.3g})", name,
              phase.step.size(), phase.most_active, 1e3 * step, 1e3 * median(phase.row),
              static_cast<double>(phase.iterations) / static_cast<double>(phase.step.size()));
+  if (!phase.limits.memory.empty()) fmt::print(R"(, "memory_limit_ms": {:.5g})", 1e3 * median(phase.limits.memory));
   if (library > 0.0) {
-    fmt::print(R"(, "library_solve_ms": {:.5g}, "own_solve_ms": {:.5g}, "memory_limit_ms": {:.5g}, "ratio": {:.4g})",
-               1e3 * library, 1e3 * own, 1e3 * scale * median(phase.memory), step / library);
+    fmt::print(R"(, "library_solve_ms": {:.5g}, "own_solve_ms": {:.5g}, "ratio": {:.4g})", 1e3 * library,
+               1e3 * median(phase.limits.own), step / library);
   }
   fmt::print("}}");
 }
@@ -166,7 +101,7 @@ double run(const Options& options) {
   simulation.advance();
   const double peak_alone = peak_memory();
   std::unique_ptr<Limits> limits;
-  if (options.compare) limits = std::make_unique<Limits>(step_operator(model->problem, *scheme));
+  if (options.compare) limits = make_limits(model->problem, *scheme);
 
   std::map<std::string, Phase> phases;
   long before = 0;
@@ -184,7 +119,7 @@ double run(const Options& options) {
     Phase& phase = phases[phase_name(active, before)];
     before = active;
     // The first step after the limits have been through the caches would not be typical.
-    if (limits && k % 6 == 0) limits->measure(phase.library, phase.own, phase.memory);
+    if (limits && k % 6 == 0) limits->measure(phase.limits);
     if (limits && k % 6 == 1) continue;
     phase.step.push_back(step);
     phase.row.push_back(row_seconds);
@@ -202,15 +137,12 @@ double run(const Options& options) {
       R"("read_s": {:.4g}, "assembly_s": {:.4g}, "start_s": {:.4g}, "factor_entries": {}, "matrices_mb": {:.4g}, )",
       build.read_mesh, build.assembly, start, simulation.factor_entries(), matrices);
   fmt::print(R"("peak_mb": {:.5g})", peak);
-  if (limits) {
-    fmt::print(R"(, "factor_mb": {:.5g}, "library_factor_mb": {:.5g})",
-               1e-6 * static_cast<double>(limits->factor_bytes()), 1e-6 * static_cast<double>(limits->library_bytes()));
-  }
+  if (limits) fmt::print(R"(, "factor_mb": {:.5g})", 1e-6 * static_cast<double>(limits->bytes()));
   double worst = 0.0;
   for (const auto& [name, phase] : phases) {
     if (phase.step.empty()) continue;
-    print_phase(name, phase, 2.0);
-    if (!phase.library.empty()) worst = std::max(worst, median(phase.step) / median(phase.library));
+    print_phase(name, phase);
+    if (!phase.limits.library.empty()) worst = std::max(worst, median(phase.step) / median(phase.limits.library));
   }
   if (options.forces)
     fmt::print(R"(, "force": [{:.12g}], "steps_ms": [{:.5g}])", fmt::join(force, ", "), fmt::join(milliseconds, ", "));

@@ -1,0 +1,78 @@
+#include "limits.hpp"
+
+#include <algorithm>
+
+#include "ricochet/base/instruction_sets.hpp"
+#include "ricochet/linear_algebra/node_matrix.hpp"
+
+namespace ricochet::bench {
+
+namespace {
+
+/// The processor fetches ahead in each of several places: one core then gets more from memory than from one stream.
+constexpr std::size_t places = 4, at_once = 16;
+
+RICOCHET_EACH_INSTRUCTION_SET
+double sum_of(const double* values, std::size_t count) {
+  double sums[places * at_once] = {};
+  const std::size_t quarter = count / places;
+  for (std::size_t i = 0; i + at_once <= quarter; i += at_once) {
+    for (std::size_t place = 0; place < places; ++place) {
+      for (std::size_t k = 0; k < at_once; ++k) sums[place * at_once + k] += values[place * quarter + i + k];
+    }
+  }
+  double total = 0.0;
+  for (const double sum : sums) total += sum;
+  return total;
+}
+
+std::size_t bytes_of_explicit_step(const SemidiscreteProblem& problem) {
+  const NodeMatrix blocks(problem.internal_force->tangent(), problem.dimension, problem.mass.shared_order());
+  constexpr std::size_t vectors = 9;
+  return blocks.bytes() + vectors * sizeof(double) * static_cast<std::size_t>(problem.dof_count());
+}
+
+}  // namespace
+
+MemoryReader::MemoryReader(std::size_t bytes) : values_(std::max<std::size_t>(bytes / sizeof(double), 1024), 1.0) {}
+
+double MemoryReader::seconds() {
+  const StepTimer timer;
+  sink_ = sink_ + sum_of(values_.data(), values_.size());
+  return timer.seconds();
+}
+
+DirectLimits::DirectLimits(const SparseMatrix& matrix)
+    : library_(matrix, SparseCholesky::TriangularSolve::library),
+      own_(matrix),
+      memory_(own_.factor_bytes()),
+      right_(Vector::Ones(matrix.cols())) {}
+
+void DirectLimits::measure(LimitTimes& times) {
+  times.library.push_back(solve(library_));
+  times.own.push_back(solve(own_));
+  static_cast<void>(memory_.seconds());
+  times.memory.push_back(2.0 * memory_.seconds());
+}
+
+/// The second of two: the caches are then as they are in a run of solves.
+double DirectLimits::solve(SparseCholesky& factor) {
+  double seconds = 0.0;
+  for (int k = 0; k < 2; ++k) {
+    const StepTimer timer;
+    factor.forward(right_, y_);
+    factor.backward(y_, x_);
+    seconds = timer.seconds();
+  }
+  return seconds;
+}
+
+ExplicitLimits::ExplicitLimits(const SemidiscreteProblem& problem)
+    : bytes_(bytes_of_explicit_step(problem)), memory_(bytes_) {}
+
+void ExplicitLimits::measure(LimitTimes& times) {
+  static_cast<void>(memory_.seconds());
+  times.memory.push_back(memory_.seconds());
+}
+
+}  // namespace ricochet::bench

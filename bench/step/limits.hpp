@@ -1,0 +1,82 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <vector>
+
+#include "processor_timer.hpp"
+#include "ricochet/base/parallel.hpp"
+#include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+
+/// @file What a time step cannot be much quicker than, measured between the steps.
+namespace ricochet::bench {
+
+/// Processor time of one thread is not disturbed by other programs; of several it would be a sum.
+class StepTimer {
+ public:
+  [[nodiscard]] double seconds() const {
+    return thread_count() == 1 ? processor_.seconds() : std::chrono::duration<double>(Clock::now() - start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  ProcessorTimer processor_;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// Reads memory as fast as one thread can in plain loops.
+class MemoryReader {
+ public:
+  explicit MemoryReader(std::size_t bytes);
+  /// To read all of it once.
+  [[nodiscard]] double seconds();
+
+ private:
+  std::vector<double> values_;
+  volatile double sink_ = 0.0;
+};
+
+/// In seconds.
+struct LimitTimes {
+  std::vector<double> library, own, memory;
+};
+
+class Limits {
+ public:
+  virtual ~Limits() = default;
+  virtual void measure(LimitTimes& times) = 0;
+  /// Of what has to be read once in a step, or twice.
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
+};
+
+/// For a step with a factor: the plain triangular solve, CHOLMOD's and ours, and reading the factor twice.
+class DirectLimits final : public Limits {
+ public:
+  /// With the operator of a step.
+  explicit DirectLimits(const SparseMatrix& matrix);
+  void measure(LimitTimes& times) override;
+  [[nodiscard]] std::size_t bytes() const override { return own_.factor_bytes(); }
+
+ private:
+  double solve(SparseCholesky& factor);
+
+  SparseCholesky library_, own_;
+  MemoryReader memory_;
+  Vector right_, y_, x_;
+};
+
+/// For a step without one: reading the blocks of K, and reading or writing U, V and A twice and M⁻¹, the loads and ΔU
+/// once. Nine vectors are what central differences need when all of these are kept and nothing is touched twice.
+class ExplicitLimits final : public Limits {
+ public:
+  explicit ExplicitLimits(const SemidiscreteProblem& problem);
+  void measure(LimitTimes& times) override;
+  [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+
+ private:
+  std::size_t bytes_;
+  MemoryReader memory_;
+};
+
+}  // namespace ricochet::bench
