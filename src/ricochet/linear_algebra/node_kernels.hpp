@@ -1,17 +1,20 @@
 #pragma once
 
+#include <span>
+
 #include "ricochet/base/types.hpp"
+#include "ricochet/linear_algebra/node_pattern.hpp"
 
 /// @file The loops of NodeMatrix over the rows of one part. Not part of the public interface.
 namespace ricochet {
 
-/// Rows [begin, end) of a NodeMatrix, see there. Vectors are in its order.
+/// Rows of one part of a NodeMatrix, see there. Vectors are in its order.
 struct NodeRows {
-  Index begin = 0, end = 0;
-  const Index* row_begin = nullptr;
-  const Index* one_sided = nullptr;
+  Index begin = 0, end = 0;  ///< places of the part
+  std::span<const RowGroup> groups;
+  const int* place = nullptr;  ///< of the rows, of all parts
   const int* column = nullptr;
-  const double* values = nullptr;
+  const double* values = nullptr;  ///< and one number after the last block
 };
 
 /// y = A x on these rows, and what their two-sided blocks add to other rows of the range. `scalar`: A = m ⊗ I.

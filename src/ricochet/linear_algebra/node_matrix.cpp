@@ -10,6 +10,9 @@ namespace ricochet {
 
 namespace {
 
+/// How many nodes ahead to fetch what is gathered from another order.
+constexpr Index gather_ahead = 24;
+
 /// True for m ⊗ I: the columns of a node's components have their own component's rows only, and the same values.
 bool acts_on_components_alike(const SparseMatrix& matrix, int d) {
   const int* outer = matrix.outerIndexPtr();
@@ -27,55 +30,6 @@ bool acts_on_components_alike(const SparseMatrix& matrix, int d) {
   return true;
 }
 
-/// The blocks that are stored for one row after another.
-class RowPattern {
- public:
-  /// Looks at `columns` columns of the matrix per node: its d components, or 1 where they are alike.
-  RowPattern(const SparseMatrix& matrix, int columns, int d, const NodeOrder& order)
-      : matrix_(matrix), columns_(columns), d_(d), order_(order) {}
-
-  /// Of the node at a place of the part [begin, end).
-  void read(Index place, Index begin, Index end) {
-    const Index node = order_.node[static_cast<std::size_t>(place)];
-    nodes_.clear();
-    for (int a = 0; a < columns_; ++a) {
-      // The columns of a node mostly have the same rows, ascending: then nothing is added by the second.
-      std::size_t known = 0;
-      int last = -1;
-      for (SparseMatrix::InnerIterator entry(matrix_, node * d_ + a); entry; ++entry) {
-        const int other = static_cast<int>(entry.row()) / d_;
-        if (other == last) continue;
-        last = other;
-        if (a > 0 && known < nodes_.size() && nodes_[known] == other) {
-          ++known;
-        } else {
-          nodes_.push_back(other);
-        }
-      }
-    }
-    two_sided_.clear();
-    one_sided_.clear();
-    for (const int other : nodes_) {
-      const int at = order_.place[static_cast<std::size_t>(other)];
-      if (at < begin || at >= end || at == place) one_sided_.push_back(at);
-      if (at > place && at < end) two_sided_.push_back(at);
-    }
-    for (std::vector<int>* places : {&two_sided_, &one_sided_}) {
-      std::sort(places->begin(), places->end());
-      places->erase(std::unique(places->begin(), places->end()), places->end());
-    }
-  }
-  /// Places of the columns, ascending.
-  [[nodiscard]] const std::vector<int>& two_sided() const { return two_sided_; }
-  [[nodiscard]] const std::vector<int>& one_sided() const { return one_sided_; }
-
- private:
-  const SparseMatrix& matrix_;
-  int columns_, d_;
-  const NodeOrder& order_;
-  std::vector<int> nodes_, two_sided_, one_sided_;
-};
-
 }  // namespace
 
 NodeMatrix::NodeMatrix(const SparseMatrix& matrix, int d, std::shared_ptr<const NodeOrder> order)
@@ -87,74 +41,57 @@ NodeMatrix::NodeMatrix(const SparseMatrix& matrix, int d, std::shared_ptr<const 
     return;
   }
   stride_ = acts_on_components_alike(matrix, d) ? 1 : d * d;
-  read_pattern(matrix);
+  pattern_ = node_pattern(matrix, d, is_scalar(), *order_);
   read_values(matrix);
 }
 
-void NodeMatrix::read_pattern(const SparseMatrix& matrix) {
-  const Index count = order_->size();
-  row_begin_.assign(static_cast<std::size_t>(count) + 1, 0);
-  one_sided_.assign(static_cast<std::size_t>(count), 0);
-  const auto each_row = [&](const auto& enter) {
-    parallel_ranges(order_->parts(), [&](Index first, Index last) {
-      RowPattern row(matrix, is_scalar() ? 1 : dimension_, dimension_, *order_);
-      for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) {
-        for (Index place = order_->begins[part]; place < order_->begins[part + 1]; ++place) {
-          row.read(place, order_->begins[part], order_->begins[part + 1]);
-          enter(static_cast<std::size_t>(place), row);
-        }
-      }
-    });
-  };
-  each_row([&](std::size_t place, const RowPattern& row) {
-    one_sided_[place] = static_cast<Index>(row.two_sided().size());
-    row_begin_[place + 1] = static_cast<Index>(row.two_sided().size() + row.one_sided().size());
-  });
-  for (std::size_t place = 0; place < one_sided_.size(); ++place) {
-    row_begin_[place + 1] += row_begin_[place];
-    one_sided_[place] += row_begin_[place];
+/// Calls enter(place of the row, its first block, the group with its numbers of blocks) for the rows of these parts.
+template <class Enter>
+void NodeMatrix::visit_rows(Index first_part, Index end_part, const Enter& enter) const {
+  const auto group_of = [&](Index part) { return pattern_.part_groups[static_cast<std::size_t>(part)]; };
+  for (Index g = group_of(first_part); g < group_of(end_part); ++g) {
+    const RowGroup& group = pattern_.groups[static_cast<std::size_t>(g)];
+    Index block = group.first_block;
+    for (Index row = group.first_row; row < group.end_row(); ++row, block += group.blocks_per_row())
+      enter(pattern_.place[static_cast<std::size_t>(row)], block, group);
   }
-  column_.resize(static_cast<std::size_t>(row_begin_.back()));
-  each_row([&](std::size_t place, const RowPattern& row) {
-    std::copy(row.two_sided().begin(), row.two_sided().end(), column_.begin() + row_begin_[place]);
-    std::copy(row.one_sided().begin(), row.one_sided().end(), column_.begin() + one_sided_[place]);
-  });
 }
 
 void NodeMatrix::read_values(const SparseMatrix& matrix) {
   const int d = dimension_;
-  values_.assign(column_.size() * static_cast<std::size_t>(stride_), 0.0);
-  parallel_ranges(order_->size(), [&](Index first, Index last) {
-    for (Index place = first; place < last; ++place) {
+  // The kernels read one number beyond a block.
+  values_.assign(pattern_.column.size() * static_cast<std::size_t>(stride_) + 1, 0.0);
+  const int* const columns = pattern_.column.data();
+  parallel_ranges(order_->parts(), [&](Index first, Index last) {
+    visit_rows(first, last, [&](int place, Index first_block, const RowGroup& group) {
       const Index node = order_->node[static_cast<std::size_t>(place)];
-      const int* begin = column_.data() + row_begin_[static_cast<std::size_t>(place)];
-      const int* middle = column_.data() + one_sided_[static_cast<std::size_t>(place)];
-      const int* end = column_.data() + row_begin_[static_cast<std::size_t>(place) + 1];
+      const int* begin = columns + first_block;
+      const int* middle = begin + group.two_sided;
+      const int* end = middle + group.one_sided;
       for (int a = 0; a < (is_scalar() ? 1 : d); ++a) {
-        int last = -1;
+        int last_seen = -1;
         const int* at = end;
         // Columns are rows: the matrix is symmetric.
         for (SparseMatrix::InnerIterator entry(matrix, node * d + a); entry; ++entry) {
           const int other = static_cast<int>(entry.row()) / d;
-          if (other != last) {
+          if (other != last_seen) {
             const int other_place = order_->place[static_cast<std::size_t>(other)];
             at = std::lower_bound(begin, middle, other_place);
             if (at == middle || *at != other_place) at = std::lower_bound(middle, end, other_place);
             if (at != end && *at != other_place) at = end;
-            last = other;
+            last_seen = other;
           }
           if (at == end) continue;
           const Index in_block = is_scalar() ? 0 : (entry.row() - Index{other} * d) * d + a;
-          values_[static_cast<std::size_t>((at - column_.data()) * stride_ + in_block)] = entry.value();
+          values_[static_cast<std::size_t>((at - columns) * stride_ + in_block)] = entry.value();
         }
       }
-    }
+    });
   });
 }
 
 std::size_t NodeMatrix::bytes() const {
-  return sizeof(double) * values_.size() + sizeof(int) * column_.size() +
-         sizeof(Index) * (row_begin_.size() + one_sided_.size());
+  return sizeof(double) * values_.size() + pattern_.bytes();
 }
 
 void NodeMatrix::to_order(const Vector& x, Vector& ordered) const {
@@ -162,6 +99,9 @@ void NodeMatrix::to_order(const Vector& x, Vector& ordered) const {
   ordered.resize(size());
   parallel_ranges(order_->size(), [&](Index first, Index last) {
     for (Index place = first; place < last; ++place) {
+      if (place + gather_ahead < last) {
+        __builtin_prefetch(x.data() + Index{order_->node[static_cast<std::size_t>(place + gather_ahead)]} * d);
+      }
       const Index node = order_->node[static_cast<std::size_t>(place)];
       for (int a = 0; a < d; ++a) ordered[place * d + a] = x[node * d + a];
     }
@@ -173,6 +113,9 @@ void NodeMatrix::from_order(const Vector& ordered, Vector& x) const {
   x.resize(size());
   parallel_ranges(order_->size(), [&](Index first, Index last) {
     for (Index node = first; node < last; ++node) {
+      if (node + gather_ahead < last) {
+        __builtin_prefetch(ordered.data() + Index{order_->place[static_cast<std::size_t>(node + gather_ahead)]} * d);
+      }
       const Index place = order_->place[static_cast<std::size_t>(node)];
       for (int a = 0; a < d; ++a) x[node * d + a] = ordered[place * d + a];
     }
@@ -180,8 +123,13 @@ void NodeMatrix::from_order(const Vector& ordered, Vector& x) const {
 }
 
 NodeRows NodeMatrix::rows_of(Index part) const {
-  const auto begin = order_->begins.begin() + part;
-  return {begin[0], begin[1], row_begin_.data(), one_sided_.data(), column_.data(), values_.data()};
+  const Index* const groups = pattern_.part_groups.data() + part;
+  return {order_->begins[static_cast<std::size_t>(part)],
+          order_->begins[static_cast<std::size_t>(part) + 1],
+          {pattern_.groups.data() + groups[0], pattern_.groups.data() + groups[1]},
+          pattern_.place.data(),
+          pattern_.column.data(),
+          values_.data()};
 }
 
 void NodeMatrix::multiply_ordered(const Vector& x, Vector& y) const {
@@ -219,10 +167,11 @@ double NodeMatrix::form(const Vector& x) const {
 /// Calls enter(place of the row, place of the column, its numbers) for every block that is stored.
 template <class Enter>
 void NodeMatrix::visit_blocks(const Enter& enter) const {
-  for (std::size_t place = 0; place + 1 < row_begin_.size(); ++place) {
-    for (Index k = row_begin_[place]; k < row_begin_[place + 1]; ++k)
-      enter(static_cast<int>(place), column_[static_cast<std::size_t>(k)], values_.data() + k * stride_);
-  }
+  if (!order_) return;
+  visit_rows(0, order_->parts(), [&](int place, Index first_block, const RowGroup& group) {
+    for (Index k = first_block; k < first_block + group.blocks_per_row(); ++k)
+      enter(place, pattern_.column[static_cast<std::size_t>(k)], values_.data() + k * stride_);
+  });
 }
 
 Vector NodeMatrix::diagonal() const {
@@ -257,15 +206,15 @@ SparseMatrix NodeMatrix::whole() const {
   // Blocks per row, both sides of the diagonal.
   std::vector<Index> begins(static_cast<std::size_t>(nodes) + 1, 0);
   const auto each_block = [&](const auto& enter) {
-    for (Index place = 0; place < nodes; ++place) {
-      const auto row = static_cast<std::size_t>(place);
-      const int node = order_->node[row];
-      for (Index k = row_begin_[row]; k < row_begin_[row + 1]; ++k) {
-        const int other = order_->node[static_cast<std::size_t>(column_[static_cast<std::size_t>(k)])];
-        enter(node, Place{other, k, false});
-        if (k < one_sided_[row]) enter(other, Place{node, k, true});
+    visit_rows(0, order_->parts(), [&](int place, Index first_block, const RowGroup& group) {
+      const int node = order_->node[static_cast<std::size_t>(place)];
+      for (Index k = 0; k < group.blocks_per_row(); ++k) {
+        const Index block = first_block + k;
+        const int other = order_->node[static_cast<std::size_t>(pattern_.column[static_cast<std::size_t>(block)])];
+        enter(node, Place{other, block, false});
+        if (k < group.two_sided) enter(other, Place{node, block, true});
       }
-    }
+    });
   };
   each_block([&](int node, const Place&) { ++begins[static_cast<std::size_t>(node) + 1]; });
   for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];

@@ -5,6 +5,7 @@
 
 #include "ricochet/base/node_order.hpp"
 #include "ricochet/base/types.hpp"
+#include "ricochet/linear_algebra/node_pattern.hpp"
 
 /// @file Products with a symmetric matrix on the dofs of nodes, at the price of reading about half of it once.
 namespace ricochet {
@@ -56,17 +57,16 @@ class NodeMatrix {
  private:
   [[nodiscard]] NodeRows rows_of(Index part) const;
   template <class Enter>
+  void visit_rows(Index first_part, Index end_part, const Enter& enter) const;
+  template <class Enter>
   void visit_blocks(const Enter& enter) const;
-  void read_pattern(const SparseMatrix& matrix);
   void read_values(const SparseMatrix& matrix);
 
   int dimension_ = 2;
   Index stride_ = 1;  ///< numbers per block: d², or 1
   std::shared_ptr<const NodeOrder> order_;
-  std::vector<Index> row_begin_;  ///< per place, and the number of blocks
-  std::vector<Index> one_sided_;  ///< per place: where the blocks that serve their row only begin
-  std::vector<int> column_;       ///< per block: place of the column
-  std::vector<double> values_;    ///< per block: column by column
+  NodePattern pattern_;
+  std::vector<double> values_;  ///< per block: column by column
   mutable Vector ordered_x_, ordered_y_;
 };
 

@@ -2,12 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/base/instruction_sets.hpp"
-
-// How wide vectors are passed to functions depends on the instruction set; here all such calls are inlined.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wpsabi"
-#endif
+#include "ricochet/linear_algebra/packs.hpp"
 
 namespace ricochet {
 
@@ -22,30 +17,6 @@ constexpr Index streams = 4;
 /// Panels in each place from which on that is worth it.
 constexpr Index fewest_panels = 4;
 
-// H numbers side by side, aligned or anywhere in memory.
-template <int H>
-struct Lanes;
-#define RICOCHET_LANES(count)                                                       \
-  template <>                                                                       \
-  struct Lanes<count> {                                                             \
-    typedef double Value __attribute__((vector_size(8 * (count))));                 \
-    typedef double Unaligned __attribute__((vector_size(8 * (count)), aligned(8))); \
-  };
-RICOCHET_LANES(2)
-RICOCHET_LANES(4)
-RICOCHET_LANES(8)
-#undef RICOCHET_LANES
-template <int H>
-using Pack = typename Lanes<H>::Value;
-
-template <int H>
-RICOCHET_PART_OF_CALLER Pack<H> load(const double* from) {
-  return *reinterpret_cast<const typename Lanes<H>::Unaligned*>(from);
-}
-template <int H>
-RICOCHET_PART_OF_CALLER void store(double* to, const Pack<H>& value) {
-  *reinterpret_cast<typename Lanes<H>::Unaligned*>(to) = value;
-}
 RICOCHET_PART_OF_CALLER double sum(const Pack<2>& a) {
   return a[0] + a[1];
 }

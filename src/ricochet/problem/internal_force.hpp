@@ -13,8 +13,6 @@ class InternalForce {
   virtual ~InternalForce() = default;
   /// Nodal forces of the stress at displacement U (for linear elasticity K U).
   virtual void evaluate(const Vector& displacement, Vector& force) const = 0;
-  /// The same, and the strain energy at U: cheaper than asking for both.
-  [[nodiscard]] virtual double evaluate_with_energy(const Vector& displacement, Vector& force) const = 0;
   /// Strain energy (½UᵀKU).
   [[nodiscard]] virtual double energy(const Vector& displacement) const = 0;
   /// ∂force/∂U, symmetric. Made anew by every call, which takes the time of some tens of evaluations: ask once, and do
@@ -28,7 +26,6 @@ class LinearElasticity final : public InternalForce {
   /// K symmetric to the bit, dofs × dofs; `nodes`: reference positions, d × count; `order`: of them, for products.
   LinearElasticity(const SparseMatrix& stiffness, const Points& nodes, std::shared_ptr<const NodeOrder> order);
   void evaluate(const Vector& displacement, Vector& force) const override;
-  [[nodiscard]] double evaluate_with_energy(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   [[nodiscard]] SparseMatrix tangent() const override { return stiffness_.whole(); }
 

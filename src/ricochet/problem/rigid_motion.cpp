@@ -2,12 +2,16 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cstdint>
 
 #include "ricochet/base/parallel.hpp"
 
 namespace ricochet {
 
 namespace {
+
+/// How many nodes ahead to fetch what is gathered: neighbours in the order of the result may be numbered far apart.
+constexpr Index fetch_ahead = 24;
 
 /// x × u: one number in 2D, three in 3D.
 template <int d>
@@ -22,95 +26,113 @@ Axial<d> cross(const Position& x, const Displacement& u) {
   }
 }
 
-/// Σ u and Σ x × u.
-template <int d>
-struct Sums {
-  Eigen::Matrix<double, d, 1> displacement = Eigen::Matrix<double, d, 1>::Zero();
-  Axial<d> moment = Axial<d>::Zero();
-  Sums& operator+=(const Sums& other) {
-    displacement += other.displacement;
-    moment += other.moment;
-    return *this;
-  }
-};
+/// The k-th of `count` things, without a pattern that a structured mesh could share: multiples of the golden ratio.
+std::size_t scattered(std::uint64_t k, std::size_t count) {
+  const std::uint64_t fraction = (k * 2654435769u) & 0xffffffffu;
+  return static_cast<std::size_t>((fraction * count) >> 32);
+}
 
 }  // namespace
 
-RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
-    : dimension_(static_cast<int>(nodes.rows())), positions_(nodes) {
+RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness, std::shared_ptr<const NodeOrder> order)
+    : dimension_(static_cast<int>(nodes.rows())), order_(std::move(order)), positions_(nodes.rows(), nodes.cols()) {
+  find_bodies(nodes, stiffness);
+  motions_.resize(bodies_.size());
+  if (!order_) return;
+  const Points positions = positions_;
+  const std::vector<int> body_of_node = body_at_;
+  for (Index i = 0; i < positions.cols(); ++i) {
+    const int node = order_->node[static_cast<std::size_t>(i)];
+    positions_.col(i) = positions.col(node);
+    if (!body_at_.empty()) body_at_[static_cast<std::size_t>(i)] = body_of_node[static_cast<std::size_t>(node)];
+  }
+}
+
+/// Fills bodies_, and by nodes positions_ and body_at_.
+void RigidMotion::find_bodies(const Points& nodes, const SparseMatrix& stiffness) {
   const Index d = nodes.rows();
-  std::vector<int> body_of_node(static_cast<std::size_t>(nodes.cols()), -1);
+  body_at_.assign(static_cast<std::size_t>(nodes.cols()), -1);
+  std::vector<int> members;
   for (Index first = 0; first < nodes.cols(); ++first) {
-    if (body_of_node[static_cast<std::size_t>(first)] >= 0) continue;
+    if (body_at_[static_cast<std::size_t>(first)] >= 0) continue;
     const int number = static_cast<int>(bodies_.size());
-    Body body;
-    body.nodes.push_back(first);
-    body_of_node[static_cast<std::size_t>(first)] = number;
-    for (std::size_t k = 0; k < body.nodes.size(); ++k) {
-      for (SparseMatrix::InnerIterator entry(stiffness, body.nodes[k] * d); entry; ++entry) {
+    members.assign(1, static_cast<int>(first));
+    body_at_[static_cast<std::size_t>(first)] = number;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      for (SparseMatrix::InnerIterator entry(stiffness, members[k] * d); entry; ++entry) {
         const auto neighbour = static_cast<Index>(entry.row()) / d;
-        if (body_of_node[static_cast<std::size_t>(neighbour)] >= 0) continue;
-        body_of_node[static_cast<std::size_t>(neighbour)] = number;
-        body.nodes.push_back(neighbour);
+        if (body_at_[static_cast<std::size_t>(neighbour)] >= 0) continue;
+        body_at_[static_cast<std::size_t>(neighbour)] = number;
+        members.push_back(static_cast<int>(neighbour));
       }
     }
-    std::sort(body.nodes.begin(), body.nodes.end());
-    body.count = static_cast<Index>(body.nodes.size());
-    Vector centre = Vector::Zero(d);
-    for (const Index node : body.nodes) centre += nodes.col(node);
-    centre /= static_cast<double>(body.count);
-    body.position_sum = Vector::Zero(d);
-    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-    for (const Index node : body.nodes) {
-      positions_.col(node) -= centre;
-      body.position_sum += positions_.col(node);
-      Eigen::Vector3d x = Eigen::Vector3d::Zero();
-      x.head(d) = positions_.col(node);
-      inertia += x.squaredNorm() * Eigen::Matrix3d::Identity() - x * x.transpose();
-    }
-    body.inverse_inertia = d == 2 ? Matrix::Constant(1, 1, 1.0 / inertia(2, 2)) : Matrix(inertia.inverse());
-    if (!body.inverse_inertia.allFinite()) body.inverse_inertia.setZero();
-    if (body.count == nodes.cols()) body.nodes = {};
-    bodies_.push_back(std::move(body));
+    std::sort(members.begin(), members.end());
+    bodies_.push_back(make_body(nodes, members));
+    for (const int node : members) positions_.col(node) = nodes.col(node) - bodies_.back().centre;
   }
-  if (bodies_.size() > 1) body_of_node_ = std::move(body_of_node);
-  motions_.resize(bodies_.size());
+  if (bodies_.size() == 1) body_at_ = {};
+}
+
+RigidMotion::Body RigidMotion::make_body(const Points& nodes, const std::vector<int>& members) {
+  const Index d = nodes.rows();
+  Body body;
+  if (static_cast<Index>(members.size()) <= most_fitted) {
+    body.fitted = members;
+  } else {
+    for (std::uint64_t k = 0; k < most_fitted; ++k) body.fitted.push_back(members[scattered(k, members.size())]);
+  }
+  const auto count = static_cast<Index>(body.fitted.size());
+  body.positions.resize(d, count);
+  for (Index i = 0; i < count; ++i) body.positions.col(i) = nodes.col(body.fitted[static_cast<std::size_t>(i)]);
+  body.centre = body.positions.rowwise().mean();
+  body.positions.colwise() -= body.centre;
+  body.position_sum = body.positions.rowwise().sum();
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  for (Index i = 0; i < count; ++i) {
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    x.head(d) = body.positions.col(i);
+    inertia += x.squaredNorm() * Eigen::Matrix3d::Identity() - x * x.transpose();
+  }
+  body.inverse_inertia = d == 2 ? Matrix::Constant(1, 1, 1.0 / inertia(2, 2)) : Matrix(inertia.inverse());
+  if (!body.inverse_inertia.allFinite()) body.inverse_inertia.setZero();
+  return body;
 }
 
 template <int d>
-void RigidMotion::fit(const Vector& displacement) const {
-  for (std::size_t number = 0; number < bodies_.size(); ++number) {
-    const Body& body = bodies_[number];
-    const auto sums = parallel_sum<Sums<d>>(body.count, [&](Index first, Index last) {
-      Sums<d> part;
-      for (Index i = first; i < last; ++i) {
-        const Index node = body.nodes.empty() ? i : body.nodes[static_cast<std::size_t>(i)];
-        const Eigen::Matrix<double, d, 1> u = displacement.segment<d>(node * d);
-        part.displacement += u;
-        part.moment += cross<d>(positions_.col(node), u);
-      }
-      return part;
-    });
-    const Eigen::Matrix<double, d, 1> mean = sums.displacement / static_cast<double>(body.count);
-    // Σ x × (u − mean).
-    const Axial<d> moment = sums.moment - cross<d>(body.position_sum, mean);
-    Motion& motion = motions_[number];
-    motion.translation.template head<d>() = mean;
-    motion.rotation.template tail<d == 2 ? 1 : 3>() = body.inverse_inertia.template topLeftCorner < d == 2 ? 1 : 3,
-                                               d == 2 ? 1 : 3 > () * moment;
+RigidMotion::Motion RigidMotion::fit(const Body& body, const Vector& displacement) const {
+  constexpr int rotations = d == 2 ? 1 : 3;
+  Eigen::Matrix<double, d, 1> sum = Eigen::Matrix<double, d, 1>::Zero();
+  Axial<d> moment = Axial<d>::Zero();
+  for (std::size_t i = 0; i < body.fitted.size(); ++i) {
+    const Eigen::Matrix<double, d, 1> u = displacement.segment<d>(Index{body.fitted[i]} * d);
+    sum += u;
+    moment += cross<d>(body.positions.col(static_cast<Index>(i)), u);
   }
+  const Eigen::Matrix<double, d, 1> mean = sum / static_cast<double>(body.fitted.size());
+  moment -= cross<d>(body.position_sum, mean);  // Σ x × (u − mean)
+  Motion motion;
+  motion.translation.template head<d>() = mean;
+  motion.rotation.template tail<rotations>() =
+      body.inverse_inertia.template topLeftCorner<rotations, rotations>() * moment;
+  return motion;
 }
 
-template <int d, class NodeAt>
-void RigidMotion::remove_in(const Vector& displacement, const NodeAt& node_at, Vector& deformation) const {
-  fit<d>(displacement);
+template <int d>
+void RigidMotion::remove_in(const Vector& displacement, Vector& deformation) const {
+  for (std::size_t number = 0; number < bodies_.size(); ++number) {
+    motions_[number] = fit<d>(bodies_[number], displacement);
+  }
   deformation.resize(displacement.size());
+  const int* const order = order_ ? order_->node.data() : nullptr;
   parallel_ranges(positions_.cols(), [&](Index first, Index last) {
     for (Index i = first; i < last; ++i) {
-      const Index node = node_at(i);
+      if (order != nullptr && i + fetch_ahead < last) {
+        __builtin_prefetch(displacement.data() + Index{order[i + fetch_ahead]} * d);
+      }
+      const Index node = order != nullptr ? Index{order[i]} : i;
       const Motion& motion =
-          motions_[body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[static_cast<std::size_t>(node)])];
-      const Eigen::Matrix<double, d, 1> x = positions_.col(node).template head<d>();
+          motions_[body_at_.empty() ? 0 : static_cast<std::size_t>(body_at_[static_cast<std::size_t>(i)])];
+      const Eigen::Matrix<double, d, 1> x = positions_.col(i).template head<d>();
       Eigen::Matrix<double, d, 1> turned;
       if constexpr (d == 2) {
         turned << -motion.rotation[2] * x[1], motion.rotation[2] * x[0];
@@ -124,13 +146,7 @@ void RigidMotion::remove_in(const Vector& displacement, const NodeAt& node_at, V
 }
 
 void RigidMotion::remove(const Vector& displacement, Vector& deformation) const {
-  const auto itself = [](Index i) { return i; };
-  dimension_ == 2 ? remove_in<2>(displacement, itself, deformation) : remove_in<3>(displacement, itself, deformation);
-}
-
-void RigidMotion::remove(const Vector& displacement, const NodeOrder& order, Vector& deformation) const {
-  const auto ordered = [&](Index i) { return Index{order.node[static_cast<std::size_t>(i)]}; };
-  dimension_ == 2 ? remove_in<2>(displacement, ordered, deformation) : remove_in<3>(displacement, ordered, deformation);
+  dimension_ == 2 ? remove_in<2>(displacement, deformation) : remove_in<3>(displacement, deformation);
 }
 
 }  // namespace ricochet

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "ricochet/base/node_order.hpp"
@@ -14,35 +15,41 @@ namespace ricochet {
 class RigidMotion {
  public:
   /// Bodies are the connected components of the matrix's graph (nodes that share an entry). `nodes`: d × count.
-  RigidMotion(const Points& nodes, const SparseMatrix& stiffness);
+  /// With an order, what is left has its nodes in it: dofs i·d … are those of order.node[i].
+  RigidMotion(const Points& nodes, const SparseMatrix& stiffness, std::shared_ptr<const NodeOrder> order = nullptr);
 
   /// `deformation` = displacement less its rigid part.
   void remove(const Vector& displacement, Vector& deformation) const;
-  /// The same with the nodes of the result in another order: its dofs i·d … are those of order.node[i].
-  void remove(const Vector& displacement, const NodeOrder& order, Vector& deformation) const;
 
  private:
+  /// The motion is fitted to so many nodes of a body at most: it need not be the very best, as what stays of a rigid
+  /// motion is then of the size of the deformation, and a fit to all would cost another pass over all of them.
+  static constexpr Index most_fitted = 1024;
+
   struct Body {
-    /// Ascending; empty when they are all nodes there are.
-    std::vector<Index> nodes;
-    Index count = 0;
-    /// Of unit masses at the nodes: 1 × 1 in 2D, 3 × 3 in 3D; zero where a rotation is no motion.
+    std::vector<int> fitted;  ///< nodes
+    Points positions;         ///< of these, relative to their centre
+    Vector position_sum;      ///< Σ of these: zero to rounding
+    Vector centre;
+    /// Of unit masses there: 1 × 1 in 2D, 3 × 3 in 3D; zero where a rotation is no motion.
     Matrix inverse_inertia;
-    Vector position_sum;  ///< Σ of the relative positions: zero to rounding
   };
-  /// u = translation + rotation × relative position (in 2D the rotation is its last component).
+  /// u = translation + rotation × position (in 2D the rotation is its last component).
   struct Motion {
     Eigen::Vector3d translation = Eigen::Vector3d::Zero(), rotation = Eigen::Vector3d::Zero();
   };
+  void find_bodies(const Points& nodes, const SparseMatrix& stiffness);
+  static Body make_body(const Points& nodes, const std::vector<int>& members);
   template <int d>
-  void fit(const Vector& displacement) const;
-  template <int d, class NodeAt>
-  void remove_in(const Vector& displacement, const NodeAt& node_at, Vector& deformation) const;
+  Motion fit(const Body& body, const Vector& displacement) const;
+  template <int d>
+  void remove_in(const Vector& displacement, Vector& deformation) const;
 
   int dimension_ = 2;
-  Points positions_;  ///< relative to the centre of the node's body
+  std::shared_ptr<const NodeOrder> order_;
+  Points positions_;  ///< relative to the centre of the node's body, in the order of the result
   std::vector<Body> bodies_;
-  std::vector<int> body_of_node_;        ///< empty with one body
+  std::vector<int> body_at_;             ///< the same; empty with one body
   mutable std::vector<Motion> motions_;  ///< per body, of the displacement last seen
 };
 

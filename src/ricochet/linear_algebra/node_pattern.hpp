@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/base/node_order.hpp"
+#include "ricochet/base/types.hpp"
+
+/// @file Which blocks of a symmetric matrix a NodeMatrix stores, and in what order. Not part of the public interface.
+namespace ricochet {
+
+/// Rows of one part with the same numbers of blocks. The blocks of a row are consecutive, those of consecutive rows
+/// too: first the two-sided ones, with columns right of the row in its part, then the one-sided ones, of the diagonal
+/// and of other parts. Columns ascend in each.
+struct RowGroup {
+  Index first_row = 0, rows = 0;  ///< in NodePattern::place
+  Index first_block = 0;
+  Index two_sided = 0, one_sided = 0;  ///< of each row
+  [[nodiscard]] Index blocks_per_row() const { return two_sided + one_sided; }
+  [[nodiscard]] Index end_row() const { return first_row + rows; }
+};
+
+/// The rows of a part are sorted by their numbers of blocks: a loop whose length changes from row to row makes the
+/// processor guess wrongly at the end of each, which costs as much as the products. A part is small enough for its
+/// vectors to stay in the near caches in any order of its rows.
+struct NodePattern {
+  std::vector<int> place;          ///< of each row, part after part
+  std::vector<int> column;         ///< per block: place of the column
+  std::vector<RowGroup> groups;    ///< part after part
+  std::vector<Index> part_groups;  ///< first group of each part, and after them the number of groups
+
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+/// Of a symmetric matrix with d dofs per node, stored whole and compressed. Where `alike`, it is m ⊗ I and only the
+/// columns of the first components are read.
+[[nodiscard]] NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike, const NodeOrder& order);
+
+}  // namespace ricochet
