@@ -2,8 +2,8 @@
 
 /// @file Loops compiled for several instruction sets. Not part of the public interface.
 ///
-/// The program is compiled for any x86-64; functions marked so take wider registers where the processor has them. The
-/// rounding of an entry does not depend on the width as long as no sum is split: fused operations are off.
+/// The program is compiled for any x86-64; functions marked so take wider registers where the processor has them, and
+/// may round a product and a sum once where it can do both at once: bits are those of the machine.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define RICOCHET_EACH_INSTRUCTION_SET __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else

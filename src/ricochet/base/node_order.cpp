@@ -42,21 +42,22 @@ void cuts(Index begin, Index end, int levels, std::vector<Index>& begins) {
 
 }  // namespace
 
-NodeOrder order_nodes(const Points& nodes) {
+std::vector<int> order_nodes(const Points& nodes) {
+  std::vector<int> order(static_cast<std::size_t>(nodes.cols()));
+  std::iota(order.begin(), order.end(), 0);
+  bisect(nodes, order.data(), order.data() + order.size());
+  return order;
+}
+
+std::vector<Index> node_parts(Index count) {
   // Parts this large read little of one another; no more than this are needed to keep threads busy.
   constexpr Index least_part = 1024;
-  NodeOrder order;
-  order.node.resize(static_cast<std::size_t>(nodes.cols()));
-  std::iota(order.node.begin(), order.node.end(), 0);
-  bisect(nodes, order.node.data(), order.node.data() + order.node.size());
-  order.place.resize(order.node.size());
-  for (std::size_t i = 0; i < order.node.size(); ++i)
-    order.place[static_cast<std::size_t>(order.node[i])] = static_cast<int>(i);
   int levels = 0;
-  while (Index{2} << levels <= NodeOrder::most_parts && (nodes.cols() >> (levels + 1)) >= least_part) ++levels;
-  cuts(0, nodes.cols(), levels, order.begins);
-  order.begins.push_back(nodes.cols());
-  return order;
+  while (Index{2} << levels <= most_node_parts && (count >> (levels + 1)) >= least_part) ++levels;
+  std::vector<Index> begins;
+  cuts(0, count, levels, begins);
+  begins.push_back(count);
+  return begins;
 }
 
 }  // namespace ricochet

@@ -4,22 +4,17 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file An order of nodes in which near ones have near numbers.
+/// @file An order of nodes in which near ones have near numbers, and its division among threads.
 namespace ricochet {
 
-/// Nodes in the order of a recursive bisection by their coordinates, cut into consecutive parts. Depends on positions
-/// only relative to one another, and not on the number of threads.
-struct NodeOrder {
-  static constexpr Index most_parts = 64;
+/// The node at each place, in the order of a recursive bisection by their coordinates. Positions: d × count. Depends on
+/// them only relative to one another.
+[[nodiscard]] std::vector<int> order_nodes(const Points& nodes);
 
-  std::vector<int> node;      ///< the node at each place
-  std::vector<int> place;     ///< the place of each node
-  std::vector<Index> begins;  ///< of the parts, and after them the number of nodes
-  [[nodiscard]] Index size() const { return static_cast<Index>(node.size()); }
-  [[nodiscard]] Index parts() const { return static_cast<Index>(begins.size()) - 1; }
-};
+inline constexpr Index most_node_parts = 64;
 
-/// Positions: d × count. A power of two of parts: 1 for a thousand nodes, at most `most_parts`.
-[[nodiscard]] NodeOrder order_nodes(const Points& nodes);
+/// Where consecutive parts of so many nodes begin, and after them the count: the first cuts of that bisection. A power
+/// of two of parts: 1 for a thousand nodes, at most `most_node_parts`.
+[[nodiscard]] std::vector<Index> node_parts(Index count);
 
 }  // namespace ricochet

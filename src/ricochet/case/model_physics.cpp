@@ -133,7 +133,7 @@ void assemble_operators(const Case& input, Model& model) {
   };
   const SparseMatrix mass = expand_to_components(build(consistent), d);
   model.problem.internal_force =
-      std::make_shared<LinearElasticity>(assemble_stiffness(model.body, graph), model.space.nodes, graph.order);
+      std::make_shared<LinearElasticity>(assemble_stiffness(model.body, graph), model.space.nodes);
   std::vector<double> mass_damping, stiffness_damping;
   for (const Material& material : model.body.materials) {
     mass_damping.push_back(material.mass_damping);
@@ -148,7 +148,7 @@ void assemble_operators(const Case& input, Model& model) {
     const SparseMatrix part = assemble_stiffness(model.body, graph, stiffness_damping);
     model.problem.damping = model.problem.has_damping() ? SparseMatrix(model.problem.damping + part) : part;
   }
-  finish_problem(model.problem, mass, graph.order, construction->removes_contact_inertia());
+  finish_problem(model.problem, mass, construction->removes_contact_inertia());
   warn_of_creep(input, model.problem);
 }
 

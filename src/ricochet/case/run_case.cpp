@@ -145,9 +145,10 @@ RunSummary describe(const Case& input, const Model& model, const Scheme& scheme,
   summary.force_instant = scheme.force_instant();
   summary.contacts = describe_contacts(input);
   summary.probes = model.probes;
-  for (const Probe& probe : model.probes) {
+  for (Probe& probe : summary.probes) {
     const Vector at = model.space.nodes.col(probe.node);
     summary.probe_positions.emplace_back(at.data(), at.data() + at.size());
+    probe.node = model.space.number[static_cast<std::size_t>(probe.node)];
   }
   return summary;
 }

@@ -45,7 +45,7 @@ void add_rows(const NodeGraph& graph, Index part_begin, Index part_end, const In
               const double* blocks, double* values) {
   for (int i = 0; i < count; ++i) {
     const auto row = static_cast<std::size_t>(nodes[i]);
-    if (graph.order->place[row] < part_begin || graph.order->place[row] >= part_end) continue;
+    if (nodes[i] < part_begin || nodes[i] >= part_end) continue;
     const Index row_start = graph.offsets[row];
     const Index row_length = graph.offsets[row + 1] - row_start;
     const int* begin = graph.neighbours.data() + row_start;
@@ -68,7 +68,7 @@ SparseMatrix assemble(const Body& body, const NodeGraph& graph, const ElementMat
   SparseMatrix result = matrix_on_graph(graph, components);
   int most_nodes = 0;
   for (const CellBlock& block : body.space->cells) most_nodes = std::max(most_nodes, block.nodes_per_cell);
-  parallel_ranges(graph.order->parts(), [&](Index first, Index last) {
+  parallel_ranges(graph.parts(), [&](Index first, Index last) {
     std::vector<double> blocks(static_cast<std::size_t>(pair_number(0, most_nodes) * components * components));
     for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) {
       CellWalk cell(body.space->cells);
@@ -76,7 +76,7 @@ SparseMatrix assemble(const Body& body, const NodeGraph& graph, const ElementMat
         const int number = graph.cells[static_cast<std::size_t>(k)];
         cell.go_to(number);
         element(cell.block(), cell.local(), static_cast<std::size_t>(number), blocks.data());
-        add_rows<components>(graph, graph.order->begins[part], graph.order->begins[part + 1], cell.nodes(),
+        add_rows<components>(graph, graph.part_begins[part], graph.part_begins[part + 1], cell.nodes(),
                              cell.node_count(), blocks.data(), result.valuePtr());
       }
     }

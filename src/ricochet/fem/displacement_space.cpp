@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "ricochet/base/node_order.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
@@ -29,6 +30,7 @@ std::vector<CellBlock> restrict_to_vertices(const std::vector<CellBlock>& blocks
 
 DisplacementSpace vertices_of(const Mesh& mesh) {
   DisplacementSpace space{mesh.dimension, 1, {}, {}, {}, {}};
+  std::vector<Index> vertices;
   std::vector<char> is_vertex(static_cast<std::size_t>(mesh.node_count()), 0);
   for (const CellBlock& block : mesh.cells) {
     for (Index i = 0; i < block.size(); ++i) {
@@ -38,12 +40,12 @@ DisplacementSpace vertices_of(const Mesh& mesh) {
   std::vector<Index> number(is_vertex.size(), -1);
   for (std::size_t node = 0; node < is_vertex.size(); ++node) {
     if (is_vertex[node] == 0) continue;
-    number[node] = static_cast<Index>(space.mesh_node.size());
-    space.mesh_node.push_back(static_cast<Index>(node));
+    number[node] = static_cast<Index>(vertices.size());
+    vertices.push_back(static_cast<Index>(node));
   }
-  space.nodes.resize(mesh.dimension, static_cast<Index>(space.mesh_node.size()));
-  for (std::size_t i = 0; i < space.mesh_node.size(); ++i) {
-    space.nodes.col(static_cast<Index>(i)) = mesh.nodes.col(space.mesh_node[i]);
+  space.nodes.resize(mesh.dimension, static_cast<Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    space.nodes.col(static_cast<Index>(i)) = mesh.nodes.col(vertices[i]);
   }
   space.cells = restrict_to_vertices(mesh.cells, number);
   space.facets = restrict_to_vertices(mesh.facets, number);
@@ -99,9 +101,7 @@ class SecondOrderNodes {
   std::map<std::vector<Index>, Index> numbers_;
 };
 
-}  // namespace
-
-DisplacementSpace make_displacement_space(const Mesh& mesh, int degree) {
+DisplacementSpace in_order_of_mesh(const Mesh& mesh, int degree) {
   if (degree == 1 && mesh.degree == 2) return vertices_of(mesh);
   DisplacementSpace space{mesh.dimension, degree, mesh.nodes, mesh.cells, mesh.facets, {}};
   if (degree == 2 && mesh.degree == 1) {
@@ -110,8 +110,32 @@ DisplacementSpace make_displacement_space(const Mesh& mesh, int degree) {
     space.facets = nodes.refine(mesh.facets);
     space.nodes = nodes.positions();
   }
-  space.mesh_node.assign(static_cast<std::size_t>(space.node_count()), -1);
-  for (Index i = 0; i < mesh.node_count(); ++i) space.mesh_node[static_cast<std::size_t>(i)] = i;
+  return space;
+}
+
+/// Gives near nodes near numbers, and keeps the ones they had.
+void renumber(DisplacementSpace& space) {
+  const std::vector<int> order = order_nodes(space.nodes);
+  space.number.assign(order.begin(), order.end());
+  std::vector<Index> place(order.size());
+  const Points nodes = std::move(space.nodes);
+  space.nodes.resize(nodes.rows(), nodes.cols());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    place[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
+    space.nodes.col(static_cast<Index>(i)) = nodes.col(order[i]);
+  }
+  for (std::vector<CellBlock>* blocks : {&space.cells, &space.facets}) {
+    for (CellBlock& block : *blocks) {
+      for (Index& node : block.nodes) node = place[static_cast<std::size_t>(node)];
+    }
+  }
+}
+
+}  // namespace
+
+DisplacementSpace make_displacement_space(const Mesh& mesh, int degree) {
+  DisplacementSpace space = in_order_of_mesh(mesh, degree);
+  renumber(space);
   return space;
 }
 
@@ -142,7 +166,8 @@ NearestNode nearest_node(const DisplacementSpace& space, const Vector& point) {
   double best = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < space.node_count(); ++i) {
     const double distance = (space.nodes.col(i) - point).squaredNorm();
-    if (distance < best) {
+    const auto number = [&](Index node) { return space.number[static_cast<std::size_t>(node)]; };
+    if (distance < best || (distance == best && number(i) < number(nearest.node))) {
       best = distance;
       nearest.node = i;
     }

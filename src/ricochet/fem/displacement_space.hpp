@@ -7,14 +7,17 @@
 /// @file The finite element space of the displacement: Lagrange of degree 1 or 2, d components per node.
 namespace ricochet {
 
-/// Dof of component k at node i is i·dimension + k.
+/// Dof of component k at node i is i·dimension + k. Nodes are numbered so that near ones have near numbers
+/// (order_nodes): products and assembly then find what they need in the caches. People know them by other numbers.
 struct DisplacementSpace {
   int dimension = 2;
   int degree = 1;
   Points nodes;                   ///< dimension × count, positions in the reference configuration
   std::vector<CellBlock> cells;   ///< blocks in the order of the mesh, with this space's nodes
   std::vector<CellBlock> facets;  ///< likewise
-  std::vector<Index> mesh_node;   ///< for each node the mesh's node there, or −1
+  /// For each node its number for people and files, from 0: in the order of the mesh file (of its vertices where the
+  /// degree is 1), and after these the nodes that degree 2 adds to a straight mesh.
+  std::vector<Index> number;
 
   [[nodiscard]] Index node_count() const { return nodes.cols(); }
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
@@ -36,7 +39,7 @@ struct FacetPlace {
 /// The nodes of the given facets (numbered through all blocks), ascending, each once.
 [[nodiscard]] std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets);
 
-/// Node nearest to a point (the lowest number on ties) and its distance.
+/// Node nearest to a point (the lowest number for people on ties) and its distance.
 struct NearestNode {
   Index node = 0;
   double distance = 0.0;

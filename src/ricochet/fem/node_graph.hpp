@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "ricochet/base/node_order.hpp"
@@ -14,14 +13,15 @@ struct NodeGraph {
   std::vector<Index> offsets;
   std::vector<int> neighbours;
 
-  /// Parts of near nodes. One thread at a time works on the rows of a part.
-  std::shared_ptr<const NodeOrder> order;
+  /// Parts of near nodes (node_parts). One thread at a time works on the rows of a part.
+  std::vector<Index> part_begins;
   /// The cells (numbered through all blocks) that touch the nodes of each part, ascending. Those between two parts are
   /// listed in both.
   std::vector<Index> cell_begins;
   std::vector<int> cells;
 
   [[nodiscard]] Index node_count() const { return static_cast<Index>(offsets.size()) - 1; }
+  [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
 };
 [[nodiscard]] NodeGraph node_graph(const DisplacementSpace& space);
 

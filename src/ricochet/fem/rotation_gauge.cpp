@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ricochet/base/instruction_sets.hpp"
 #include "ricochet/base/parallel.hpp"
@@ -71,13 +72,15 @@ struct SimplexBatch {
   double edge[d][d][size], difference[d][d][size];
   double axial[size], trace[size];  ///< both times the determinant of the edges
 
-  void gather(const CellBlock& cells, Index first, int count, const double* positions, const double* displacement) {
-    for (int i = 0; i < count; ++i) {
-      const Index* nodes = cells.cell(first + i);
+  /// `vertices`: d + 1 nodes per cell.
+  void gather(const int* vertices, int count, const double* positions, const double* displacement) {
+    for (int i = 0; i < count; ++i, vertices += d + 1) {
+      const Index first = Index{vertices[0]} * d;
       for (int e = 0; e < d; ++e) {
+        const Index other = Index{vertices[e + 1]} * d;
         for (int k = 0; k < d; ++k) {
-          edge[e][k][i] = positions[nodes[e + 1] * d + k] - positions[nodes[0] * d + k];
-          difference[e][k][i] = displacement[nodes[e + 1] * d + k] - displacement[nodes[0] * d + k];
+          edge[e][k][i] = positions[other + k] - positions[first + k];
+          difference[e][k][i] = displacement[other + k] - displacement[first + k];
         }
       }
     }
@@ -125,17 +128,32 @@ void evaluate(SimplexBatch<3>& batch) {
 
 /// From the positions of the vertices of straight simplices.
 template <int d>
-LargestRotation largest_of_simplices(const CellBlock& cells, const Points& positions, Index first, Index last,
+LargestRotation largest_of_simplices(const std::vector<int>& vertices, const Points& positions, Index first, Index last,
                                      const Vector& displacement) {
   LargestRotation result;
   SimplexBatch<d> batch{};
   for (Index cell = first; cell < last; cell += SimplexBatch<d>::size) {
     const int count = static_cast<int>(std::min<Index>(SimplexBatch<d>::size, last - cell));
-    batch.gather(cells, cell, count, positions.data(), displacement.data());
+    batch.gather(vertices.data() + cell * (d + 1), count, positions.data(), displacement.data());
     evaluate(batch);
     for (int i = 0; i < count; ++i) result.enter(batch.axial[i], batch.trace[i]);
   }
   return result;
+}
+
+/// The vertices of all cells, cells near one another together: nodes are numbered so, cells are not.
+std::vector<int> sorted_vertices(const CellBlock& cells) {
+  const int count = cells.nodes_per_cell;
+  const auto lowest = [&](Index cell) { return *std::min_element(cells.cell(cell), cells.cell(cell) + count); };
+  std::vector<std::pair<Index, Index>> order(static_cast<std::size_t>(cells.size()));
+  for (Index cell = 0; cell < cells.size(); ++cell) order[static_cast<std::size_t>(cell)] = {lowest(cell), cell};
+  std::sort(order.begin(), order.end());
+  std::vector<int> vertices;
+  vertices.reserve(cells.nodes.size());
+  for (const auto& [node, cell] : order) {
+    for (int k = 0; k < count; ++k) vertices.push_back(static_cast<int>(cells.cell(cell)[k]));
+  }
+  return vertices;
 }
 
 template <int d>
@@ -163,8 +181,11 @@ RotationGauge::RotationGauge(const Body& body) : dimension_(body.mesh->dimension
     const CellBlock& geometry = body.mesh->cells[b];
     const CellBlock& cells = body.space->cells[b];
     const bool simplex = geometry.shape == CellShape::triangle || geometry.shape == CellShape::tetrahedron;
-    blocks_.push_back({&cells, {}});
-    if (simplex && body.mesh->degree == 1 && body.space->degree == 1) continue;
+    blocks_.push_back({&cells, {}, {}});
+    if (simplex && body.mesh->degree == 1 && body.space->degree == 1) {
+      blocks_.back().vertices = sorted_vertices(cells);
+      continue;
+    }
     blocks_.back().gradients = dimension_ == 2 ? gradients_at_centres<2>(body, geometry, cells)
                                                : gradients_at_centres<3>(body, geometry, cells);
   }
@@ -176,8 +197,8 @@ double RotationGauge::largest(const Vector& displacement) const {
     const CellBlock& cells = *block.cells;
     result += parallel_sum<LargestRotation>(cells.size(), [&](Index first, Index last) {
       if (!block.gradients.empty()) return largest_of(cells, block.gradients, dimension_, first, last, displacement);
-      return dimension_ == 2 ? largest_of_simplices<2>(cells, *positions_, first, last, displacement)
-                             : largest_of_simplices<3>(cells, *positions_, first, last, displacement);
+      return dimension_ == 2 ? largest_of_simplices<2>(block.vertices, *positions_, first, last, displacement)
+                             : largest_of_simplices<3>(block.vertices, *positions_, first, last, displacement);
     });
   }
   return result.angle();

@@ -23,10 +23,12 @@ struct ResultsWriter::Implementation {
   std::string topology;  ///< XDMF text shared by all frames
   std::string geometry;
   long frames = 0;
+  std::vector<Index> numbers;  ///< of the nodes in the file
   std::vector<double> vector_values, pressure, gap;
   std::vector<int> status;
   Vector node_gap, node_pressure, traction;
 
+  [[nodiscard]] Index number(Index node) const { return numbers[static_cast<std::size_t>(node)]; }
   void check(bool good, const char* what) const {
     if (!good) throw Error(ErrorKind::file_access, fmt::format("{}: cannot write {} (is the disk full?)", path, what));
   }
@@ -63,10 +65,12 @@ void ResultsWriter::Implementation::group(const std::string& name) const {
 void ResultsWriter::Implementation::write_mesh(const DisplacementSpace& space) {
   group("/mesh");
   group("/frames");
+  numbers = space.number;
   const auto count = static_cast<hsize_t>(space.node_count());
   std::vector<double> positions(count * 3, 0.0);
   for (Index i = 0; i < space.node_count(); ++i) {
-    for (int k = 0; k < space.dimension; ++k) positions[static_cast<std::size_t>(3 * i + k)] = space.nodes(k, i);
+    for (int k = 0; k < space.dimension; ++k)
+      positions[static_cast<std::size_t>(3 * number(i) + k)] = space.nodes(k, i);
   }
   dataset("/mesh/nodes", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 3, positions.data());
   geometry = fmt::format(
@@ -82,7 +86,7 @@ void ResultsWriter::Implementation::write_mesh(const DisplacementSpace& space) {
     if (!mixed) topology = cell.xdmf_name;
     for (Index i = 0; i < block.size(); ++i) {
       if (mixed) all.push_back(cell.xdmf_number);
-      for (const int k : cell.from_ours) all.push_back(block.cell(i)[k]);
+      for (const int k : cell.from_ours) all.push_back(number(block.cell(i)[k]));
     }
   }
   const auto columns = mixed ? hsize_t{0} : static_cast<hsize_t>(space.cells.front().nodes_per_cell);
@@ -100,7 +104,8 @@ void ResultsWriter::Implementation::vector_field(const std::string& name, const 
   vector_values.assign(3 * count, 0.0);
   for (std::size_t i = 0; i < count; ++i) {
     for (int k = 0; k < d; ++k) {
-      vector_values[3 * i + static_cast<std::size_t>(k)] = values[static_cast<Index>(i) * d + k];
+      vector_values[3 * static_cast<std::size_t>(numbers[i]) + static_cast<std::size_t>(k)] =
+          values[static_cast<Index>(i) * d + k];
     }
   }
   dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 3, vector_values.data());
@@ -115,7 +120,7 @@ void ResultsWriter::Implementation::contact_fields(const State& state) {
   problem->node_gaps(state.displacement, state.time, node_gap);
   node_pressure = contact.pressure_recovery * state.forces.normal_reaction;
   for (Index i = 0; i < node_gap.size(); ++i) {
-    const auto node = static_cast<std::size_t>(contact.nodes[static_cast<std::size_t>(i)]);
+    const auto node = static_cast<std::size_t>(number(contact.nodes[static_cast<std::size_t>(i)]));
     pressure[node] = std::max(pressure[node], node_pressure[i]);
     gap[node] = status[node] < 0 ? node_gap[i] : std::min(gap[node], node_gap[i]);
     status[node] = std::max(status[node], 0);

@@ -106,7 +106,7 @@ RICOCHET_PART_OF_CALLER void multiply_in(const NodeRows& rows, const double* __r
     const double* block = rows.values + group.first_block * Kind::numbers;
     const int* column = rows.column + group.first_block;
     for (Index row = group.first_row; row < group.end_row(); ++row) {
-      const Index i = Index{rows.place[row]} * d;
+      const Index i = Index{rows.node[row]} * d;
       typename Kind::Sums sums;
       const typename Kind::Own own = Kind::own(x + i);
       for (Index k = 0; k < group.two_sided; ++k, block += Kind::numbers) {
@@ -147,7 +147,7 @@ RICOCHET_PART_OF_CALLER double form_in(const NodeRows& rows, const double* x) {
       double both[d], one[d];
       Kind::total(two_sided, both);
       Kind::total(one_sided, one);
-      const double* own = x + Index{rows.place[row]} * d;
+      const double* own = x + Index{rows.node[row]} * d;
       double sum = 0.0;
       for (int a = 0; a < d; ++a) sum += own[a] * (2.0 * both[a] + one[a]);
       result += sum;

@@ -8,11 +8,11 @@
 /// @file The loops of NodeMatrix over the rows of one part. Not part of the public interface.
 namespace ricochet {
 
-/// Rows of one part of a NodeMatrix, see there. Vectors are in its order.
+/// Rows of one part of a NodeMatrix, see there.
 struct NodeRows {
-  Index begin = 0, end = 0;  ///< places of the part
+  Index begin = 0, end = 0;  ///< nodes of the part
   std::span<const RowGroup> groups;
-  const int* place = nullptr;  ///< of the rows, of all parts
+  const int* node = nullptr;  ///< of the rows, of all parts
   const int* column = nullptr;
   const double* values = nullptr;  ///< and one number after the last block
 };

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 
+#include "ricochet/base/node_order.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/linear_algebra/node_kernels.hpp"
 
 namespace ricochet {
 
 namespace {
-
-/// How many nodes ahead to fetch what is gathered from another order.
-constexpr Index gather_ahead = 24;
 
 /// True for m ⊗ I: the columns of a node's components have their own component's rows only, and the same values.
 bool acts_on_components_alike(const SparseMatrix& matrix, int d) {
@@ -32,20 +30,19 @@ bool acts_on_components_alike(const SparseMatrix& matrix, int d) {
 
 }  // namespace
 
-NodeMatrix::NodeMatrix(const SparseMatrix& matrix, int d, std::shared_ptr<const NodeOrder> order)
-    : dimension_(d), order_(std::move(order)) {
+NodeMatrix::NodeMatrix(const SparseMatrix& matrix, int d) : dimension_(d) {
   if (!matrix.isCompressed()) {
     SparseMatrix compressed = matrix;
     compressed.makeCompressed();
-    *this = NodeMatrix(compressed, d, order_);
+    *this = NodeMatrix(compressed, d);
     return;
   }
   stride_ = acts_on_components_alike(matrix, d) ? 1 : d * d;
-  pattern_ = node_pattern(matrix, d, is_scalar(), *order_);
+  pattern_ = node_pattern(matrix, d, is_scalar());
   read_values(matrix);
 }
 
-/// Calls enter(place of the row, its first block, the group with its numbers of blocks) for the rows of these parts.
+/// Calls enter(node of the row, its first block, the group with its numbers of blocks) for the rows of these parts.
 template <class Enter>
 void NodeMatrix::visit_rows(Index first_part, Index end_part, const Enter& enter) const {
   const auto group_of = [&](Index part) { return pattern_.part_groups[static_cast<std::size_t>(part)]; };
@@ -53,7 +50,7 @@ void NodeMatrix::visit_rows(Index first_part, Index end_part, const Enter& enter
     const RowGroup& group = pattern_.groups[static_cast<std::size_t>(g)];
     Index block = group.first_block;
     for (Index row = group.first_row; row < group.end_row(); ++row, block += group.blocks_per_row())
-      enter(pattern_.place[static_cast<std::size_t>(row)], block, group);
+      enter(pattern_.node[static_cast<std::size_t>(row)], block, group);
   }
 }
 
@@ -62,9 +59,8 @@ void NodeMatrix::read_values(const SparseMatrix& matrix) {
   // The kernels read one number beyond a block.
   values_.assign(pattern_.column.size() * static_cast<std::size_t>(stride_) + 1, 0.0);
   const int* const columns = pattern_.column.data();
-  parallel_ranges(order_->parts(), [&](Index first, Index last) {
-    visit_rows(first, last, [&](int place, Index first_block, const RowGroup& group) {
-      const Index node = order_->node[static_cast<std::size_t>(place)];
+  parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
+    visit_rows(first, last, [&](int node, Index first_block, const RowGroup& group) {
       const int* begin = columns + first_block;
       const int* middle = begin + group.two_sided;
       const int* end = middle + group.one_sided;
@@ -72,13 +68,12 @@ void NodeMatrix::read_values(const SparseMatrix& matrix) {
         int last_seen = -1;
         const int* at = end;
         // Columns are rows: the matrix is symmetric.
-        for (SparseMatrix::InnerIterator entry(matrix, node * d + a); entry; ++entry) {
+        for (SparseMatrix::InnerIterator entry(matrix, Index{node} * d + a); entry; ++entry) {
           const int other = static_cast<int>(entry.row()) / d;
           if (other != last_seen) {
-            const int other_place = order_->place[static_cast<std::size_t>(other)];
-            at = std::lower_bound(begin, middle, other_place);
-            if (at == middle || *at != other_place) at = std::lower_bound(middle, end, other_place);
-            if (at != end && *at != other_place) at = end;
+            at = std::lower_bound(begin, middle, other);
+            if (at == middle || *at != other) at = std::lower_bound(middle, end, other);
+            if (at != end && *at != other) at = end;
             last_seen = other;
           }
           if (at == end) continue;
@@ -94,83 +89,44 @@ std::size_t NodeMatrix::bytes() const {
   return sizeof(double) * values_.size() + pattern_.bytes();
 }
 
-void NodeMatrix::to_order(const Vector& x, Vector& ordered) const {
-  const int d = dimension_;
-  ordered.resize(size());
-  parallel_ranges(order_->size(), [&](Index first, Index last) {
-    for (Index place = first; place < last; ++place) {
-      if (place + gather_ahead < last) {
-        __builtin_prefetch(x.data() + Index{order_->node[static_cast<std::size_t>(place + gather_ahead)]} * d);
-      }
-      const Index node = order_->node[static_cast<std::size_t>(place)];
-      for (int a = 0; a < d; ++a) ordered[place * d + a] = x[node * d + a];
-    }
-  });
-}
-
-void NodeMatrix::from_order(const Vector& ordered, Vector& x) const {
-  const int d = dimension_;
-  x.resize(size());
-  parallel_ranges(order_->size(), [&](Index first, Index last) {
-    for (Index node = first; node < last; ++node) {
-      if (node + gather_ahead < last) {
-        __builtin_prefetch(ordered.data() + Index{order_->place[static_cast<std::size_t>(node + gather_ahead)]} * d);
-      }
-      const Index place = order_->place[static_cast<std::size_t>(node)];
-      for (int a = 0; a < d; ++a) x[node * d + a] = ordered[place * d + a];
-    }
-  });
-}
-
 NodeRows NodeMatrix::rows_of(Index part) const {
   const Index* const groups = pattern_.part_groups.data() + part;
-  return {order_->begins[static_cast<std::size_t>(part)],
-          order_->begins[static_cast<std::size_t>(part) + 1],
+  return {pattern_.part_begins[static_cast<std::size_t>(part)],
+          pattern_.part_begins[static_cast<std::size_t>(part) + 1],
           {pattern_.groups.data() + groups[0], pattern_.groups.data() + groups[1]},
-          pattern_.place.data(),
+          pattern_.node.data(),
           pattern_.column.data(),
           values_.data()};
 }
 
-void NodeMatrix::multiply_ordered(const Vector& x, Vector& y) const {
+void NodeMatrix::multiply(const Vector& x, Vector& y) const {
   y.resize(size());
-  parallel_ranges(order_->parts(), [&](Index first, Index last) {
+  parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
       multiply_rows(rows_of(part), dimension_, is_scalar(), x.data(), y.data());
     }
   });
 }
 
-double NodeMatrix::form_ordered(const Vector& x) const {
-  std::array<double, NodeOrder::most_parts> sums{};
-  parallel_ranges(order_->parts(), [&](Index first, Index last) {
+double NodeMatrix::form(const Vector& x) const {
+  std::array<double, most_node_parts> sums{};
+  parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
       sums[static_cast<std::size_t>(part)] = form_rows(rows_of(part), dimension_, is_scalar(), x.data());
     }
   });
   double total = 0.0;
-  for (Index part = 0; part < order_->parts(); ++part) total += sums[static_cast<std::size_t>(part)];
+  for (Index part = 0; part < pattern_.parts(); ++part) total += sums[static_cast<std::size_t>(part)];
   return total;
 }
 
-void NodeMatrix::multiply(const Vector& x, Vector& y) const {
-  to_order(x, ordered_x_);
-  multiply_ordered(ordered_x_, ordered_y_);
-  from_order(ordered_y_, y);
-}
-
-double NodeMatrix::form(const Vector& x) const {
-  to_order(x, ordered_x_);
-  return form_ordered(ordered_x_);
-}
-
-/// Calls enter(place of the row, place of the column, its numbers) for every block that is stored.
+/// Calls enter(node of the row, node of the column, its numbers) for every block that is stored.
 template <class Enter>
 void NodeMatrix::visit_blocks(const Enter& enter) const {
-  if (!order_) return;
-  visit_rows(0, order_->parts(), [&](int place, Index first_block, const RowGroup& group) {
+  if (size() == 0) return;
+  visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
     for (Index k = first_block; k < first_block + group.blocks_per_row(); ++k)
-      enter(place, pattern_.column[static_cast<std::size_t>(k)], values_.data() + k * stride_);
+      enter(node, pattern_.column[static_cast<std::size_t>(k)], values_.data() + k * stride_);
   });
 }
 
@@ -179,7 +135,7 @@ Vector NodeMatrix::diagonal() const {
   Vector result = Vector::Zero(size());
   visit_blocks([&](int row, int column, const double* block) {
     if (row != column) return;
-    const Index first = Index{order_->node[static_cast<std::size_t>(row)]} * d;
+    const Index first = Index{row} * d;
     for (int a = 0; a < d; ++a) result[first + a] = block[is_scalar() ? 0 : a * d + a];
   });
   return result;
@@ -197,7 +153,7 @@ bool NodeMatrix::is_diagonal() const {
 
 SparseMatrix NodeMatrix::whole() const {
   const int d = dimension_;
-  const Index nodes = order_->size();
+  const Index nodes = size() / d;
   struct Place {
     int node;
     Index block;
@@ -206,11 +162,10 @@ SparseMatrix NodeMatrix::whole() const {
   // Blocks per row, both sides of the diagonal.
   std::vector<Index> begins(static_cast<std::size_t>(nodes) + 1, 0);
   const auto each_block = [&](const auto& enter) {
-    visit_rows(0, order_->parts(), [&](int place, Index first_block, const RowGroup& group) {
-      const int node = order_->node[static_cast<std::size_t>(place)];
+    visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
       for (Index k = 0; k < group.blocks_per_row(); ++k) {
         const Index block = first_block + k;
-        const int other = order_->node[static_cast<std::size_t>(pattern_.column[static_cast<std::size_t>(block)])];
+        const int other = pattern_.column[static_cast<std::size_t>(block)];
         enter(node, Place{other, block, false});
         if (k < group.two_sided) enter(other, Place{node, block, true});
       }

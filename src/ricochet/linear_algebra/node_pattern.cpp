@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ricochet/base/node_order.hpp"
 #include "ricochet/base/parallel.hpp"
 
 namespace ricochet {
@@ -13,12 +14,10 @@ namespace {
 class RowPattern {
  public:
   /// Looks at `columns` columns of the matrix per node: its d components, or 1 where they are alike.
-  RowPattern(const SparseMatrix& matrix, int columns, int d, const NodeOrder& order)
-      : matrix_(matrix), columns_(columns), d_(d), order_(order) {}
+  RowPattern(const SparseMatrix& matrix, int columns, int d) : matrix_(matrix), columns_(columns), d_(d) {}
 
-  /// Of the node at a place of the part [begin, end).
-  void read(Index place, Index begin, Index end) {
-    const Index node = order_.node[static_cast<std::size_t>(place)];
+  /// Of a node of the part [begin, end).
+  void read(Index node, Index begin, Index end) {
     nodes_.clear();
     for (int a = 0; a < columns_; ++a) {
       // The columns of a node mostly have the same rows, ascending: then nothing is added by the second.
@@ -38,38 +37,38 @@ class RowPattern {
     two_sided_.clear();
     one_sided_.clear();
     for (const int other : nodes_) {
-      const int at = order_.place[static_cast<std::size_t>(other)];
-      if (at < begin || at >= end || at == place) one_sided_.push_back(at);
-      if (at > place && at < end) two_sided_.push_back(at);
+      if (other < begin || other >= end || other == node) one_sided_.push_back(other);
+      if (other > node && other < end) two_sided_.push_back(other);
     }
-    for (std::vector<int>* places : {&two_sided_, &one_sided_}) {
-      std::sort(places->begin(), places->end());
-      places->erase(std::unique(places->begin(), places->end()), places->end());
+    for (std::vector<int>* columns : {&two_sided_, &one_sided_}) {
+      std::sort(columns->begin(), columns->end());
+      columns->erase(std::unique(columns->begin(), columns->end()), columns->end());
     }
   }
-  /// Places of the columns, ascending.
+  /// Nodes of the columns, ascending.
   [[nodiscard]] const std::vector<int>& two_sided() const { return two_sided_; }
   [[nodiscard]] const std::vector<int>& one_sided() const { return one_sided_; }
 
  private:
   const SparseMatrix& matrix_;
   int columns_, d_;
-  const NodeOrder& order_;
   std::vector<int> nodes_, two_sided_, one_sided_;
 };
 
 }  // namespace
 
 std::size_t NodePattern::bytes() const {
-  return sizeof(int) * (place.size() + column.size()) + sizeof(RowGroup) * groups.size();
+  return sizeof(int) * (node.size() + column.size()) + sizeof(RowGroup) * groups.size();
 }
 
-NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike, const NodeOrder& order) {
+NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike) {
   NodePattern pattern;
-  const auto nodes = static_cast<std::size_t>(order.size());
+  pattern.part_begins = node_parts(matrix.cols() / d);
+  const std::vector<Index>& begins = pattern.part_begins;
+  const auto nodes = static_cast<std::size_t>(begins.back());
   const auto each_part = [&](const auto& enter) {
-    parallel_ranges(order.parts(), [&](Index first, Index last) {
-      RowPattern row(matrix, alike ? 1 : d, d, order);
+    parallel_ranges(pattern.parts(), [&](Index first, Index last) {
+      RowPattern row(matrix, alike ? 1 : d, d);
       for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) enter(part, row);
     });
   };
@@ -78,25 +77,25 @@ NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike, const No
     auto operator<=>(const Counts&) const = default;
   };
   std::vector<Counts> counts(nodes);
-  pattern.place.resize(nodes);
-  std::iota(pattern.place.begin(), pattern.place.end(), 0);
+  pattern.node.resize(nodes);
+  std::iota(pattern.node.begin(), pattern.node.end(), 0);
   each_part([&](std::size_t part, RowPattern& row) {
-    const Index begin = order.begins[part], end = order.begins[part + 1];
-    for (Index place = begin; place < end; ++place) {
-      row.read(place, begin, end);
-      counts[static_cast<std::size_t>(place)] = {static_cast<Index>(row.two_sided().size()),
-                                                 static_cast<Index>(row.one_sided().size())};
+    const Index begin = begins[part], end = begins[part + 1];
+    for (Index node = begin; node < end; ++node) {
+      row.read(node, begin, end);
+      counts[static_cast<std::size_t>(node)] = {static_cast<Index>(row.two_sided().size()),
+                                                static_cast<Index>(row.one_sided().size())};
     }
-    std::stable_sort(pattern.place.begin() + begin, pattern.place.begin() + end, [&](int a, int b) {
+    std::stable_sort(pattern.node.begin() + begin, pattern.node.begin() + end, [&](int a, int b) {
       return counts[static_cast<std::size_t>(a)] < counts[static_cast<std::size_t>(b)];
     });
   });
   Index blocks = 0;
-  for (std::size_t part = 0; part + 1 < order.begins.size(); ++part) {
+  for (std::size_t part = 0; part + 1 < begins.size(); ++part) {
     pattern.part_groups.push_back(static_cast<Index>(pattern.groups.size()));
-    for (Index row = order.begins[part]; row < order.begins[part + 1]; ++row) {
-      const Counts own = counts[static_cast<std::size_t>(pattern.place[static_cast<std::size_t>(row)])];
-      const bool first = row == order.begins[part];
+    for (Index row = begins[part]; row < begins[part + 1]; ++row) {
+      const Counts own = counts[static_cast<std::size_t>(pattern.node[static_cast<std::size_t>(row)])];
+      const bool first = row == begins[part];
       if (first || pattern.groups.back().two_sided != own.two_sided || pattern.groups.back().one_sided != own.one_sided)
         pattern.groups.push_back({row, 0, blocks, own.two_sided, own.one_sided});
       ++pattern.groups.back().rows;
@@ -110,7 +109,7 @@ NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike, const No
       const RowGroup& group = pattern.groups[static_cast<std::size_t>(g)];
       auto to = pattern.column.begin() + group.first_block;
       for (Index r = group.first_row; r < group.end_row(); ++r) {
-        row.read(pattern.place[static_cast<std::size_t>(r)], order.begins[part], order.begins[part + 1]);
+        row.read(pattern.node[static_cast<std::size_t>(r)], begins[part], begins[part + 1]);
         to = std::copy(row.two_sided().begin(), row.two_sided().end(), to);
         to = std::copy(row.one_sided().begin(), row.one_sided().end(), to);
       }

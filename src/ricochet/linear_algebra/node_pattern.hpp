@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "ricochet/base/node_order.hpp"
 #include "ricochet/base/types.hpp"
 
 /// @file Which blocks of a symmetric matrix a NodeMatrix stores, and in what order. Not part of the public interface.
@@ -12,7 +11,7 @@ namespace ricochet {
 /// too: first the two-sided ones, with columns right of the row in its part, then the one-sided ones, of the diagonal
 /// and of other parts. Columns ascend in each.
 struct RowGroup {
-  Index first_row = 0, rows = 0;  ///< in NodePattern::place
+  Index first_row = 0, rows = 0;  ///< in NodePattern::node
   Index first_block = 0;
   Index two_sided = 0, one_sided = 0;  ///< of each row
   [[nodiscard]] Index blocks_per_row() const { return two_sided + one_sided; }
@@ -23,16 +22,18 @@ struct RowGroup {
 /// processor guess wrongly at the end of each, which costs as much as the products. A part is small enough for its
 /// vectors to stay in the near caches in any order of its rows.
 struct NodePattern {
-  std::vector<int> place;          ///< of each row, part after part
-  std::vector<int> column;         ///< per block: place of the column
+  std::vector<Index> part_begins;  ///< node_parts
+  std::vector<int> node;           ///< of each row, part after part
+  std::vector<int> column;         ///< per block: node of the column
   std::vector<RowGroup> groups;    ///< part after part
   std::vector<Index> part_groups;  ///< first group of each part, and after them the number of groups
 
+  [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
   [[nodiscard]] std::size_t bytes() const;
 };
 
 /// Of a symmetric matrix with d dofs per node, stored whole and compressed. Where `alike`, it is m ⊗ I and only the
 /// columns of the first components are read.
-[[nodiscard]] NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike, const NodeOrder& order);
+[[nodiscard]] NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike);
 
 }  // namespace ricochet

@@ -23,8 +23,8 @@ class InternalForce {
 /// K U, computed from U less its rigid motion, which has no part in it.
 class LinearElasticity final : public InternalForce {
  public:
-  /// K symmetric to the bit, dofs × dofs; `nodes`: reference positions, d × count; `order`: of them, for products.
-  LinearElasticity(const SparseMatrix& stiffness, const Points& nodes, std::shared_ptr<const NodeOrder> order);
+  /// K symmetric to the bit, dofs × dofs; `nodes`: reference positions, d × count.
+  LinearElasticity(const SparseMatrix& stiffness, const Points& nodes);
   void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   [[nodiscard]] SparseMatrix tangent() const override { return stiffness_.whole(); }
@@ -32,7 +32,7 @@ class LinearElasticity final : public InternalForce {
  private:
   RigidMotion rigid_;
   NodeMatrix stiffness_;
-  mutable Vector deformation_, force_;  ///< in the order of the matrix
+  mutable Vector deformation_;
 };
 
 }  // namespace ricochet

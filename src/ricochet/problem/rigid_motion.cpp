@@ -10,9 +10,6 @@ namespace ricochet {
 
 namespace {
 
-/// How many nodes ahead to fetch what is gathered: neighbours in the order of the result may be numbered far apart.
-constexpr Index fetch_ahead = 24;
-
 /// x × u: one number in 2D, three in 3D.
 template <int d>
 using Axial = Eigen::Matrix<double, d == 2 ? 1 : 3, 1>;
@@ -34,35 +31,27 @@ std::size_t scattered(std::uint64_t k, std::size_t count) {
 
 }  // namespace
 
-RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness, std::shared_ptr<const NodeOrder> order)
-    : dimension_(static_cast<int>(nodes.rows())), order_(std::move(order)), positions_(nodes.rows(), nodes.cols()) {
+RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
+    : dimension_(static_cast<int>(nodes.rows())), positions_(nodes.rows(), nodes.cols()) {
   find_bodies(nodes, stiffness);
   motions_.resize(bodies_.size());
-  if (!order_) return;
-  const Points positions = positions_;
-  const std::vector<int> body_of_node = body_at_;
-  for (Index i = 0; i < positions.cols(); ++i) {
-    const int node = order_->node[static_cast<std::size_t>(i)];
-    positions_.col(i) = positions.col(node);
-    if (!body_at_.empty()) body_at_[static_cast<std::size_t>(i)] = body_of_node[static_cast<std::size_t>(node)];
-  }
 }
 
-/// Fills bodies_, and by nodes positions_ and body_at_.
+/// Fills bodies_, positions_ and body_of_node_.
 void RigidMotion::find_bodies(const Points& nodes, const SparseMatrix& stiffness) {
   const Index d = nodes.rows();
-  body_at_.assign(static_cast<std::size_t>(nodes.cols()), -1);
+  body_of_node_.assign(static_cast<std::size_t>(nodes.cols()), -1);
   std::vector<int> members;
   for (Index first = 0; first < nodes.cols(); ++first) {
-    if (body_at_[static_cast<std::size_t>(first)] >= 0) continue;
+    if (body_of_node_[static_cast<std::size_t>(first)] >= 0) continue;
     const int number = static_cast<int>(bodies_.size());
     members.assign(1, static_cast<int>(first));
-    body_at_[static_cast<std::size_t>(first)] = number;
+    body_of_node_[static_cast<std::size_t>(first)] = number;
     for (std::size_t k = 0; k < members.size(); ++k) {
       for (SparseMatrix::InnerIterator entry(stiffness, members[k] * d); entry; ++entry) {
         const auto neighbour = static_cast<Index>(entry.row()) / d;
-        if (body_at_[static_cast<std::size_t>(neighbour)] >= 0) continue;
-        body_at_[static_cast<std::size_t>(neighbour)] = number;
+        if (body_of_node_[static_cast<std::size_t>(neighbour)] >= 0) continue;
+        body_of_node_[static_cast<std::size_t>(neighbour)] = number;
         members.push_back(static_cast<int>(neighbour));
       }
     }
@@ -70,7 +59,7 @@ void RigidMotion::find_bodies(const Points& nodes, const SparseMatrix& stiffness
     bodies_.push_back(make_body(nodes, members));
     for (const int node : members) positions_.col(node) = nodes.col(node) - bodies_.back().centre;
   }
-  if (bodies_.size() == 1) body_at_ = {};
+  if (bodies_.size() == 1) body_of_node_ = {};
 }
 
 RigidMotion::Body RigidMotion::make_body(const Points& nodes, const std::vector<int>& members) {
@@ -123,15 +112,11 @@ void RigidMotion::remove_in(const Vector& displacement, Vector& deformation) con
     motions_[number] = fit<d>(bodies_[number], displacement);
   }
   deformation.resize(displacement.size());
-  const int* const order = order_ ? order_->node.data() : nullptr;
   parallel_ranges(positions_.cols(), [&](Index first, Index last) {
     for (Index i = first; i < last; ++i) {
-      if (order != nullptr && i + fetch_ahead < last) {
-        __builtin_prefetch(displacement.data() + Index{order[i + fetch_ahead]} * d);
-      }
-      const Index node = order != nullptr ? Index{order[i]} : i;
-      const Motion& motion =
-          motions_[body_at_.empty() ? 0 : static_cast<std::size_t>(body_at_[static_cast<std::size_t>(i)])];
+      const std::size_t body =
+          body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[static_cast<std::size_t>(i)]);
+      const Motion& motion = motions_[body];
       const Eigen::Matrix<double, d, 1> x = positions_.col(i).template head<d>();
       Eigen::Matrix<double, d, 1> turned;
       if constexpr (d == 2) {
@@ -139,8 +124,7 @@ void RigidMotion::remove_in(const Vector& displacement, Vector& deformation) con
       } else {
         turned = motion.rotation.cross(x);
       }
-      deformation.segment<d>(i * d) =
-          displacement.segment<d>(node * d) - motion.translation.template head<d>() - turned;
+      deformation.segment<d>(i * d) = displacement.segment<d>(i * d) - motion.translation.template head<d>() - turned;
     }
   });
 }

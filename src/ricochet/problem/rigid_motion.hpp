@@ -1,9 +1,7 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include "ricochet/base/node_order.hpp"
 #include "ricochet/base/types.hpp"
 
 /// @file Taking the rigid part out of a displacement.
@@ -15,8 +13,7 @@ namespace ricochet {
 class RigidMotion {
  public:
   /// Bodies are the connected components of the matrix's graph (nodes that share an entry). `nodes`: d × count.
-  /// With an order, what is left has its nodes in it: dofs i·d … are those of order.node[i].
-  RigidMotion(const Points& nodes, const SparseMatrix& stiffness, std::shared_ptr<const NodeOrder> order = nullptr);
+  RigidMotion(const Points& nodes, const SparseMatrix& stiffness);
 
   /// `deformation` = displacement less its rigid part.
   void remove(const Vector& displacement, Vector& deformation) const;
@@ -46,10 +43,9 @@ class RigidMotion {
   void remove_in(const Vector& displacement, Vector& deformation) const;
 
   int dimension_ = 2;
-  std::shared_ptr<const NodeOrder> order_;
-  Points positions_;  ///< relative to the centre of the node's body, in the order of the result
+  Points positions_;  ///< relative to the centre of the node's body
   std::vector<Body> bodies_;
-  std::vector<int> body_at_;             ///< the same; empty with one body
+  std::vector<int> body_of_node_;        ///< empty with one body
   mutable std::vector<Motion> motions_;  ///< per body, of the displacement last seen
 };
 

@@ -91,8 +91,7 @@ void SemidiscreteProblem::add_contact_force(const Vector& normal, const Vector& 
   }
 }
 
-void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, std::shared_ptr<const NodeOrder> order,
-                    bool mass_without_contact_inertia) {
+void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, bool mass_without_contact_inertia) {
   problem.is_massless.assign(static_cast<std::size_t>(problem.dof_count()), 0);
   problem.massless_dofs.clear();
   problem.contact_dofs.clear();
@@ -105,7 +104,7 @@ void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, std:
       problem.is_massless[static_cast<std::size_t>(dof)] = 1;
     }
   }
-  problem.mass = NodeMatrix(mass, problem.dimension, std::move(order));
+  problem.mass = NodeMatrix(mass, problem.dimension);
 }
 
 }  // namespace ricochet

@@ -58,8 +58,7 @@ struct SemidiscreteProblem {
 };
 
 /// Fills massless_dofs, is_massless and contact_dofs from contact and supports, and takes the mass: dofs × dofs,
-/// symmetric to the bit, with an order of the nodes for products.
-void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, std::shared_ptr<const NodeOrder> order,
-                    bool mass_without_contact_inertia);
+/// symmetric to the bit.
+void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, bool mass_without_contact_inertia);
 
 }  // namespace ricochet

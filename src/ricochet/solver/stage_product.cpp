@@ -11,29 +11,25 @@ constexpr double most_growth = 1.3;
 
 StageProduct::StageProduct(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                            const SparseMatrix& matrix) {
-  const auto order = problem.mass.shared_order();
   const bool is_damped = coefficients.damping != 0.0 && problem.has_damping();
   if (coefficients.mass != 0.0 && coefficients.stiffness != 0.0 && !is_damped) {
     SparseMatrix stiffness = problem.internal_force->tangent();
     if (static_cast<double>(matrix.nonZeros()) > most_growth * static_cast<double>(stiffness.nonZeros())) {
       stiffness *= coefficients.stiffness;
-      matrix_ = NodeMatrix(stiffness, problem.dimension, order);
+      matrix_ = NodeMatrix(stiffness, problem.dimension);
       mass_ = &problem.mass;
       mass_factor_ = coefficients.mass;
       return;
     }
   }
-  matrix_ = NodeMatrix(matrix, problem.dimension, order);
+  matrix_ = NodeMatrix(matrix, problem.dimension);
 }
 
 void StageProduct::multiply(const Vector& x, Vector& y) const {
-  matrix_.to_order(x, ordered_x_);
-  matrix_.multiply_ordered(ordered_x_, ordered_y_);
-  if (mass_ != nullptr) {
-    mass_->multiply_ordered(ordered_x_, inertia_);
-    ordered_y_ += mass_factor_ * inertia_;
-  }
-  matrix_.from_order(ordered_y_, y);
+  matrix_.multiply(x, y);
+  if (mass_ == nullptr) return;
+  mass_->multiply(x, inertia_);
+  y += mass_factor_ * inertia_;
 }
 
 }  // namespace ricochet

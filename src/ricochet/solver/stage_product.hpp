@@ -23,7 +23,7 @@ class StageProduct {
   NodeMatrix matrix_;                 ///< A, or κK
   const NodeMatrix* mass_ = nullptr;  ///< where M is apart
   double mass_factor_ = 0.0;          ///< α
-  mutable Vector ordered_x_, ordered_y_, inertia_;
+  mutable Vector inertia_;
 };
 
 }  // namespace ricochet

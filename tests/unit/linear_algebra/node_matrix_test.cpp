@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ricochet/base/node_order.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/assembly.hpp"
 #include "support/box_mesh.hpp"
@@ -22,10 +23,6 @@ std::unique_ptr<MeshedBody> body_of(int d) {
   return make_meshed_body(make_box_mesh(d == 2 ? BoxMesh{CellShape::triangle, {70, 61}, 1, 0.15, {}}
                                                : BoxMesh{CellShape::tetrahedron, {17, 16, 15}, 1, 0.15, {}}),
                           1);
-}
-
-std::shared_ptr<const NodeOrder> order_of(const MeshedBody& test) {
-  return std::make_shared<const NodeOrder>(order_nodes(test.space.nodes));
 }
 
 SparseMatrix stiffness_of(const MeshedBody& test) {
@@ -50,11 +47,10 @@ void expect_product(const NodeMatrix& matrix, const SparseMatrix& whole, const V
 TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
   for (const int d : {2, 3}) {
     const auto test = body_of(d);
-    const auto order = order_of(*test);
-    EXPECT_GE(order->parts(), 4);
+    EXPECT_GE(node_parts(test->space.node_count()).size(), 5U);
     const SparseMatrix stiffness = stiffness_of(*test);
     const SparseMatrix mass = mass_of(*test);
-    const NodeMatrix blocks(stiffness, d, order), scalars(mass, d, order);
+    const NodeMatrix blocks(stiffness, d), scalars(mass, d);
     EXPECT_FALSE(blocks.is_scalar());
     EXPECT_TRUE(scalars.is_scalar());
     const Vector x = Vector::Random(stiffness.cols());
@@ -80,7 +76,7 @@ TEST(NodeMatrix, IsSymmetric) {
   for (const int d : {2, 3}) {
     const auto test = body_of(d);
     const SparseMatrix stiffness = stiffness_of(*test);
-    const NodeMatrix matrix(stiffness, d, order_of(*test));
+    const NodeMatrix matrix(stiffness, d);
     const Vector x = Vector::Random(stiffness.cols()), y = Vector::Random(stiffness.cols());
     Vector ax, ay;
     matrix.multiply(x, ax);
@@ -93,7 +89,7 @@ TEST(NodeMatrix, IsSymmetric) {
 TEST(NodeMatrix, GivesTheSameBitsForAnyNumberOfThreads) {
   for (const int d : {2, 3}) {
     const auto test = body_of(d);
-    const NodeMatrix stiffness(stiffness_of(*test), d, order_of(*test)), mass(mass_of(*test), d, order_of(*test));
+    const NodeMatrix stiffness(stiffness_of(*test), d), mass(mass_of(*test), d);
     const Vector x = Vector::Random(stiffness.size());
     for (const NodeMatrix* matrix : {&stiffness, &mass}) {
       Vector alone, several;
@@ -104,7 +100,7 @@ TEST(NodeMatrix, GivesTheSameBitsForAnyNumberOfThreads) {
         matrix->multiply(x, several);
         EXPECT_EQ(alone, several) << threads;
         EXPECT_EQ(matrix->form(x), form) << threads;
-        const NodeMatrix again(matrix->whole(), d, order_of(*test));
+        const NodeMatrix again(matrix->whole(), d);
         again.multiply(x, several);
         EXPECT_EQ(alone, several) << "made by " << threads;
         set_thread_count(1);
@@ -116,9 +112,8 @@ TEST(NodeMatrix, GivesTheSameBitsForAnyNumberOfThreads) {
 TEST(NodeMatrix, ScalesByPowersOfTwoToTheBit) {
   const auto test = body_of(3);
   const SparseMatrix stiffness = stiffness_of(*test);
-  const NodeMatrix matrix(stiffness, 3, order_of(*test));
-  const auto far = std::make_shared<const NodeOrder>(order_nodes(Points(std::ldexp(1.0, -40) * test->space.nodes)));
-  const NodeMatrix scaled(SparseMatrix(std::ldexp(1.0, 70) * stiffness), 3, far);
+  const NodeMatrix matrix(stiffness, 3);
+  const NodeMatrix scaled(SparseMatrix(std::ldexp(1.0, 70) * stiffness), 3);
   const Vector x = Vector::Random(matrix.size());
   Vector y, scaled_y;
   matrix.multiply(x, y);
@@ -130,13 +125,12 @@ TEST(NodeMatrix, ScalesByPowersOfTwoToTheBit) {
 /// Matrices that are not of the form m ⊗ I, although they begin as it, or whose blocks are not full.
 TEST(NodeMatrix, TakesAnySymmetricPattern) {
   const auto test = body_of(2);
-  const auto order = order_of(*test);
   const Vector x = Vector::Random(test->space.dof_count());
   const SparseMatrix mass = mass_of(*test);
   {
     SparseMatrix other = mass;  // one component of one node is heavier
     other.coeffRef(11, 11) *= 2.0;
-    const NodeMatrix matrix(other, 2, order);
+    const NodeMatrix matrix(other, 2);
     EXPECT_FALSE(matrix.is_scalar());
     expect_product(matrix, other, x);
   }
@@ -144,14 +138,14 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
     SparseMatrix other = mass;  // two components of one node are coupled
     other.coeffRef(10, 11) = other.coeffRef(11, 10) = 0.5 * mass.coeff(11, 11);
     EXPECT_FALSE(other.isCompressed());
-    const NodeMatrix matrix(other, 2, order);
+    const NodeMatrix matrix(other, 2);
     EXPECT_FALSE(matrix.is_scalar());
     expect_product(matrix, other, x);
   }
   {
     SparseMatrix diagonal(mass.rows(), mass.cols());
     diagonal.setIdentity();
-    const NodeMatrix matrix(diagonal, 2, order);
+    const NodeMatrix matrix(diagonal, 2);
     EXPECT_TRUE(matrix.is_scalar());
     EXPECT_TRUE(matrix.is_diagonal());
     EXPECT_EQ(matrix.diagonal(), Vector(Vector::Ones(x.size())));
@@ -163,15 +157,15 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
     // Blocks on the diagonal only, which are full or not.
     SparseMatrix blocks(mass.rows(), mass.cols());
     for (Index i = 0; i < mass.rows(); ++i) blocks.insert(i, i) = 2.0 + static_cast<double>(i % 2);
-    EXPECT_TRUE(NodeMatrix(blocks, 2, order).is_diagonal());
-    EXPECT_EQ(NodeMatrix(blocks, 2, order).diagonal(), Vector(blocks.diagonal()));
+    EXPECT_TRUE(NodeMatrix(blocks, 2).is_diagonal());
+    EXPECT_EQ(NodeMatrix(blocks, 2).diagonal(), Vector(blocks.diagonal()));
     blocks.insert(0, 1) = blocks.insert(1, 0) = 0.5;
-    EXPECT_FALSE(NodeMatrix(blocks, 2, order).is_diagonal());
-    EXPECT_EQ(NodeMatrix(blocks, 2, order).diagonal(), Vector(blocks.diagonal()));
+    EXPECT_FALSE(NodeMatrix(blocks, 2).is_diagonal());
+    EXPECT_EQ(NodeMatrix(blocks, 2).diagonal(), Vector(blocks.diagonal()));
   }
   {
     const SparseMatrix empty(mass.rows(), mass.cols());
-    const NodeMatrix matrix(empty, 2, order);
+    const NodeMatrix matrix(empty, 2);
     Vector y;
     matrix.multiply(x, y);
     EXPECT_EQ(y, Vector(Vector::Zero(x.size())));
@@ -185,24 +179,18 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
 TEST(NodeOrder, KeepsNeighboursTogether) {
   for (const int d : {2, 3}) {
     const auto test = body_of(d);
-    const NodeOrder order = order_nodes(test->space.nodes);
-    EXPECT_EQ(order.begins.front(), 0);
-    EXPECT_EQ(order.begins.back(), test->space.node_count());
-    std::vector<Index> part(static_cast<std::size_t>(order.size()));
-    for (Index k = 0; k < order.parts(); ++k) {
-      for (Index i = order.begins[static_cast<std::size_t>(k)]; i < order.begins[static_cast<std::size_t>(k) + 1];
-           ++i) {
-        part[static_cast<std::size_t>(order.node[static_cast<std::size_t>(i)])] = k;
-        EXPECT_EQ(order.place[static_cast<std::size_t>(order.node[static_cast<std::size_t>(i)])], i);
-      }
-    }
+    const std::vector<Index> begins = node_parts(test->space.node_count());
+    EXPECT_EQ(begins.front(), 0);
+    EXPECT_EQ(begins.back(), test->space.node_count());
+    std::vector<std::size_t> part(static_cast<std::size_t>(begins.back()));
+    for (std::size_t k = 0; k + 1 < begins.size(); ++k)
+      std::fill(part.begin() + begins[k], part.begin() + begins[k + 1], k);
     const NodeGraph graph = node_graph(test->space);
     Index across = 0;
-    for (Index node = 0; node < order.size(); ++node) {
-      for (Index k = graph.offsets[static_cast<std::size_t>(node)];
-           k < graph.offsets[static_cast<std::size_t>(node) + 1]; ++k) {
+    for (std::size_t node = 0; node < part.size(); ++node) {
+      for (Index k = graph.offsets[node]; k < graph.offsets[node + 1]; ++k) {
         const auto neighbour = static_cast<std::size_t>(graph.neighbours[static_cast<std::size_t>(k)]);
-        across += part[static_cast<std::size_t>(node)] != part[neighbour] ? 1 : 0;
+        across += part[node] != part[neighbour] ? 1 : 0;
       }
     }
     const double share = static_cast<double>(across) / static_cast<double>(graph.neighbours.size());

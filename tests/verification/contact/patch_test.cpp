@@ -155,8 +155,7 @@ class PressedBlock {
     const NodeGraph graph = node_graph(test_->space);
     problem_.dimension = d_;
     problem_.nodes = test_->space.nodes;
-    problem_.internal_force =
-        std::make_shared<LinearElasticity>(assemble_stiffness(body, graph), problem_.nodes, graph.order);
+    problem_.internal_force = std::make_shared<LinearElasticity>(assemble_stiffness(body, graph), problem_.nodes);
     problem_.loads = Loads(test_->space.dof_count());
     Vector load = Vector::Zero(test_->space.dof_count());
     add_facet_load(
@@ -179,7 +178,7 @@ class PressedBlock {
         body, {{side, test_->mesh.group(side, d_ - 1).members, "plane", obstacle_.get(), {}, multipliers}},
         [this](Index node, int k) { return !problem_.supports.contains(node * d_ + k); });
     problem_.obstacles = {obstacle_.get()};
-    finish_problem(problem_, expand_to_components(assemble_scalar_mass(body, graph), d_), graph.order, false);
+    finish_problem(problem_, expand_to_components(assemble_scalar_mass(body, graph), d_), false);
   }
 
   void hold(Index node, int component) {

@@ -82,8 +82,7 @@ SemidiscreteProblem make_problem(const MeshedBody& test, const Wave& wave, bool 
   SemidiscreteProblem problem;
   problem.dimension = d;
   problem.nodes = test.space.nodes;
-  problem.internal_force =
-      std::make_shared<LinearElasticity>(assemble_stiffness(test.body, graph), problem.nodes, graph.order);
+  problem.internal_force = std::make_shared<LinearElasticity>(assemble_stiffness(test.body, graph), problem.nodes);
   problem.loads = Loads(test.space.dof_count());
   if (integrate_at_every_instant) {
     problem.loads.add_general(
@@ -104,7 +103,7 @@ SemidiscreteProblem make_problem(const MeshedBody& test, const Wave& wave, bool 
   }
   problem.supports.finish();
   problem.contact = make_contact_boundary(test.body, {}, [](Index, int) { return true; });
-  finish_problem(problem, expand_to_components(assemble_scalar_mass(test.body, graph), d), graph.order, false);
+  finish_problem(problem, expand_to_components(assemble_scalar_mass(test.body, graph), d), false);
   return problem;
 }
 
