@@ -2,9 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "ricochet/base/error.hpp"
 
 namespace ricochet {
+
+namespace {
+
+/// Of the dofs that the stage solves for; a stage of contact nodes need not look at the whole body.
+bool is_finite(const SemidiscreteProblem& problem, StageDofs dofs, const Vector& increment) {
+  if (dofs != StageDofs::contact) return increment.allFinite();
+  return std::all_of(problem.contact_dofs.begin(), problem.contact_dofs.end(),
+                     [&](Index dof) { return std::isfinite(increment[dof]); });
+}
+
+}  // namespace
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
                        const StepSolverOptions& options)
@@ -13,6 +27,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   const std::vector<OperatorCoefficients> operators = scheme_.operators(problem_);
   solver_ = make_step_solver(problem_, operators, options);
   solutions_.resize(operators.size());
+  for (const OperatorCoefficients& coefficients : operators) stage_dofs_.push_back(coefficients.dofs);
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
 }
 
@@ -30,7 +45,7 @@ void Simulation::advance() {
                                               state_.step + 1, state_.time + scheme_.step(), scheme_.step(),
                                               problem_.contact.size(), problem.what(), advice));
     }
-    if (!solutions_[number].increment.allFinite()) {
+    if (!is_finite(problem_, stage_dofs_[number], solutions_[number].increment)) {
       throw Error(
           ErrorKind::not_converged,
           fmt::format("step {} (t = {:.9g}): the displacement is no longer finite, so the motion has grown beyond all "

@@ -38,6 +38,7 @@ class Simulation {
   std::unique_ptr<StepSolver> solver_;
   std::unique_ptr<EnergyAccount> account_;
   Stage stage_;
+  std::vector<StageDofs> stage_dofs_;  ///< that each stage solves for
   std::vector<StageSolution> solutions_;
   Vector increment_;
 };

@@ -58,10 +58,9 @@ const Vector& DirectStage::right_hand_side(const Stage& stage) {
   return right_hand_side_;
 }
 
-/// δ on the dofs that the factor does not solve for.
+/// δ on the dofs that the factor does not solve for: those without a support stay zero from the first step on.
 void DirectStage::prescribe(const Stage& stage, Vector& increment) const {
-  increment.resize(problem_.dof_count());
-  if (static_cast<Index>(stage_.dofs().size()) < problem_.dof_count()) increment.setZero();
+  if (increment.size() != problem_.dof_count()) increment.setZero(problem_.dof_count());
   const std::vector<Index>& supported = problem_.supports.dofs();
   for (std::size_t i = 0; i < supported.size(); ++i) increment[supported[i]] = stage.prescribed[static_cast<Index>(i)];
 }
