@@ -26,10 +26,14 @@ double sum_of(const double* values, std::size_t count) {
   return total;
 }
 
-std::size_t bytes_of_explicit_step(const SemidiscreteProblem& problem) {
-  const NodeMatrix blocks(problem.internal_force->tangent(), problem.dimension, problem.mass.shared_order());
+std::size_t bytes_of_explicit_step(const SemidiscreteProblem& problem, std::size_t factor_entries) {
+  const SparseMatrix stiffness = problem.internal_force->tangent();
+  const NodeMatrix blocks(stiffness, problem.dimension);
+  std::size_t contact_entries = 2 * factor_entries;
+  for (const Index dof : problem.contact_dofs)
+    contact_entries += static_cast<std::size_t>(stiffness.col(dof).nonZeros());
   constexpr std::size_t vectors = 9;
-  return blocks.bytes() + vectors * sizeof(double) * static_cast<std::size_t>(problem.dof_count());
+  return blocks.bytes() + sizeof(double) * (contact_entries + vectors * static_cast<std::size_t>(problem.dof_count()));
 }
 
 }  // namespace
@@ -67,8 +71,8 @@ double DirectLimits::solve(SparseCholesky& factor) {
   return seconds;
 }
 
-ExplicitLimits::ExplicitLimits(const SemidiscreteProblem& problem)
-    : bytes_(bytes_of_explicit_step(problem)), memory_(bytes_) {}
+ExplicitLimits::ExplicitLimits(const SemidiscreteProblem& problem, std::size_t factor_entries)
+    : bytes_(bytes_of_explicit_step(problem, factor_entries)), memory_(bytes_) {}
 
 void ExplicitLimits::measure(LimitTimes& times) {
   static_cast<void>(memory_.seconds());

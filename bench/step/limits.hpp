@@ -66,11 +66,12 @@ class DirectLimits final : public Limits {
   Vector right_, y_, x_;
 };
 
-/// For a step without one: reading the blocks of K, and reading or writing U, V and A twice and M⁻¹, the loads and ΔU
-/// once. Nine vectors are what central differences need when all of these are kept and nothing is touched twice.
+/// For an explicit step: reading the blocks of K; of the contact nodes' own system their rows of K, which are needed
+/// before these nodes have moved, and the factor twice; and nine vectors: U, V and A read and written, M⁻¹, the loads
+/// and ΔU, which is what central differences need when all of these are kept and nothing is touched twice.
 class ExplicitLimits final : public Limits {
  public:
-  explicit ExplicitLimits(const SemidiscreteProblem& problem);
+  ExplicitLimits(const SemidiscreteProblem& problem, std::size_t factor_entries);
   void measure(LimitTimes& times) override;
   [[nodiscard]] std::size_t bytes() const override { return bytes_; }
 

@@ -45,11 +45,23 @@ def memory_table(records):
     for record in records:
         if record["friction"] > 0.0:
             continue
-        needed = record["factor_mb"] + record["matrices_mb"]
-        rows.append([body_text(record), f"{record['factor_mb']:.0f}", f"{record['matrices_mb']:.0f}", f"{record['memory']:.0f}",
+        needed = record["limit_mb"] + record["matrices_mb"]
+        rows.append([body_text(record), f"{record['limit_mb']:.0f}", f"{record['matrices_mb']:.0f}", f"{record['memory']:.0f}",
                      f"**{record['memory'] / needed:.2f}**", f"{record['read_s']:.2f}", f"{record['assembly_s']:.2f}", f"{record['start_s']:.2f}"])
     return table(["", "factor, MB", "K and M, MB", "peak of the process, MB", "peak / (factor + matrices)", "reading, s", "assembly, s",
                   "ordering, factorization and start, s"], rows)
+
+
+def explicit_table(records):
+    rows = []
+    for record in records:
+        for key, name in PHASES:
+            phase = record.get(key)
+            if not phase or phase["steps"] < 10:
+                continue
+            rows.append([body_text(record), name, f"{phase['step_ms']:.3g}", f"{record['limit_mb']:.1f}", f"{phase['memory_limit_ms']:.3g}",
+                         f"**{phase['memory_limit_ms'] / phase['step_ms']:.2f}**", f"{phase['row_ms']:.3g}"])
+    return table(["", "contact", "step, ms", "to be read or written, MB", "reading as much, ms", "limit / step", "row of history, ms"], rows)
 
 
 def in_contact(force):
@@ -159,6 +171,8 @@ def report(everything, docs):
     parts = {"machine": machine()}
     if "ratios" in everything:
         parts["ratios"], parts["memory"] = ratio_table(everything["ratios"]), memory_table(everything["ratios"])
+    if "explicit" in everything:
+        parts["explicit"] = explicit_table(everything["explicit"])
     if "peer" in everything:
         parts["peer"] = peer_table(everything["peer"])
     if "scaling" in everything:

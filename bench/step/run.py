@@ -32,18 +32,22 @@ def mesh(directory, name, dimension, size):
     return path
 
 
-def case(directory, body, mass="equivalent", friction=0.0, more=""):
+NEWMARK = f'scheme = "newmark"\npreset = "textbook-half"\nstep = {STEP}\nend = {STEP * STEPS}\n'
+
+
+def case(directory, body, mass="equivalent", friction=0.0, method="", time=NEWMARK, down=0.0):
+    """The path of a case file; `time` is its section, `down` how far the body starts nearer to the floor."""
     name, dimension, size = body
     zeros = ", ".join(["0.0"] * (dimension - 1))
-    method = "-" + more.split('"')[1] if more else ""  # more: [solver] with its method
-    path = directory / f"{name}-{size:g}-{mass}-{friction:g}{method}.toml"
+    path = directory / f"{name}-{size:g}-{mass}-{friction:g}{'-' if method else ''}{method}.toml"
     sliding = 0.5 if friction > 0.0 else 0.0
+    solver = f'[solver]\nmethod = "{method}"\n' if method else ""
     path.write_text(
         f'[mesh]\nfile = "{mesh(directory, *body)}"\n[[material]]\ngroup = "body"\ndensity = 1.0\nlambda = 1e4\nmu = 5e3\n'
         f'[obstacle.floor]\ntype = "plane"\npoint = [{zeros}, 0.0]\nnormal = [{zeros}, 1.0]\n'
         f'[[contact]]\ngroup = "lower"\nobstacle = "floor"\nfriction = {friction}\n[load]\ngravity = [{zeros}, -9.81]\n'
-        f'[initial]\nvelocity = [{", ".join([repr(sliding)] + ["0.0"] * (dimension - 2))}, -1.0]\n[mass]\ntype = "{mass}"\n'
-        f'[time]\nscheme = "newmark"\npreset = "textbook-half"\nstep = {STEP}\nend = {STEP * STEPS}\n[output]\nfields_every = 0\n{more}')
+        f'[initial]\ndisplacement = [{zeros}, {-down!r}]\nvelocity = [{", ".join([repr(sliding)] + ["0.0"] * (dimension - 2))}, -1.0]\n'
+        f'[mass]\ntype = "{mass}"\n[time]\n{time}[output]\nfields_every = 0\n{solver}')
     return path
 
 
@@ -97,18 +101,29 @@ def measure_scaling(arguments, directory):
         for method in methods:
             if method == "direct" and body[1] == 3 and body[2] < 0.03:
                 continue  # a factor of 20 GB
-            path = case(directory, body, more=f'[solver]\nmethod = "{method}"\n')
+            path = case(directory, body, method=method)
             records.append(dict(ours(arguments, path, "--alone", "--steps", SCALING_STEPS), body=body, method=method))
     return records
 
 
 def measure_threads(arguments, directory):
-    return [dict(ours(arguments, case(directory, body, more=f'[solver]\nmethod = "{method}"\n'), "--alone", "--threads", threads),
+    return [dict(ours(arguments, case(directory, body, method=method), "--alone", "--threads", threads),
                  body=body, method=method)
             for body in RATIO_BODIES for method in ("direct", "iterative") for threads in (1, 2)]
 
 
-PARTS = {"ratios": measure_ratios, "peer": measure_peer, "scaling": measure_scaling, "threads": measure_threads}
+def measure_explicit(arguments, directory):
+    """From just above the floor, in steps of about a tenth of the stable one."""
+    records = []
+    for body in RATIO_BODIES:
+        step = 0.05 * body[2] / 141.0  # by the speed of pressure waves
+        path = case(directory, body, mass="equivalent-lumped", down=0.1 - 40.0 * step,
+                    time=f'scheme = "semi-explicit"\nstep = {step}\nend = {step * STEPS}\n')
+        records.append(dict(ours(arguments, path), body=body))
+    return records
+
+
+PARTS = {"ratios": measure_ratios, "explicit": measure_explicit, "peer": measure_peer, "scaling": measure_scaling, "threads": measure_threads}
 
 
 def main():

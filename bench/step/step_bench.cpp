@@ -56,8 +56,9 @@ double megabytes(const SparseMatrix& matrix) {
                  static_cast<double>(matrix.cols()) * sizeof(int));
 }
 
-std::unique_ptr<Limits> make_limits(const SemidiscreteProblem& problem, const Scheme& scheme) {
-  if (std::isfinite(scheme.critical_step())) return std::make_unique<ExplicitLimits>(problem);
+std::unique_ptr<Limits> make_limits(const SemidiscreteProblem& problem, const Scheme& scheme,
+                                    std::size_t factor_entries) {
+  if (std::isfinite(scheme.critical_step())) return std::make_unique<ExplicitLimits>(problem, factor_entries);
   const OperatorCoefficients a = scheme.operators(problem).front();
   return std::make_unique<DirectLimits>(a.stiffness * problem.internal_force->tangent() +
                                         a.mass * problem.mass.whole());
@@ -101,7 +102,8 @@ double run(const Options& options) {
   simulation.advance();
   const double peak_alone = peak_memory();
   std::unique_ptr<Limits> limits;
-  if (options.compare) limits = make_limits(model->problem, *scheme);
+  if (options.compare)
+    limits = make_limits(model->problem, *scheme, static_cast<std::size_t>(simulation.factor_entries()));
 
   std::map<std::string, Phase> phases;
   long before = 0;
@@ -137,7 +139,7 @@ double run(const Options& options) {
       R"("read_s": {:.4g}, "assembly_s": {:.4g}, "start_s": {:.4g}, "factor_entries": {}, "matrices_mb": {:.4g}, )",
       build.read_mesh, build.assembly, start, simulation.factor_entries(), matrices);
   fmt::print(R"("peak_mb": {:.5g})", peak);
-  if (limits) fmt::print(R"(, "factor_mb": {:.5g})", 1e-6 * static_cast<double>(limits->bytes()));
+  if (limits) fmt::print(R"(, "limit_mb": {:.5g})", 1e-6 * static_cast<double>(limits->bytes()));
   double worst = 0.0;
   for (const auto& [name, phase] : phases) {
     if (phase.step.empty()) continue;
