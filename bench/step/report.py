@@ -57,7 +57,7 @@ def explicit_table(records):
     for record in records:
         for key, name in PHASES:
             phase = record.get(key)
-            if not phase or phase["steps"] < 10:
+            if not phase or phase["steps"] < 10 or "memory_limit_ms" not in phase:
                 continue
             rows.append([body_text(record), name, f"{phase['step_ms']:.3g}", f"{record['limit_mb']:.1f}", f"{phase['memory_limit_ms']:.3g}",
                          f"**{phase['memory_limit_ms'] / phase['step_ms']:.2f}**", f"{phase['row_ms']:.3g}"])
