@@ -89,6 +89,26 @@ TEST_P(StepSolvers, Agree) {
   }
 }
 
+/// At rest, without any load but what a support's motion brings.
+TEST(StepSolversBySupports, Agree) {
+  const std::string square =
+      "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
+      "Physical Curve(\"top\")={3};";
+  for (const std::string time : {"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "scheme = \"midpoint\"\n"}) {
+    SCOPED_TRACE(time);
+    const std::string text =
+        "[mesh]\nfile = \"" + test_support::mesh_geometry("square", square, 0.2, 1) +
+        "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\n"
+        "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
+        "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.3\n"
+        "[[support]]\ngroup = \"top\"\ncomponents = [\"x\", \"y\"]\nvalue = \"-0.01*t^2\"\n[time]\n" +
+        time + "step = 0.01\nend = 0.5\n";
+    const auto direct = frames(text, {"solver.method=direct"}, SolverMethod::direct);
+    const auto iterative = frames(text, {"solver.method=iterative", "solver.tolerance=1e-12"}, SolverMethod::iterative);
+    expect_agreement(direct, iterative, true, 1e-8);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, StepSolvers, testing::ValuesIn(variants()),
                          [](const auto& info) { return info.param.name; });
 

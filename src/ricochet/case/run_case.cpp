@@ -246,10 +246,12 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
   };
   if (largest("energy_residual") > 1e-8 * scale) {
     log::warning(fmt::format(
-        "the energy account does not close: its residual reaches {:.2g} of the largest energy, by rounding; "
+        "the energy account does not close: its residual reaches {:.2g} of the largest energy, by rounding{}; "
         "stiffnesses or densities that differ by many orders of magnitude, a Poisson's ratio at 1/2 or an "
         "extreme time.step are likely causes; do not trust this run to more digits than that",
-        largest("energy_residual") / scale));
+        largest("energy_residual") / scale,
+        summary.solver == "iterative" ? " or by solver.tolerance (make it smaller, or solver.method = \"direct\")"
+                                      : ""));
   }
   if (summary.digest("contact_work").maximum > 0.01 * scale) {
     const bool best = (summary.scheme == "newmark" || summary.scheme == "semi-explicit") && problem.has_singular_mass();

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "ricochet/base/parallel.hpp"
@@ -34,7 +35,48 @@ std::size_t scattered(std::uint64_t k, std::size_t count) {
 RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
     : dimension_(static_cast<int>(nodes.rows())), positions_(nodes.rows(), nodes.cols()) {
   find_bodies(nodes, stiffness);
+  keep_rotations_that_strain(stiffness);
   motions_.resize(bodies_.size());
+}
+
+namespace {
+
+/// The displacement of a rotation about an axis: by 1, of all positions.
+Vector rotation_about(Index axis, const Points& positions) {
+  const Index d = positions.rows();
+  Vector result(positions.size());
+  for (Index i = 0; i < positions.cols(); ++i) {
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    x.head(d) = positions.col(i);
+    result.segment(i * d, d) = Eigen::Vector3d::Unit(axis).cross(x).head(d);
+  }
+  return result;
+}
+
+}  // namespace
+
+/// Linear functions on curved cells do not contain rotations: K R is not zero there, and K U would not be that of U.
+void RigidMotion::keep_rotations_that_strain(const SparseMatrix& stiffness) {
+  constexpr double rounding = 1e-9;
+  const Index d = dimension_;
+  std::vector<char> strained(static_cast<std::size_t>(positions_.cols()), 0);
+  for (Index axis = d == 2 ? 2 : 0; axis < 3; ++axis) {
+    const Vector rotation = rotation_about(axis, positions_);
+    parallel_ranges(positions_.cols(), [&](Index first, Index last) {
+      for (Index dof = first * d; dof < last * d; ++dof) {
+        double force = 0.0, terms = 0.0;
+        for (SparseMatrix::InnerIterator entry(stiffness, dof); entry; ++entry) {
+          force += entry.value() * rotation[entry.row()];
+          terms += std::abs(entry.value() * rotation[entry.row()]);
+        }
+        if (std::abs(force) > rounding * terms) strained[static_cast<std::size_t>(dof / d)] = 1;
+      }
+    });
+  }
+  for (std::size_t node = 0; node < strained.size(); ++node) {
+    const std::size_t body = body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[node]);
+    if (strained[node] != 0) bodies_[body].inverse_inertia.setZero();
+  }
 }
 
 /// Fills bodies_, positions_ and body_of_node_.

@@ -9,10 +9,11 @@ namespace ricochet {
 
 /// Removes from a displacement, body by body, the translation and the infinitesimal rotation that fit it best.
 /// Stiffness does not see either, but rounding does: K U of a body that has moved by 1 has an error of 10⁻¹⁶ |K|, far
-/// above the forces of a stiff body's small strains.
+/// above the forces of a stiff body's small strains. Where the stiffness does see rotations (linear functions on curved
+/// cells do not contain them), translations alone are removed.
 class RigidMotion {
  public:
-  /// Bodies are the connected components of the matrix's graph (nodes that share an entry). `nodes`: d × count.
+  /// Bodies are the connected components of the graph of K (nodes that share an entry). `nodes`: d × count.
   RigidMotion(const Points& nodes, const SparseMatrix& stiffness);
 
   /// `deformation` = displacement less its rigid part.
@@ -28,7 +29,7 @@ class RigidMotion {
     Points positions;         ///< of these, relative to their centre
     Vector position_sum;      ///< Σ of these: zero to rounding
     Vector centre;
-    /// Of unit masses there: 1 × 1 in 2D, 3 × 3 in 3D; zero where a rotation is no motion.
+    /// Of unit masses there: 1 × 1 in 2D, 3 × 3 in 3D; zero where rotations stay.
     Matrix inverse_inertia;
   };
   /// u = translation + rotation × position (in 2D the rotation is its last component).
@@ -36,6 +37,7 @@ class RigidMotion {
     Eigen::Vector3d translation = Eigen::Vector3d::Zero(), rotation = Eigen::Vector3d::Zero();
   };
   void find_bodies(const Points& nodes, const SparseMatrix& stiffness);
+  void keep_rotations_that_strain(const SparseMatrix& stiffness);
   static Body make_body(const Points& nodes, const std::vector<int>& members);
   template <int d>
   Motion fit(const Body& body, const Vector& displacement) const;

@@ -31,11 +31,7 @@ double lowest_local_frequency_squared(const SemidiscreteProblem& problem) {
 class EquilibriumTest {
  public:
   explicit EquilibriumTest(const SemidiscreteProblem& problem)
-      : magnitude_(problem.internal_force->tangent().cwiseAbs()), rigid_(problem.nodes, magnitude_) {
-    Vector load;
-    problem.loads.total(0.0, load);
-    load_ = largest(load);
-  }
+      : EquilibriumTest(problem, problem.internal_force->tangent()) {}
 
   /// True when what is left is rounding of the internal forces' terms, and small beside the loads that act.
   [[nodiscard]] bool passed(const Vector& displacement, const Vector& left_over) const {
@@ -47,6 +43,13 @@ class EquilibriumTest {
   }
 
  private:
+  EquilibriumTest(const SemidiscreteProblem& problem, const SparseMatrix& stiffness)
+      : magnitude_(stiffness.cwiseAbs()), rigid_(problem.nodes, stiffness) {
+    Vector load;
+    problem.loads.total(0.0, load);
+    load_ = largest(load);
+  }
+
   SparseMatrix magnitude_;  ///< |K|
   RigidMotion rigid_;
   double load_ = 0.0;  ///< the largest

@@ -65,7 +65,7 @@ class IterativeStage final : public StageSolver {
   double earlier_contact_seconds_ = 0.0;
   Vector increment_, previous_;  ///< of this stage and the last one, for the guess
   bool has_previous_ = false;
-  Vector guess_, residual_, work_, motion_;
+  Vector guess_, residual_, work_, motion_, prescribed_, supported_force_;
 };
 
 IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
@@ -148,9 +148,16 @@ void IterativeStage::add_reactions(const StageSolution& solution, Vector& force)
   mask(force);
 }
 
-/// The norm of all that acts: what the residual is small beside.
+/// The norm of all that acts, what moving supports exert among it: what the residual is small beside.
 double IterativeStage::forces(const Stage& stage, const StageSolution& solution) {
   work_ = stage.right_hand_side;
+  if (problem_.supports.size() > 0 && !stage.prescribed.isZero(0.0)) {
+    prescribed_.setZero(problem_.dof_count());
+    for (Index i = 0; i < problem_.supports.size(); ++i)
+      prescribed_[problem_.supports.dofs()[static_cast<std::size_t>(i)]] = stage.prescribed[i];
+    product_.multiply(prescribed_, supported_force_);
+    work_ -= supported_force_;
+  }
   mask(work_);
   const double given = gradients_.norm(*preconditioner_, work_);
   work_.setZero();

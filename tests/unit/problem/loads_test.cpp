@@ -5,8 +5,13 @@
 #include <cmath>
 
 #include <Eigen/Geometry>
+#include <tuple>
+#include <utility>
+#include <vector>
+
 #include "ricochet/base/error.hpp"
 #include "ricochet/problem/internal_force.hpp"
+#include "support/box_mesh.hpp"
 
 namespace ricochet {
 namespace {
@@ -155,19 +160,33 @@ TEST(LinearElasticity, HasItsForceEnergyAndTangent) {
   EXPECT_EQ(Matrix(elasticity.tangent()), Matrix(stiffness));
 }
 
+/// Springs along the lines between nodes: their stiffness sees no rigid motion.
+SparseMatrix springs(const Points& nodes, const std::vector<std::pair<Index, Index>>& pairs) {
+  const Index d = nodes.rows();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& [i, j] : pairs) {
+    const Vector along = (nodes.col(i) - nodes.col(j)).normalized();
+    for (Index a = 0; a < d; ++a) {
+      for (Index b = 0; b < d; ++b) {
+        for (const auto& [row, column, sign] : {std::tuple{i, i, 1.0}, {j, j, 1.0}, {i, j, -1.0}, {j, i, -1.0}})
+          entries.emplace_back(static_cast<int>(row * d + a), static_cast<int>(column * d + b),
+                               sign * along[a] * along[b]);
+      }
+    }
+  }
+  SparseMatrix result(nodes.size(), nodes.size());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
 /// A body of more nodes than the motion is fitted to, numbered row by row: a lattice of 8 × 16 × 64.
 TEST(RigidMotion, OfManyNodesIsTakenOut) {
   const Index count = 8 * 16 * 64;
   Points nodes(3, count);
   for (Index i = 0; i < count; ++i) nodes.col(i) << double(i % 8), double(i / 8 % 16), double(i / 128);
-  SparseMatrix chain(3 * count, 3 * count);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i + 1 < count; ++i) {
-    entries.emplace_back(3 * i, 3 * i + 3, 1.0);
-    entries.emplace_back(3 * i + 3, 3 * i, 1.0);
-  }
-  chain.setFromTriplets(entries.begin(), entries.end());
-  const RigidMotion rigid(nodes, chain);
+  std::vector<std::pair<Index, Index>> chain;
+  for (Index i = 0; i + 1 < count; ++i) chain.emplace_back(i, i + 1);
+  const RigidMotion rigid(nodes, springs(nodes, chain));
   const Eigen::Vector3d axis(0.3, -0.2, 0.7), travel(30.0, -10.0, 20.0);
   Vector displacement(3 * count), deformation;
   for (Index i = 0; i < count; ++i) displacement.segment(3 * i, 3) = travel + axis.cross(Eigen::Vector3d(nodes.col(i)));
@@ -189,10 +208,13 @@ TEST(RigidMotion, LeavesTheDeformationOfEachBody) {
   for (const Index d : {Index{2}, Index{3}}) {
     const Index count = d + 1;
     Points nodes = Points::Random(d, 2 * count);
-    Matrix coupled = Matrix::Zero(2 * count * d, 2 * count * d);
-    coupled.topLeftCorner(count * d, count * d).setOnes();
-    coupled.bottomRightCorner(count * d, count * d).setOnes();
-    const RigidMotion rigid(nodes, coupled.sparseView());
+    std::vector<std::pair<Index, Index>> pairs;
+    for (const Index first : {Index{0}, count}) {
+      for (Index i = first; i < first + count; ++i) {
+        for (Index j = first; j < i; ++j) pairs.emplace_back(i, j);
+      }
+    }
+    const RigidMotion rigid(nodes, springs(nodes, pairs));
     Vector displacement(2 * count * d), deformation;
     for (Index i = 0; i < 2 * count; ++i) {
       const double body = i < count ? 1.0 : -2.0;
@@ -214,6 +236,32 @@ TEST(RigidMotion, LeavesTheDeformationOfEachBody) {
           EXPECT_NEAR(stretch(deformation), stretch(random), 1e-13);
         }
       }
+    }
+  }
+}
+
+/// What is computed is K U of the K in the operators, also where K sees rotations: linear functions on curved cells.
+TEST(LinearElasticity, IsThatOfItsTangentOnCurvedCells) {
+  using test_support::make_box_mesh;
+  for (const int d : {2, 3}) {
+    for (const int degree : {1, 2}) {
+      const auto test = test_support::make_meshed_body(
+          make_box_mesh({d == 2 ? CellShape::triangle : CellShape::tetrahedron,
+                         std::vector<int>(static_cast<std::size_t>(d), 4), 2, 0.1, test_support::swirl_map(0.05)}),
+          degree);
+      const SparseMatrix stiffness = assemble_stiffness(test->body, node_graph(test->space));
+      const LinearElasticity elasticity(stiffness, test->space.nodes);
+      const Vector u = test_support::interpolate(test->space, [&](const Vector& x) {
+        Vector value = 0.1 * x.cwiseProduct(x);
+        value[0] -= 3.0 * x[1];
+        value[1] += 3.0 * x[0];
+        return value;
+      });
+      Vector force;
+      elasticity.evaluate(u, force);
+      const Vector terms = stiffness.cwiseAbs() * u.cwiseAbs();
+      EXPECT_LT((force - stiffness * u).lpNorm<Eigen::Infinity>(), 1e-14 * terms.lpNorm<Eigen::Infinity>());
+      EXPECT_NEAR(elasticity.energy(u), 0.5 * u.dot(stiffness * u), 1e-14 * u.cwiseAbs().dot(terms));
     }
   }
 }
