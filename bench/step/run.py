@@ -145,6 +145,8 @@ def main():
     for part in [] if arguments.report else arguments.only:
         everything[part] = PARTS[part](arguments, directory)
         results.write_text(json.dumps(everything, indent=1))
+    if not everything:
+        sys.exit(f"{results}: nothing has been measured yet; run without --report")
     import report  # needs matplotlib
 
     report.report(everything, root / "docs")

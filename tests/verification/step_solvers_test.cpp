@@ -109,6 +109,21 @@ TEST(StepSolversBySupports, Agree) {
   }
 }
 
+/// A static start has no inertia that would help an iteration: held by contact alone, it takes a factor where it fits.
+TEST(StepSolversAtRest, Agree) {
+  const std::string square =
+      "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1};";
+  const std::string text = "[mesh]\nfile = \"" + test_support::mesh_geometry("square", square, 0.2, 1) +
+                           "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\n"
+                           "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
+                           "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n[load]\ngravity = [0.0, -1.0]\n"
+                           "[initial]\ndisplacement = \"static\"\n[time]\nscheme = \"newmark\"\npreset = "
+                           "\"trapezoidal\"\nstep = 0.01\nend = 0.2\n";
+  const auto direct = frames(text, {"solver.method=direct"}, SolverMethod::direct);
+  const auto iterative = frames(text, {"solver.method=iterative", "solver.tolerance=1e-12"}, SolverMethod::iterative);
+  expect_agreement(direct, iterative, true, 1e-8);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, StepSolvers, testing::ValuesIn(variants()),
                          [](const auto& info) { return info.param.name; });
 

@@ -347,9 +347,10 @@ Section solver_section() {
            .standard = "auto",
            .choices = {"auto", "direct", "iterative"},
            .doc = "\"direct\": a Cholesky factor, made once; exact to rounding. \"iterative\": conjugate gradients "
-                  "with a direct solve near the contact; takes little memory, and is quick for time steps in "
-                  "which a wave crosses a few cells. \"auto\": direct where the factor fits into memory and takes "
-                  "minutes, not hours, to make."},
+                  "with a direct solve near the contact; takes little memory and no time to factorize, and a few "
+                  "times as long per step where a wave crosses a few cells in it, more where it crosses many. "
+                  "\"auto\": direct where the factor fits into memory and takes minutes, not hours, to make. A "
+                  "static start is solved as by \"auto\", the contact nodes of \"semi-explicit\" always directly."},
           {.name = "tolerance",
            .type = KeyType::number,
            .unit = "1",

@@ -90,7 +90,7 @@ class Reader {
     if (!cursor_.rest().starts_with("$")) {
       cursor_.fail(
           "this is not a Gmsh .msh file, which would start with $MeshFormat; convert other formats with "
-          "\"meshio convert FILE NEW.msh\"");
+          "\"gmsh FILE -save -o NEW.msh\"");
     }
   }
 

@@ -215,7 +215,10 @@ bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFr
 }  // namespace
 
 StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess, const Vector& velocity,
-                                     const StepSolverOptions& options) {
+                                     const StepSolverOptions& step_options) {
+  // Without inertia iterations converge badly, and not at all where contact alone holds a body: a factor where it fits.
+  StepSolverOptions options = step_options;
+  if (options.method == SolverMethod::iterative) options.method = SolverMethod::automatic;
   const StaticEquilibrium start{guess, Vector::Zero(problem.contact.size())};
   StaticEquilibrium result = start;
   StaticFriction friction(problem, velocity);

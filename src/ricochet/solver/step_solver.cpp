@@ -1,5 +1,8 @@
 #include "ricochet/solver/step_solver.hpp"
 
+#include <fmt/format.h>
+
+#include "ricochet/base/log.hpp"
 #include "ricochet/base/memory.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/solver/stage_solver.hpp"
@@ -70,6 +73,10 @@ class StagesStepSolver final : public StepSolver {
     const double limit = options.memory > 0.0 ? options.memory : memory_part * physical_memory();
     const bool fits = predicted.possible && sizeof(double) * predicted.entries <= limit;
     chosen.method = fits && predicted.operations <= most_operations ? SolverMethod::direct : SolverMethod::iterative;
+    if (chosen.method == SolverMethod::iterative) {
+      log::info(fmt::format("solved by iterations: a factor would take {:.2g} GB and {:.2g} operations to make",
+                            1e-9 * sizeof(double) * predicted.entries, predicted.operations));
+    }
   }
 
   std::vector<std::unique_ptr<StageSolver>> stages_;
