@@ -55,6 +55,30 @@ class RowPattern {
   std::vector<int> nodes_, two_sided_, one_sided_;
 };
 
+/// Of one row.
+struct Counts {
+  Index two_sided = 0, one_sided = 0;
+  auto operator<=>(const Counts&) const = default;
+};
+
+/// Fills groups and part_groups from the rows and the numbers of blocks of each node; returns that of all blocks.
+Index group_rows(const std::vector<Counts>& counts, NodePattern& pattern) {
+  Index blocks = 0;
+  for (std::size_t part = 0; part + 1 < pattern.part_begins.size(); ++part) {
+    const Index begin = pattern.part_begins[part], end = pattern.part_begins[part + 1];
+    pattern.part_groups.push_back(static_cast<Index>(pattern.groups.size()));
+    for (Index row = begin; row < end; ++row) {
+      const Counts own = counts[static_cast<std::size_t>(pattern.node[static_cast<std::size_t>(row)])];
+      const bool same = row > begin && own == Counts{pattern.groups.back().two_sided, pattern.groups.back().one_sided};
+      if (!same) pattern.groups.push_back({row, 0, blocks, own.two_sided, own.one_sided});
+      ++pattern.groups.back().rows;
+      blocks += own.two_sided + own.one_sided;
+    }
+  }
+  pattern.part_groups.push_back(static_cast<Index>(pattern.groups.size()));
+  return blocks;
+}
+
 }  // namespace
 
 std::size_t NodePattern::bytes() const {
@@ -72,10 +96,6 @@ NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike) {
       for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) enter(part, row);
     });
   };
-  struct Counts {
-    Index two_sided, one_sided;
-    auto operator<=>(const Counts&) const = default;
-  };
   std::vector<Counts> counts(nodes);
   pattern.node.resize(nodes);
   std::iota(pattern.node.begin(), pattern.node.end(), 0);
@@ -90,20 +110,7 @@ NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike) {
       return counts[static_cast<std::size_t>(a)] < counts[static_cast<std::size_t>(b)];
     });
   });
-  Index blocks = 0;
-  for (std::size_t part = 0; part + 1 < begins.size(); ++part) {
-    pattern.part_groups.push_back(static_cast<Index>(pattern.groups.size()));
-    for (Index row = begins[part]; row < begins[part + 1]; ++row) {
-      const Counts own = counts[static_cast<std::size_t>(pattern.node[static_cast<std::size_t>(row)])];
-      const bool first = row == begins[part];
-      if (first || pattern.groups.back().two_sided != own.two_sided || pattern.groups.back().one_sided != own.one_sided)
-        pattern.groups.push_back({row, 0, blocks, own.two_sided, own.one_sided});
-      ++pattern.groups.back().rows;
-      blocks += own.two_sided + own.one_sided;
-    }
-  }
-  pattern.part_groups.push_back(static_cast<Index>(pattern.groups.size()));
-  pattern.column.resize(static_cast<std::size_t>(blocks));
+  pattern.column.resize(static_cast<std::size_t>(group_rows(counts, pattern)));
   each_part([&](std::size_t part, RowPattern& row) {
     for (Index g = pattern.part_groups[part]; g < pattern.part_groups[part + 1]; ++g) {
       const RowGroup& group = pattern.groups[static_cast<std::size_t>(g)];
