@@ -15,10 +15,17 @@ namespace {
 
 using namespace test_support;
 
-/// Just above 2048 nodes, so that the work has two parts: under the sanitizers more would take minutes.
-std::unique_ptr<MeshedBody> large_body(const ElementKind& kind) {
-  const int per_axis = kind.dimension() == 2 ? 46 : 12;
-  const int count = per_axis / kind.displacement_degree;
+/// Sanitizers make thousands of curved cells take minutes: there less is assembled.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool sanitized = true;
+#else
+constexpr bool sanitized = false;
+#endif
+
+/// More than 2048 nodes, so that the work has several parts; `just` a little more.
+std::unique_ptr<MeshedBody> large_body(const ElementKind& kind, bool just = false) {
+  const int per_axis = kind.dimension() == 2 ? (just ? 46 : 48) : (just ? 12 : 14);
+  const int count = per_axis / kind.displacement_degree + (just ? 0 : 1);
   const BoxMesh box{
       kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), count), kind.geometry_degree, 0.15, {}};
   return make_meshed_body(make_box_mesh(box), kind.displacement_degree);
@@ -35,27 +42,29 @@ void expect_same_bits(const SparseMatrix& a, const SparseMatrix& b) {
 class Assembly : public testing::TestWithParam<ElementKind> {};
 
 TEST_P(Assembly, IsExactlySymmetricAndTheSameBitsForAnyNumberOfThreads) {
-  const auto test = large_body(GetParam());
+  const auto test = large_body(GetParam(), sanitized);
   const NodeGraph graph = node_graph(test->space);
   EXPECT_GT(graph.parts(), 1);
   const SparseMatrix mass = assemble_scalar_mass(test->body, graph);
   const SparseMatrix stiffness = assemble_stiffness(test->body, graph);
   expect_same_bits(mass, mass.transpose());
   expect_same_bits(stiffness, stiffness.transpose());
-  set_thread_count(2);
-  const NodeGraph again = node_graph(test->space);
-  EXPECT_EQ(again.offsets, graph.offsets);
-  EXPECT_EQ(again.neighbours, graph.neighbours);
-  expect_same_bits(assemble_scalar_mass(test->body, again), mass);
-  expect_same_bits(assemble_stiffness(test->body, again), stiffness);
-  set_thread_count(1);
+  for (const int threads : sanitized ? std::vector{2} : std::vector{2, 3}) {
+    set_thread_count(threads);
+    const NodeGraph again = node_graph(test->space);
+    EXPECT_EQ(again.offsets, graph.offsets);
+    EXPECT_EQ(again.neighbours, graph.neighbours);
+    expect_same_bits(assemble_scalar_mass(test->body, again), mass);
+    expect_same_bits(assemble_stiffness(test->body, again), stiffness);
+    set_thread_count(1);
+  }
 }
 
-/// Without thousands of curved cells that have few nodes each: minutes under the sanitizers.
+/// Under the sanitizers without those that have many curved cells for few nodes.
 std::vector<ElementKind> assembled_kinds() {
   std::vector<ElementKind> result = all_element_kinds();
   std::erase_if(result, [](const ElementKind& kind) {
-    return kind.dimension() == 3 && kind.geometry_degree > kind.displacement_degree;
+    return sanitized && kind.dimension() == 3 && kind.geometry_degree > kind.displacement_degree;
   });
   return result;
 }
@@ -118,7 +127,7 @@ TEST(RotationGauge, FindsTheCellThatTurnsMost) {
     u.setZero();
     u[node * d] = 0.01;
     const double alone = gauge.largest(u);
-    EXPECT_GT(alone, 0.03);  // cells are 0.02 to 0.17 wide
+    EXPECT_GT(alone, 0.05);
     set_thread_count(3);
     EXPECT_EQ(gauge.largest(u), alone);
     set_thread_count(1);
