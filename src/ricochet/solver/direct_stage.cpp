@@ -22,7 +22,6 @@ class DirectStage final : public StageSolver {
 
  private:
   [[nodiscard]] const Vector& right_hand_side(const Stage& stage);
-  void prescribe(const Stage& stage, Vector& increment) const;
   void recover_support_reaction(const Stage& stage, StageSolution& solution);
 
   const SemidiscreteProblem& problem_;
@@ -58,16 +57,11 @@ const Vector& DirectStage::right_hand_side(const Stage& stage) {
   return right_hand_side_;
 }
 
-/// δ on the dofs that the factor does not solve for: those without a support stay zero from the first step on.
-void DirectStage::prescribe(const Stage& stage, Vector& increment) const {
-  if (increment.size() != problem_.dof_count()) increment.setZero(problem_.dof_count());
-  const std::vector<Index>& supported = problem_.supports.dofs();
-  for (std::size_t i = 0; i < supported.size(); ++i) increment[supported[i]] = stage.prescribed[static_cast<Index>(i)];
-}
-
 void DirectStage::solve(const Stage& stage, StageSolution& solution) {
   solution.iterations = 0;
-  prescribe(stage, solution.increment);
+  // Dofs that are neither solved for nor supported stay zero from the first step on.
+  if (solution.increment.size() != problem_.dof_count()) solution.increment.setZero(problem_.dof_count());
+  prescribe(problem_, stage, solution.increment);
   stage_.solve(stage, right_hand_side(stage), solution, solution.increment);
   stage_.report();
   recover_support_reaction(stage, solution);

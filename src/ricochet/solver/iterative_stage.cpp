@@ -124,8 +124,7 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   guess_ = increment_;
   if (has_previous_) guess_ += increment_ - previous_;
   for (const int dof : unsolved_) guess_[dof] = 0.0;
-  for (Index i = 0; i < problem_.supports.size(); ++i)
-    guess_[problem_.supports.dofs()[static_cast<std::size_t>(i)]] = stage.prescribed[i];
+  prescribe(problem_, stage, guess_);
   const Index points = problem_.contact.size();
   solution.normal_reaction.setZero(points);
   if (problem_.contact.has_friction()) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
@@ -153,8 +152,7 @@ double IterativeStage::forces(const Stage& stage, const StageSolution& solution)
   work_ = stage.right_hand_side;
   if (problem_.supports.size() > 0 && !stage.prescribed.isZero(0.0)) {
     prescribed_.setZero(problem_.dof_count());
-    for (Index i = 0; i < problem_.supports.size(); ++i)
-      prescribed_[problem_.supports.dofs()[static_cast<std::size_t>(i)]] = stage.prescribed[i];
+    prescribe(problem_, stage, prescribed_);
     product_.multiply(prescribed_, supported_force_);
     work_ -= supported_force_;
   }

@@ -65,6 +65,11 @@ std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs)
   return result;
 }
 
+void prescribe(const SemidiscreteProblem& problem, const Stage& stage, Vector& increment) {
+  const std::vector<Index>& supported = problem.supports.dofs();
+  for (std::size_t i = 0; i < supported.size(); ++i) increment[supported[i]] = stage.prescribed[static_cast<Index>(i)];
+}
+
 std::vector<int> number_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs) {
   std::vector<int> number(static_cast<std::size_t>(problem.dof_count()), -1);
   for (std::size_t i = 0; i < dofs.size(); ++i) number[static_cast<std::size_t>(dofs[i])] = static_cast<int>(i);

@@ -19,6 +19,9 @@ namespace ricochet {
 [[noreturn]] void refuse_operator(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                                   Index dof);
 
+/// Writes what a stage prescribes to its supported dofs. `increment`: per dof.
+void prescribe(const SemidiscreteProblem& problem, const Stage& stage, Vector& increment);
+
 /// Numbers of the given dofs: per dof of the problem its place in the list, or −1.
 [[nodiscard]] std::vector<int> number_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs);
 
