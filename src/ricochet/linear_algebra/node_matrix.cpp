@@ -123,7 +123,6 @@ double NodeMatrix::form(const Vector& x) const {
 /// Calls enter(node of the row, node of the column, its numbers) for every block that is stored.
 template <class Enter>
 void NodeMatrix::visit_blocks(const Enter& enter) const {
-  if (size() == 0) return;
   visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
     for (Index k = first_block; k < first_block + group.blocks_per_row(); ++k)
       enter(node, pattern_.column[static_cast<std::size_t>(k)], values_.data() + k * stride_);

@@ -66,7 +66,6 @@ Index group_rows(const std::vector<Counts>& counts, NodePattern& pattern) {
   Index blocks = 0;
   for (std::size_t part = 0; part + 1 < pattern.part_begins.size(); ++part) {
     const Index begin = pattern.part_begins[part], end = pattern.part_begins[part + 1];
-    pattern.part_groups.push_back(static_cast<Index>(pattern.groups.size()));
     for (Index row = begin; row < end; ++row) {
       const Counts own = counts[static_cast<std::size_t>(pattern.node[static_cast<std::size_t>(row)])];
       const bool same = row > begin && own == Counts{pattern.groups.back().two_sided, pattern.groups.back().one_sided};
@@ -74,8 +73,8 @@ Index group_rows(const std::vector<Counts>& counts, NodePattern& pattern) {
       ++pattern.groups.back().rows;
       blocks += own.two_sided + own.one_sided;
     }
+    pattern.part_groups.push_back(static_cast<Index>(pattern.groups.size()));
   }
-  pattern.part_groups.push_back(static_cast<Index>(pattern.groups.size()));
   return blocks;
 }
 

@@ -22,11 +22,11 @@ struct RowGroup {
 /// processor guess wrongly at the end of each, which costs as much as the products. A part is small enough for its
 /// vectors to stay in the near caches in any order of its rows.
 struct NodePattern {
-  std::vector<Index> part_begins;  ///< node_parts
-  std::vector<int> node;           ///< of each row, part after part
-  std::vector<int> column;         ///< per block: node of the column
-  std::vector<RowGroup> groups;    ///< part after part
-  std::vector<Index> part_groups;  ///< first group of each part, and after them the number of groups
+  std::vector<Index> part_begins{0};  ///< node_parts
+  std::vector<int> node;              ///< of each row, part after part
+  std::vector<int> column;            ///< per block: node of the column
+  std::vector<RowGroup> groups;       ///< part after part
+  std::vector<Index> part_groups{0};  ///< first group of each part, and after them the number of groups
 
   [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
   [[nodiscard]] std::size_t bytes() const;

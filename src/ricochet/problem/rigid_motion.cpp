@@ -30,17 +30,6 @@ std::size_t scattered(std::uint64_t k, std::size_t count) {
   return static_cast<std::size_t>((fraction * count) >> 32);
 }
 
-}  // namespace
-
-RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
-    : dimension_(static_cast<int>(nodes.rows())), positions_(nodes.rows(), nodes.cols()) {
-  find_bodies(nodes, stiffness);
-  keep_rotations_that_strain(stiffness);
-  motions_.resize(bodies_.size());
-}
-
-namespace {
-
 /// The displacement of a rotation about an axis: by 1, of all positions.
 Vector rotation_about(Index axis, const Points& positions) {
   const Index d = positions.rows();
@@ -55,28 +44,11 @@ Vector rotation_about(Index axis, const Points& positions) {
 
 }  // namespace
 
-/// Linear functions on curved cells do not contain rotations: K R is not zero there, and K U would not be that of U.
-void RigidMotion::keep_rotations_that_strain(const SparseMatrix& stiffness) {
-  constexpr double rounding = 1e-9;
-  const Index d = dimension_;
-  std::vector<char> strained(static_cast<std::size_t>(positions_.cols()), 0);
-  for (Index axis = d == 2 ? 2 : 0; axis < 3; ++axis) {
-    const Vector rotation = rotation_about(axis, positions_);
-    parallel_ranges(positions_.cols(), [&](Index first, Index last) {
-      for (Index dof = first * d; dof < last * d; ++dof) {
-        double force = 0.0, terms = 0.0;
-        for (SparseMatrix::InnerIterator entry(stiffness, dof); entry; ++entry) {
-          force += entry.value() * rotation[entry.row()];
-          terms += std::abs(entry.value() * rotation[entry.row()]);
-        }
-        if (std::abs(force) > rounding * terms) strained[static_cast<std::size_t>(dof / d)] = 1;
-      }
-    });
-  }
-  for (std::size_t node = 0; node < strained.size(); ++node) {
-    const std::size_t body = body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[node]);
-    if (strained[node] != 0) bodies_[body].inverse_inertia.setZero();
-  }
+RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
+    : dimension_(static_cast<int>(nodes.rows())), positions_(nodes.rows(), nodes.cols()) {
+  find_bodies(nodes, stiffness);
+  keep_rotations_that_strain(stiffness);
+  motions_.resize(bodies_.size());
 }
 
 /// Fills bodies_, positions_ and body_of_node_.
@@ -127,6 +99,30 @@ RigidMotion::Body RigidMotion::make_body(const Points& nodes, const std::vector<
   body.inverse_inertia = d == 2 ? Matrix::Constant(1, 1, 1.0 / inertia(2, 2)) : Matrix(inertia.inverse());
   if (!body.inverse_inertia.allFinite()) body.inverse_inertia.setZero();
   return body;
+}
+
+/// Linear functions on curved cells do not contain rotations: K R is not zero there, and K U would not be that of U.
+void RigidMotion::keep_rotations_that_strain(const SparseMatrix& stiffness) {
+  constexpr double rounding = 1e-9;
+  const Index d = dimension_;
+  std::vector<char> strained(static_cast<std::size_t>(positions_.cols()), 0);
+  for (Index axis = d == 2 ? 2 : 0; axis < 3; ++axis) {
+    const Vector rotation = rotation_about(axis, positions_);
+    parallel_ranges(positions_.cols(), [&](Index first, Index last) {
+      for (Index dof = first * d; dof < last * d; ++dof) {
+        double force = 0.0, terms = 0.0;
+        for (SparseMatrix::InnerIterator entry(stiffness, dof); entry; ++entry) {
+          force += entry.value() * rotation[entry.row()];
+          terms += std::abs(entry.value() * rotation[entry.row()]);
+        }
+        if (std::abs(force) > rounding * terms) strained[static_cast<std::size_t>(dof / d)] = 1;
+      }
+    });
+  }
+  for (std::size_t node = 0; node < strained.size(); ++node) {
+    const std::size_t body = body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[node]);
+    if (strained[node] != 0) bodies_[body].inverse_inertia.setZero();
+  }
 }
 
 template <int d>
