@@ -24,8 +24,7 @@ class KlrConserving final : public Scheme {
   }
   [[nodiscard]] double energy_instant() const override { return 0.5; }
 
-  /// U¹ = U⁰ + hV⁰ + (h²/2)A⁰: the source asks for U¹ = U⁰ + hV⁰ + h z(h) with z → 0.
-  void start(const SemidiscreteProblem& problem, State& state) override {
+  void analyse(const SemidiscreteProblem& problem) override {
     if (problem.has_singular_mass()) {
       // Massless dofs would follow K_cc (Uⁿ⁺¹+2Uⁿ+Uⁿ⁻¹)/4 = …, whose characteristic polynomial (z+1)² has a double
       // root: they oscillate from step to step with an amplitude that grows linearly, and the half-step energy does not
@@ -35,6 +34,10 @@ class KlrConserving final : public Scheme {
           "scheme \"klr-conserving\" needs inertia on the contact nodes: without it they oscillate more and more; "
           "set mass.type = \"consistent\" (or \"lumped\"), or use scheme \"newmark\" with this mass");
     }
+  }
+
+  /// U¹ = U⁰ + hV⁰ + (h²/2)A⁰: the source asks for U¹ = U⁰ + hV⁰ + h z(h) with z → 0.
+  void start(const SemidiscreteProblem& problem, State& state) override {
     const double h = step();
     Vector& ahead = state.memory["increment_ahead"];
     ahead = h * state.velocity + (0.5 * h * h) * state.acceleration;

@@ -44,9 +44,12 @@ class Scheme {
   [[nodiscard]] virtual double energy_instant() const { return 0.0; }
   [[nodiscard]] virtual double force_instant() const { return 0.0; }
   [[nodiscard]] virtual WorkRule work_rule() const { return {}; }
-  /// Steps below this one are stable; infinite without such a limit. Known after start().
+  /// Steps below this one are stable; infinite without such a limit. Known after analyse().
   [[nodiscard]] virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }
 
+  /// Computes what stays the same in all steps, before start(). A scheme keeps nothing else from step to step: what a
+  /// step leaves for the next one is in the state, so that a run can go on from a checkpoint.
+  virtual void analyse(const SemidiscreteProblem&) {}
   /// Completes a starting state whose displacement, velocity, acceleration and forces satisfy the momentum equation at
   /// t = 0.
   virtual void start(const SemidiscreteProblem&, State&) {}

@@ -19,6 +19,10 @@ namespace {
 /// Warned of above this fraction of the critical step.
 constexpr double safe_fraction = 0.9;
 
+/// What a step leaves for the next one: K U at the state, and what supports prescribe at the end of the next step.
+constexpr const char* internal_force = "internal_force";
+constexpr const char* supported_next = "supported_next";
+
 /// Central differences inside, contact nodes without inertia at the end of the step (D. Doyen, A. Ern, S. Piperno, SIAM
 /// J. Sci. Comput. 33 (2011) 223–249). The mass is diagonal and zero on the contact nodes (index c; i: all others):
 ///   M_ii A + C_ii V + K_ii u_i + K_ic u_c = L_i   and   K_cc u_c + K_ci u_i = L_c + Gᵀr_N − B_Tᵀr_T   at every t_n,
@@ -45,14 +49,17 @@ class SemiExplicit final : public Scheme {
   [[nodiscard]] WorkRule work_rule() const override { return {0.5, 0.5}; }
   [[nodiscard]] double critical_step() const override { return critical_step_; }
 
-  void start(const SemidiscreteProblem& problem, State& state) override {
+  void analyse(const SemidiscreteProblem& problem) override {
     refuse_other_masses(problem);
     critical_step_ = central_difference_limit(problem);
     if (check_critical_step_) check_step();
     mass_ = problem.mass.diagonal();
     find_inverse_mass(problem);
     gather_contact_rows(problem);
-    problem.internal_force->evaluate(state.displacement, force_);
+  }
+
+  void start(const SemidiscreteProblem& problem, State& state) override {
+    problem.internal_force->evaluate(state.displacement, state.memory[internal_force]);
     start_supports(problem, state);
   }
 
@@ -62,10 +69,11 @@ class SemiExplicit final : public Scheme {
     predict(problem, state);
     evaluate_loads(problem, time);
     row_force_.noalias() = contact_rows_ * predicted_;
+    const Vector& force = state.memory.at(internal_force);
     if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
     for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
       const Index dof = problem.contact_dofs[i];
-      stage.right_hand_side[dof] = load(problem)[dof] - force_[dof] - row_force_[static_cast<Index>(i)];
+      stage.right_hand_side[dof] = load(problem)[dof] - force[dof] - row_force_[static_cast<Index>(i)];
     }
     stage.prescribed.setZero(problem.supports.size());  // what supports prescribe is in the base
     require_no_penetration(problem, base_, time, stage);
@@ -79,7 +87,7 @@ class SemiExplicit final : public Scheme {
               Vector& increment) override {
     if (solutions.empty()) evaluate_loads(problem, state.time + step());
     move(problem, solutions, state, increment);
-    problem.internal_force->evaluate(state.displacement, force_);
+    problem.internal_force->evaluate(state.displacement, state.memory.at(internal_force));
     accelerate(problem, state);
     if (!solutions.empty()) take_contact(solutions.front(), obstacle_velocity_, step(), state);
     advance_supports(problem, increment, state);
@@ -172,12 +180,12 @@ class SemiExplicit final : public Scheme {
   /// Supported dofs move through their prescribed values: their acceleration is a second difference of these.
   void start_supports(const SemidiscreteProblem& problem, State& state) {
     const double h = step();
-    problem.supports.values(h, supported_next_);
-    support_increment_.resize(problem.supports.size());
+    Vector& next = state.memory[supported_next];
+    problem.supports.values(h, next);
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
       if (problem.is_massless[static_cast<std::size_t>(dof)] != 0) continue;
-      const double half = (supported_next_[i] - state.displacement[dof]) / h;
+      const double half = (next[i] - state.displacement[dof]) / h;
       const double acceleration = 2.0 * (half - state.velocity[dof]) / h;
       state.forces.support_reaction[i] += mass_[dof] * (acceleration - state.acceleration[dof]);
       state.acceleration[dof] = acceleration;
@@ -199,9 +207,10 @@ class SemiExplicit final : public Scheme {
     for (const Index dof : near_dofs_) {
       predicted_[dof] = h * (state.velocity[dof] + (0.5 * h) * state.acceleration[dof]);
     }
+    const Vector& next = state.memory.at(supported_next);
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      predicted_[dof] = supported_next_[i] - state.displacement[dof];
+      predicted_[dof] = next[i] - state.displacement[dof];
     }
     for (const Index dof : contact_node_dofs_) {
       base_[dof] = state.displacement[dof] + predicted_[dof];
@@ -215,9 +224,11 @@ class SemiExplicit final : public Scheme {
             Vector& increment) {
     const double h = step();
     const Index count = state.displacement.size();
+    const Vector& next = state.memory.at(supported_next);
+    support_increment_.resize(problem.supports.size());
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      support_increment_[i] = supported_next_[i] - state.displacement[dof];
+      support_increment_[i] = next[i] - state.displacement[dof];
     }
     increment.resize(count);
     double* const u = state.displacement.data();
@@ -238,7 +249,7 @@ class SemiExplicit final : public Scheme {
     }
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      u[dof] = supported_next_[i];
+      u[dof] = next[i];
       du[dof] = support_increment_[i];
     }
   }
@@ -246,9 +257,10 @@ class SemiExplicit final : public Scheme {
   /// A^{n+1} and V^{n+1} from the force at U^{n+1}: one pass.
   void accelerate(const SemidiscreteProblem& problem, State& state) {
     const double half = 0.5 * step();
-    const Index count = force_.size();
+    const Vector& force = state.memory.at(internal_force);
+    const Index count = force.size();
     const double* const l = load(problem).data();
-    const double* const f = force_.data();
+    const double* const f = force.data();
     const double* const inverse = inverse_mass_.data();
     double* const a = state.acceleration.data();
     double* const v = state.velocity.data();
@@ -266,19 +278,21 @@ class SemiExplicit final : public Scheme {
   void advance_supports(const SemidiscreteProblem& problem, const Vector& increment, State& state) {
     if (problem.supports.size() == 0) return;
     const double h = step();
-    problem.supports.values(state.time + 2.0 * h, supported_next_);
+    const Vector& force = state.memory.at(internal_force);
+    Vector& next = state.memory.at(supported_next);
+    problem.supports.values(state.time + 2.0 * h, next);
     for (const Index dof : contact_node_dofs_) reaction_[dof] = 0.0;
     problem.add_contact_force(state.forces.normal_reaction, state.forces.tangential_reaction, reaction_);
     state.forces.support_reaction.resize(problem.supports.size());
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
       const double before = increment[dof] / h;
-      const double after = (supported_next_[i] - state.displacement[dof]) / h;
+      const double after = (next[i] - state.displacement[dof]) / h;
       const bool massless = problem.is_massless[static_cast<std::size_t>(dof)] != 0;
       state.acceleration[dof] = massless ? 0.0 : (after - before) / h;
       state.velocity[dof] = 0.5 * (before + after);
       state.forces.support_reaction[i] =
-          mass_[dof] * state.acceleration[dof] + force_[dof] - load(problem)[dof] - reaction_[dof];
+          mass_[dof] * state.acceleration[dof] + force[dof] - load(problem)[dof] - reaction_[dof];
       if (damping_.size() > 0) state.forces.support_reaction[i] += damping_[dof] * state.velocity[dof];
     }
   }
@@ -291,8 +305,6 @@ class SemiExplicit final : public Scheme {
   std::vector<Index> contact_node_dofs_;  ///< of contact nodes, supported ones too
   Vector predicted_;                      ///< ΔU on near dofs
   Vector base_, middle_, rate_;           ///< U + ΔU, U + ΔU/2, ΔU/h on contact nodes
-  Vector force_;                          ///< K U at the state
-  Vector supported_next_;                 ///< prescribed displacements at the end of the next step
   Vector row_force_, support_increment_, varying_, load_, reaction_;
   ObstacleMotion obstacle_velocity_;
 };

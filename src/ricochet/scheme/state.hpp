@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/base/contact_status.hpp"
+#include "ricochet/base/snapshot.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 
 /// @file The state of a run between two steps: all that the next step depends on.
@@ -33,5 +34,9 @@ struct State {
   /// What a scheme remembers besides, by name, so that a checkpoint can write it.
   std::map<std::string, Vector> memory;
 };
+
+void save(const State& state, Snapshot& snapshot, const std::string& name);
+/// Throws Error(invalid_input) where the sizes are not those of this problem.
+[[nodiscard]] State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, const std::string& name);
 
 }  // namespace ricochet

@@ -8,6 +8,22 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
   initial_ = start.total() + start.algorithmic;
 }
 
+EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
+                             const Snapshot& snapshot, const std::string& name)
+    : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
+  const Vector& works = snapshot.reals(name + ".works", 7);
+  works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6]};
+  initial_ = snapshot.real(name + ".initial");
+}
+
+void EnergyAccount::save(Snapshot& snapshot, const std::string& name) const {
+  Vector works(7);
+  works << works_.load, works_.contact, works_.friction, works_.support, works_.obstacle, works_.damping,
+      works_.numerical_dissipation;
+  snapshot.save(name + ".works", works);
+  snapshot.save(name + ".initial", initial_);
+}
+
 EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const Vector& increment,
                                                  const ObstacleMotion& obstacle) {
   StepWorks result;

@@ -22,13 +22,35 @@ bool is_finite(const SemidiscreteProblem& problem, StageDofs dofs, const Vector&
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
                        const StepSolverOptions& options)
-    : problem_(problem), scheme_(scheme), state_(make_starting_state(problem, initial, scheme.step(), options)) {
+    : problem_(problem), scheme_(scheme) {
+  scheme_.analyse(problem_);
+  state_ = make_starting_state(problem_, initial, scheme_.step(), options);
   scheme_.start(problem_, state_);
+  make_solver(options);
+  account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
+}
+
+Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
+                       const StepSolverOptions& options)
+    : problem_(problem), scheme_(scheme) {
+  state_ = load_state(problem_, snapshot, "state");
+  scheme_.analyse(problem_);
+  make_solver(options);
+  solver_->load(snapshot, "solver");
+  account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, snapshot, "account");
+}
+
+void Simulation::save(Snapshot& snapshot) const {
+  ricochet::save(state_, snapshot, "state");
+  solver_->save(snapshot, "solver");
+  account_->save(snapshot, "account");
+}
+
+void Simulation::make_solver(const StepSolverOptions& options) {
   const std::vector<OperatorCoefficients> operators = scheme_.operators(problem_);
   solver_ = make_step_solver(problem_, operators, options);
   solutions_.resize(operators.size());
   for (const OperatorCoefficients& coefficients : operators) stage_dofs_.push_back(coefficients.dofs);
-  account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
 }
 
 void Simulation::advance() {

@@ -17,6 +17,12 @@ class Simulation {
   Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
              const StepSolverOptions& options = {});
 
+  /// Goes on from what save() has put into a snapshot: steps give the same bits as if there had been no interruption.
+  /// Throws Error(invalid_input) where it does not fit.
+  Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
+             const StepSolverOptions& options = {});
+  void save(Snapshot& snapshot) const;
+
   /// One step. Throws Error(not_converged) with the step, its time and what to try; the state is then that before the
   /// step.
   void advance();
@@ -32,6 +38,8 @@ class Simulation {
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const { return solver_->methods(); }
 
  private:
+  void make_solver(const StepSolverOptions& options);
+
   const SemidiscreteProblem& problem_;
   Scheme& scheme_;
   State state_;

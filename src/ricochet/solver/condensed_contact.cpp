@@ -47,6 +47,7 @@ void CondensedContact::visit_rows(Index point, const Enter& enter) const {
 
 void CondensedContact::start_again_with(const std::vector<Index>& points) {
   candidates_.clear();
+  taken_up_.clear();
   columns_.clear();
   contact_.contact_operator.reset();
   contact_.first.assign(1, 0);
@@ -78,6 +79,7 @@ void CondensedContact::take_up(const std::vector<Index>& points) {
   std::vector<Index> added = points;
   sort_by_place(added);
   candidates_.take_up(added);
+  taken_up_.push_back(static_cast<Index>(candidates_.points().size()));
   Matrix w = contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
   append_columns(added, w);
   append_supported();
@@ -105,6 +107,28 @@ void CondensedContact::take_up(const std::vector<Index>& points) {
   start.tail(start.size() - before).setZero();
   solver_->set_warm_start(start);
   contact_solution_.reaction = start;
+}
+
+void CondensedContact::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".candidates", candidates_.points());
+  snapshot.save(name + ".taken_up", taken_up_);
+  candidates_.save_history(snapshot, name);
+  snapshot.save(name + ".warm_start", solver_ != nullptr ? solver_->warm_start() : Vector());
+}
+
+void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
+  const std::vector<Index>& points = snapshot.integers(name + ".candidates", 0, problem_.contact.size() - 1);
+  const auto count = static_cast<Index>(points.size());
+  start_again_with({});
+  for (const Index end : snapshot.integers(name + ".taken_up", 1, count)) {
+    const auto begin = static_cast<Index>(candidates_.points().size());
+    if (end > begin) take_up({points.begin() + begin, points.begin() + end});
+  }
+  candidates_.load_history(snapshot, name);
+  if (solver_ == nullptr) return;
+  const Vector& start = snapshot.reals(name + ".warm_start");
+  solver_->set_warm_start(start);
+  contact_solution_.reaction = start.head(contact_.first.back());
 }
 
 void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& w) {

@@ -31,6 +31,11 @@ class CondensedContact {
   /// and the stage must be solved again.
   bool take_up_penetrating(const Stage& stage, const Vector& increment);
 
+  /// The candidates with the order in which they came, which decides the bits of W, and the contact solver's warm
+  /// start.
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
   /// Shows the contact problem of a stage that is solved, if it had one, to the observer (one that could not be solved
   /// is shown at once).
   void report() const;
@@ -65,6 +70,7 @@ class CondensedContact {
   bool must_ask_ = false;  ///< points have penetrated where none was thought to touch
   bool asked_ = false;     ///< the candidates took part in the last stage
   ContactCandidates candidates_;
+  std::vector<Index> taken_up_;  ///< how many candidates there were after each call of take_up
   ContactColumns columns_;
   SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
   Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r

@@ -35,6 +35,16 @@ void ContactCandidates::clear() {
   oversized_stages_ = 0;
 }
 
+void ContactCandidates::save_history(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".largest_motion", largest_motion_);
+  snapshot.save(name + ".oversized_stages", oversized_stages_);
+}
+
+void ContactCandidates::load_history(const Snapshot& snapshot, const std::string& name) {
+  largest_motion_ = snapshot.real(name + ".largest_motion");
+  oversized_stages_ = static_cast<int>(snapshot.integer(name + ".oversized_stages"));
+}
+
 /// In the units of y: what stages have moved points by, or what this one must, where points are inside at δ = 0.
 double ContactCandidates::reach(const Stage& stage) const {
   double deepest = 0.0;

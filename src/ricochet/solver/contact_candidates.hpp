@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "ricochet/base/snapshot.hpp"
 #include "ricochet/scheme/stage.hpp"
 
 /// @file Which contact points take part in the contact problem of a stage. Nothing is left out for good: after every
@@ -19,6 +20,10 @@ class ContactCandidates {
   [[nodiscard]] Index number(Index point) const { return number_[static_cast<std::size_t>(point)]; }
   void take_up(const std::vector<Index>& points);
   void clear();
+
+  /// All but the points themselves, which are taken up in another way.
+  void save_history(Snapshot& snapshot, const std::string& name) const;
+  void load_history(const Snapshot& snapshot, const std::string& name);
 
   /// Some eligible point may touch in this stage: its y at δ = 0 is within reach of what stages have moved points by.
   [[nodiscard]] bool some_may_touch(const Stage& stage) const;

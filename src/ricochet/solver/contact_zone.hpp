@@ -24,6 +24,9 @@ class ContactZone {
   /// With the residual b − A x of the whole body, reactions left out: x_P and the reactions.
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution);
 
+  /// What the contact conditions leave for later stages.
+  void save(Snapshot& snapshot, const std::string& name) const { zone_->save(snapshot, name); }
+  void load(const Snapshot& snapshot, const std::string& name) { zone_->load(snapshot, name); }
   void report() const { zone_->report(); }
   void observe(const ContactObserver& observer) { zone_->observe(observer); }
   [[nodiscard]] double contact_seconds() const { return zone_->contact_seconds(); }

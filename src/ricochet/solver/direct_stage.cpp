@@ -17,6 +17,8 @@ class DirectStage final : public StageSolver {
 
   void solve(const Stage& stage, StageSolution& solution) override;
   void observe_contact(const ContactObserver& observer) override { stage_.observe(observer); }
+  void save(Snapshot& snapshot, const std::string& name) const override { stage_.save(snapshot, name); }
+  void load(const Snapshot& snapshot, const std::string& name) override { stage_.load(snapshot, name); }
   [[nodiscard]] double contact_seconds() const override { return stage_.contact_seconds(); }
   [[nodiscard]] std::size_t factor_entries() const override { return stage_.factor_entries(); }
 

@@ -24,6 +24,9 @@ class FactoredStage {
 
   /// In the order of the factor.
   [[nodiscard]] const std::vector<int>& dofs() const { return dof_at_; }
+  /// What the contact conditions leave for later stages.
+  void save(Snapshot& snapshot, const std::string& name) const { contact_.save(snapshot, name); }
+  void load(const Snapshot& snapshot, const std::string& name) { contact_.load(snapshot, name); }
   void report() const { contact_.report(); }
   void observe(const ContactObserver& observer) { contact_.observe(observer); }
   [[nodiscard]] double contact_seconds() const { return contact_.solver_seconds(); }

@@ -35,6 +35,8 @@ class IterativeStage final : public StageSolver {
     observer_ = observer;
     if (zone_) zone_->observe(observer);
   }
+  void save(Snapshot& snapshot, const std::string& name) const override;
+  void load(const Snapshot& snapshot, const std::string& name) override;
   [[nodiscard]] double contact_seconds() const override {
     return earlier_contact_seconds_ + (zone_ ? zone_->contact_seconds() : 0.0);
   }
@@ -43,6 +45,7 @@ class IterativeStage final : public StageSolver {
  private:
   void begin(const Stage& stage, StageSolution& solution);
   void make_zone(const std::vector<Index>& points);
+  void make_zone_of(const std::vector<Index>& points, const std::vector<Index>& nodes);
   [[nodiscard]] std::vector<Index> with_neighbours(const std::vector<Index>& nodes) const;
   void find_residual(const Stage& stage);
   void add_reactions(const StageSolution& solution, Vector& force) const;
@@ -103,9 +106,8 @@ std::vector<Index> IterativeStage::with_neighbours(const std::vector<Index>& nod
   return result;
 }
 
+/// For these points and those near them.
 void IterativeStage::make_zone(const std::vector<Index>& points) {
-  if (zone_) earlier_contact_seconds_ += zone_->contact_seconds();
-  zone_.reset();
   std::vector<Index> nodes, all;
   {
     // Layers of cells: an equivalent mass has neighbours farther away.
@@ -113,10 +115,39 @@ void IterativeStage::make_zone(const std::vector<Index>& points) {
     all = with_neighbours(nodes_near(problem_, stiffness, points, reserve_layers));
     nodes = nodes_near(problem_, stiffness, all, zone_layers);
   }
+  make_zone_of(all, nodes);
+}
+
+void IterativeStage::make_zone_of(const std::vector<Index>& points, const std::vector<Index>& nodes) {
+  if (zone_) earlier_contact_seconds_ += zone_->contact_seconds();
+  zone_.reset();
   near_.clear();
-  near_.take_up(all);
-  zone_ = std::make_unique<ContactZone>(problem_, coefficients_, solved_, nodes, all, options_.all_points);
+  near_.take_up(points);
+  zone_ = std::make_unique<ContactZone>(problem_, coefficients_, solved_, nodes, points, options_.all_points);
   zone_->observe(observer_);
+}
+
+void IterativeStage::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".increment", increment_);
+  snapshot.save(name + ".previous", previous_);
+  snapshot.save(name + ".has_previous", has_previous_);
+  near_.save_history(snapshot, name + ".near");
+  snapshot.save(name + ".has_zone", zone_ != nullptr);
+  if (zone_ == nullptr) return;
+  snapshot.save(name + ".near.points", near_.points());
+  zone_->save(snapshot, name + ".zone");
+}
+
+void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
+  increment_ = snapshot.reals(name + ".increment", problem_.dof_count());
+  previous_ = snapshot.reals(name + ".previous", problem_.dof_count());
+  has_previous_ = snapshot.flag(name + ".has_previous");
+  if (snapshot.flag(name + ".has_zone")) {
+    const std::vector<Index>& points = snapshot.integers(name + ".near.points", 0, problem_.contact.size() - 1);
+    make_zone_of(points, nodes_near(problem_, problem_.internal_force->tangent(), points, zone_layers));
+    zone_->load(snapshot, name + ".zone");
+  }
+  near_.load_history(snapshot, name + ".near");
 }
 
 /// The guess: increments of a smooth motion go on as they did. Supports are exact.

@@ -18,6 +18,9 @@ class StageSolver {
   /// Throws Error(not_converged) which says what failed.
   virtual void solve(const Stage& stage, StageSolution& solution) = 0;
   virtual void observe_contact(const ContactObserver& observer) = 0;
+  /// As of StepSolver.
+  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
+  virtual void load(const Snapshot& snapshot, const std::string& name) = 0;
   [[nodiscard]] virtual double contact_seconds() const = 0;
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
 };

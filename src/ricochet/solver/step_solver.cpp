@@ -40,6 +40,12 @@ class StagesStepSolver final : public StepSolver {
     for (const auto& stage : stages_) sum += stage->factor_entries();
     return sum;
   }
+  void save(Snapshot& snapshot, const std::string& name) const override {
+    for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->save(snapshot, fmt::format("{}.{}", name, i));
+  }
+  void load(const Snapshot& snapshot, const std::string& name) override {
+    for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->load(snapshot, fmt::format("{}.{}", name, i));
+  }
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const override { return methods_; }
 
  private:

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "ricochet/base/snapshot.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
@@ -46,6 +47,11 @@ class StepSolver {
   [[nodiscard]] virtual double contact_seconds() const = 0;
   /// Entries of all factors, for the summary.
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
+  /// What stages have left for later ones: guesses, warm starts, the points that may touch. A solver made for the same
+  /// operators that has loaded it goes on with the same bits.
+  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
+  /// Throws Error(invalid_input) where it does not fit.
+  virtual void load(const Snapshot& snapshot, const std::string& name) = 0;
   /// Per operator.
   [[nodiscard]] virtual const std::vector<ChosenMethod>& methods() const = 0;
 };

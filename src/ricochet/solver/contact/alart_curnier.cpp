@@ -91,11 +91,11 @@ double AlartCurnierStep::iteration_work(double unknowns) {
 /// A matrix singular to rounding belongs to conditions that depend on one another. With a small multiple of x −
 /// x_present added, whole steps stay defined and their limits are the solutions of the problem itself.
 void AlartCurnierStep::add_proximal_term() {
-  proximal_ = 0.0;
+  factored_proximal_ = 0.0;
   const double count = static_cast<double>(unknowns_.size());
   if (factor_.smallest_pivot() > 4.0 * count * epsilon) return;
-  proximal_ = proximal_size;
-  matrix_.diagonal().array() += proximal_;
+  factored_proximal_ = proximal_size;
+  matrix_.diagonal().array() += factored_proximal_;
   factor_.compute(matrix_);
 }
 
@@ -109,13 +109,16 @@ void AlartCurnierStep::expand(const Vector& x, Vector& reaction) const {
 
 bool AlartCurnierStep::solve_directly() {
   is_iterative_ = false;
-  if (unknowns_ != factored_) {
+  const bool is_new = unknowns_ != factored_;
+  if (is_new || !has_charged_factor_) work_ += factor_work(static_cast<double>(unknowns_.size()));
+  has_charged_factor_ = true;
+  if (is_new) {
     factor_.compute(matrix_);
-    work_ += factor_work(static_cast<double>(unknowns_.size()));
     add_proximal_term();
     factored_ = unknowns_;
     has_factored_ = true;
   }
+  proximal_ = factored_proximal_;
   const auto count = static_cast<Index>(unknowns_.size());
   for (Index i = 0; i < count; ++i) right_[i] += proximal_ * present_[i];
   factor_.solve(right_, solution_);

@@ -40,6 +40,7 @@ class AlartCurnierStep {
   /// Before the first step of a problem: only factors are kept from earlier ones.
   void start() {
     last_unknowns_.clear();
+    has_charged_factor_ = false;
     has_settled_ = false;
     work_ = 0.0;
   }
@@ -78,8 +79,12 @@ class AlartCurnierStep {
   ReusedFactor reused_;
   Gmres gmres_;
   bool is_iterative_ = false;  ///< the last step was solved by GMRES
-  double proximal_ = 0.0;      ///< added to the diagonal of a matrix singular to rounding
+  /// Added to the diagonal of a matrix singular to rounding: of this step's system, and of the one that is factored.
+  double proximal_ = 0.0, factored_proximal_ = 0.0;
   bool has_factored_ = false, has_settled_ = false;
+  /// A factor of few unknowns is charged in every problem, also where it is that of an earlier one: the choice of a
+  /// method must not depend on whether a run has been interrupted.
+  bool has_charged_factor_ = false;
   double work_ = 0.0;
 };
 

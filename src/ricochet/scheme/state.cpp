@@ -1,0 +1,51 @@
+#include "ricochet/scheme/state.hpp"
+
+namespace ricochet {
+
+void save(const State& state, Snapshot& snapshot, const std::string& name) {
+  snapshot.save(name + ".step", static_cast<std::int64_t>(state.step));
+  snapshot.save(name + ".time", state.time);
+  snapshot.save(name + ".displacement", state.displacement);
+  snapshot.save(name + ".velocity", state.velocity);
+  snapshot.save(name + ".acceleration", state.acceleration);
+  snapshot.save(name + ".normal_reaction", state.forces.normal_reaction);
+  snapshot.save(name + ".tangential_reaction", state.forces.tangential_reaction);
+  snapshot.save(name + ".support_reaction", state.forces.support_reaction);
+  snapshot.save(name + ".varying_load", state.forces.varying_load);
+  snapshot.save(name + ".damping_force", state.forces.damping_force);
+  snapshot.save(name + ".contact_status", state.contact_status);
+  snapshot.save(name + ".obstacle_increment.normal", state.obstacle_increment.normal);
+  snapshot.save(name + ".obstacle_increment.tangential", state.obstacle_increment.tangential);
+  snapshot.save(name + ".iterations", state.iterations);
+  Snapshot::Texts names;
+  for (const auto& [key, values] : state.memory) {
+    names.push_back(key);
+    snapshot.save(name + ".memory." + key, values);
+  }
+  snapshot.save(name + ".memory", std::move(names));
+}
+
+State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, const std::string& name) {
+  const Index dofs = problem.dof_count(), points = problem.contact.size();
+  const Index tangents = points * (problem.dimension - 1);
+  State state;
+  state.step = snapshot.integer(name + ".step");
+  state.time = snapshot.real(name + ".time");
+  state.displacement = snapshot.reals(name + ".displacement", dofs);
+  state.velocity = snapshot.reals(name + ".velocity", dofs);
+  state.acceleration = snapshot.reals(name + ".acceleration", dofs);
+  state.forces.normal_reaction = snapshot.reals(name + ".normal_reaction", points);
+  state.forces.tangential_reaction = snapshot.reals(name + ".tangential_reaction", tangents, 0);
+  state.forces.support_reaction = snapshot.reals(name + ".support_reaction", problem.supports.size());
+  state.forces.varying_load = snapshot.reals(name + ".varying_load", dofs, 0);
+  state.forces.damping_force = snapshot.reals(name + ".damping_force", dofs, 0);
+  state.contact_status = snapshot.statuses(name + ".contact_status", points);
+  state.obstacle_increment.normal = snapshot.reals(name + ".obstacle_increment.normal", points, 0);
+  state.obstacle_increment.tangential = snapshot.reals(name + ".obstacle_increment.tangential", tangents, 0);
+  state.iterations = static_cast<int>(snapshot.integer(name + ".iterations"));
+  for (const std::string& key : snapshot.texts(name + ".memory"))
+    state.memory[key] = snapshot.reals(name + ".memory." + key);
+  return state;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,168 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/case/names.hpp"
+#include "ricochet/case/run_case.hpp"
+#include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
+
+// A simulation that goes on from a snapshot gives the same bits as one that was never interrupted: for every scheme,
+// mass and multiplier space that is registered, for every way to solve a step, with friction, moving obstacles, loads
+// that vary, damping and supports. What is compared is the whole snapshot at the end, so nothing that a later step
+// could depend on is left out.
+
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+using test_support::thrown_bodies;
+using test_support::thrown_case;
+using test_support::ThrownBody;
+
+bool same_bits(const Vector& a, const Vector& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+void expect_same(const Snapshot& expected, const Snapshot& found, const std::string& trace) {
+  ASSERT_EQ(expected.values().size(), found.values().size()) << trace;
+  for (const auto& [name, value] : expected.values()) {
+    ASSERT_TRUE(found.has(name)) << trace << ": " << name;
+    const Snapshot::Value& other = found.values().at(name);
+    ASSERT_EQ(value.index(), other.index()) << trace << ": " << name;
+    if (const auto* reals = std::get_if<Vector>(&value)) {
+      EXPECT_TRUE(same_bits(*reals, std::get<Vector>(other))) << trace << ": " << name;
+    } else {
+      EXPECT_TRUE(value == other) << trace << ": " << name;
+    }
+  }
+}
+
+Snapshot snapshot_of(const Simulation& simulation) {
+  Snapshot snapshot;
+  simulation.save(snapshot);
+  return snapshot;
+}
+
+/// Runs a case, taking snapshots, and goes on from each of them. False: the program refuses such a case.
+bool resumes_to_the_same_bits(const std::string& text, const std::set<long>& at) {
+  std::unique_ptr<CaseRun> run;
+  try {
+    run = std::make_unique<CaseRun>(text);
+  } catch (const Error& problem) {
+    EXPECT_EQ(problem.kind(), ErrorKind::invalid_input) << problem.what() << text;
+    return false;
+  }
+  std::map<long, Snapshot> snapshots;
+  bool touches = false;
+  run->run([&] {
+    const State& state = run->state();
+    touches = touches || (state.forces.normal_reaction.array() > 0.0).any();
+    if (at.contains(state.step)) snapshots[state.step] = snapshot_of(run->simulation());
+  });
+  EXPECT_TRUE(touches) << text;
+  EXPECT_EQ(snapshots.size(), at.size());
+  const Snapshot end = snapshot_of(run->simulation());
+  for (const auto& [step, snapshot] : snapshots) {
+    const std::unique_ptr<Scheme> scheme = make_scheme(run->input().time);
+    Simulation resumed(run->problem(), *scheme, snapshot, step_solver_options(run->input()));
+    expect_same(snapshot, snapshot_of(resumed), "before a step");
+    while (resumed.state().step < run->steps()) resumed.advance();
+    expect_same(end, snapshot_of(resumed), "from step " + std::to_string(step) + " of\n" + text);
+    const Energies energies = resumed.account().energies(resumed.state());
+    EXPECT_EQ(resumed.account().residual(energies), run->simulation().account().residual(energies));
+  }
+  return true;
+}
+
+/// Friction on a plane that moves, a load that varies and mass damping.
+std::string busy_case(const ThrownBody& body, const std::string& mass, const std::string& time,
+                      const std::string& contact) {
+  const bool flat = body.dimension == 2;
+  std::string text =
+      thrown_case(body, mass, time, contact, flat ? "velocity = [0.2, 0.0]\n" : "velocity = [0.2, 0.1, 0.0]\n");
+  text.replace(text.find("mu = 20.0\n"), 10, "mu = 20.0\ndamping = { mass = 0.05 }\n");
+  return text + "[[traction]]\ngroup = \"contact\"\nvalue = " +
+         (flat ? "[\"0.1*sin(9*t)\", \"0\"]\n" : "[\"0.1*sin(9*t)\", \"0\", \"0\"]\n");
+}
+
+TEST(Resume, EverySchemeMassAndMultiplierSpace) {
+  // With contact on one side, so that every mass can be made.
+  const ThrownBody block{
+      "block", 2, 1,
+      test_support::mesh_geometry(
+          "block", "Rectangle(1)={0,0.03,0,1,0.7}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};",
+          0.2, 1)};
+  std::map<std::string, int> runs;
+  for (const std::string& scheme : scheme_names()) {
+    for (const std::string& mass : mass_names()) {
+      for (const std::string& multipliers : multiplier_space_names()) {
+        std::string time = "scheme = \"" + scheme + "\"\n";
+        if (scheme == "newmark") time += "beta = 0.3025\ngamma = 0.6\n";
+        const std::string contact =
+            "friction = 0.3\nmultipliers = \"" + multipliers + "\"\nunstable_multipliers = \"allow\"\n";
+        std::string text = busy_case(block, mass, time, contact);
+        text.replace(text.find("end = 1.5"), 9, "end = 0.4");
+        if (!resumes_to_the_same_bits(text, {0, 1, 7, 23, 39})) continue;
+        for (const std::string& name : {scheme, mass, multipliers}) ++runs[name];
+      }
+    }
+  }
+  for (const auto& names : {scheme_names(), mass_names(), multiplier_space_names()}) {
+    for (const std::string& name : names) EXPECT_GT(runs[name], 0) << name;
+  }
+}
+
+struct Variant {
+  std::string name, time, mass, contact, more;
+  std::size_t body;
+};
+
+class ResumeVariant : public ::testing::TestWithParam<Variant> {};
+
+TEST_P(ResumeVariant, GoesOnWithTheSameBits) {
+  const Variant& variant = GetParam();
+  const ThrownBody body = thrown_bodies()[variant.body];
+  EXPECT_TRUE(resumes_to_the_same_bits(busy_case(body, variant.mass, variant.time, variant.contact) + variant.more,
+                                       {2, 40, 75, 149}));
+}
+
+const std::string newmark = "scheme = \"newmark\"\npreset = \"trapezoidal\"\n";
+const std::string friction = "friction = 0.3\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ResumeVariant,
+    ::testing::Values(Variant{"Frictionless", newmark, "equivalent", "", "", 0},
+                      Variant{"AllPoints", newmark, "equivalent", friction, "[solver]\ncontact_points = \"all\"\n", 1},
+                      Variant{"Iterative", newmark, "equivalent", friction, "[solver]\nmethod = \"iterative\"\n", 0},
+                      Variant{"IterativeBall", newmark, "consistent", friction, "[solver]\nmethod = \"iterative\"\n",
+                              3},
+                      Variant{"Ball", newmark, "equivalent", friction, "", 3},
+                      Variant{"CurvedBall", "scheme = \"klr-conserving\"\n", "consistent", friction, "", 4},
+                      Variant{"CurvedDiscP1", newmark, "equivalent", "friction = 0.5\nmultipliers = \"p1\"\n", "", 2},
+                      Variant{"ExplicitBall", "scheme = \"semi-explicit\"\n", "equivalent-lumped", friction, "", 3}),
+    [](const auto& info) { return info.param.name; });
+
+/// Supports that move, also on contact nodes, where schemes keep more than the state's vectors.
+TEST(Resume, MovingSupports) {
+  for (const auto& [scheme, mass] :
+       {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"}, std::pair{"midpoint", "consistent"},
+        std::pair{"klr-conserving", "consistent"}, std::pair{"semi-explicit", "equivalent-lumped"}}) {
+    const std::string text = "[mesh]\nfile = \"" RICOCHET_TEST_DATA
+                             "/meshes/quadrilateral_o1_msh41_ascii.msh\"\n"
+                             "[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n"
+                             "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.05]\nnormal = [0.0, 1.0]\n"
+                             "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.4\n"
+                             "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\", \"y\"]\nvalue = \"-0.1*sin(7*t)\"\n"
+                             "[mass]\ntype = \"" +
+                             std::string(mass) + "\"\n[time]\nscheme = \"" + scheme + "\"\nstep = 0.004\nend = 0.8\n";
+    EXPECT_TRUE(resumes_to_the_same_bits(text, {0, 3, 60, 61, 150, 199})) << scheme;
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
