@@ -8,6 +8,7 @@ find_package(tomlplusplus REQUIRED)
 find_package(muparser REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(ZLIB REQUIRED)
 
 set(BLA_VENDOR OpenBLAS)
 find_package(BLAS REQUIRED)
@@ -21,7 +22,7 @@ pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
 add_library(ricochet_dependencies INTERFACE)
 target_include_directories(ricochet_dependencies SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR} ${HDF5_INCLUDE_DIRS})
 target_link_libraries(ricochet_dependencies INTERFACE
-  Basix::basix fmt::fmt spdlog::spdlog tomlplusplus::tomlplusplus muparser::muparser nlohmann_json::nlohmann_json
+  Basix::basix fmt::fmt spdlog::spdlog tomlplusplus::tomlplusplus muparser::muparser nlohmann_json::nlohmann_json ZLIB::ZLIB
   ${CHOLMOD_LIBRARY} PkgConfig::HDF5 BLAS::BLAS)
 
 add_library(ricochet_program_dependencies INTERFACE)

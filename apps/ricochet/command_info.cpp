@@ -10,8 +10,10 @@
 #include "ricochet/case/model.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
+#include "ricochet/case/run_description.hpp"
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
+#include "ricochet/io/run_directory.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/scheme/critical_step.hpp"
 
@@ -71,11 +73,19 @@ double ratio(double a, double b) {
   return b != 0.0 ? a / b : 0.0;
 }
 
+/// A run that has neither ended nor is going on was killed.
+std::string status_text(const std::string& directory, const RunSummary& s) {
+  if (s.status == "done") return "";
+  if (s.status == "failed") return " (FAILED)";
+  return s.status == "running" && !RunDirectory::is_in_use(directory) ? " (interrupted)"
+                                                                      : fmt::format(" ({})", s.status);
+}
+
 void describe_result(const std::string& directory) {
   const RunSummary s = read_summary(directory + "/summary.json");
   const ColumnDigest energy = s.digest("total_energy");
   const ColumnDigest residual = s.digest("energy_residual");
-  fmt::print("{}: {}{}\n", directory, s.title.empty() ? s.case_file : s.title, s.status == "done" ? "" : " (FAILED)");
+  fmt::print("{}: {}{}\n", directory, s.title.empty() ? s.case_file : s.title, status_text(directory, s));
   if (!s.message.empty()) fmt::print("  {}\n", s.message);
   fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass, s.dimension, s.degree);
   fmt::print("  {} nodes, {} cells, {} contact points, {} steps of {:g}, {} frames\n", s.nodes, s.cells,
@@ -124,7 +134,7 @@ void compare_results(const std::vector<std::string>& directories) {
     }
     fmt::print("{:<24} {:<15} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14.4g} {:>14.3g} {:>9.3g}{}\n", directory,
                s.scheme, s.mass, energy.first, energy.last, energy.maximum, variation,
-               s.digest("max_penetration").maximum, 1e3 * s.time_per_step, s.status == "done" ? "" : "  FAILED");
+               s.digest("max_penetration").maximum, 1e3 * s.time_per_step, status_text(directory, s));
   }
 }
 

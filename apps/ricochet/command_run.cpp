@@ -10,6 +10,7 @@
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
 #include "ricochet/io/progress.hpp"
+#include "stop_signal.hpp"
 
 namespace ricochet::program {
 
@@ -51,6 +52,7 @@ void print_summary(const RunSummary& s, const std::string& directory) {
              s.timings.empty() ? "" : duration_text(s.timings.back().second));
   print_expectations(s.expectations);
   for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
+  if (!s.message.empty()) fmt::print("  {}\n", s.message);
   fmt::print("  results in {}\n", directory);
   if (!s.contact_export.empty()) fmt::print("  {}\n", s.contact_export);
 }
@@ -59,6 +61,8 @@ void print_summary(const RunSummary& s, const std::string& directory) {
 
 int run(const RunArguments& arguments) {
   RunOptions options{arguments.output_directory, arguments.force, arguments.quiet};
+  options.resume = arguments.resume;
+  options.stop_signal = stop_signal;
   if (arguments.export_contact) options.export_contact = parse_steps(*arguments.export_contact);
   options.export_contact_to = arguments.export_contact_to;
   const Case input = read_case(arguments.case_file, arguments.overrides);
@@ -66,8 +70,10 @@ int run(const RunArguments& arguments) {
     options.output_directory =
         (std::filesystem::path("out") / std::filesystem::path(arguments.case_file).stem()).string();
   }
+  catch_stop_signals();
   const RunSummary summary = run_case(input, options);
   print_summary(summary, options.output_directory);
+  if (summary.status == "interrupted") return 128 + stop_signal();
   for (const ExpectationResult& e : summary.expectations) {
     if (e.checked && !e.holds) {
       throw Error(ErrorKind::expectation,

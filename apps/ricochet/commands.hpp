@@ -11,7 +11,7 @@ struct RunArguments {
   std::string case_file;
   std::string output_directory;  ///< empty: out/NAME of the case file
   std::vector<std::string> overrides;
-  bool force = false;
+  bool force = false, resume = false;
   bool quiet = false;
   std::optional<std::string> export_contact;  ///< steps, like 10,20,50:60
   std::string export_contact_to;              ///< directory; empty: contact/ in the output directory

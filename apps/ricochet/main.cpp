@@ -35,7 +35,8 @@ int dispatch(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 done; 1 wrong use of the command line; 2 invalid case or mesh; 3 a step did not converge;\n"
-      "4 cannot read or write a file; 5 done, but an [[expect]] entry of the case does not hold.");
+      "4 cannot read or write a file; 5 done, but an [[expect]] entry of the case does not hold;\n"
+      "130 and 143 stopped by SIGINT or SIGTERM with a checkpoint, from which run --resume goes on.");
   Arguments arguments;
 
   CLI::App* run = app.add_subcommand("run", "Run a case");
@@ -49,6 +50,8 @@ int dispatch(int argc, char** argv) {
   run->add_option("--threads", arguments.threads, "number of threads; results do not depend on it")->type_name("N");
   run->add_flag("--quiet", arguments.run.quiet, "no progress and no messages but warnings and errors");
   run->add_flag("--force", arguments.run.force, "overwrite a run that is in the output directory");
+  run->add_flag("--resume", arguments.run.resume, "go on with the interrupted run that is in the output directory")
+      ->excludes("--force");
   run->add_option("--export-contact", arguments.run.export_contact,
                   "write the contact problems of these steps as FCLib files, for example 10,20,50:60")
       ->type_name("STEPS");

@@ -89,5 +89,8 @@ const std::vector<std::string>& warnings() {
 void clear_warnings() {
   remembered_warnings().clear();
 }
+void set_warnings(std::vector<std::string> messages) {
+  remembered_warnings() = std::move(messages);
+}
 
 }  // namespace ricochet::log

@@ -23,5 +23,7 @@ void error(const std::string& message);
 /// All warnings since the last call of clear_warnings, in order.
 [[nodiscard]] const std::vector<std::string>& warnings();
 void clear_warnings();
+/// Replaces them, without saying them again: those of an interrupted run that goes on.
+void set_warnings(std::vector<std::string> messages);
 
 }  // namespace ricochet::log

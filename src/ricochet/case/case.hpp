@@ -103,6 +103,8 @@ struct ProbeSection {
 struct OutputSection {
   std::optional<long> fields_every;  ///< steps; absent: chosen so that about a hundred frames are written; 0: none
   long history_every = 1;
+  long checkpoint_every = 0;          ///< steps; 0: by time only
+  double checkpoint_seconds = 300.0;  ///< of the clock on the wall; 0: by steps only
 };
 
 struct SolverSection {

@@ -388,6 +388,19 @@ Section output_section() {
                .standard = "1",
                .range = {.at_least = 1.0},
                .doc = "A row of history.csv is written each so many steps."},
+              {.name = "checkpoint_every",
+               .type = KeyType::integer,
+               .unit = "steps",
+               .standard = "0",
+               .range = nonnegative,
+               .doc = "A checkpoint is written each so many steps, from which an interrupted run goes on (`run "
+                      "--resume`); 0: by time only."},
+              {.name = "checkpoint_seconds",
+               .type = KeyType::number,
+               .unit = "seconds",
+               .standard = "300",
+               .range = nonnegative,
+               .doc = "A checkpoint is written when so much time has passed since the last one; 0: by steps only."},
           }};
 }
 

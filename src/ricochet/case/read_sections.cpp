@@ -255,7 +255,8 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems, Remar
   result.solver = {solver.text("method"), solver.number("tolerance"), solver.optional_number("memory"),
                    solver.text("contact_points")};
   const SectionReader output = sections.one("output");
-  result.output = {output.optional_integer("fields_every"), output.integer("history_every")};
+  result.output = {output.optional_integer("fields_every"), output.integer("history_every"),
+                   output.integer("checkpoint_every"), output.number("checkpoint_seconds")};
   for (const SectionReader& reader : sections.all("expect")) result.expectations.push_back(read_expectation(reader));
 }
 

@@ -11,68 +11,26 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/case/model.hpp"
-#include "ricochet/io/history_file.hpp"
+#include "ricochet/case/recording.hpp"
+#include "ricochet/case/run_description.hpp"
+#include "ricochet/case/run_identity.hpp"
+#include "ricochet/case/run_judgement.hpp"
+#include "ricochet/case/run_times.hpp"
+#include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/progress.hpp"
-#include "ricochet/io/results_file.hpp"
+#include "ricochet/io/run_directory.hpp"
 #include "ricochet/simulation/simulation.hpp"
-#include "ricochet/version.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// Above this rotation, in rad, small strain no longer holds.
-constexpr double rotation_limit = 0.1;
-/// Above this one, results no longer resemble anything.
-constexpr double large_rotation = 1.0;
-
-/// What a run leaves in its directory.
-constexpr const char* result_files[] = {"history.csv", "summary.json", "results.h5", "results.xdmf"};
+/// summary.json says how far a run is this often, in seconds.
+constexpr double report_interval = 2.0;
 
 std::string export_directory(const RunOptions& options) {
   const bool elsewhere = !options.export_contact.empty() && !options.export_contact_to.empty();
   return elsewhere ? options.export_contact_to : (std::filesystem::path(options.output_directory) / "contact").string();
-}
-
-void prepare_directory(const RunOptions& options) {
-  namespace fs = std::filesystem;
-  std::error_code problem;
-  fs::create_directories(options.output_directory, problem);
-  if (problem || !fs::is_directory(options.output_directory)) {
-    throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", options.output_directory,
-                                                    problem ? problem.message() : "a file of that name is there"));
-  }
-  for (const char* name : result_files) {
-    if (!options.force && fs::exists(fs::path(options.output_directory) / name)) {
-      throw Error(ErrorKind::file_access,
-                  fmt::format("{}: holds a run already ({}); choose another directory with -o, or "
-                              "overwrite it with --force",
-                              options.output_directory, name));
-    }
-  }
-  const std::string contact = export_directory(options);
-  if (!options.force && !exported_contact_problems(contact).empty()) {
-    throw Error(ErrorKind::file_access,
-                fmt::format("{}: holds contact problems of a run already; choose another directory, or overwrite them "
-                            "with --force",
-                            contact));
-  }
-}
-
-/// Takes away what an earlier run left (this one may write no fields). Called when the new run is ready to start, so
-/// that a case that is refused costs nothing.
-void remove_old_run(const RunOptions& options) {
-  namespace fs = std::filesystem;
-  const std::string contact = export_directory(options);
-  std::vector<std::string> files = exported_contact_problems(contact);
-  const bool had_contact = !files.empty();
-  for (const char* name : result_files) files.push_back((fs::path(options.output_directory) / name).string());
-  std::error_code problem;
-  for (const std::string& file : files) {
-    fs::remove(file, problem);
-    if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be removed: {}", file, problem.message()));
-  }
-  if (had_contact && fs::is_empty(contact, problem)) fs::remove(contact, problem);
 }
 
 /// Fails early: a run of hours should not end because its last step cannot be written.
@@ -92,209 +50,259 @@ void check_export(const Case& input, const RunOptions& options, long steps) {
   if (!all) log::warning(fmt::format("--export-contact: the run has {} steps; those after it are left out", steps));
 }
 
-ContactProvenance provenance(const Case& input, const RunSummary& summary) {
-  ContactProvenance result;
-  result.title = input.title.empty() ? std::filesystem::path(input.path).stem().string() : input.title;
-  result.dimension = summary.dimension;
-  result.step_size = summary.step;
-  std::string overrides;
-  for (const std::string& key : summary.overrides) {
-    const auto value = input.values.find(key);
-    overrides += fmt::format(" {}{}", key, value != input.values.end() ? "=" + value->second : "");
+void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
+  if (const std::vector<std::string> results = directory.results(); !results.empty()) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: holds a run already ({}); choose another directory with -o, go on with that run with "
+                            "--resume, or overwrite it with --force",
+                            options.output_directory, std::filesystem::path(results.front()).filename().string()));
   }
-  result.origin = fmt::format("Ricochet {}, case {}{}{}; scheme {}", summary.version, input.path,
-                              overrides.empty() ? "" : " with --set", overrides, summary.scheme);
-  if (summary.scheme == "newmark")
-    result.origin += fmt::format(" (beta {:g}, gamma {:g})", input.time.beta, input.time.gamma);
-  result.origin += fmt::format(", step size {:g}, mass {}, multipliers", summary.step, summary.mass);
-  std::vector<std::string> spaces;
-  for (const ContactSection& contact : input.contacts) {
-    if (std::find(spaces.begin(), spaces.end(), contact.multipliers) == spaces.end())
-      spaces.push_back(contact.multipliers);
-  }
-  for (const std::string& space : spaces) result.origin += " " + space;
-  result.origin += fmt::format(", displacement of degree {}, {} dofs.", summary.degree, summary.dofs);
-  return result;
+  const std::string contact = export_directory(options);
+  if (exported_contact_problems(contact).empty()) return;
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: holds contact problems of a run already; choose another directory, or overwrite them "
+                          "with --force",
+                          contact));
 }
 
-RunSummary describe(const Case& input, const Model& model, const Scheme& scheme, const Simulation& simulation) {
-  RunSummary summary;
-  summary.case_file = input.path;
-  summary.title = input.title;
-  summary.version = version;
-  summary.scheme = input.time.scheme;
-  summary.mass = input.mass.type;
-  summary.overrides = input.overridden;
-  summary.dimension = model.mesh.dimension;
-  summary.degree = model.space.degree;
-  summary.nodes = model.space.node_count();
-  summary.cells = model.mesh.cell_count();
-  summary.dofs = model.space.dof_count();
-  summary.contact_points = model.problem.contact.size();
-  summary.supported_dofs = model.problem.supports.size();
-  summary.factor_entries = simulation.factor_entries();
-  const std::vector<ChosenMethod>& methods = simulation.methods();
-  const bool iterative = std::any_of(methods.begin(), methods.end(), [](const ChosenMethod& chosen) {
-    return chosen.method == SolverMethod::iterative;
-  });
-  summary.solver = iterative ? "iterative" : "direct";
-  summary.step = scheme.step();
-  summary.end_time = input.time.end;
-  summary.critical_step = scheme.critical_step();
-  summary.energy_instant = scheme.energy_instant();
-  summary.force_instant = scheme.force_instant();
-  summary.contacts = describe_contacts(input);
-  summary.probes = model.probes;
-  for (Probe& probe : summary.probes) {
-    const Vector at = model.space.nodes.col(probe.node);
-    summary.probe_positions.emplace_back(at.data(), at.data() + at.size());
-    probe.node = model.space.number[static_cast<std::size_t>(probe.node)];
-  }
-  return summary;
+/// Takes away what an earlier run left (this one may write no fields). Called when the new run is ready to start, so
+/// that a case that is refused costs nothing.
+void remove_old_run(const RunDirectory& directory, const RunOptions& options) {
+  const std::string contact = export_directory(options);
+  const std::vector<std::string> problems = exported_contact_problems(contact);
+  remove_files(directory.results());
+  remove_files(problems);
+  std::error_code problem;
+  if (!problems.empty() && std::filesystem::is_empty(contact, problem)) std::filesystem::remove(contact, problem);
 }
 
-/// Everything that is written while a run goes on.
-class Recording {
+/// A run from its directory to its summary.
+class Run {
  public:
-  Recording(const Case& input, const Model& model, const std::string& directory, long steps)
-      : recorder_(model.problem, *model.rotation, model.probes),
-        history_(directory + "/history.csv", recorder_.columns()),
-        history_every_(input.output.history_every),
-        fields_every_(input.output.fields_every.value_or(std::max(1L, (steps + 99) / 100))),
-        steps_(steps) {
-    if (fields_every_ > 0) results_.emplace(directory, model.space, model.problem);
-  }
+  Run(const Case& input, const RunOptions& options)
+      : input_(input), options_(options), directory_(options.output_directory), steps_(step_count(input.time)) {}
 
-  void record(const State& state, EnergyAccount& account) {
-    Timer timer;
-    if (state.step % history_every_ == 0 || state.step == steps_) {
-      const std::vector<double>& row = recorder_.row(state, account);
-      check_finite(row);
-      history_.write(row);
-      digest_.add(row);
-      watch_rotation(row);
-    }
-    if (results_ && (state.step % fields_every_ == 0 || state.step == steps_)) results_->write(state);
-    if (since_flush_.seconds() > 1.0) {
-      history_.flush();
-      since_flush_.restart();
-    }
-    seconds_ += timer.seconds();
-  }
-
-  /// Completes the files and the summary.
-  void close(RunSummary& summary) {
-    history_.flush();
-    if (results_) {
-      results_->close();
-      summary.frames = results_->frames();
-    }
-    summary.columns = recorder_.columns();
-    summary.digests = digest_.columns();
-  }
-
-  [[nodiscard]] double seconds() const { return seconds_; }
+  RunSummary go();
 
  private:
-  /// Energies are squares: they leave the range of numbers long before the displacement does.
-  void check_finite(const std::vector<double>& row) const {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (std::isfinite(row[i])) continue;
-      throw Error(ErrorKind::not_converged,
-                  fmt::format("step {:.0f} (t = {:.9g}): {} is no longer finite, so the motion has grown beyond all "
-                              "bounds; use a stable scheme or mass (newmark with mass \"equivalent\"), or a smaller "
-                              "time.step",
-                              row[0], row[1], recorder_.columns()[i]));
-    }
-  }
+  [[nodiscard]] bool is_complete();
+  void find_checkpoint();
+  void begin();
+  void begin_simulation();
+  void take_steps();
+  void stop(int signal);
+  void write_checkpoint();
+  void report_progress();
+  void describe_progress(RunSummary& summary) const;
+  void finish();
+  [[nodiscard]] std::string summary_path() const { return directory_.file("summary.json"); }
 
-  void watch_rotation(const std::vector<double>& row) {
-    if (rotation_warned_) return;
-    const auto column =
-        static_cast<std::size_t>(std::find(recorder_.columns().begin(), recorder_.columns().end(), "max_rotation") -
-                                 recorder_.columns().begin());
-    if (!(row[column] > rotation_limit)) return;
-    rotation_warned_ = true;
-    log::warning(
-        fmt::format("at t = {:.6g} a cell has rotated by {:.3g} rad: above {} rad small strain no longer holds "
-                    "(a turning body inflates); read what follows with care",
-                    row[1], row[column], rotation_limit));
-  }
-
-  HistoryRecorder recorder_;
-  HistoryWriter history_;
-  std::optional<ResultsWriter> results_;
-  HistoryDigest digest_;
-  long history_every_;
-  long fields_every_;
+  const Case& input_;
+  const RunOptions& options_;
+  RunDirectory directory_;
   long steps_;
-  bool rotation_warned_ = false;
-  Timer since_flush_;
-  double seconds_ = 0.0;
+  RunTimes times_;
+  std::unique_ptr<Model> model_;
+  std::unique_ptr<Scheme> scheme_;
+  std::optional<Snapshot> snapshot_;  ///< that the run goes on from
+  std::optional<Simulation> simulation_;
+  std::optional<ContactExport> contact_export_;
+  std::optional<Recording> recording_;
+  double contact_before_ = 0.0;
+  RunSummary summary_;
+  std::optional<Error> failure_;
+  Timer since_checkpoint_, since_report_;
 };
 
-/// What the account of energy says that a user should hear.
-void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
-  const double scale = summary.energy_scale();
-  // A body that is merely displaced has no energy but the rounding of these terms: nothing to judge.
-  const Vector magnitude = state.displacement.cwiseAbs();
-  const double terms = magnitude.dot(problem.internal_force->tangent().cwiseAbs() * magnitude);
-  if (scale <= 1e-14 * terms) return;
-  const auto largest = [&](const char* column) {
-    const ColumnDigest digest = summary.digest(column);
-    return std::max(std::abs(digest.minimum), std::abs(digest.maximum));
-  };
-  if (largest("energy_residual") > 1e-8 * scale) {
-    log::warning(fmt::format(
-        "the energy account does not close: its residual reaches {:.2g} of the largest energy, by rounding{}; "
-        "stiffnesses or densities that differ by many orders of magnitude, a Poisson's ratio at 1/2 or an "
-        "extreme time.step are likely causes; do not trust this run to more digits than that",
-        largest("energy_residual") / scale,
-        summary.solver == "iterative" ? " or by solver.tolerance (make it smaller, or solver.method = \"direct\")"
-                                      : ""));
+RunSummary Run::go() {
+  if (options_.resume) {
+    if (is_complete()) return summary_;
+    find_checkpoint();
+  } else if (!options_.force) {
+    refuse_old_run(directory_, options_);
   }
-  if (summary.digest("contact_work").maximum > 0.01 * scale) {
-    const bool best = (summary.scheme == "newmark" || summary.scheme == "semi-explicit") && problem.has_singular_mass();
-    log::warning(
-        fmt::format("contact forces have created energy: contact_work reaches {:.2g} of the largest energy; {}",
-                    summary.digest("contact_work").maximum / scale,
-                    best ? "take a time.step below the time in which a wave crosses a cell, and see that no body "
-                           "starts inside an obstacle"
-                         : "it comes from the time scheme: use newmark with mass \"equivalent\""));
+  begin();
+  take_steps();
+  finish();
+  if (failure_) throw Error(*failure_);
+  return summary_;
+}
+
+/// The run in the directory has come to its end: nothing to do.
+bool Run::is_complete() {
+  if (!std::filesystem::exists(summary_path())) return false;
+  try {
+    summary_ = read_summary(summary_path());
+  } catch (const Error&) {
+    return false;  // a summary is not waited for until it is on the disk: checkpoints are
   }
-  if (summary.digest("friction_work").maximum > 0.01 * scale) {
-    log::warning(fmt::format(
-        "friction has created energy: friction_work reaches {:.2g} of the largest energy; it comes from the "
-        "weights that {} gives to the forces at the two ends of a step: take a smaller time.step",
-        summary.digest("friction_work").maximum / scale, summary.scheme));
-  }
-  if (summary.digest("max_rotation").maximum > large_rotation) {
-    log::warning(
-        fmt::format("cells rotate by up to {:.3g} rad: this is far outside small strain, and the motion is not that "
-                    "of a real body; a body much softer or faster than was meant (units?) or one that spins",
-                    summary.digest("max_rotation").maximum));
+  if (!summary_.parameters.empty())
+    require_same_case(input_, summary_.version, summary_.parameters, options_.output_directory);
+  if (summary_.status != "done") return false;
+  log::info(fmt::format("{}: this run is complete, there is nothing to resume", options_.output_directory));
+  return true;
+}
+
+void Run::find_checkpoint() {
+  snapshot_ = newest_checkpoint(options_.output_directory);
+  if (snapshot_) {
+    require_same_case(input_, *snapshot_, options_.output_directory);
+  } else if (!checkpoint_files(options_.output_directory).empty()) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: cannot be resumed: no checkpoint can be read; start anew with --force",
+                            options_.output_directory));
+  } else {
+    log::info(fmt::format("{}: there is no checkpoint, the run starts from the beginning", options_.output_directory));
   }
 }
 
-/// All steps, recorded. Returns what ended them early, if anything did; `seconds` receives the time without recording.
-std::optional<Error> take_steps(Simulation& simulation, Recording& recording, ContactExport* contact_export, long steps,
-                                bool quiet, double& seconds) {
-  Progress progress(steps, quiet);
-  const double recorded_before = recording.seconds();
-  std::optional<Error> failure;
+void Run::begin() {
+  const std::vector<std::string> resume_warnings = log::warnings();
+  BuildTimes build;
+  model_ = build_model(input_, &build);
+  times_.add_build(build);
+  std::string difference;
+  if (snapshot_) difference = compare_model(input_, *model_, *snapshot_);
   Timer timer;
-  try {
-    while (simulation.state().step < steps) {
-      if (contact_export) contact_export->begin_step(simulation.state().step + 1);
-      simulation.advance();
-      recording.record(simulation.state(), simulation.account());
-      progress.update(simulation.state().step, simulation.state().time);
-    }
-  } catch (const Error& problem) {
-    failure = problem;
+  scheme_ = make_scheme(input_.time);
+  begin_simulation();
+  times_.add_start(timer.seconds(), simulation_->methods());
+  if (std::abs(static_cast<double>(steps_) * input_.time.step - input_.time.end) > 1e-9 * input_.time.end) {
+    log::info(fmt::format("time.end is not a whole number of steps: the run ends at t = {:.9g}",
+                          static_cast<double>(steps_) * input_.time.step));
   }
-  seconds = timer.seconds() - (recording.seconds() - recorded_before);
-  return failure;
+  summary_ = describe_run(input_, *model_, *scheme_, *simulation_);
+  if (snapshot_) {
+    // Those of the model have been said and remembered already.
+    std::vector<std::string> warnings = snapshot_->texts("run.warnings");
+    warnings.insert(warnings.end(), resume_warnings.begin(), resume_warnings.end());
+    log::set_warnings(std::move(warnings));
+    if (!difference.empty()) log::warning(difference);
+    const Snapshot::Integers& resumed_at = snapshot_->integers("run.resumed_at");
+    summary_.resumed_at.assign(resumed_at.begin(), resumed_at.end());
+    summary_.resumed_at.push_back(simulation_->state().step);
+    summary_.checkpoint_step = simulation_->state().step;
+    times_.load(*snapshot_, "run.times");
+    remove_files(directory_.left_behind(simulation_->state().step));
+    log::info(fmt::format("resumed after step {} of {}", simulation_->state().step, steps_));
+  } else {
+    remove_old_run(directory_, options_);
+  }
+  if (!options_.export_contact.empty()) {
+    contact_export_.emplace(options_.export_contact, export_directory(options_), describe_provenance(input_, summary_));
+    simulation_->observe_contact([this](const ContactProblem& problem, const ContactSolution& solution) {
+      contact_export_->write(problem, solution);
+    });
+  }
+  recording_.emplace(input_, *model_, options_.output_directory, steps_, snapshot_ ? &*snapshot_ : nullptr);
+  if (!snapshot_) recording_->record(simulation_->state(), simulation_->account());
+  snapshot_.reset();
+  contact_before_ = simulation_->contact_seconds();
+  report_progress();
+}
+
+void Run::begin_simulation() {
+  if (snapshot_) {
+    simulation_.emplace(model_->problem, *scheme_, *snapshot_, step_solver_options(input_));
+  } else {
+    simulation_.emplace(model_->problem, *scheme_, model_->initial, step_solver_options(input_));
+  }
+}
+
+/// All steps, recorded, until the end, an error or a signal.
+void Run::take_steps() {
+  Simulation& simulation = *simulation_;
+  Progress progress(steps_, options_.quiet, simulation.state().step);
+  since_checkpoint_.restart();
+  const auto checkpoint_is_due = [&] {
+    const OutputSection& output = input_.output;
+    return (output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
+           (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds);
+  };
+  try {
+    while (simulation.state().step < steps_) {
+      if (const int signal = options_.stop_signal ? options_.stop_signal() : 0; signal != 0) return stop(signal);
+      const Timer timer;
+      if (contact_export_) contact_export_->begin_step(simulation.state().step + 1);
+      simulation.advance();
+      times_.steps += timer.seconds();
+      recording_->record(simulation.state(), simulation.account());
+      progress.update(simulation.state().step, simulation.state().time);
+      if (simulation.state().step < steps_ && checkpoint_is_due()) write_checkpoint();
+      if (since_report_.seconds() >= report_interval) report_progress();
+    }
+    recording_->flush();
+  } catch (const Error& problem) {
+    failure_ = problem;
+  }
+}
+
+void Run::stop(int signal) {
+  write_checkpoint();
+  summary_.status = "interrupted";
+  summary_.message = fmt::format("stopped by signal {} after step {} of {}; run --resume goes on from there", signal,
+                                 simulation_->state().step, steps_);
+}
+
+void Run::write_checkpoint() {
+  const Timer timer;
+  Snapshot snapshot;
+  simulation_->save(snapshot);
+  recording_->save(snapshot);
+  save_identity(input_, *model_, snapshot);
+  RunTimes times = times_;
+  times.contact += simulation_->contact_seconds() - contact_before_;
+  times.output += recording_->seconds();
+  times.save(snapshot, "run.times");
+  snapshot.save("run.warnings", log::warnings());
+  snapshot.save("run.resumed_at", Snapshot::Integers(summary_.resumed_at.begin(), summary_.resumed_at.end()));
+  const long step = simulation_->state().step;
+  ricochet::write_checkpoint(options_.output_directory, step, snapshot);
+  summary_.checkpoint_step = step;
+  times_.checkpoints += timer.seconds();
+  since_checkpoint_.restart();
+}
+
+void Run::describe_progress(RunSummary& summary) const {
+  recording_->describe(summary);
+  summary.steps = simulation_->state().step;
+  RunTimes times = times_;
+  times.contact += simulation_->contact_seconds() - contact_before_;
+  times.output += recording_->seconds();
+  summary.timings = times.phases();
+  summary.time_per_step = summary.steps > 0 ? times.steps / static_cast<double>(summary.steps) : 0.0;
+  summary.warnings = log::warnings();
+}
+
+/// For those who look at a run that goes on.
+void Run::report_progress() {
+  RunSummary summary = summary_;
+  summary.status = "running";
+  describe_progress(summary);
+  write_summary(summary_path(), summary);
+  since_report_.restart();
+}
+
+void Run::finish() {
+  if (failure_) {
+    summary_.status = "failed";
+    summary_.message = failure_->what();
+  }
+  if (summary_.status == "done") {
+    describe_progress(summary_);
+    judge_energy(summary_, model_->problem, simulation_->state());
+  }
+  describe_progress(summary_);
+  if (contact_export_) summary_.contact_export = contact_export_->report();
+  if (summary_.status == "done")
+    summary_.expectations = check_expectations(input_, options_.output_directory, to_json(summary_));
+  try {
+    recording_->flush();
+    write_summary(summary_path(), summary_);
+  } catch (const Error&) {
+    // What has failed first is what a user must hear.
+    if (!failure_) throw;
+  }
 }
 
 }  // namespace
@@ -309,17 +317,6 @@ StepSolverOptions step_solver_options(const Case& input) {
   return options;
 }
 
-std::vector<ContactDescription> describe_contacts(const Case& input) {
-  std::vector<ContactDescription> result;
-  for (const ContactSection& contact : input.contacts) {
-    const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
-                                       [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
-    result.push_back({contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound,
-                      obstacle->velocity, obstacle->rotation_rate});
-  }
-  return result;
-}
-
 long step_count(const TimeSection& time) {
   // An end that is a whole number of steps to rounding is that number of steps.
   return std::max(1L, static_cast<long>(std::ceil(time.end / time.step * (1.0 - 1e-12))));
@@ -327,62 +324,8 @@ long step_count(const TimeSection& time) {
 
 RunSummary run_case(const Case& input, const RunOptions& options) {
   log::clear_warnings();
-  Timer total, timer;
   check_export(input, options, step_count(input.time));
-  prepare_directory(options);
-  BuildTimes build;
-  const std::unique_ptr<Model> model = build_model(input, &build);
-  timer.restart();
-  const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
-  Simulation simulation(model->problem, *scheme, model->initial, step_solver_options(input));
-  const double start_seconds = timer.restart();
-  const long steps = step_count(input.time);
-  if (std::abs(static_cast<double>(steps) * input.time.step - input.time.end) > 1e-9 * input.time.end) {
-    log::info(fmt::format("time.end is not a whole number of steps: the run ends at t = {:.9g}",
-                          static_cast<double>(steps) * input.time.step));
-  }
-
-  RunSummary summary = describe(input, *model, *scheme, simulation);
-  remove_old_run(options);
-  std::optional<ContactExport> contact_export;
-  if (!options.export_contact.empty()) {
-    contact_export.emplace(options.export_contact, export_directory(options), provenance(input, summary));
-    simulation.observe_contact([&](const ContactProblem& problem, const ContactSolution& solution) {
-      contact_export->write(problem, solution);
-    });
-  }
-  Recording recording(input, *model, options.output_directory, steps);
-  recording.record(simulation.state(), simulation.account());
-  double step_seconds = 0.0;
-  const double contact_before = simulation.contact_seconds();
-  const std::optional<Error> failure = take_steps(simulation, recording, contact_export ? &*contact_export : nullptr,
-                                                  steps, options.quiet, step_seconds);
-  recording.close(summary);
-  summary.steps = simulation.state().step;
-  summary.time_per_step = summary.steps > 0 ? step_seconds / static_cast<double>(summary.steps) : 0.0;
-  double ordering = 0.0, factorization = 0.0;
-  for (const ChosenMethod& chosen : simulation.methods()) {
-    ordering += chosen.ordering_seconds;
-    factorization += chosen.factorization_seconds;
-  }
-  summary.timings = {
-      {"read_mesh", build.read_mesh},   {"model", build.model},
-      {"assembly", build.assembly},     {"ordering", ordering},
-      {"factorization", factorization}, {"start", start_seconds - ordering - factorization},
-      {"steps", step_seconds},          {"contact_solver", simulation.contact_seconds() - contact_before},
-      {"output", recording.seconds()},  {"total", total.seconds()}};
-  if (!failure) judge_energy(summary, model->problem, simulation.state());
-  if (contact_export) summary.contact_export = contact_export->report();
-  summary.warnings = log::warnings();
-  if (failure) {
-    summary.status = "failed";
-    summary.message = failure->what();
-  } else {
-    summary.expectations = check_expectations(input, options.output_directory, to_json(summary));
-  }
-  write_summary(options.output_directory + "/summary.json", summary);
-  if (failure) throw Error(*failure);
-  return summary;
+  return Run(input, options).go();
 }
 
 }  // namespace ricochet

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,21 +15,22 @@ namespace ricochet {
 /// What [solver] asks for.
 [[nodiscard]] StepSolverOptions step_solver_options(const Case& input);
 
-/// The contacts of a case as a summary lists them.
-[[nodiscard]] std::vector<ContactDescription> describe_contacts(const Case& input);
-
 struct RunOptions {
   std::string output_directory;
   bool force = false;  ///< overwrite a run that is there
   bool quiet = false;  ///< no progress
+  /// Go on with the run that is in the directory, from its last checkpoint; from the beginning where it has none.
+  bool resume = false;
+  /// Asked after every step: not zero, the number of the signal that is to end the run with a checkpoint.
+  std::function<int()> stop_signal = {};
   /// Steps whose contact problems are written as FCLib files, see io/contact_export.hpp.
   std::vector<StepRange> export_contact = {};
   std::string export_contact_to = {};  ///< their directory; empty: contact/ in the output directory
 };
 
-/// Runs a case and writes history.csv, results.h5, results.xdmf and summary.json, and contact problems that are asked
-/// for. Throws Error; when a step fails, what
-/// came before it is in the files and summary.json says what happened.
+/// Runs a case and writes history.csv, results.h5, results.xdmf, summary.json and checkpoints, and contact problems
+/// that are asked for. Throws Error; when a step fails, what came before it is in the files and summary.json says what
+/// happened. A run that was stopped has the status "interrupted".
 RunSummary run_case(const Case& input, const RunOptions& options);
 
 /// Number of steps to the end time; the last step ends at or after it.

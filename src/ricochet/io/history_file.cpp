@@ -7,23 +7,33 @@
 #include <iterator>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/io/durable_file.hpp"
 
 namespace ricochet {
 
-namespace {
-
-[[noreturn]] void cannot_write(const std::string& path) {
-  throw Error(ErrorKind::file_access, fmt::format("{}: cannot write: {}", path, std::strerror(errno)));
-}
-
-}  // namespace
-
 HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::string>& columns)
     : path_(path), file_(path, std::ios::binary | std::ios::trunc) {
-  if (!file_) cannot_write(path_);
+  if (!file_) throw_file_error(path_, "write", errno);
   for (std::size_t i = 0; i < columns.size(); ++i) line_ += (i == 0 ? "" : ",") + columns[i];
+  put_line();
+}
+
+HistoryWriter::HistoryWriter(const std::string& path, const Snapshot& snapshot, const std::string& name)
+    : path_(path), length_(snapshot.integer(name + ".length")) {
+  cut_back(path_, length_);
+  file_.open(path, std::ios::binary | std::ios::app);
+  if (!file_) throw_file_error(path_, "write", errno);
+}
+
+void HistoryWriter::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".length", length_);
+}
+
+void HistoryWriter::put_line() {
   line_ += '\n';
-  if (!file_.write(line_.data(), static_cast<std::streamsize>(line_.size()))) cannot_write(path_);
+  errno = 0;
+  if (!file_.write(line_.data(), static_cast<std::streamsize>(line_.size()))) throw_file_error(path_, "write", errno);
+  length_ += static_cast<std::int64_t>(line_.size());
 }
 
 void HistoryWriter::write(const std::vector<double>& row) {
@@ -32,12 +42,17 @@ void HistoryWriter::write(const std::vector<double>& row) {
     if (i > 0) line_ += ',';
     fmt::format_to(std::back_inserter(line_), "{:.17g}", row[i]);
   }
-  line_ += '\n';
-  if (!file_.write(line_.data(), static_cast<std::streamsize>(line_.size()))) cannot_write(path_);
+  put_line();
 }
 
 void HistoryWriter::flush() {
-  if (!file_.flush()) cannot_write(path_);
+  errno = 0;
+  if (!file_.flush()) throw_file_error(path_, "write", errno);
+}
+
+void HistoryWriter::sync() {
+  flush();
+  sync_to_disk(path_);
 }
 
 HistoryTable read_history(const std::string& path) {

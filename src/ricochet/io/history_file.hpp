@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/base/snapshot.hpp"
+
 /// @file history.csv: a header row, then one row per step, numbers as %.17g, never an empty field.
 namespace ricochet {
 
@@ -12,14 +14,24 @@ class HistoryWriter {
  public:
   /// Throws Error(file_access) when the file cannot be opened or written (then or later).
   HistoryWriter(const std::string& path, const std::vector<std::string>& columns);
+  /// Goes on after the rows that were there when save() was called. Throws Error(file_access) where it is not that
+  /// file.
+  HistoryWriter(const std::string& path, const Snapshot& snapshot, const std::string& name);
+  /// Of what has been flushed.
+  void save(Snapshot& snapshot, const std::string& name) const;
   void write(const std::vector<double>& row);
   /// Hands everything to the operating system, so that others can read along.
   void flush();
+  /// Flushes, and waits until everything is on the disk.
+  void sync();
 
  private:
+  void put_line();
+
   std::string path_;
   std::ofstream file_;
   std::string line_;
+  std::int64_t length_ = 0;
 };
 
 /// A history read back, column by column.

@@ -14,7 +14,12 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-Progress::Progress(long steps, bool quiet) : steps_(steps), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(long steps, bool quiet, long first_step)
+    : steps_(steps),
+      first_step_(first_step),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      next_tenth_(first_step * 10 / steps + 1) {}
 
 Progress::~Progress() {
   if (open_) std::fputc('\n', stderr);
@@ -36,7 +41,8 @@ void Progress::update(long step, double time) {
 void Progress::draw(long step, double time) {
   const double done = static_cast<double>(step) / static_cast<double>(steps_);
   const double elapsed = timer_.seconds();
-  const double left = step > 0 ? elapsed / done - elapsed : 0.0;
+  const double left =
+      step > first_step_ ? elapsed / static_cast<double>(step - first_step_) * static_cast<double>(steps_ - step) : 0.0;
   const std::string numbers = fmt::format("step {}/{}  t = {:.6g}  {} gone, {} left", step, steps_, time,
                                           duration_text(elapsed), duration_text(left));
   if (!terminal_) {

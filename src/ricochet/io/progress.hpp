@@ -9,7 +9,8 @@ namespace ricochet {
 
 class Progress {
  public:
-  Progress(long steps, bool quiet);
+  /// Of a run that begins (or goes on) after this step.
+  Progress(long steps, bool quiet, long first_step = 0);
   /// Ends the bar's line if one is open.
   ~Progress();
   Progress(const Progress&) = delete;
@@ -22,6 +23,7 @@ class Progress {
   void draw(long step, double time);
 
   long steps_;
+  long first_step_;
   bool quiet_;
   bool terminal_;
   bool open_ = false;

@@ -1,244 +1,151 @@
 #include "ricochet/io/results_file.hpp"
 
 #include <fmt/format.h>
-#include <hdf5.h>
 
-#include <cstring>
-#include <fstream>
-#include <limits>
+#include <optional>
 #include <vector>
 
-#include "ricochet/base/error.hpp"
-#include "ricochet/io/hdf5_handle.hpp"
+#include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/frame_file.hpp"
+#include "ricochet/io/result_fields.hpp"
 #include "ricochet/io/vtk_order.hpp"
+#include "ricochet/io/xdmf_file.hpp"
 
 namespace ricochet {
 
-struct ResultsWriter::Implementation {
-  std::string path;
-  std::string side_path;
-  hid_t file = -1;
-  std::fstream side;
-  const SemidiscreteProblem* problem = nullptr;
-  std::string topology;  ///< XDMF text shared by all frames
-  std::string geometry;
-  long frames = 0;
-  std::vector<Index> numbers;  ///< of the nodes in the file
-  std::vector<double> vector_values, pressure, gap;
-  std::vector<int> status;
-  Vector node_gap, node_pressure, traction;
-
-  [[nodiscard]] Index number(Index node) const { return numbers[static_cast<std::size_t>(node)]; }
-  void check(bool good, const char* what) const {
-    if (!good) throw Error(ErrorKind::file_access, fmt::format("{}: cannot write {} (is the disk full?)", path, what));
-  }
-  void dataset(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t rows, hsize_t columns,
-               const void* data) const;
-  void group(const std::string& name) const;
-  void write_mesh(const DisplacementSpace& space);
-  void vector_field(const std::string& name, const Vector& values);
-  void contact_fields(const State& state);
-  void friction_field(const std::string& name, const State& state);
-  void write_side_frame(const State& state, const std::string& frame);
-};
-
 namespace {
 
-constexpr const char* side_tail = "    </Grid>\n  </Domain>\n</Xdmf>\n";
+FixedDataset node_positions(const DisplacementSpace& space) {
+  FixedDataset set{"/mesh/nodes", space.node_count(), 3, {}, {}};
+  set.reals.assign(static_cast<std::size_t>(3 * space.node_count()), 0.0);
+  for (Index i = 0; i < space.node_count(); ++i) {
+    const Index row = space.number[static_cast<std::size_t>(i)];
+    for (int k = 0; k < space.dimension; ++k) set.reals[static_cast<std::size_t>(3 * row + k)] = space.nodes(k, i);
+  }
+  return set;
+}
+
+/// Cells of several shapes are one list, in which each begins with XDMF's number of its shape.
+struct Cells {
+  FixedDataset set{"/mesh/cells", 0, 0, {}, {}};
+  std::string topology;  ///< XDMF
+};
+
+Cells cells_of(const DisplacementSpace& space) {
+  Cells result;
+  const bool mixed = space.cells.size() > 1;
+  Index count = 0;
+  std::string type = "Mixed";
+  for (const CellBlock& block : space.cells) {
+    count += block.size();
+    const VtkCell cell = vtk_cell(block.shape, space.degree);
+    if (!mixed) type = cell.xdmf_name;
+    for (Index i = 0; i < block.size(); ++i) {
+      if (mixed) result.set.integers.push_back(cell.xdmf_number);
+      for (const int k : cell.from_ours)
+        result.set.integers.push_back(space.number[static_cast<std::size_t>(block.cell(i)[k])]);
+    }
+  }
+  result.set.columns = mixed ? 0 : space.cells.front().nodes_per_cell;
+  result.set.rows = mixed ? static_cast<Index>(result.set.integers.size()) : count;
+  result.topology = fmt::format(
+      "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\"><DataItem Format=\"HDF\" NumberType=\"Int\" "
+      "Precision=\"8\" Dimensions=\"{}\">results.h5:/mesh/cells</DataItem></Topology>\n",
+      type, count,
+      mixed ? fmt::format("{}", result.set.rows) : fmt::format("{} {}", result.set.rows, result.set.columns));
+  return result;
+}
+
+std::string geometry_of(const DisplacementSpace& space) {
+  return fmt::format(
+      "        <Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
+      "Dimensions=\"{} 3\">results.h5:/mesh/nodes</DataItem></Geometry>\n",
+      space.node_count());
+}
+
+std::vector<DatasetLayout> datasets_of(const std::vector<FieldLayout>& fields) {
+  std::vector<DatasetLayout> result;
+  for (const FieldLayout& field : fields)
+    result.push_back({field.name, field.whole, field.rows, field.components > 1 ? field.components : 0});
+  return result;
+}
 
 }  // namespace
 
-void ResultsWriter::Implementation::dataset(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t rows,
-                                            hsize_t columns, const void* data) const {
-  const hsize_t extents[2] = {rows, columns};
-  const Hdf5Handle space(H5Screate_simple(columns > 0 ? 2 : 1, extents, nullptr), H5Sclose);
-  const Hdf5Handle properties = timeless_hdf5_properties(H5P_DATASET_CREATE);
-  const Hdf5Handle set(H5Dcreate2(file, name.c_str(), file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
-                       H5Dclose);
-  check(set >= 0 && H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0, name.c_str());
-}
+struct ResultsWriter::Implementation {
+  Implementation(const std::string& directory, const DisplacementSpace& space, const SemidiscreteProblem& problem,
+                 const Snapshot* snapshot, const std::string& name);
+  [[nodiscard]] std::string grid(double time, long frame) const;
 
-void ResultsWriter::Implementation::group(const std::string& name) const {
-  check(make_hdf5_group(file, name.c_str()), name.c_str());
-}
+  std::string path, side_path;
+  ResultFields fields;
+  std::string mesh;  ///< XDMF shared by all frames
+  std::optional<FrameFile> file;
+  std::optional<XdmfFile> side;
+};
 
-void ResultsWriter::Implementation::write_mesh(const DisplacementSpace& space) {
-  group("/mesh");
-  group("/frames");
-  numbers = space.number;
-  const auto count = static_cast<hsize_t>(space.node_count());
-  std::vector<double> positions(count * 3, 0.0);
-  for (Index i = 0; i < space.node_count(); ++i) {
-    for (int k = 0; k < space.dimension; ++k)
-      positions[static_cast<std::size_t>(3 * number(i) + k)] = space.nodes(k, i);
-  }
-  dataset("/mesh/nodes", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 3, positions.data());
-  geometry = fmt::format(
-      "        <Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
-      "Dimensions=\"{} 3\">results.h5:/mesh/nodes</DataItem></Geometry>\n",
-      count);
-  Index cell_count = 0;
-  for (const CellBlock& block : space.cells) cell_count += block.size();
-  const bool mixed = space.cells.size() > 1;
-  std::vector<std::int64_t> all;
-  for (const CellBlock& block : space.cells) {
-    const VtkCell cell = vtk_cell(block.shape, space.degree);
-    if (!mixed) topology = cell.xdmf_name;
-    for (Index i = 0; i < block.size(); ++i) {
-      if (mixed) all.push_back(cell.xdmf_number);
-      for (const int k : cell.from_ours) all.push_back(number(block.cell(i)[k]));
-    }
-  }
-  const auto columns = mixed ? hsize_t{0} : static_cast<hsize_t>(space.cells.front().nodes_per_cell);
-  const hsize_t rows = mixed ? all.size() : static_cast<hsize_t>(cell_count);
-  dataset("/mesh/cells", H5T_STD_I64LE, H5T_NATIVE_INT64, rows, columns, all.data());
-  topology = fmt::format(
-      "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\"><DataItem Format=\"HDF\" NumberType=\"Int\" "
-      "Precision=\"8\" Dimensions=\"{}\">results.h5:/mesh/cells</DataItem></Topology>\n",
-      mixed ? "Mixed" : topology, cell_count, mixed ? fmt::format("{}", rows) : fmt::format("{} {}", rows, columns));
-}
-
-void ResultsWriter::Implementation::vector_field(const std::string& name, const Vector& values) {
-  const int d = problem->dimension;
-  const auto count = static_cast<std::size_t>(problem->nodes.cols());
-  vector_values.assign(3 * count, 0.0);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (int k = 0; k < d; ++k) {
-      vector_values[3 * static_cast<std::size_t>(numbers[i]) + static_cast<std::size_t>(k)] =
-          values[static_cast<Index>(i) * d + k];
-    }
-  }
-  dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 3, vector_values.data());
-}
-
-void ResultsWriter::Implementation::contact_fields(const State& state) {
-  const auto count = static_cast<std::size_t>(problem->nodes.cols());
-  pressure.assign(count, 0.0);
-  gap.assign(count, std::numeric_limits<double>::quiet_NaN());
-  status.assign(count, -1);
-  const ContactBoundary& contact = problem->contact;
-  problem->node_gaps(state.displacement, state.time, node_gap);
-  node_pressure = contact.pressure_recovery * state.forces.normal_reaction;
-  for (Index i = 0; i < node_gap.size(); ++i) {
-    const auto node = static_cast<std::size_t>(number(contact.nodes[static_cast<std::size_t>(i)]));
-    pressure[node] = std::max(pressure[node], node_pressure[i]);
-    gap[node] = status[node] < 0 ? node_gap[i] : std::min(gap[node], node_gap[i]);
-    status[node] = std::max(status[node], 0);
-    // A node does what its own contact point does, or, without one, what those do that its pressure comes from.
-    const auto take = [&](Index point) {
-      const auto at = static_cast<std::size_t>(point);
-      if (at < state.contact_status.size())
-        status[node] = std::max(status[node], static_cast<int>(state.contact_status[at]));
-    };
-    const Index own = contact.own_point[static_cast<std::size_t>(i)];
-    if (own >= 0) {
-      take(own);
-      continue;
-    }
-    for (SparseRowMatrix::InnerIterator entry(contact.pressure_recovery, i); entry; ++entry) {
-      if (entry.value() != 0.0) take(entry.col());
-    }
+ResultsWriter::Implementation::Implementation(const std::string& directory, const DisplacementSpace& space,
+                                              const SemidiscreteProblem& problem, const Snapshot* snapshot,
+                                              const std::string& name)
+    : path(directory + "/results.h5"), side_path(directory + "/results.xdmf"), fields(space, problem) {
+  Cells cells = cells_of(space);
+  mesh = cells.topology + geometry_of(space);
+  const std::vector<FixedDataset> fixed{node_positions(space), std::move(cells.set)};
+  if (snapshot == nullptr) {
+    file.emplace(path, fixed, datasets_of(fields.layout()));
+    side.emplace(side_path);
+  } else {
+    file.emplace(path, fixed, datasets_of(fields.layout()), FrameFileOptions{}, *snapshot, name + ".frames");
+    side.emplace(side_path, *snapshot, name + ".side");
   }
 }
 
-/// The friction traction on the body, in stress units: −t r_T of the points, recovered at the nodes like pressures.
-void ResultsWriter::Implementation::friction_field(const std::string& name, const State& state) {
-  const ContactBoundary& contact = problem->contact;
-  const int d = problem->dimension;
-  traction.setZero(problem->dof_count());
-  for (std::size_t i = 0; i < contact.nodes.size() && state.forces.tangential_reaction.size() > 0; ++i) {
-    for (SparseRowMatrix::InnerIterator entry(contact.pressure_recovery, static_cast<Index>(i)); entry; ++entry) {
-      traction.segment(contact.nodes[i] * d, d) -=
-          entry.value() * contact.tangents[static_cast<std::size_t>(entry.col())] *
-          state.forces.tangential_reaction.segment(entry.col() * (d - 1), d - 1);
-    }
-  }
-  vector_field(name, traction);
-}
-
-void ResultsWriter::Implementation::write_side_frame(const State& state, const std::string& frame) {
-  const auto count = problem->nodes.cols();
-  const auto attribute = [&](const char* name, const char* kind, const char* type, const std::string& extents) {
-    return fmt::format(
+std::string ResultsWriter::Implementation::grid(double time, long frame) const {
+  std::string text =
+      fmt::format("      <Grid Name=\"body\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n", time);
+  text += mesh;
+  for (const FieldLayout& field : fields.layout()) {
+    text += fmt::format(
         "        <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"Node\"><DataItem Format=\"HDF\" {2} "
         "Dimensions=\"{3}\">results.h5:{4}/{0}</DataItem></Attribute>\n",
-        name, kind, type, extents, frame);
-  };
-  const char* const real = "NumberType=\"Float\" Precision=\"8\"";
-  const char* const whole = "NumberType=\"Int\" Precision=\"4\"";
-  std::string text =
-      fmt::format("      <Grid Name=\"body\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n", state.time);
-  text += topology + geometry;
-  text += attribute("displacement", "Vector", real, fmt::format("{} 3", count));
-  text += attribute("velocity", "Vector", real, fmt::format("{} 3", count));
-  text += attribute("contact_pressure", "Scalar", real, fmt::format("{}", count));
-  if (problem->contact.has_friction()) {
-    text += attribute("friction_traction", "Vector", real, fmt::format("{} 3", count));
+        field.name, field.components > 1 ? "Vector" : "Scalar",
+        field.whole ? "NumberType=\"Int\" Precision=\"4\"" : "NumberType=\"Float\" Precision=\"8\"",
+        field.components > 1 ? fmt::format("{} {}", field.rows, field.components) : fmt::format("{}", field.rows),
+        FrameFile::frame_name(frame));
   }
-  text += attribute("gap", "Scalar", real, fmt::format("{}", count));
-  text += attribute("contact_status", "Scalar", whole, fmt::format("{}", count));
-  text += "      </Grid>\n";
-  text += side_tail;
-  // The file is complete after every frame: the tail is overwritten by the next one, in one piece with what follows.
-  const auto tail_at = static_cast<std::streamoff>(side.tellp()) - static_cast<std::streamoff>(std::strlen(side_tail));
-  side.seekp(tail_at);
-  side << text << std::flush;
-  if (!side) throw Error(ErrorKind::file_access, fmt::format("{}: cannot write: {}", side_path, std::strerror(errno)));
+  return text + "      </Grid>\n";
 }
 
 ResultsWriter::ResultsWriter(const std::string& directory, const DisplacementSpace& space,
                              const SemidiscreteProblem& problem)
-    : implementation_(std::make_unique<Implementation>()) {
-  Implementation& own = *implementation_;
-  own.problem = &problem;
-  own.path = directory + "/results.h5";
-  own.side_path = directory + "/results.xdmf";
-  quiet_hdf5();
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
-  own.file = H5Fcreate(own.path.c_str(), H5F_ACC_TRUNC, timeless_hdf5_properties(H5P_FILE_CREATE), access);
-  own.check(own.file >= 0, "the file");
-  own.write_mesh(space);
-  own.side.open(own.side_path, std::ios::in | std::ios::out | std::ios::trunc | std::ios::binary);
-  own.side << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
-              "    <Grid Name=\"time\" GridType=\"Collection\" CollectionType=\"Temporal\">\n"
-           << side_tail;
-  if (!own.side)
-    throw Error(ErrorKind::file_access, fmt::format("{}: cannot write: {}", own.side_path, std::strerror(errno)));
-}
+    : implementation_(std::make_unique<Implementation>(directory, space, problem, nullptr, "")) {}
 
-ResultsWriter::~ResultsWriter() {
-  if (implementation_->file >= 0) H5Fclose(implementation_->file);
-}
+ResultsWriter::ResultsWriter(const std::string& directory, const DisplacementSpace& space,
+                             const SemidiscreteProblem& problem, const Snapshot& snapshot, const std::string& name)
+    : implementation_(std::make_unique<Implementation>(directory, space, problem, &snapshot, name)) {}
+
+ResultsWriter::~ResultsWriter() = default;
 
 void ResultsWriter::write(const State& state) {
   Implementation& own = *implementation_;
-  const std::string frame = fmt::format("/frames/{:06d}", own.frames);
-  own.group(frame);
-  own.vector_field(frame + "/displacement", state.displacement);
-  own.vector_field(frame + "/velocity", state.velocity);
-  own.contact_fields(state);
-  if (own.problem->contact.has_friction()) own.friction_field(frame + "/friction_traction", state);
-  const auto count = static_cast<hsize_t>(own.problem->nodes.cols());
-  own.dataset(frame + "/contact_pressure", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 0, own.pressure.data());
-  own.dataset(frame + "/gap", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, count, 0, own.gap.data());
-  own.dataset(frame + "/contact_status", H5T_STD_I32LE, H5T_NATIVE_INT, count, 0, own.status.data());
-  // What the side-file names must be in the file even if the run is killed before the next frame.
-  own.check(H5Fflush(own.file, H5F_SCOPE_LOCAL) >= 0, "the file");
-  own.write_side_frame(state, frame);
-  ++own.frames;
+  const long frame = own.file->frames();
+  own.file->append(own.fields.evaluate(state));
+  // What the side-file names is in the file by now, even if the run is killed before the next frame.
+  own.side->append(own.grid(state.time, frame));
 }
 
 long ResultsWriter::frames() const {
-  return implementation_->frames;
+  return implementation_->file->frames();
 }
 
-void ResultsWriter::close() {
-  Implementation& own = *implementation_;
-  if (own.file < 0) return;
-  const bool good = H5Fflush(own.file, H5F_SCOPE_GLOBAL) >= 0 && H5Fclose(own.file) >= 0;
-  own.file = -1;
-  own.check(good, "the file");
+void ResultsWriter::save(Snapshot& snapshot, const std::string& name) const {
+  implementation_->file->save(snapshot, name + ".frames");
+  implementation_->side->save(snapshot, name + ".side");
+}
+
+void ResultsWriter::sync() const {
+  sync_to_disk(implementation_->path);
+  sync_to_disk(implementation_->side_path);
 }
 
 }  // namespace ricochet

@@ -21,14 +21,20 @@ class ResultsWriter {
  public:
   /// Opens DIRECTORY/results.h5 and results.xdmf. Throws Error(file_access).
   ResultsWriter(const std::string& directory, const DisplacementSpace& space, const SemidiscreteProblem& problem);
+  /// Goes on after the frames that were there when save() was called; the files will have the bytes of a run that was
+  /// never interrupted. Throws Error(file_access) where they are not those files.
+  ResultsWriter(const std::string& directory, const DisplacementSpace& space, const SemidiscreteProblem& problem,
+                const Snapshot& snapshot, const std::string& name);
   ~ResultsWriter();
   ResultsWriter(const ResultsWriter&) = delete;
   ResultsWriter& operator=(const ResultsWriter&) = delete;
 
+  /// Both files are complete afterwards.
   void write(const State& state);
   [[nodiscard]] long frames() const;
-  /// Closes both files; throws Error(file_access) where the destructor would have to be silent.
-  void close();
+  void save(Snapshot& snapshot, const std::string& name) const;
+  /// Waits until both files are on the disk.
+  void sync() const;
 
  private:
   struct Implementation;

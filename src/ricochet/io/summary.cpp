@@ -111,6 +111,7 @@ std::string to_json(const RunSummary& s) {
                      {"case", s.case_file},
                      {"overrides", s.overrides},
                      {"ricochet_version", s.version},
+                     {"libraries", s.libraries},
                      {"scheme", s.scheme},
                      {"mass", s.mass},
                      {"dimension", s.dimension},
@@ -127,6 +128,9 @@ std::string to_json(const RunSummary& s) {
                      {"critical_time_step", std::isfinite(s.critical_step) ? Json(s.critical_step) : Json()},
                      {"critical_fraction", std::isfinite(s.critical_step) ? Json(s.step / s.critical_step) : Json()},
                      {"steps", s.steps},
+                     {"steps_asked_for", s.all_steps},
+                     {"resumed_at", s.resumed_at},
+                     {"checkpoint_step", s.checkpoint_step >= 0 ? Json(s.checkpoint_step) : Json()},
                      {"instants",
                       {{"energy", fmt::format("t {:+g} time_step", s.energy_instant)},
                        {"force", fmt::format("t {:+g} time_step", s.force_instant)}}},
@@ -138,7 +142,8 @@ std::string to_json(const RunSummary& s) {
                      {"probes", probes_to_json(s)},
                      {"extrema", extrema_to_json(s)},
                      {"warnings", s.warnings},
-                     {"expectations", expectations_to_json(s)}};
+                     {"expectations", expectations_to_json(s)},
+                     {"parameters", s.parameters}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -178,6 +183,12 @@ RunSummary read_summary(const std::string& path) {
     const Json& critical = json.at("critical_time_step");
     if (critical.is_number()) s.critical_step = critical.get<double>();
     s.steps = json.at("steps");
+    s.all_steps = json.value("steps_asked_for", s.steps);
+    s.resumed_at = json.value("resumed_at", std::vector<long>{});
+    s.libraries = json.value("libraries", "");
+    s.parameters = json.value("parameters", std::map<std::string, std::string>{});
+    if (json.contains("checkpoint_step") && json.at("checkpoint_step").is_number())
+      s.checkpoint_step = json.at("checkpoint_step");
     s.frames = json.at("frames");
     s.time_per_step = json.at("seconds_per_step");
     s.warnings = json.at("warnings").get<std::vector<std::string>>();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,10 +31,12 @@ struct ContactDescription {
 };
 
 struct RunSummary {
-  std::string status = "done";  ///< "done" or "failed"
-  std::string message;          ///< of the failure
+  std::string status = "done";  ///< "running", "done", "failed" or "interrupted"
+  std::string message;          ///< of the failure or the interruption
   std::string case_file, title, version, scheme, mass;
+  std::string libraries;
   std::vector<std::string> overrides;
+  std::map<std::string, std::string> parameters = {};  ///< all entries of the case: key path → value as text
   int dimension = 2;
   int degree = 1;
   Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
@@ -43,6 +46,9 @@ struct RunSummary {
   double critical_step =
       std::numeric_limits<double>::infinity();  ///< above it the scheme is unstable; none if infinite
   long steps = 0;
+  long all_steps = 0;                                ///< that were asked for
+  std::vector<long> resumed_at = {};                 ///< steps after which the run was resumed
+  long checkpoint_step = -1;                         ///< of the newest checkpoint; −1: none
   double energy_instant = 0.0, force_instant = 0.0;  ///< relative to a row's time, in steps
   long frames = 0;
   std::vector<ContactDescription> contacts;

@@ -167,6 +167,12 @@ SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 SparseCholesky::~SparseCholesky() = default;
 
+std::string SparseCholesky::library() {
+  int version[3] = {0, 0, 0};
+  cholmod_l_version(version);
+  return fmt::format("CHOLMOD {}.{}.{}", version[0], version[1], version[2]);
+}
+
 void SparseCholesky::analyse(const SparseMatrix& matrix) {
   if (matrix.cols() == 0) return;
   implementation_->order(matrix);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "ricochet/linear_algebra/supernodal_factor.hpp"
@@ -21,6 +22,9 @@ class SparseCholesky {
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
   ~SparseCholesky();
+
+  /// Name and version of what makes the factor.
+  [[nodiscard]] static std::string library();
 
   /// The two halves of the constructor. Between them `predicted` says what the second will take, and the lower triangle
   /// of the matrix is kept.

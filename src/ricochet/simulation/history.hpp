@@ -60,6 +60,9 @@ struct ColumnDigest {
 class HistoryDigest {
  public:
   void add(const std::vector<double>& row);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  /// Throws Error(invalid_input) where it is not of so many columns.
+  void load(const Snapshot& snapshot, const std::string& name, std::size_t columns);
   [[nodiscard]] const std::vector<ColumnDigest>& columns() const { return columns_; }
   [[nodiscard]] long rows() const { return rows_; }
 

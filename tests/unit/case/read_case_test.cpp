@@ -172,6 +172,8 @@ TEST(ReadCase, FillsInEveryDefault) {
   EXPECT_TRUE(read.probes.empty() && read.expectations.empty() && read.overridden.empty());
   EXPECT_FALSE(read.output.fields_every.has_value());
   EXPECT_EQ(read.output.history_every, 1);
+  EXPECT_EQ(read.output.checkpoint_every, 0);
+  EXPECT_EQ(read.output.checkpoint_seconds, 300.0);
   EXPECT_EQ(read.values, (std::map<std::string, std::string>{{"title", ""},
                                                              {"mesh.file", "a.msh"},
                                                              {"mesh.scale", "1"},
@@ -190,7 +192,9 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"solver.method", "auto"},
                                                              {"solver.tolerance", "1e-10"},
                                                              {"solver.contact_points", "near"},
-                                                             {"output.history_every", "1"}}));
+                                                             {"output.history_every", "1"},
+                                                             {"output.checkpoint_every", "0"},
+                                                             {"output.checkpoint_seconds", "300"}}));
 }
 
 TEST(ReadCase, FillsInDefaultsOfOptionalSections) {

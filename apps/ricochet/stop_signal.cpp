@@ -1,0 +1,40 @@
+#include "stop_signal.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+
+namespace ricochet::program {
+
+namespace {
+
+volatile std::sig_atomic_t received = 0;
+
+void receive(int signal) {
+  if (received != 0) _exit(128 + signal);
+  received = signal;
+  constexpr char text[] = "\nricochet: stopping at the end of this step; once more stops at once\n";
+  static_cast<void>(!write(STDERR_FILENO, text, sizeof(text) - 1));
+}
+
+}  // namespace
+
+void catch_stop_signals() {
+  // A file that may not grow any more is an error like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  constexpr int stop_signals[] = {SIGINT, SIGTERM};
+  for (const int signal : stop_signals) {
+    struct sigaction action {};
+    action.sa_handler = receive;
+    action.sa_flags = SA_RESTART;
+    // A signal that the caller ignores (nohup, a job in the background) stays ignored.
+    struct sigaction before {};
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+}
+
+int stop_signal() {
+  return received;
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,11 @@
+#pragma once
+
+/// @file SIGINT and SIGTERM: the first asks the run to stop at the end of its step, a second one stops at once.
+namespace ricochet::program {
+
+void catch_stop_signals();
+
+/// The signal that has come, or 0.
+[[nodiscard]] int stop_signal();
+
+}  // namespace ricochet::program

@@ -1,0 +1,109 @@
+#include "ricochet/case/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Above this rotation, in rad, small strain no longer holds.
+constexpr double rotation_limit = 0.1;
+/// History is handed over to readers this often, in seconds.
+constexpr double flush_interval = 1.0;
+
+long fields_interval(const OutputSection& output, long steps) {
+  return output.fields_every.value_or(std::max(1L, (steps + 99) / 100));
+}
+
+HistoryWriter open_history(const std::string& path, const std::vector<std::string>& columns, const Snapshot* snapshot) {
+  return snapshot != nullptr ? HistoryWriter(path, *snapshot, "history") : HistoryWriter(path, columns);
+}
+
+}  // namespace
+
+Recording::Recording(const Case& input, const Model& model, const std::string& directory, long steps,
+                     const Snapshot* snapshot)
+    : recorder_(model.problem, *model.rotation, model.probes),
+      history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot)),
+      history_every_(input.output.history_every),
+      fields_every_(fields_interval(input.output, steps)),
+      steps_(steps) {
+  if (fields_every_ > 0) open_results(model, directory, snapshot);
+  if (snapshot == nullptr) return;
+  digest_.load(*snapshot, "digest", recorder_.columns().size());
+  rotation_warned_ = snapshot->flag("rotation_warned");
+}
+
+void Recording::open_results(const Model& model, const std::string& directory, const Snapshot* snapshot) {
+  if (snapshot != nullptr) {
+    results_.emplace(directory, model.space, model.problem, *snapshot, "results");
+  } else {
+    results_.emplace(directory, model.space, model.problem);
+  }
+}
+
+void Recording::record(const State& state, EnergyAccount& account) {
+  Timer timer;
+  if (state.step % history_every_ == 0 || state.step == steps_) {
+    const std::vector<double>& row = recorder_.row(state, account);
+    check_finite(row);
+    history_.write(row);
+    digest_.add(row);
+    watch_rotation(row);
+  }
+  if (results_ && (state.step % fields_every_ == 0 || state.step == steps_)) results_->write(state);
+  if (since_flush_.seconds() > flush_interval) {
+    history_.flush();
+    since_flush_.restart();
+  }
+  seconds_ += timer.seconds();
+}
+
+void Recording::save(Snapshot& snapshot) {
+  history_.sync();
+  history_.save(snapshot, "history");
+  if (results_) {
+    results_->sync();
+    results_->save(snapshot, "results");
+  }
+  digest_.save(snapshot, "digest");
+  snapshot.save("rotation_warned", rotation_warned_);
+}
+
+void Recording::describe(RunSummary& summary) const {
+  summary.frames = results_ ? results_->frames() : 0;
+  summary.columns = recorder_.columns();
+  summary.digests = digest_.columns();
+}
+
+/// Energies are squares: they leave the range of numbers long before the displacement does.
+void Recording::check_finite(const std::vector<double>& row) const {
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (std::isfinite(row[i])) continue;
+    throw Error(ErrorKind::not_converged,
+                fmt::format("step {:.0f} (t = {:.9g}): {} is no longer finite, so the motion has grown beyond all "
+                            "bounds; use a stable scheme or mass (newmark with mass \"equivalent\"), or a smaller "
+                            "time.step",
+                            row[0], row[1], recorder_.columns()[i]));
+  }
+}
+
+void Recording::watch_rotation(const std::vector<double>& row) {
+  if (rotation_warned_) return;
+  const auto column = static_cast<std::size_t>(
+      std::find(recorder_.columns().begin(), recorder_.columns().end(), "max_rotation") - recorder_.columns().begin());
+  if (!(row[column] > rotation_limit)) return;
+  rotation_warned_ = true;
+  log::warning(
+      fmt::format("at t = {:.6g} a cell has rotated by {:.3g} rad: above {} rad small strain no longer holds "
+                  "(a turning body inflates); read what follows with care",
+                  row[1], row[column], rotation_limit));
+}
+
+}  // namespace ricochet

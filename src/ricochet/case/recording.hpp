@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+
+#include "ricochet/base/timer.hpp"
+#include "ricochet/case/model.hpp"
+#include "ricochet/io/history_file.hpp"
+#include "ricochet/io/results_file.hpp"
+#include "ricochet/io/summary.hpp"
+
+/// @file Everything that is written while a run goes on: history and fields.
+namespace ricochet {
+
+class Recording {
+ public:
+  /// Of a run of so many steps into a directory: new files, or those of the run that the snapshot belongs to. Throws
+  /// Error(file_access).
+  Recording(const Case& input, const Model& model, const std::string& directory, long steps, const Snapshot* snapshot);
+
+  /// Of the state after every step, the first one included. Throws Error(file_access), and Error(not_converged) when
+  /// the motion has grown beyond all bounds.
+  void record(const State& state, EnergyAccount& account);
+  /// What is needed to go on; the files are on the disk then.
+  void save(Snapshot& snapshot);
+  void flush() { history_.flush(); }
+  /// What there is so far.
+  void describe(RunSummary& summary) const;
+  /// Spent here.
+  [[nodiscard]] double seconds() const { return seconds_; }
+
+ private:
+  void open_results(const Model& model, const std::string& directory, const Snapshot* snapshot);
+  void check_finite(const std::vector<double>& row) const;
+  void watch_rotation(const std::vector<double>& row);
+
+  HistoryRecorder recorder_;
+  HistoryWriter history_;
+  std::optional<ResultsWriter> results_;
+  HistoryDigest digest_;
+  long history_every_;
+  long fields_every_;
+  long steps_;
+  bool rotation_warned_ = false;
+  Timer since_flush_;
+  double seconds_ = 0.0;
+};
+
+}  // namespace ricochet

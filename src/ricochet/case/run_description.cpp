@@ -1,0 +1,89 @@
+#include "ricochet/case/run_description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ricochet/case/run_case.hpp"
+#include "ricochet/linear_algebra/library_versions.hpp"
+#include "ricochet/version.hpp"
+
+namespace ricochet {
+
+std::vector<ContactDescription> describe_contacts(const Case& input) {
+  std::vector<ContactDescription> result;
+  for (const ContactSection& contact : input.contacts) {
+    const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
+                                       [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
+    result.push_back({contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound,
+                      obstacle->velocity, obstacle->rotation_rate});
+  }
+  return result;
+}
+
+RunSummary describe_run(const Case& input, const Model& model, const Scheme& scheme, const Simulation& simulation) {
+  RunSummary summary;
+  summary.case_file = input.path;
+  summary.title = input.title;
+  summary.version = version;
+  summary.scheme = input.time.scheme;
+  summary.mass = input.mass.type;
+  summary.libraries = library_versions();
+  summary.overrides = input.overridden;
+  summary.parameters = input.values;
+  summary.all_steps = step_count(input.time);
+  summary.dimension = model.mesh.dimension;
+  summary.degree = model.space.degree;
+  summary.nodes = model.space.node_count();
+  summary.cells = model.mesh.cell_count();
+  summary.dofs = model.space.dof_count();
+  summary.contact_points = model.problem.contact.size();
+  summary.supported_dofs = model.problem.supports.size();
+  summary.factor_entries = simulation.factor_entries();
+  const std::vector<ChosenMethod>& methods = simulation.methods();
+  const bool iterative = std::any_of(methods.begin(), methods.end(), [](const ChosenMethod& chosen) {
+    return chosen.method == SolverMethod::iterative;
+  });
+  summary.solver = iterative ? "iterative" : "direct";
+  summary.step = scheme.step();
+  summary.end_time = input.time.end;
+  summary.critical_step = scheme.critical_step();
+  summary.energy_instant = scheme.energy_instant();
+  summary.force_instant = scheme.force_instant();
+  summary.contacts = describe_contacts(input);
+  summary.probes = model.probes;
+  for (Probe& probe : summary.probes) {
+    const Vector at = model.space.nodes.col(probe.node);
+    summary.probe_positions.emplace_back(at.data(), at.data() + at.size());
+    probe.node = model.space.number[static_cast<std::size_t>(probe.node)];
+  }
+  return summary;
+}
+
+ContactProvenance describe_provenance(const Case& input, const RunSummary& summary) {
+  ContactProvenance result;
+  result.title = input.title.empty() ? std::filesystem::path(input.path).stem().string() : input.title;
+  result.dimension = summary.dimension;
+  result.step_size = summary.step;
+  std::string overrides;
+  for (const std::string& key : summary.overrides) {
+    const auto value = input.values.find(key);
+    overrides += fmt::format(" {}{}", key, value != input.values.end() ? "=" + value->second : "");
+  }
+  result.origin = fmt::format("Ricochet {}, case {}{}{}; scheme {}", summary.version, input.path,
+                              overrides.empty() ? "" : " with --set", overrides, summary.scheme);
+  if (summary.scheme == "newmark")
+    result.origin += fmt::format(" (beta {:g}, gamma {:g})", input.time.beta, input.time.gamma);
+  result.origin += fmt::format(", step size {:g}, mass {}, multipliers", summary.step, summary.mass);
+  std::vector<std::string> spaces;
+  for (const ContactSection& contact : input.contacts) {
+    if (std::find(spaces.begin(), spaces.end(), contact.multipliers) == spaces.end())
+      spaces.push_back(contact.multipliers);
+  }
+  for (const std::string& space : spaces) result.origin += " " + space;
+  result.origin += fmt::format(", displacement of degree {}, {} dofs.", summary.degree, summary.dofs);
+  return result;
+}
+
+}  // namespace ricochet

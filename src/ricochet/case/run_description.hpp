@@ -1,0 +1,20 @@
+#pragma once
+
+#include "ricochet/case/model.hpp"
+#include "ricochet/io/contact_export.hpp"
+#include "ricochet/io/summary.hpp"
+#include "ricochet/simulation/simulation.hpp"
+
+/// @file What a run is, in words and numbers, before it has run.
+namespace ricochet {
+
+/// The contacts of a case as a summary lists them.
+[[nodiscard]] std::vector<ContactDescription> describe_contacts(const Case& input);
+
+[[nodiscard]] RunSummary describe_run(const Case& input, const Model& model, const Scheme& scheme,
+                                      const Simulation& simulation);
+
+/// Where exported contact problems come from.
+[[nodiscard]] ContactProvenance describe_provenance(const Case& input, const RunSummary& summary);
+
+}  // namespace ricochet

@@ -1,0 +1,158 @@
+#include "ricochet/case/run_identity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "ricochet/base/checksum.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/linear_algebra/library_versions.hpp"
+#include "ricochet/version.hpp"
+
+namespace ricochet {
+
+namespace {
+
+bool decides_results(const std::string& key) {
+  static const std::set<std::string> others{"title", "mesh.file", "output.checkpoint_every",
+                                            "output.checkpoint_seconds"};
+  return !others.contains(key) && !key.starts_with("expect.") && !key.starts_with("check.");
+}
+
+/// Per part of the mesh: its checksum.
+std::map<std::string, std::string> mesh_checksums(const Mesh& mesh) {
+  std::map<std::string, std::string> result;
+  const auto add = [&](const char* part, const Checksum& sum) { result[part] = sum.text(); };
+  add("nodes", Checksum().add(mesh.nodes.data(), static_cast<std::size_t>(mesh.nodes.size())));
+  Checksum cells, facets, groups;
+  for (const CellBlock& block : mesh.cells) cells.add(block.nodes.data(), block.nodes.size());
+  for (const CellBlock& block : mesh.facets) facets.add(block.nodes.data(), block.nodes.size());
+  for (const Group& group : mesh.groups) {
+    groups.add(group.name.data(), group.name.size()).add(&group.dimension, 1);
+    groups.add(group.members.data(), group.members.size());
+  }
+  add("cells", cells);
+  add("boundary facets", facets);
+  add("groups", groups);
+  return result;
+}
+
+/// Of products with a fixed vector: sees every rounding of the operators.
+std::string operator_checksum(const SemidiscreteProblem& problem) {
+  Vector values(problem.dof_count()), product;
+  for (Index i = 0; i < values.size(); ++i) values[i] = 1.0 / static_cast<double>(i + 1);
+  Checksum sum;
+  const auto add = [&sum](const Vector& v) { sum.add(v.data(), static_cast<std::size_t>(v.size())); };
+  problem.mass.multiply(values, product);
+  add(product);
+  problem.internal_force->evaluate(values, product);
+  add(product);
+  add(problem.loads.constant());
+  add(problem.contact.gap_operator * values);
+  return sum.text();
+}
+
+}  // namespace
+
+std::map<std::string, std::string> deciding_values(const Case& input) {
+  std::map<std::string, std::string> result;
+  for (const auto& [key, value] : input.values) {
+    if (decides_results(key)) result[key] = value;
+  }
+  return result;
+}
+
+void save_identity(const Case& input, const Model& model, Snapshot& snapshot) {
+  snapshot.save("identity.version", std::string(version));
+  Snapshot::Texts keys, values, parts, sums;
+  for (const auto& [key, value] : deciding_values(input)) {
+    keys.push_back(key);
+    values.push_back(value);
+  }
+  for (const auto& [part, sum] : mesh_checksums(model.mesh)) {
+    parts.push_back(part);
+    sums.push_back(sum);
+  }
+  snapshot.save("identity.case.keys", std::move(keys));
+  snapshot.save("identity.case.values", std::move(values));
+  snapshot.save("identity.mesh.parts", std::move(parts));
+  snapshot.save("identity.mesh.sums", std::move(sums));
+  snapshot.save("identity.libraries", library_versions());
+  snapshot.save("identity.operators", operator_checksum(model.problem));
+}
+
+namespace {
+
+std::map<std::string, std::string> read_map(const Snapshot& snapshot, const std::string& keys,
+                                            const std::string& values) {
+  std::map<std::string, std::string> result;
+  const Snapshot::Texts& names = snapshot.texts(keys);
+  const Snapshot::Texts& texts = snapshot.texts(values);
+  for (std::size_t i = 0; i < std::min(names.size(), texts.size()); ++i) result[names[i]] = texts[i];
+  return result;
+}
+
+}  // namespace
+
+void require_same_case(const Case& input, const std::string& version_before,
+                       const std::map<std::string, std::string>& values_before, const std::string& before) {
+  std::string differences;
+  if (version_before != version)
+    differences += fmt::format("\n  it ran with Ricochet {}, this is {}", version_before, version);
+  const std::map<std::string, std::string> now = deciding_values(input);
+  std::set<std::string> keys;
+  for (const auto& [key, value] : now) keys.insert(key);
+  for (const auto& [key, value] : values_before) keys.insert(key);
+  const auto text = [](const std::map<std::string, std::string>& values, const std::string& key) {
+    const auto found = values.find(key);
+    return found != values.end() ? found->second : "absent";
+  };
+  for (const std::string& key : keys) {
+    const std::string was = text(values_before, key), is = text(now, key);
+    if (decides_results(key) && was != is)
+      differences += fmt::format("\n  {}: {} was {}, now it is {}", input.where(key).text(), key, was, is);
+  }
+  if (differences.empty()) return;
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("{} cannot be resumed: the case is another one:{}\nRun it as it was (the same --set, too), or "
+                  "start anew in another directory (-o) or over it (--force)",
+                  before, differences));
+}
+
+void require_same_case(const Case& input, const Snapshot& snapshot, const std::string& before) {
+  require_same_case(input, snapshot.text("identity.version"),
+                    read_map(snapshot, "identity.case.keys", "identity.case.values"), before);
+}
+
+std::string compare_model(const Case& input, const Model& model, const Snapshot& snapshot) {
+  const std::map<std::string, std::string> before = read_map(snapshot, "identity.mesh.parts", "identity.mesh.sums");
+  std::string differences;
+  for (const auto& [part, sum] : mesh_checksums(model.mesh)) {
+    const auto found = before.find(part);
+    if (found == before.end() || found->second != sum) differences += (differences.empty() ? "" : ", ") + part;
+  }
+  if (!differences.empty()) {
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("{}: the run cannot be resumed: the mesh is another one than before (it differs in: {}); put "
+                    "back the mesh, or start anew in another directory (-o) or over this run (--force)",
+                    input.where("mesh.file").text(), differences));
+  }
+  const std::string libraries = library_versions();
+  if (libraries != snapshot.text("identity.libraries")) {
+    return fmt::format(
+        "resumed with other libraries or another processor ({}; before: {}): results agree with those of "
+        "a run that was never interrupted to rounding only",
+        libraries, snapshot.text("identity.libraries"));
+  }
+  if (operator_checksum(model.problem) != snapshot.text("identity.operators")) {
+    return "resumed with matrices that differ by rounding from those before (another build of the program or its "
+           "libraries): results agree with those of a run that was never interrupted to rounding only";
+  }
+  return "";
+}
+
+}  // namespace ricochet

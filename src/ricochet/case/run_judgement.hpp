@@ -1,0 +1,13 @@
+#pragma once
+
+#include "ricochet/io/summary.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/state.hpp"
+
+/// @file What a run says of itself.
+namespace ricochet {
+
+/// Warns of what the account of energy says that a user should hear.
+void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state);
+
+}  // namespace ricochet

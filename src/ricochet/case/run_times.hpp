@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/base/snapshot.hpp"
+#include "ricochet/base/timer.hpp"
+#include "ricochet/case/model.hpp"
+#include "ricochet/solver/step_solver.hpp"
+
+/// @file Where the time of a run goes, in seconds, all of its sessions together.
+namespace ricochet {
+
+struct RunTimes {
+  double read_mesh = 0.0, model = 0.0, assembly = 0.0, ordering = 0.0, factorization = 0.0;
+  double start = 0.0;    ///< the starting state, and what is constant, without the factorization
+  double steps = 0.0;    ///< without output
+  double contact = 0.0;  ///< in contact solvers, of `steps`
+  double output = 0.0, checkpoints = 0.0;
+
+  void add_build(const BuildTimes& build);
+  void add_start(double seconds, const std::vector<ChosenMethod>& methods);
+  /// By name, in the order of a run, with "total".
+  [[nodiscard]] std::vector<std::pair<std::string, double>> phases() const;
+  void save(Snapshot& snapshot, const std::string& name) const;
+  /// Adds those of earlier sessions.
+  void load(const Snapshot& snapshot, const std::string& name);
+
+ private:
+  double earlier_total_ = 0.0;
+  Timer session_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,207 @@
+#include "ricochet/io/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include "ricochet/base/checksum.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::string_view magic = "RICOCHET";
+constexpr std::uint32_t format = 1;
+constexpr std::size_t kept_checkpoints = 2;
+constexpr std::size_t head_size = magic.size() + sizeof(std::uint32_t) + sizeof(std::uint64_t);
+
+std::uint32_t checksum(std::string_view text) {
+  return Checksum().add(text.data(), text.size()).value();
+}
+
+template <class Number>
+void put(std::string& text, Number number) {
+  text.append(reinterpret_cast<const char*>(&number), sizeof(number));
+}
+
+void put_text(std::string& text, const std::string& value) {
+  put(text, static_cast<std::uint32_t>(value.size()));
+  text += value;
+}
+
+template <class Number>
+void put_numbers(std::string& text, const Number* values, std::size_t count) {
+  put(text, static_cast<std::uint64_t>(count));
+  text.append(reinterpret_cast<const char*>(values), count * sizeof(Number));
+}
+
+/// Reads on from where it is; whatever is asked for must be there.
+class Cursor {
+ public:
+  explicit Cursor(std::string_view text) : text_(text) {}
+
+  [[nodiscard]] bool at_end() const { return text_.empty(); }
+  [[nodiscard]] std::string_view bytes(std::size_t count) {
+    if (count > text_.size()) throw Error(ErrorKind::invalid_input, "it ends in the middle of a value");
+    const std::string_view result = text_.substr(0, count);
+    text_.remove_prefix(count);
+    return result;
+  }
+  template <class Number>
+  [[nodiscard]] Number number() {
+    Number result;
+    std::memcpy(&result, bytes(sizeof(Number)).data(), sizeof(Number));
+    return result;
+  }
+  [[nodiscard]] std::string text() { return std::string(bytes(number<std::uint32_t>())); }
+  /// Of entries that take at least so many bytes each.
+  [[nodiscard]] std::size_t count(std::size_t entry_size) {
+    const auto result = number<std::uint64_t>();
+    if (result > text_.size() / entry_size) throw Error(ErrorKind::invalid_input, "a value is longer than the file");
+    return static_cast<std::size_t>(result);
+  }
+
+ private:
+  std::string_view text_;
+};
+
+Snapshot::Value read_value(Cursor& cursor) {
+  switch (cursor.number<std::uint8_t>()) {
+    case 0: {
+      const std::size_t count = cursor.count(sizeof(double));
+      Vector values(static_cast<Index>(count));
+      if (count > 0) std::memcpy(values.data(), cursor.bytes(count * sizeof(double)).data(), count * sizeof(double));
+      return values;
+    }
+    case 1: {
+      const std::size_t count = cursor.count(sizeof(std::int64_t));
+      Snapshot::Integers values(count);
+      if (count > 0)
+        std::memcpy(values.data(), cursor.bytes(count * sizeof(std::int64_t)).data(), count * sizeof(std::int64_t));
+      return values;
+    }
+    case 2: {
+      Snapshot::Texts values(cursor.count(sizeof(std::uint32_t)));
+      for (std::string& value : values) value = cursor.text();
+      return values;
+    }
+    default:
+      throw Error(ErrorKind::invalid_input, "a value is of an unknown kind");
+  }
+}
+
+void put_value(std::string& text, const Snapshot::Value& value) {
+  put(text, static_cast<std::uint8_t>(value.index()));
+  if (const auto* reals = std::get_if<Vector>(&value)) {
+    put_numbers(text, reals->data(), static_cast<std::size_t>(reals->size()));
+  } else if (const auto* integers = std::get_if<Snapshot::Integers>(&value)) {
+    put_numbers(text, integers->data(), integers->size());
+  } else {
+    const auto& texts = std::get<Snapshot::Texts>(value);
+    put(text, static_cast<std::uint64_t>(texts.size()));
+    for (const std::string& each : texts) put_text(text, each);
+  }
+}
+
+}  // namespace
+
+std::string encode_snapshot(const Snapshot& snapshot) {
+  std::string body;
+  for (const auto& [name, value] : snapshot.values()) {
+    put_text(body, name);
+    put_value(body, value);
+  }
+  std::string text(magic);
+  put(text, format);
+  put(text, static_cast<std::uint64_t>(body.size()));
+  text += body;
+  put(text, checksum(text));
+  return text;
+}
+
+Snapshot decode_snapshot(const std::string& text) {
+  if (!text.starts_with(magic)) throw Error(ErrorKind::invalid_input, "it is no checkpoint");
+  if (text.size() < head_size + sizeof(std::uint32_t)) throw Error(ErrorKind::invalid_input, "it is cut off");
+  Cursor head(std::string_view(text).substr(magic.size()));
+  if (const auto found = head.number<std::uint32_t>(); found != format) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("it is of format {}, and this program reads format {}", found, format));
+  }
+  if (head.number<std::uint64_t>() != text.size() - head_size - sizeof(std::uint32_t))
+    throw Error(ErrorKind::invalid_input, "it has not the length it should have: it is cut off");
+  const std::string_view content = std::string_view(text).substr(0, text.size() - sizeof(std::uint32_t));
+  if (Cursor(std::string_view(text).substr(content.size())).number<std::uint32_t>() != checksum(content))
+    throw Error(ErrorKind::invalid_input, "its checksum is wrong");
+  Snapshot snapshot;
+  Cursor cursor(content.substr(head_size));
+  while (!cursor.at_end()) {
+    const std::string name = cursor.text();
+    snapshot.set(name, read_value(cursor));
+  }
+  return snapshot;
+}
+
+std::vector<CheckpointFile> checkpoint_files(const std::string& directory) {
+  static const std::regex pattern("checkpoint-([0-9]{9,15})\\.ckpt");
+  std::vector<CheckpointFile> result;
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory, problem)) {
+    const std::string name = entry.path().filename().string();
+    std::smatch match;
+    if (std::regex_match(name, match, pattern)) result.push_back({entry.path().string(), std::stol(match[1])});
+  }
+  std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
+  return result;
+}
+
+void write_checkpoint(const std::string& directory, long step, const Snapshot& snapshot) {
+  write_durably((fs::path(directory) / fmt::format("checkpoint-{:09}.ckpt", step)).string(), encode_snapshot(snapshot));
+  const std::vector<CheckpointFile> files = checkpoint_files(directory);
+  for (std::size_t i = 0; i + kept_checkpoints < files.size(); ++i) {
+    std::error_code problem;
+    fs::remove(files[i].path, problem);
+    if (problem) log::warning(fmt::format("{}: cannot be removed: {}", files[i].path, problem.message()));
+  }
+}
+
+Snapshot read_checkpoint(const std::string& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw_file_error(path, "read", errno);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) throw_file_error(path, "read", errno);
+  try {
+    return decode_snapshot(text);
+  } catch (const Error& problem) {
+    throw Error(problem.kind(), fmt::format("{}: {}", path, problem.what()));
+  }
+}
+
+std::optional<Snapshot> newest_checkpoint(const std::string& directory) {
+  std::vector<CheckpointFile> files = checkpoint_files(directory);
+  std::reverse(files.begin(), files.end());
+  for (const CheckpointFile& file : files) {
+    try {
+      return read_checkpoint(file.path);
+    } catch (const Error& problem) {
+      log::warning(fmt::format("this checkpoint is damaged, the one before is taken: {}", problem.what()));
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace ricochet

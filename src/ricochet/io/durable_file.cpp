@@ -1,0 +1,114 @@
+#include "ricochet/io/durable_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Closed at the end of its scope.
+class OpenFile {
+ public:
+  OpenFile(const std::string& path, int flags) : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) throw_file_error(path_, "open", errno);
+  }
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+  void sync() const {
+    // File systems that cannot sync a directory say EINVAL: there is nothing to wait for then.
+    if (fsync(descriptor_) != 0 && errno != EINVAL) throw_file_error(path_, "write to the disk", errno);
+  }
+  void close() {
+    const int descriptor = descriptor_;
+    descriptor_ = -1;
+    if (::close(descriptor) != 0) throw_file_error(path_, "write", errno);
+  }
+
+ private:
+  std::string path_;
+  int descriptor_;
+};
+
+std::string parent_of(const std::string& path) {
+  const std::string parent = std::filesystem::path(path).parent_path().string();
+  return parent.empty() ? "." : parent;
+}
+
+void write_all(const std::string& path, int descriptor, const std::string& content) {
+  for (std::size_t done = 0; done < content.size();) {
+    const ssize_t written = write(descriptor, content.data() + done, content.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw_file_error(path, "write", errno);
+    done += static_cast<std::size_t>(written);
+  }
+}
+
+}  // namespace
+
+void throw_file_error(const std::string& path, const char* what, int error_number) {
+  throw Error(ErrorKind::file_access, fmt::format("{}: cannot {}: {}", path, what, std::strerror(error_number)));
+}
+
+void sync_to_disk(const std::string& path) {
+  OpenFile(path, O_RDONLY).sync();
+}
+
+void write_durably(const std::string& path, const std::string& content) {
+  const std::string temporary = path + ".new";
+  try {
+    OpenFile file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+    write_all(path, file.descriptor(), content);
+    file.sync();
+    file.close();
+    if (std::rename(temporary.c_str(), path.c_str()) != 0) throw_file_error(path, "move into place", errno);
+    sync_to_disk(parent_of(path));
+  } catch (const Error&) {
+    unlink(temporary.c_str());
+    throw;
+  }
+}
+
+void cut_back(const std::string& path, std::int64_t length) {
+  const OpenFile file(path, O_WRONLY);
+  struct stat about {};
+  if (fstat(file.descriptor(), &about) != 0) throw_file_error(path, "look at", errno);
+  if (about.st_size < length) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: has {} bytes, but had {} when the checkpoint was written: it has been changed since",
+                            path, about.st_size, length));
+  }
+  if (ftruncate(file.descriptor(), length) != 0) throw_file_error(path, "cut back", errno);
+}
+
+void reserve_space(const std::string& path, std::int64_t bytes) {
+  const OpenFile file(path, O_WRONLY);
+  struct stat about {};
+  if (fstat(file.descriptor(), &about) != 0) throw_file_error(path, "look at", errno);
+  // A limit of the process (ulimit -f) is not looked at when space is reserved.
+  struct rlimit limit {};
+  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+      static_cast<rlim_t>(about.st_size + bytes) > limit.rlim_cur)
+    throw_file_error(path, "write", EFBIG);
+  if (fallocate(file.descriptor(), FALLOC_FL_KEEP_SIZE, about.st_size, bytes) == 0) return;
+  const int problem = errno;
+  // Others say only that this file system cannot reserve anything.
+  if (problem == ENOSPC || problem == EDQUOT || problem == EFBIG) throw_file_error(path, "write", problem);
+}
+
+}  // namespace ricochet

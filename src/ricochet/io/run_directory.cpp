@@ -1,0 +1,111 @@
+#include "ricochet/io/run_directory.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <thread>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a run leaves in its directory, checkpoints aside.
+constexpr const char* result_files[] = {"history.csv", "summary.json", "results.h5", "results.xdmf"};
+
+int open_directory(const std::string& path) {
+  return open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+}  // namespace
+
+RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
+  std::error_code problem;
+  fs::create_directories(path_, problem);
+  if (problem || !fs::is_directory(path_)) {
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", path_,
+                                                    problem ? problem.message() : "a file of that name is there"));
+  }
+  if (access(path_.c_str(), W_OK | X_OK) != 0) throw_file_error(path_, "write into this directory", errno);
+  lock_ = open_directory(path_);
+  if (lock_ < 0) throw_file_error(path_, "read this directory", errno);
+  // Someone who only asks whether a run is here has the lock for a moment.
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+    if (errno != EWOULDBLOCK) {
+      log::info(
+          fmt::format("{}: cannot be locked ({}): see that no other run writes into it", path_, std::strerror(errno)));
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  close(lock_);
+  throw Error(
+      ErrorKind::file_access,
+      fmt::format("{}: another run is writing into this directory; choose another one with -o, or stop that run",
+                  path_));
+}
+
+RunDirectory::~RunDirectory() {
+  if (lock_ >= 0) close(lock_);
+}
+
+std::string RunDirectory::file(const std::string& name) const {
+  return (fs::path(path_) / name).string();
+}
+
+std::vector<std::string> RunDirectory::results() const {
+  std::vector<std::string> result;
+  for (const char* name : result_files) {
+    if (fs::exists(file(name))) result.push_back(file(name));
+  }
+  const std::vector<std::string> others = left_behind(-1);
+  result.insert(result.end(), others.begin(), others.end());
+  return result;
+}
+
+std::vector<std::string> RunDirectory::left_behind(long step) const {
+  std::vector<std::string> result;
+  for (const char* name : {"summary.json.new", "results.h5.pattern"}) {
+    if (fs::exists(file(name))) result.push_back(file(name));
+  }
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_, problem)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("checkpoint-") && name.ends_with(".ckpt.new")) result.push_back(entry.path().string());
+  }
+  for (const CheckpointFile& checkpoint : checkpoint_files(path_)) {
+    if (checkpoint.step > step) result.push_back(checkpoint.path);
+  }
+  return result;
+}
+
+bool RunDirectory::is_in_use(const std::string& path) {
+  const int directory = open_directory(path);
+  if (directory < 0) return false;
+  const bool locked = flock(directory, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(directory);
+  return locked;
+}
+
+void remove_files(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    std::error_code problem;
+    fs::remove(file, problem);
+    if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be removed: {}", file, problem.message()));
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// @file The directory that a run writes into, for one run at a time.
+namespace ricochet {
+
+class RunDirectory {
+ public:
+  /// Makes the directory where it is missing, and keeps other runs out of it until this object or the process ends,
+  /// however it ends. Throws Error(file_access): it cannot be made or written to, or another run is in it.
+  explicit RunDirectory(std::string path);
+  ~RunDirectory();
+  RunDirectory(const RunDirectory&) = delete;
+  RunDirectory& operator=(const RunDirectory&) = delete;
+
+  [[nodiscard]] std::string file(const std::string& name) const;
+  /// Files that a run has left here: results, summary, checkpoints.
+  [[nodiscard]] std::vector<std::string> results() const;
+  /// Files that an interrupted run has left here and that a run which goes on after this step has no use for:
+  /// unfinished ones, and checkpoints of later steps, which are damaged.
+  [[nodiscard]] std::vector<std::string> left_behind(long step) const;
+
+  /// Is a run writing into this directory now?
+  [[nodiscard]] static bool is_in_use(const std::string& path);
+
+ private:
+  std::string path_;
+  int lock_ = -1;
+};
+
+/// Removes files. Throws Error(file_access).
+void remove_files(const std::vector<std::string>& files);
+
+}  // namespace ricochet

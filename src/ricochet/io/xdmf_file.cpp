@@ -1,0 +1,47 @@
+#include "ricochet/io/xdmf_file.hpp"
+
+#include <cerrno>
+
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+const std::string head =
+    "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
+    "    <Grid Name=\"time\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+const std::string tail = "    </Grid>\n  </Domain>\n</Xdmf>\n";
+
+}  // namespace
+
+XdmfFile::XdmfFile(std::string path)
+    : path_(std::move(path)), file_(path_, std::ios::in | std::ios::out | std::ios::trunc | std::ios::binary) {
+  if (!file_) throw_file_error(path_, "write", errno);
+  append(head);
+}
+
+XdmfFile::XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name)
+    : path_(std::move(path)), length_(snapshot.integer(name + ".length")) {
+  cut_back(path_, length_);
+  file_.open(path_, std::ios::in | std::ios::out | std::ios::binary);
+  if (!file_) throw_file_error(path_, "write", errno);
+  append("");
+}
+
+void XdmfFile::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".length", length_);
+}
+
+/// The closing tags are overwritten by the next grid, in one piece with what follows, once there is room for both.
+void XdmfFile::append(const std::string& grid) {
+  const std::string text = grid + tail;
+  reserve_space(path_, static_cast<std::int64_t>(text.size()));
+  errno = 0;
+  file_.seekp(length_);
+  file_ << text << std::flush;
+  if (!file_) throw_file_error(path_, "write", errno);
+  length_ += static_cast<std::int64_t>(grid.size());
+}
+
+}  // namespace ricochet

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <fstream>
+#include <string>
+
+#include "ricochet/base/snapshot.hpp"
+
+/// @file The XDMF 3.0 side-file: a temporal collection of grids, a complete document after every one of them.
+namespace ricochet {
+
+class XdmfFile {
+ public:
+  /// A new file. Throws Error(file_access).
+  explicit XdmfFile(std::string path);
+  /// Goes on after the grids that were there when save() was called. Throws Error(file_access) where it is not that
+  /// file.
+  XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name);
+  void save(Snapshot& snapshot, const std::string& name) const;
+
+  /// Appends a <Grid> element.
+  void append(const std::string& grid);
+
+ private:
+  std::string path_;
+  std::fstream file_;
+  std::int64_t length_ = 0;  ///< without the closing tags
+};
+
+}  // namespace ricochet

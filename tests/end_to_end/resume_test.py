@@ -1,0 +1,324 @@
+"""Runs that are interrupted, by anything, go on to the same bytes as one that never was.
+
+    resume_test.py [KILLS] [--disk-full POINTS]     # by default 50 kills and 24 points, as in ./dev test
+"""
+
+import contextlib
+import json
+import os
+import pathlib
+import random
+import resource
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from harness import DISC, MESHES, PROGRAM, SCHEMES, TestCase, block_case, run, settings
+
+KILLS = 50
+FULL_DISKS = 24
+RESULTS = {"history.csv", "results.h5", "results.xdmf"}
+
+# What interrupted runs are made of: friction, a checkpoint often, a frame now and then.
+BUSY = {"contact.0.friction": 0.3, "initial.velocity": "[0.03,-0.1]", "output.checkpoint_every": 40,
+        "output.fields_every": 7, "time.end": 0.08}
+
+
+def busy(scheme):
+    values = dict(BUSY, **{"time.scheme": scheme, "mass.type": SCHEMES[scheme]})
+    if scheme == "newmark":
+        values["time.beta"] = 0.25
+    return values
+
+
+def start(case, output, values, *options, **more):
+    command = [str(PROGRAM), "run", str(case), "-o", str(output), "--quiet", *options, *settings(values)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+
+
+def wait_for(condition, seconds=60):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > deadline:
+            raise TimeoutError("nothing has happened")
+        time.sleep(0.002)
+
+
+def checkpoints(output):
+    return sorted(output.glob("checkpoint-*.ckpt"))
+
+
+def extrema(output):
+    return json.loads((output / "summary.json").read_text())["extrema"]
+
+
+class Resume(TestCase):
+    def reference(self, values, case=DISC):
+        name = f"reference-{abs(hash(str(sorted(map(str, values.items())))))}"
+        if not (self.folder / name).exists():
+            self.simulate(case, name, values)
+        return self.folder / name
+
+    def expect_same(self, expected, found):
+        for name in RESULTS & {path.name for path in expected.iterdir()}:
+            self.assertEqual((expected / name).read_bytes(), (found / name).read_bytes(), f"{found}: {name}")
+        self.assertEqual(extrema(expected), extrema(found))
+        self.assertEqual(json.loads((found / "summary.json").read_text())["status"], "done")
+        self.assertEqual(list(found.glob("*.new")) + list(found.glob("*.pattern")), [])
+
+    def test_killed_at_random_moments(self):
+        """kill -9, then --resume, until the run has come to its end, for one scheme after the other."""
+        seed = random.randrange(2**32)
+        chance = random.Random(seed)
+        kills, resumed, completed = 0, 0, 0
+        while kills < KILLS or completed < len(SCHEMES):
+            scheme = list(SCHEMES)[completed % len(SCHEMES)]
+            values = busy(scheme)
+            begun = time.monotonic()
+            expected = self.reference(values)
+            duration = time.monotonic() - begun if completed < len(SCHEMES) else duration
+            output = self.folder / f"killed-{completed}"
+            while True:
+                process = start(DISC, output, values, "--resume")
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(chance.uniform(0.0, max(0.7 * duration, 0.15)))
+                alive = process.poll() is None
+                process.kill()
+                _, errors = process.communicate()
+                kills += alive
+                if not alive:
+                    break
+                resumed += len(checkpoints(output)) > 0
+            self.assertEqual(process.returncode, 0, f"seed {seed}: {errors}")
+            self.expect_same(expected, output)
+            completed += 1
+        print(f"{kills} kills, {resumed} with a checkpoint, {completed} runs", file=sys.stderr)
+        self.assertGreater(resumed, kills // 4, f"seed {seed}")
+
+    def test_stopped_by_signals(self):
+        for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+            output = self.folder / f"stopped-{status}"
+            values = {**busy("newmark"), "time.end": 0.5}
+            del values["output.checkpoint_every"]
+            expected = self.reference(values)
+            process = start(DISC, output, values)
+            wait_for((output / "summary.json").exists)
+            process.send_signal(number)
+            text, errors = process.communicate()
+            self.assertEqual(process.returncode, status, errors)
+            self.assertIn("run --resume goes on", text)
+            summary = json.loads((output / "summary.json").read_text())
+            self.assertEqual(summary["status"], "interrupted")
+            # At the end of a step, with a checkpoint of it.
+            self.assertEqual([int(path.stem.split("-")[1]) for path in checkpoints(output)], [summary["steps"]])
+            rows = (output / "history.csv").read_text().splitlines()
+            self.assertEqual(len(rows), summary["steps"] + 2)
+            self.assertIn("interrupted", run("info", output).stdout)
+            self.expect_status(0, run("run", DISC, "-o", output, "--resume", "--quiet", "--threads", "2",
+                                      *settings(values)))
+            self.expect_same(expected, output)
+            self.assertEqual(json.loads((output / "summary.json").read_text())["resumed_at"], [summary["steps"]])
+
+    def test_a_second_signal_stops_at_once(self):
+        output = self.folder / "out"
+        process = start(DISC, output, {"time.end": 100, "output.fields_every": 0})
+        wait_for((output / "summary.json").exists)
+        os.kill(process.pid, signal.SIGSTOP)
+        os.waitpid(process.pid, os.WUNTRACED)
+        os.kill(process.pid, signal.SIGINT)
+        os.kill(process.pid, signal.SIGTERM)
+        os.kill(process.pid, signal.SIGCONT)
+        process.communicate()
+        self.assertIn(process.returncode, (130, 143))
+        self.assertEqual(checkpoints(output), [])
+        self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "running")
+
+    def test_two_checkpoints_are_kept_and_a_damaged_one_is_not_taken(self):
+        values = busy("klr-conserving")
+        expected = self.reference(values)
+        self.assertEqual([path.name for path in checkpoints(expected)],
+                         ["checkpoint-000000720.ckpt", "checkpoint-000000760.ckpt"])
+        content = checkpoints(expected)[1].read_bytes()
+        damaged = [content[:-1], content[:100], b"", content[:5000] + b"x" + content[5001:], b"RICOCHET", content + b"0"]
+        for k, bytes_left in enumerate(damaged):
+            output = self.interrupted(values, f"damaged-{k}")
+            checkpoints(output)[1].write_bytes(bytes_left)
+            process = self.expect_status(0, run("run", DISC, "-o", output, "--resume", *settings(values)))
+            self.assertIn("is damaged, the one before is taken", process.stderr)
+            self.assertIn("checkpoint-000000760.ckpt", process.stderr)
+            self.assertIn("resumed after step 720", process.stderr)
+            self.expect_same(expected, output)
+            self.assertIn("is damaged", json.loads((output / "summary.json").read_text())["warnings"][-1])
+        output = self.interrupted(values, "hopeless")
+        for path in checkpoints(output):
+            path.write_bytes(path.read_bytes()[:-1])
+        process = self.expect_status(2, run("run", DISC, "-o", output, "--resume", *settings(values)))
+        self.assertIn("no checkpoint can be read", process.stderr)
+
+    def interrupted(self, values, name):
+        """A run that was killed just before its end: what a complete one leaves but for its summary."""
+        output = self.folder / name
+        output.mkdir()
+        for path in self.reference(values).iterdir():
+            text = path.read_bytes()
+            if path.name == "summary.json":
+                text = text.replace(b'"status": "done"', b'"status": "running"')
+            (output / path.name).write_bytes(text)
+        return output
+
+    def test_refuses_another_case_and_says_which_entry(self):
+        values = busy("newmark")
+        output = self.interrupted(values, "out")
+        before = {path.name: path.read_bytes() for path in output.iterdir()}
+        for key, value, names in (("time.step", 2e-4, "time.step was 0.0001, now it is 0.0002"),
+                                  ("contact.0.friction", 0.2, "contact.0.friction was 0.3, now it is 0.2"),
+                                  ("time.end", 0.09, "time.end was 0.08, now it is 0.09"),
+                                  ("output.fields_every", 8, "output.fields_every was 7, now it is 8")):
+            process = self.expect_status(2, run("run", DISC, "-o", output, "--resume", *settings({**values, key: value})))
+            self.assertIn(names, process.stderr)
+            self.assertIn("--set", process.stderr)
+        self.assertEqual(before, {path.name: path.read_bytes() for path in output.iterdir()})
+        # What does not decide results may change; and another way to write a number is no change.
+        free = {**values, "title": "\"another\"", "output.checkpoint_every": 3, "time.step": "1.0e-4"}
+        self.expect_status(0, run("run", DISC, "-o", output, "--resume", *settings(free)))
+        self.expect_same(self.reference(values), output)
+
+    def test_refuses_another_mesh(self):
+        mesh = self.folder / "block.msh"
+        text = (MESHES / "quadrilateral_o1_msh41_ascii.msh").read_text()
+        mesh.write_text(text)
+        case = self.write("case.toml", block_case(mesh) + "[output]\ncheckpoint_every = 5\n")
+        output = self.folder / "out"
+        self.expect_status(0, run("run", case, "-o", output, "--quiet"))
+        summary = output / "summary.json"
+        summary.write_text(summary.read_text().replace('"status": "done"', '"status": "running"'))
+        self.assertIn("1.5", text)
+        mesh.write_text(text.replace("1.5 ", "1.5000001 "))
+        process = self.expect_status(2, run("run", case, "-o", output, "--resume"))
+        self.assertIn("the mesh is another one than before (it differs in: nodes)", process.stderr)
+        mesh.write_text(text)
+        self.expect_status(0, run("run", case, "-o", output, "--resume"))
+
+    def test_nothing_to_resume(self):
+        values = busy("newmark")
+        expected = self.reference(values)
+        # From the beginning where nothing is there; and nothing is done where the run is complete.
+        output = self.folder / "new"
+        process = self.expect_status(0, run("run", DISC, "-o", output, "--resume", *settings(values)))
+        self.assertIn("starts from the beginning", process.stderr)
+        self.expect_same(expected, output)
+        written = {path: path.stat().st_mtime_ns for path in output.iterdir()}
+        process = self.expect_status(0, run("run", DISC, "-o", output, "--resume", *settings(values)))
+        self.assertIn("complete", process.stderr)
+        self.assertEqual(written, {path: path.stat().st_mtime_ns for path in output.iterdir()})
+        # Results that another program has changed are not gone on with.
+        output = self.interrupted(values, "cut")
+        (output / "history.csv").write_text("step\n")
+        process = self.expect_status(4, run("run", DISC, "-o", output, "--resume", *settings(values)))
+        self.assertIn("history.csv: has 5 bytes", process.stderr)
+        self.expect_status(1, run("run", DISC, "-o", output, "--resume", "--force"))
+
+    def test_one_run_at_a_time(self):
+        output = self.folder / "out"
+        process = start(DISC, output, {"time.end": 100})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        wait_for((output / "summary.json").exists)
+        for option in ("--force", "--resume", "--quiet"):
+            second = self.expect_status(4, run("run", DISC, "-o", output, option, "--set", "time.end=100"))
+            self.assertIn("another run is writing into this directory", second.stderr)
+        self.assertIn("running", run("info", output).stdout)
+        self.assertIsNone(process.poll())
+
+    def fill_disk(self, output, values, limit):
+        """Files cannot grow beyond a limit: what a write to a full disk gives, at a place that can be chosen."""
+        return start(DISC, output, values, "--resume",
+                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY)))
+
+    def test_full_disk_by_file_size(self):
+        """history.csv, results.h5, a checkpoint: whichever reaches the limit first."""
+        failed = set()
+        for scheme in ("newmark", "semi-explicit"):
+            values = busy(scheme)
+            expected = self.reference(values)
+            largest = max(path.stat().st_size for path in expected.iterdir())
+            for k in range(FULL_DISKS // 4):
+                output = self.folder / f"full-{scheme}-{k}"
+                process = self.fill_disk(output, values, 20_000 + (largest - 30_000) * k // (FULL_DISKS // 4))
+                _, errors = process.communicate()
+                self.assertEqual(process.returncode, 4, errors)
+                self.assertIn("File too large", errors)
+                failed.update(name for name in ("history.csv", "results.h5", "results.xdmf", "ckpt") if name in errors)
+                self.expect_status(0, run("run", DISC, "-o", output, "--resume", "--quiet", *settings(values)))
+                self.expect_same(expected, output)
+        self.assertLessEqual({"results.h5"}, failed)
+
+    @contextlib.contextmanager
+    def small_disk(self, kilobytes):
+        place = self.folder / "disk"
+        place.mkdir(exist_ok=True)
+        done = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", place],
+                              capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            self.skipTest(f"no small disk can be mounted here: {done.stderr.strip()}")
+        try:
+            yield place
+        finally:
+            subprocess.run(["umount", place], check=True)
+
+    def test_full_disk(self):
+        """A disk that is too small by a little more every time; once it is larger the run goes on."""
+        failed = {}
+        for k in range(FULL_DISKS // 2):
+            # Without fields it is the history or a checkpoint that finds the disk full.
+            values = busy("newmark") if k % 2 == 0 else {
+                **busy("newmark"), "output.fields_every": 0, "output.checkpoint_every": 300}
+            expected = self.reference(values)
+            needed = sum(path.stat().st_size for path in expected.iterdir()) // 1024
+            size = 20 + (needed - 20) * k // (FULL_DISKS // 2)
+            with self.small_disk(size) as place:
+                output = place / "out"
+                process = run("run", DISC, "-o", output, "--quiet", *settings(values))
+                self.expect_status(4, process)
+                self.assertIn("No space left on device", process.stderr)
+                name = process.stderr.strip().splitlines()[-1].split(":")[1].strip()
+                failed[k, size] = pathlib.Path(name).name
+                # What is there can be looked at.
+                if (output / "results.xdmf").exists() and (output / "results.xdmf").stat().st_size > 0:
+                    self.assertIn("</Xdmf>", (output / "results.xdmf").read_text())
+                subprocess.run(["mount", "-o", f"remount,size={3 * needed}k", place], check=True)
+                self.expect_status(0, run("run", DISC, "-o", output, "--resume", "--quiet", *settings(values)))
+                self.expect_same(expected, output)
+        print(f"full at {failed}", file=sys.stderr)
+        self.assertLessEqual({"history.csv", "results.h5"}, set(failed.values()))
+
+    def test_read_only_directory(self):
+        with self.small_disk(1000) as place:
+            output = place / "out"
+            output.mkdir()
+            subprocess.run(["mount", "-o", "remount,ro", place], check=True)
+            for where in (output, place / "another"):
+                process = self.expect_status(4, run("run", DISC, "-o", where))
+                self.assertIn("Read-only file system", process.stderr)
+
+    def test_directory_of_someone_else(self):
+        output = self.folder / "out"
+        output.mkdir()
+        output.chmod(0o555)
+        if os.geteuid() == 0:
+            self.skipTest("root may write anywhere")
+        process = self.expect_status(4, run("run", DISC, "-o", output))
+        self.assertIn("Permission denied", process.stderr)
+
+
+if __name__ == "__main__":
+    arguments = sys.argv[1:]
+    if "--disk-full" in arguments:
+        at = arguments.index("--disk-full")
+        FULL_DISKS = int(arguments[at + 1])
+        del arguments[at:at + 2]
+    if arguments and arguments[0].isdigit():
+        KILLS = int(arguments.pop(0))
+    unittest.main(argv=[sys.argv[0], *arguments])

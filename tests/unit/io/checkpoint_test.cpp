@@ -1,0 +1,136 @@
+#include "ricochet/io/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include "ricochet/base/checksum.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "support/case_run.hpp"
+
+namespace ricochet {
+namespace {
+
+Snapshot example() {
+  Snapshot snapshot;
+  snapshot.save("numbers", Vector(Vector::LinSpaced(100, -1.0, 1.0)));
+  Vector special(5);
+  special << -0.0, std::numeric_limits<double>::infinity(), std::nan("1"), 5e-324, 1.0 / 3.0;
+  snapshot.save("special", special);
+  snapshot.save("none", Vector());
+  snapshot.save("points", Snapshot::Integers{3, -1, std::numeric_limits<std::int64_t>::max()});
+  snapshot.save("no points", Snapshot::Integers{});
+  snapshot.save("texts", Snapshot::Texts{"", "two\nlines", std::string("a\0b", 3)});
+  snapshot.save("flag", true);
+  return snapshot;
+}
+
+/// The checksum at the end put right: what a damaged file would have to look like to get past it.
+std::string with_checksum(std::string text) {
+  text.resize(text.size() - 4);
+  const std::uint32_t sum = Checksum().add(text.data(), text.size()).value();
+  return text.append(reinterpret_cast<const char*>(&sum), sizeof(sum));
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    static_cast<void>(decode_snapshot(text));
+  } catch (const Error& problem) {
+    EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+    return problem.what();
+  }
+  return "";
+}
+
+std::string folder_of_test() {
+  return std::filesystem::path(test_support::write_temporary("x", "")).parent_path().string();
+}
+
+TEST(Checkpoint, ComesBackBitByBit) {
+  const Snapshot snapshot = example();
+  const std::string text = encode_snapshot(snapshot);
+  const Snapshot again = decode_snapshot(text);
+  EXPECT_EQ(encode_snapshot(again), text);
+  EXPECT_TRUE(std::signbit(again.reals("special")[0]));
+  EXPECT_TRUE(std::isnan(again.reals("special")[2]));
+  EXPECT_EQ(again.texts("texts"), snapshot.texts("texts"));
+  EXPECT_EQ(again.integers("points"), snapshot.integers("points"));
+  EXPECT_TRUE(again.flag("flag"));
+}
+
+TEST(Checkpoint, EveryBitThatChangesIsSeen) {
+  const std::string text = encode_snapshot(example());
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    std::string damaged = text;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << (at % 8)));
+    EXPECT_NE(refusal(damaged), "") << at;
+    EXPECT_NE(refusal(text.substr(0, at)), "") << at;
+  }
+  EXPECT_NE(refusal(text + "x"), "");
+}
+
+/// With a right checksum: an absurd count must not be tried.
+TEST(Checkpoint, AbsurdSizesAreRefused) {
+  const std::string text = encode_snapshot(example());
+  std::mt19937_64 random(3);
+  for (std::size_t at = 20; at + 12 < text.size(); ++at) {
+    for (const std::uint64_t value : {~std::uint64_t{0}, std::uint64_t{1} << 62, std::uint64_t{1} << 33, random()}) {
+      std::string damaged = text;
+      damaged.replace(at, 8, reinterpret_cast<const char*>(&value), 8);
+      static_cast<void>(refusal(with_checksum(damaged)));  // refused or read, but nothing else happens
+    }
+  }
+  std::string damaged = text;
+  const std::uint64_t count = std::uint64_t{1} << 61;
+  damaged.replace(damaged.find("numbers") + 8, 8, reinterpret_cast<const char*>(&count), 8);
+  EXPECT_EQ(refusal(with_checksum(damaged)), "a value is longer than the file");
+}
+
+TEST(Checkpoint, TheLastTwoAreKept) {
+  const std::string folder = folder_of_test();
+  for (const long step : {7L, 100L, 20L, 3000000000L}) {
+    Snapshot snapshot;
+    snapshot.save("step", std::int64_t{step});
+    write_checkpoint(folder, step, snapshot);
+  }
+  const std::vector<CheckpointFile> files = checkpoint_files(folder);
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[0].step, 100);
+  EXPECT_EQ(files[1].step, 3000000000);
+  EXPECT_EQ(newest_checkpoint(folder)->integer("step"), 3000000000);
+  std::ofstream(files[1].path) << "no checkpoint";
+  log::set_level(log::Level::off);
+  EXPECT_EQ(newest_checkpoint(folder)->integer("step"), 100);
+  std::ofstream(files[0].path) << "";
+  EXPECT_FALSE(newest_checkpoint(folder).has_value());
+  EXPECT_EQ(log::warnings().size(), 3u);
+  log::clear_warnings();
+}
+
+TEST(Snapshot, SaysWhatDoesNotFit) {
+  const Snapshot snapshot = example();
+  const auto message = [](const auto& ask) -> std::string {
+    try {
+      ask();
+    } catch (const Error& problem) {
+      return problem.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message([&] { static_cast<void>(snapshot.reals("numbers", 99)); }),
+            "the saved state does not fit: numbers has 100 numbers where 99 are expected");
+  EXPECT_EQ(message([&] { static_cast<void>(snapshot.real("other")); }),
+            "the saved state does not fit: other is missing");
+  EXPECT_EQ(message([&] { static_cast<void>(snapshot.text("numbers")); }),
+            "the saved state does not fit: numbers does not hold texts");
+  EXPECT_EQ(message([&] { static_cast<void>(snapshot.integers("points", 0, 10)); }),
+            "the saved state does not fit: points has -1, which is not from 0 to 10");
+}
+
+}  // namespace
+}  // namespace ricochet
