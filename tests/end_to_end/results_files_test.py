@@ -12,7 +12,7 @@ import h5py
 import meshio
 import numpy
 
-from harness import DISC, MESHES, PROGRAM, History, TestCase, block_case
+from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, run
 from vtk_cells import middles, volumes
 
 CASE = """
@@ -243,6 +243,75 @@ class ResultsFiles(TestCase):
                 counts.add(sum(1 for _ in tree.iter("Time")))
             os.kill(process.pid, signal.SIGCONT)
         self.assertGreaterEqual(len(counts), 20)
+
+    def test_all_fields(self):
+        """What can be derived from others is derived here once more, by other means."""
+        for case, values in ((DISC, {"time.end": 0.05}), (SOURCE / "cases/ball/ball.toml", {"time.end": 0.02}),
+                             (DISC, {"time.end": 0.05, "mesh.degree": 2, "mesh.plane": "\"stress\""})):
+            results = self.simulate(case, f"all-{len(list(self.folder.iterdir()))}",
+                                    {**values, "output.fields": "[\"all\"]", "output.fields_every": 50})
+            history = History(results / "history.csv")
+            rows = {row[history.names.index("time")]: i for i, row in enumerate(history.rows)}
+            with meshio.xdmf.TimeSeriesReader(results / "results.xdmf") as reader:
+                points, cells = reader.read_points_cells()
+                each = numpy.concatenate([volumes(block.type, points, block.data)[0] for block in cells])
+                for k in range(reader.num_steps):
+                    at, nodal, cell = reader.read_data(k)
+                    cell = {name: numpy.concatenate(blocks) for name, blocks in cell.items()}
+                    self.assertEqual(set(nodal), {"displacement", "velocity", "acceleration", "contact_pressure", "gap",
+                                                  "contact_status", "nodal_stress", "nodal_von_mises",
+                                                  "nodal_principal_stress"})
+                    self.assertEqual(set(cell), {"stress", "von_mises", "principal_stress", "strain_energy_density"})
+                    energy = history["elastic_energy"][rows[at]]
+                    largest = history.largest_energy()
+                    self.assertAlmostEqual(float(cell["strain_energy_density"] @ each), energy, delta=1e-12 * largest)
+                    self.check_stress(cell["stress"], cell["von_mises"], cell["principal_stress"])
+                    self.check_stress(nodal["nodal_stress"], nodal["nodal_von_mises"], nodal["nodal_principal_stress"])
+                    if "stress" in values.get("mesh.plane", ""):
+                        self.assertFalse(numpy.any(cell["stress"][:, 5]))
+
+    def check_stress(self, stress, von_mises, principal):
+        xx, xy, xz, yy, yz, zz = stress.T
+        tensors = numpy.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1)
+        size = max(numpy.abs(stress).max(), 1e-300)
+        numpy.testing.assert_allclose(principal, numpy.linalg.eigvalsh(tensors)[:, ::-1], rtol=0, atol=1e-7 * size)
+        a, b, c = principal.T
+        expected = numpy.sqrt(0.5 * ((a - b)**2 + (b - c)**2 + (c - a)**2))
+        numpy.testing.assert_allclose(von_mises, expected, rtol=0, atol=1e-6 * size)
+
+    def test_fields_that_are_asked_for_single_and_compressed(self):
+        values = {"time.end": 0.02, "output.fields_every": 20, "output.fields": '["velocity", "stress", "contact_status"]'}
+        exact = frames(self.simulate(DISC, "exact", values))[2]
+        small = self.simulate(DISC, "small", {**values, "output.fields_precision": "\"single\"", "output.compression": 6})
+        read = frames(small)[2]
+        self.assertEqual([at for at, _ in read], [at for at, _ in exact])
+        for (_, a), (_, b) in zip(exact, read):
+            self.assertEqual(sorted(a), ["contact_status", "velocity"])  # at nodes
+            self.assertEqual(b["velocity"].dtype, numpy.float32)
+            self.assertEqual(a["velocity"].astype(numpy.float32).tobytes(), b["velocity"].tobytes())
+            self.assertEqual(a["contact_status"].tobytes(), b["contact_status"].tobytes())
+        with h5py.File(small / "results.h5", "r") as file:
+            self.assertEqual(file["mesh/nodes"].dtype, numpy.float64)
+            self.assertEqual(file["frames/000003/stress"].compression, "gzip")
+            self.assertEqual(file["frames/000003/stress"].shape, (780, 6))
+
+    def test_fields_by_time(self):
+        results = self.simulate(DISC, values={"time.end": 0.0105, "output.fields_interval": 0.00225})
+        times = [at for at, _ in frames(results)[2]]
+        numpy.testing.assert_allclose(times, [0, 0.0023, 0.0045, 0.0068, 0.009, 0.0105], rtol=1e-12)
+        for fields in ("fields_every = 3\nfields_interval = 0.1", "fields = []", "fields = [\"stres\"]"):
+            case = self.write("bad.toml", block_case() + "[output]\n" + fields + "\n")
+            self.expect_status(2, run("run", case, "-o", self.folder / "bad"))
+
+    def test_ten_thousand_frames_stay_openable(self):
+        case = self.write("case.toml", block_case() + "[output]\nfields_every = 1\n")
+        results = self.simulate(case, values={"time.end": 100.0})
+        begun = time.monotonic()
+        with meshio.xdmf.TimeSeriesReader(results / "results.xdmf") as reader:
+            reader.read_points_cells()
+            self.assertEqual(reader.num_steps, 10001)
+            self.assertEqual(reader.read_data(10000)[0], 100.0)
+        self.assertLess(time.monotonic() - begun, 60.0)  # some seconds: nothing that grows with its square
 
     def test_friction(self):
         """Tractions stay in the cone, on it where nodes slip, and agree with the probe's reactions."""

@@ -101,7 +101,11 @@ struct ProbeSection {
 };
 
 struct OutputSection {
-  std::optional<long> fields_every;  ///< steps; absent: chosen so that about a hundred frames are written; 0: none
+  std::optional<long> fields_every;       ///< steps; absent: chosen so that about a hundred frames are written; 0: none
+  std::optional<double> fields_interval;  ///< time, instead of fields_every
+  std::vector<std::string> fields;        ///< names, also "all"; empty: the usual ones
+  bool single_precision = false;          ///< of fields
+  int compression = 0;
   long history_every = 1;
   long checkpoint_every = 0;          ///< steps; 0: by time only
   double checkpoint_seconds = 300.0;  ///< of the clock on the wall; 0: by steps only

@@ -140,6 +140,7 @@ std::string wanted(const Key& key) {
       return fmt::format("a vector of 2 or 3 numbers or expressions in {}{}", key.variables,
                          key.choices.empty() ? "" : ", or " + one_of(key.choices, true));
     case KeyType::components:
+    case KeyType::names:
       return fmt::format("a list with one or more of {}", join_names(key.choices, " and "));
     case KeyType::parameters:
       return "a table of numbers";

@@ -149,6 +149,7 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
       if (value.kind == Kind::text && is_choice(value.text, key.choices)) return;
       return check_vector(key, value, true, problems);
     case KeyType::components:
+    case KeyType::names:
       return check_directions(key, value, problems);
     case KeyType::parameters:
       return check_parameters(key, value, problems);

@@ -373,6 +373,12 @@ Section solver_section() {
       }};
 }
 
+std::vector<std::string> field_choices() {
+  std::vector<std::string> names = field_names();
+  names.emplace_back("all");
+  return names;
+}
+
 Section output_section() {
   return {.name = "output",
           .doc = "How often results are written.",
@@ -382,6 +388,28 @@ Section output_section() {
                .unit = "steps",
                .range = nonnegative,
                .doc = "Fields are written each so many steps; 0: never; absent: about a hundred times in the run."},
+              {.name = "fields_interval",
+               .type = KeyType::number,
+               .unit = "time",
+               .range = positive,
+               .doc = "Instead of fields_every: fields are written at the first step at or after each multiple of this "
+                      "time, and at the start and the end."},
+              {.name = "fields",
+               .type = KeyType::names,
+               .choices = field_choices(),
+               .doc = "The fields that are written, see the README; \"all\" stands for all of them. Absent: "
+                      "displacement, velocity, what there is of contact, and von_mises."},
+              {.name = "fields_precision",
+               .type = KeyType::choice,
+               .standard = "double",
+               .choices = {"double", "single"},
+               .doc = "Of the numbers in results.h5: 64 or 32 bits. The mesh always has 64."},
+              {.name = "compression",
+               .type = KeyType::integer,
+               .unit = "1",
+               .standard = "0",
+               .range = {.at_least = 0.0, .at_most = 9.0},
+               .doc = "Of results.h5: 0 none, 1 fast, 9 small. Full precision compresses little, single more."},
               {.name = "history_every",
                .type = KeyType::integer,
                .unit = "steps",

@@ -5,13 +5,14 @@
 
 #include "ricochet/contact/multiplier_space.hpp"
 #include "ricochet/contact/obstacle.hpp"
+#include "ricochet/io/fields/field_source.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/simulation/history.hpp"
 
 /// @file Names a case file may use that other parts of the program define: scheme_names(), mass_names(),
-/// multiplier_space_names() and obstacle_types() come from their registries, so registering something is all it takes
-/// to be allowed in a case.
+/// multiplier_space_names(), obstacle_types() and field_names() come from their registries, so registering something is
+/// all it takes to be allowed in a case.
 namespace ricochet {
 
 /// Columns of history.csv that every run may have, in 2D or 3D. No probe may be named like one of them.

@@ -255,8 +255,18 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems, Remar
   result.solver = {solver.text("method"), solver.number("tolerance"), solver.optional_number("memory"),
                    solver.text("contact_points")};
   const SectionReader output = sections.one("output");
-  result.output = {output.optional_integer("fields_every"), output.integer("history_every"),
-                   output.integer("checkpoint_every"), output.number("checkpoint_seconds")};
+  result.output = {.fields_every = output.optional_integer("fields_every"),
+                   .fields_interval = output.optional_number("fields_interval"),
+                   .fields = output.chosen("fields"),
+                   .single_precision = output.text("fields_precision") == "single",
+                   .compression = static_cast<int>(output.integer("compression")),
+                   .history_every = output.integer("history_every"),
+                   .checkpoint_every = output.integer("checkpoint_every"),
+                   .checkpoint_seconds = output.number("checkpoint_seconds")};
+  if (result.output.fields_every && result.output.fields_interval) {
+    output.add_problem("fields_interval",
+                       "\"fields_every\" and \"fields_interval\" exclude each other: give one of them");
+  }
   for (const SectionReader& reader : sections.all("expect")) result.expectations.push_back(read_expectation(reader));
 }
 

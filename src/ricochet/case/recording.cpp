@@ -17,8 +17,11 @@ constexpr double rotation_limit = 0.1;
 /// History is handed over to readers this often, in seconds.
 constexpr double flush_interval = 1.0;
 
-long fields_interval(const OutputSection& output, long steps) {
-  return output.fields_every.value_or(std::max(1L, (steps + 99) / 100));
+/// A hundred; fewer in runs of small bodies that take less than a second, where writing that many would take as long as
+/// the steps.
+long default_frames(long steps, Index dofs) {
+  constexpr double least = 10.0, most = 100.0, work_per_frame = 5e4;
+  return std::lround(std::min(most, least + static_cast<double>(steps) * static_cast<double>(dofs) / work_per_frame));
 }
 
 HistoryWriter open_history(const std::string& path, const std::vector<std::string>& columns, const Snapshot* snapshot) {
@@ -27,24 +30,45 @@ HistoryWriter open_history(const std::string& path, const std::vector<std::strin
 
 }  // namespace
 
+FieldSchedule::FieldSchedule(const Case& input, long steps, Index dofs) : step_size_(input.time.step), steps_(steps) {
+  if (input.output.fields_interval) {
+    interval_ = *input.output.fields_interval;
+  } else {
+    const long frames = default_frames(steps, dofs);
+    every_ = input.output.fields_every.value_or((steps + frames - 1) / frames);
+  }
+}
+
+/// Multiples of the interval up to this step; one that a step meets to rounding counts.
+double FieldSchedule::intervals(long step) const {
+  return std::floor(static_cast<double>(step) * step_size_ / interval_ * (1.0 + 1e-12));
+}
+
+bool FieldSchedule::includes(long step) const {
+  if (step == 0 || step == steps_) return any();
+  return interval_ > 0.0 ? intervals(step) > intervals(step - 1) : every_ > 0 && step % every_ == 0;
+}
+
 Recording::Recording(const Case& input, const Model& model, const std::string& directory, long steps,
                      const Snapshot* snapshot)
     : recorder_(model.problem, *model.rotation, model.probes),
       history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot)),
       history_every_(input.output.history_every),
-      fields_every_(fields_interval(input.output, steps)),
+      fields_(input, steps, model.problem.dof_count()),
       steps_(steps) {
-  if (fields_every_ > 0) open_results(model, directory, snapshot);
+  if (fields_.any()) open_results(input.output, model, directory, snapshot);
   if (snapshot == nullptr) return;
   digest_.load(*snapshot, "digest", recorder_.columns().size());
   rotation_warned_ = snapshot->flag("rotation_warned");
 }
 
-void Recording::open_results(const Model& model, const std::string& directory, const Snapshot* snapshot) {
+void Recording::open_results(const OutputSection& output, const Model& model, const std::string& directory,
+                             const Snapshot* snapshot) {
+  const ResultsOptions options{output.fields, {output.single_precision, output.compression}};
   if (snapshot != nullptr) {
-    results_.emplace(directory, model.space, model.problem, *snapshot, "results");
+    results_.emplace(directory, model.body, model.problem, options, *snapshot, "results");
   } else {
-    results_.emplace(directory, model.space, model.problem);
+    results_.emplace(directory, model.body, model.problem, options);
   }
 }
 
@@ -57,7 +81,7 @@ void Recording::record(const State& state, EnergyAccount& account) {
     digest_.add(row);
     watch_rotation(row);
   }
-  if (results_ && (state.step % fields_every_ == 0 || state.step == steps_)) results_->write(state);
+  if (results_ && fields_.includes(state.step)) results_->write(state);
   if (since_flush_.seconds() > flush_interval) {
     history_.flush();
     since_flush_.restart();

@@ -11,6 +11,22 @@
 /// @file Everything that is written while a run goes on: history and fields.
 namespace ricochet {
 
+/// The steps after which fields are written.
+class FieldSchedule {
+ public:
+  FieldSchedule(const Case& input, long steps, Index dofs);
+  [[nodiscard]] bool any() const { return every_ > 0 || interval_ > 0.0; }
+  [[nodiscard]] bool includes(long step) const;
+
+ private:
+  [[nodiscard]] double intervals(long step) const;
+
+  long every_ = 0;
+  double interval_ = 0.0;  ///< time, instead
+  double step_size_;
+  long steps_;
+};
+
 class Recording {
  public:
   /// Of a run of so many steps into a directory: new files, or those of the run that the snapshot belongs to. Throws
@@ -29,7 +45,8 @@ class Recording {
   [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
-  void open_results(const Model& model, const std::string& directory, const Snapshot* snapshot);
+  void open_results(const OutputSection& output, const Model& model, const std::string& directory,
+                    const Snapshot* snapshot);
   void check_finite(const std::vector<double>& row) const;
   void watch_rotation(const std::vector<double>& row);
 
@@ -38,7 +55,7 @@ class Recording {
   std::optional<ResultsWriter> results_;
   HistoryDigest digest_;
   long history_every_;
-  long fields_every_;
+  FieldSchedule fields_;
   long steps_;
   bool rotation_warned_ = false;
   Timer since_flush_;

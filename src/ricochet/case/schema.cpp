@@ -65,6 +65,7 @@ Json type_schema(const Key& key) {
     case KeyType::formulas:
       return formulas_schema(key);
     case KeyType::components:
+    case KeyType::names:
       return {{"type", "array"}, {"items", {{"enum", key.choices}}}, {"minItems", 1}, {"uniqueItems", true}};
     case KeyType::parameters:
       return {

@@ -70,6 +70,14 @@ std::vector<int> SectionReader::choice_numbers(const std::string& name) const {
   return numbers;
 }
 
+std::vector<std::string> SectionReader::chosen(const std::string& name) const {
+  std::vector<std::string> names;
+  if (const TomlNode* node = usable(name)) {
+    for (const TomlNode& entry : node->children) names.push_back(entry.text);
+  }
+  return names;
+}
+
 Expression SectionReader::expression(const Key& key, const TomlNode& node) const {
   if (node.is_number()) return Expression(node.real);
   const TomlNode* parameters = table_.find("parameters");

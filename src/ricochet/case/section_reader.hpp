@@ -38,6 +38,8 @@ class SectionReader {
   /// The entries' places among the key's choices: 0, 1, 2 for "x", "y", "z".
   [[nodiscard]] std::vector<int> choice_numbers(const std::string& name) const;
   /// Compile the expressions with the section's parameters; their errors are problems at the place of the expression.
+  /// The entries of a list of choices as they are given; empty where it is absent.
+  [[nodiscard]] std::vector<std::string> chosen(const std::string& name) const;
   [[nodiscard]] Expression formula(const std::string& name) const;
   [[nodiscard]] std::vector<Expression> formulas(const std::string& name) const;
   [[nodiscard]] std::map<std::string, std::string> conditions(const std::string& name) const;

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <list>
 #include <numeric>
 
 #include "ricochet/base/error.hpp"
@@ -69,26 +70,43 @@ void write_fixed(std::int64_t file, const std::string& path, const FixedDataset&
         fixed.name);
 }
 
-/// A data set whose place in the file does not depend on its numbers, but for the size of compressed ones.
-Hdf5Handle frame_dataset(std::int64_t group, const DatasetLayout& layout, const FrameFileOptions& options) {
-  const Hdf5Handle space = data_space(layout.rows, layout.columns);
-  const Hdf5Handle properties = timeless_hdf5_properties(H5P_DATASET_CREATE);
-  H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER);
-  if (options.compression > 0 && layout.rows > 0) {
-    const hsize_t chunk[2] = {static_cast<hsize_t>(layout.rows), static_cast<hsize_t>(layout.columns)};
-    H5Pset_chunk(properties, layout.columns > 0 ? 2 : 1, chunk);
-    H5Pset_shuffle(properties);
-    H5Pset_deflate(properties, static_cast<unsigned>(options.compression));
-  } else {
-    H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY);
-  }
-  const hid_t real = options.single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
-  return {H5Dcreate2(group, layout.name.c_str(), layout.whole ? H5T_STD_I32LE : real, space, H5P_DEFAULT, properties,
-                     H5P_DEFAULT),
-          H5Dclose};
-}
-
 }  // namespace
+
+/// What HDF5 wants to know of the data sets of a frame, made once: that takes as long as to write a small one.
+struct FrameFile::Prepared {
+  struct Dataset {
+    Hdf5Handle space, properties;
+    std::int64_t type;
+
+    Dataset(const DatasetLayout& layout, const FrameFileOptions& options)
+        : space(data_space(layout.rows, layout.columns)),
+          properties(timeless_hdf5_properties(H5P_DATASET_CREATE)),
+          type(layout.whole     ? H5T_STD_I32LE
+               : options.single ? H5T_IEEE_F32LE
+                                : H5T_IEEE_F64LE) {
+      // Its place in the file does not depend on its numbers, but for the size of compressed ones.
+      H5Pset_fill_time(properties, H5D_FILL_TIME_NEVER);
+      if (is_compressed(layout, options)) {
+        const hsize_t chunk[2] = {static_cast<hsize_t>(layout.rows), static_cast<hsize_t>(layout.columns)};
+        H5Pset_chunk(properties, layout.columns > 0 ? 2 : 1, chunk);
+        H5Pset_shuffle(properties);
+        H5Pset_deflate(properties, static_cast<unsigned>(options.compression));
+      } else {
+        H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY);
+      }
+    }
+  };
+  Hdf5Handle access = file_access();
+  Hdf5Handle group = timeless_hdf5_properties(H5P_GROUP_CREATE);
+  std::list<Dataset> datasets;
+
+  Prepared(const std::vector<DatasetLayout>& layout, const FrameFileOptions& options) {
+    for (const DatasetLayout& each : layout) datasets.emplace_back(each, options);
+  }
+  static bool is_compressed(const DatasetLayout& layout, const FrameFileOptions& options) {
+    return options.compression > 0 && layout.rows > 0;
+  }
+};
 
 std::string FrameFile::frame_name(long frame) {
   return fmt::format("/frames/{:06d}", frame);
@@ -97,12 +115,14 @@ std::string FrameFile::frame_name(long frame) {
 FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
                      const FrameFileOptions& options)
     : path_(std::move(path)), layout_(std::move(frame)), options_(options) {
+  prepared_ = std::make_shared<Prepared>(layout_, options_);
   create(path_, fixed);
 }
 
 FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
                      const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name)
     : path_(std::move(path)), layout_(std::move(frame)), options_(options) {
+  prepared_ = std::make_shared<Prepared>(layout_, options_);
   frames_ = snapshot.integer(name + ".frames");
   stored_sizes_ = snapshot.integers(name + ".stored_sizes", 0, std::int64_t{1} << 40);
   const std::size_t expected = options_.compression > 0 ? static_cast<std::size_t>(frames_) * layout_.size() : 0;
@@ -159,8 +179,7 @@ void FrameFile::append(const std::vector<const void*>& values) {
 std::vector<FrameFile::Extent> FrameFile::write_frame(const std::string& path, long frame,
                                                       const std::vector<const void*>* values,
                                                       const std::int64_t* stored_sizes) const {
-  const Hdf5Handle access = file_access();
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, prepared_->access);
   check(path, file >= 0, "the file");
   std::vector<Extent> extents;
   const std::string name = frame_name(frame);
@@ -168,13 +187,16 @@ std::vector<FrameFile::Extent> FrameFile::write_frame(const std::string& path, l
       stored_sizes != nullptr ? static_cast<std::size_t>(*std::max_element(stored_sizes, stored_sizes + layout_.size()))
                               : 0);
   try {
-    const Hdf5Handle properties = timeless_hdf5_properties(H5P_GROUP_CREATE);
-    const Hdf5Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose);
+    const Hdf5Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, prepared_->group, H5P_DEFAULT), H5Gclose);
+    auto prepared = prepared_->datasets.begin();
     check(path, group >= 0, name);
     for (std::size_t i = 0; i < layout_.size(); ++i) {
-      const Hdf5Handle set = frame_dataset(group, layout_[i], options_);
+      const Hdf5Handle set(H5Dcreate2(group, layout_[i].name.c_str(), prepared->type, prepared->space, H5P_DEFAULT,
+                                      prepared->properties, H5P_DEFAULT),
+                           H5Dclose);
+      ++prepared;
       check(path, set >= 0, name + "/" + layout_[i].name);
-      const bool chunked = options_.compression > 0 && layout_[i].rows > 0;
+      const bool chunked = Prepared::is_compressed(layout_[i], options_);
       const hsize_t origin[2] = {0, 0};
       bool good = true;
       if (values != nullptr) {

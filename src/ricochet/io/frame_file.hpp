@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,7 @@ class FrameFile {
   struct Extent {
     std::int64_t address = 0, size = 0;
   };
+  struct Prepared;
   void create(const std::string& path, const std::vector<FixedDataset>& fixed) const;
   std::vector<Extent> write_frame(const std::string& path, long frame, const std::vector<const void*>* values,
                                   const std::int64_t* stored_sizes) const;
@@ -66,6 +68,7 @@ class FrameFile {
   std::string path_;
   std::vector<DatasetLayout> layout_;
   FrameFileOptions options_;
+  std::shared_ptr<const Prepared> prepared_;
   long frames_ = 0;
   std::vector<std::int64_t> stored_sizes_;  ///< of the data sets of all frames, when compressed
 };

@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "ricochet/io/durable_file.hpp"
-#include "ricochet/io/frame_file.hpp"
-#include "ricochet/io/result_fields.hpp"
 #include "ricochet/io/vtk_order.hpp"
 #include "ricochet/io/xdmf_file.hpp"
 
@@ -63,39 +61,54 @@ std::string geometry_of(const DisplacementSpace& space) {
       space.node_count());
 }
 
-std::vector<DatasetLayout> datasets_of(const std::vector<FieldLayout>& fields) {
+std::vector<DatasetLayout> datasets_of(const std::vector<Field>& fields) {
   std::vector<DatasetLayout> result;
-  for (const FieldLayout& field : fields)
+  for (const Field& field : fields)
     result.push_back({field.name, field.whole, field.rows, field.components > 1 ? field.components : 0});
   return result;
+}
+
+const char* xdmf_type(int components) {
+  return components == 1 ? "Scalar" : components == 3 ? "Vector" : "Tensor6";
 }
 
 }  // namespace
 
 struct ResultsWriter::Implementation {
-  Implementation(const std::string& directory, const DisplacementSpace& space, const SemidiscreteProblem& problem,
-                 const Snapshot* snapshot, const std::string& name);
+  Implementation(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
+                 const ResultsOptions& options, const Snapshot* snapshot, const std::string& name);
   [[nodiscard]] std::string grid(double time, long frame) const;
 
   std::string path, side_path;
-  ResultFields fields;
-  std::string mesh;  ///< XDMF shared by all frames
+  std::vector<std::unique_ptr<FieldSource>> sources;
+  std::vector<Field> fields;
+  std::vector<const void*> values;  ///< of the fields
+  int precision;                    ///< bytes
+  std::string mesh;                 ///< XDMF shared by all frames
   std::optional<FrameFile> file;
   std::optional<XdmfFile> side;
 };
 
-ResultsWriter::Implementation::Implementation(const std::string& directory, const DisplacementSpace& space,
-                                              const SemidiscreteProblem& problem, const Snapshot* snapshot,
-                                              const std::string& name)
-    : path(directory + "/results.h5"), side_path(directory + "/results.xdmf"), fields(space, problem) {
+ResultsWriter::Implementation::Implementation(const std::string& directory, const Body& body,
+                                              const SemidiscreteProblem& problem, const ResultsOptions& options,
+                                              const Snapshot* snapshot, const std::string& name)
+    : path(directory + "/results.h5"),
+      side_path(directory + "/results.xdmf"),
+      sources(make_field_sources({body, problem, wanted_fields(options.fields)})),
+      precision(options.file.single ? 4 : 8) {
+  for (const auto& source : sources) {
+    for (const Field& field : source->fields()) fields.push_back(field);
+  }
+  for (const Field& field : fields) values.push_back(field.values);
+  const DisplacementSpace& space = *body.space;
   Cells cells = cells_of(space);
   mesh = cells.topology + geometry_of(space);
   const std::vector<FixedDataset> fixed{node_positions(space), std::move(cells.set)};
   if (snapshot == nullptr) {
-    file.emplace(path, fixed, datasets_of(fields.layout()));
+    file.emplace(path, fixed, datasets_of(fields), options.file);
     side.emplace(side_path);
   } else {
-    file.emplace(path, fixed, datasets_of(fields.layout()), FrameFileOptions{}, *snapshot, name + ".frames");
+    file.emplace(path, fixed, datasets_of(fields), options.file, *snapshot, name + ".frames");
     side.emplace(side_path, *snapshot, name + ".side");
   }
 }
@@ -104,32 +117,33 @@ std::string ResultsWriter::Implementation::grid(double time, long frame) const {
   std::string text =
       fmt::format("      <Grid Name=\"body\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n", time);
   text += mesh;
-  for (const FieldLayout& field : fields.layout()) {
+  for (const Field& field : fields) {
     text += fmt::format(
-        "        <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"Node\"><DataItem Format=\"HDF\" {2} "
-        "Dimensions=\"{3}\">results.h5:{4}/{0}</DataItem></Attribute>\n",
-        field.name, field.components > 1 ? "Vector" : "Scalar",
-        field.whole ? "NumberType=\"Int\" Precision=\"4\"" : "NumberType=\"Float\" Precision=\"8\"",
+        "        <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"{2}\"><DataItem Format=\"HDF\" "
+        "NumberType=\"{3}\" Precision=\"{4}\" Dimensions=\"{5}\">results.h5:{6}/{0}</DataItem></Attribute>\n",
+        field.name, xdmf_type(field.components), field.place == FieldPlace::nodes ? "Node" : "Cell",
+        field.whole ? "Int" : "Float", field.whole ? 4 : precision,
         field.components > 1 ? fmt::format("{} {}", field.rows, field.components) : fmt::format("{}", field.rows),
         FrameFile::frame_name(frame));
   }
   return text + "      </Grid>\n";
 }
 
-ResultsWriter::ResultsWriter(const std::string& directory, const DisplacementSpace& space,
-                             const SemidiscreteProblem& problem)
-    : implementation_(std::make_unique<Implementation>(directory, space, problem, nullptr, "")) {}
+ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
+                             const ResultsOptions& options)
+    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, nullptr, "")) {}
 
-ResultsWriter::ResultsWriter(const std::string& directory, const DisplacementSpace& space,
-                             const SemidiscreteProblem& problem, const Snapshot& snapshot, const std::string& name)
-    : implementation_(std::make_unique<Implementation>(directory, space, problem, &snapshot, name)) {}
+ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
+                             const ResultsOptions& options, const Snapshot& snapshot, const std::string& name)
+    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, &snapshot, name)) {}
 
 ResultsWriter::~ResultsWriter() = default;
 
 void ResultsWriter::write(const State& state) {
   Implementation& own = *implementation_;
+  for (const auto& source : own.sources) source->evaluate(state);
   const long frame = own.file->frames();
-  own.file->append(own.fields.evaluate(state));
+  own.file->append(own.values);
   // What the side-file names is in the file by now, even if the run is killed before the next frame.
   own.side->append(own.grid(state.time, frame));
 }

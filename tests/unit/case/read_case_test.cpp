@@ -171,6 +171,10 @@ TEST(ReadCase, FillsInEveryDefault) {
   EXPECT_EQ(read.mass.type, "equivalent");
   EXPECT_TRUE(read.probes.empty() && read.expectations.empty() && read.overridden.empty());
   EXPECT_FALSE(read.output.fields_every.has_value());
+  EXPECT_FALSE(read.output.fields_interval.has_value());
+  EXPECT_TRUE(read.output.fields.empty());
+  EXPECT_FALSE(read.output.single_precision);
+  EXPECT_EQ(read.output.compression, 0);
   EXPECT_EQ(read.output.history_every, 1);
   EXPECT_EQ(read.output.checkpoint_every, 0);
   EXPECT_EQ(read.output.checkpoint_seconds, 300.0);
@@ -193,6 +197,8 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"solver.tolerance", "1e-10"},
                                                              {"solver.contact_points", "near"},
                                                              {"output.history_every", "1"},
+                                                             {"output.fields_precision", "double"},
+                                                             {"output.compression", "0"},
                                                              {"output.checkpoint_every", "0"},
                                                              {"output.checkpoint_seconds", "300"}}));
 }

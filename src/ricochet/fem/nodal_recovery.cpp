@@ -1,0 +1,141 @@
+#include "ricochet/fem/nodal_recovery.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+
+#include "ricochet/base/parallel.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// A node takes in the cells around its cells so often, at most.
+constexpr int widest_patch = 3;
+/// Of the columns of the fit: what is less dependent than this determines nothing.
+constexpr double dependence = 1e-3;
+
+class Recovery {
+ public:
+  explicit Recovery(const Body& body) : body_(body), dimension_(body.mesh->dimension) {
+    const Index nodes = body.space->node_count();
+    std::vector<Index> count(static_cast<std::size_t>(nodes) + 1, 0);
+    centres_.resize(dimension_, body.mesh->cell_count());
+    for (const CellBlock& block : body.space->cells) {
+      for (Index cell = 0; cell < block.size(); ++cell) {
+        cell_nodes_.emplace_back(block.cell(cell), block.nodes_per_cell);
+        const auto number = static_cast<Index>(cell_nodes_.size()) - 1;
+        Vector centre = Vector::Zero(dimension_);
+        for (int i = 0; i < block.nodes_per_cell; ++i) {
+          centre += body.space->nodes.col(block.cell(cell)[i]);
+          ++count[static_cast<std::size_t>(block.cell(cell)[i]) + 1];
+        }
+        centres_.col(number) = centre / block.nodes_per_cell;
+      }
+    }
+    for (std::size_t i = 1; i < count.size(); ++i) count[i] += count[i - 1];
+    first_ = count;
+    cells_.resize(static_cast<std::size_t>(first_.back()));
+    for (std::size_t cell = 0; cell < cell_nodes_.size(); ++cell) {
+      for (int i = 0; i < cell_nodes_[cell].second; ++i)
+        cells_[static_cast<std::size_t>(count[static_cast<std::size_t>(cell_nodes_[cell].first[i])]++)] =
+            static_cast<Index>(cell);
+    }
+  }
+
+  /// Cells and their weights for a node.
+  std::vector<std::pair<Index, double>> weights(Index node) const {
+    std::vector<std::pair<Index, double>> result;
+    std::vector<int> materials;
+    visit_cells(node, [&](Index cell) { materials.push_back(material(cell)); });
+    std::sort(materials.begin(), materials.end());
+    materials.erase(std::unique(materials.begin(), materials.end()), materials.end());
+    for (const int each : materials) {
+      for (const auto& [cell, weight] : fit(node, each))
+        result.emplace_back(cell, weight / static_cast<double>(materials.size()));
+    }
+    return result;
+  }
+
+ private:
+  template <class Visit>
+  void visit_cells(Index node, const Visit& visit) const {
+    for (Index i = first_[static_cast<std::size_t>(node)]; i < first_[static_cast<std::size_t>(node) + 1]; ++i)
+      visit(cells_[static_cast<std::size_t>(i)]);
+  }
+  [[nodiscard]] int material(Index cell) const { return body_.cell_material[static_cast<std::size_t>(cell)]; }
+
+  void widen(int of_material, std::vector<Index>& patch) const {
+    const std::vector<Index> before = patch;
+    for (const Index cell : before) {
+      const auto& [nodes, count] = cell_nodes_[static_cast<std::size_t>(cell)];
+      for (int i = 0; i < count; ++i) {
+        visit_cells(nodes[i], [&](Index other) {
+          if (material(other) == of_material) patch.push_back(other);
+        });
+      }
+    }
+    std::sort(patch.begin(), patch.end());
+    patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
+  }
+
+  /// The value at the node of the fit Σ_c (a + b·(x_c − x))² → min is a sum of the cells' values with these weights.
+  std::vector<std::pair<Index, double>> fit(Index node, int of_material) const {
+    std::vector<Index> patch;
+    visit_cells(node, [&](Index cell) {
+      if (material(cell) == of_material) patch.push_back(cell);
+    });
+    const std::vector<Index> nearest = patch;
+    for (int attempt = 0; attempt < widest_patch; ++attempt) {
+      const auto count = static_cast<Index>(patch.size());
+      if (count > dimension_) {
+        Matrix columns(count, dimension_ + 1);
+        columns.col(0).setOnes();
+        for (Index i = 0; i < count; ++i) {
+          columns.row(i).tail(dimension_) =
+              (centres_.col(patch[static_cast<std::size_t>(i)]) - body_.space->nodes.col(node)).transpose();
+        }
+        columns.rightCols(dimension_) /= columns.rightCols(dimension_).norm();
+        Eigen::ColPivHouseholderQR<Matrix> factor(columns);
+        factor.setThreshold(dependence);
+        if (factor.rank() == dimension_ + 1) {
+          // a = e₀ᵀ (columns)⁺ values: the first row of the pseudo-inverse.
+          const Matrix inverse = factor.solve(Matrix::Identity(count, count));
+          std::vector<std::pair<Index, double>> result;
+          for (Index i = 0; i < count; ++i) result.emplace_back(patch[static_cast<std::size_t>(i)], inverse(0, i));
+          return result;
+        }
+      }
+      widen(of_material, patch);
+    }
+    std::vector<std::pair<Index, double>> mean;
+    for (const Index cell : nearest) mean.emplace_back(cell, 1.0 / static_cast<double>(nearest.size()));
+    return mean;
+  }
+
+  const Body& body_;
+  int dimension_;
+  Points centres_;
+  std::vector<std::pair<const Index*, int>> cell_nodes_;
+  std::vector<Index> first_, cells_;  ///< the cells of each node
+};
+
+}  // namespace
+
+SparseRowMatrix make_nodal_recovery(const Body& body) {
+  const Recovery recovery(body);
+  const Index nodes = body.space->node_count();
+  std::vector<std::vector<std::pair<Index, double>>> weights(static_cast<std::size_t>(nodes));
+  parallel_ranges(nodes, [&](Index first, Index last) {
+    for (Index node = first; node < last; ++node) weights[static_cast<std::size_t>(node)] = recovery.weights(node);
+  });
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index node = 0; node < nodes; ++node) {
+    for (const auto& [cell, weight] : weights[static_cast<std::size_t>(node)])
+      entries.emplace_back(static_cast<int>(node), static_cast<int>(cell), weight);
+  }
+  SparseRowMatrix result(nodes, body.mesh->cell_count());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+}  // namespace ricochet

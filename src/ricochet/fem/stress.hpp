@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "ricochet/fem/assembly.hpp"
+
+/// @file Stress and strain energy of cells.
+namespace ricochet {
+
+/// Symmetric 3 × 3 tensors, also in the plane, by xx, xy, xz, yy, yz, zz: the order of XDMF.
+inline constexpr int tensor_components = 6;
+
+/// Means over each cell of the stress σ = λ tr ε I + 2μ ε and of ½ σ : ε, by the quadrature of the stiffness: the sum
+/// of the energy densities times the volumes of the cells is ½UᵀKU. In the plane σ_zz is that of plane strain, or zero.
+class CellStress {
+ public:
+  /// Keeps a reference.
+  explicit CellStress(const Body& body) : body_(body) {}
+
+  /// Cells are numbered through all blocks. `stress`: 6 per cell; `energy_density`: one.
+  void evaluate(const Vector& displacement, std::vector<double>& stress, std::vector<double>& energy_density) const;
+
+ private:
+  template <int d>
+  void evaluate_block(std::size_t block, Index first_cell, const Vector& displacement, double* stress,
+                      double* energy_density) const;
+
+  const Body& body_;
+};
+
+/// √(3/2 s : s) with the deviator s.
+[[nodiscard]] double von_mises_stress(const double* stress);
+/// Eigenvalues, largest first.
+[[nodiscard]] std::array<double, 3> principal_stresses(const double* stress);
+
+/// Volume of every cell (area in the plane), numbered through all blocks.
+[[nodiscard]] Vector cell_volumes(const Body& body);
+
+}  // namespace ricochet

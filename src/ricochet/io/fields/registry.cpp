@@ -1,0 +1,67 @@
+#include <algorithm>
+
+#include "ricochet/io/fields/field_source.hpp"
+
+namespace ricochet {
+
+std::unique_ptr<FieldSource> make_motion_fields(const FieldContext& context);
+std::unique_ptr<FieldSource> make_contact_fields(const FieldContext& context);
+std::unique_ptr<FieldSource> make_stress_fields(const FieldContext& context);
+
+namespace {
+
+struct Registration {
+  std::vector<std::string> names;
+  std::unique_ptr<FieldSource> (*make)(const FieldContext& context);
+};
+
+const std::vector<Registration>& registrations() {
+  static const std::vector<Registration> all{
+      {{"displacement", "velocity", "acceleration"}, make_motion_fields},
+      {{"contact_pressure", "friction_traction", "gap", "contact_status"}, make_contact_fields},
+      {{"stress", "von_mises", "principal_stress", "strain_energy_density", "nodal_stress", "nodal_von_mises",
+        "nodal_principal_stress"},
+       make_stress_fields},
+  };
+  return all;
+}
+
+}  // namespace
+
+bool FieldContext::wants(const std::string& name) const {
+  return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
+
+bool FieldContext::wants_any(const std::vector<std::string>& names) const {
+  return std::any_of(names.begin(), names.end(), [this](const std::string& name) { return wants(name); });
+}
+
+std::vector<std::unique_ptr<FieldSource>> make_field_sources(const FieldContext& context) {
+  std::vector<std::unique_ptr<FieldSource>> result;
+  for (const Registration& entry : registrations()) {
+    if (context.wants_any(entry.names)) result.push_back(entry.make(context));
+  }
+  return result;
+}
+
+std::vector<std::string> field_names() {
+  std::vector<std::string> result;
+  for (const Registration& entry : registrations()) result.insert(result.end(), entry.names.begin(), entry.names.end());
+  return result;
+}
+
+std::vector<std::string> wanted_fields(const std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), "all") != names.end()) return field_names();
+  if (!names.empty()) return names;
+  return {"displacement", "velocity", "contact_pressure", "friction_traction", "gap", "contact_status", "von_mises"};
+}
+
+void take_vector(const DisplacementSpace& space, const Vector& values, std::vector<double>& field) {
+  const Index d = space.dimension;
+  for (Index node = 0; node < space.node_count(); ++node) {
+    double* const to = field.data() + 3 * space.number[static_cast<std::size_t>(node)];
+    for (Index k = 0; k < d; ++k) to[k] = values[node * d + k];
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,85 @@
+#include "ricochet/fem/nodal_recovery.hpp"
+#include "ricochet/fem/stress.hpp"
+#include "ricochet/io/fields/field_source.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Means of the cells, and what is recovered at the nodes from them.
+class StressFields final : public FieldSource {
+ public:
+  explicit StressFields(const FieldContext& context)
+      : space_(*context.body.space),
+        stress_of_(context.body),
+        wants_nodal_(context.wants_any({"nodal_stress", "nodal_von_mises", "nodal_principal_stress"})) {
+    const Index cells = context.body.mesh->cell_count(), nodes = space_.node_count();
+    const auto add = [&](const char* name, FieldPlace place, int components, std::vector<double>& values) {
+      const Index rows = place == FieldPlace::cells ? cells : nodes;
+      const bool wanted = context.wants(name);
+      values.assign(static_cast<std::size_t>(components * rows), 0.0);
+      if (wanted) fields_.push_back({name, place, components, false, rows, values.data()});
+      return wanted;
+    };
+    add("stress", FieldPlace::cells, tensor_components, stress_);
+    wants_von_mises_ = add("von_mises", FieldPlace::cells, 1, von_mises_);
+    wants_principal_ = add("principal_stress", FieldPlace::cells, 3, principal_);
+    add("strain_energy_density", FieldPlace::cells, 1, energy_density_);
+    if (!wants_nodal_) return;
+    recovery_ = make_nodal_recovery(context.body);
+    add("nodal_stress", FieldPlace::nodes, tensor_components, nodal_stress_);
+    wants_nodal_von_mises_ = add("nodal_von_mises", FieldPlace::nodes, 1, nodal_von_mises_);
+    wants_nodal_principal_ = add("nodal_principal_stress", FieldPlace::nodes, 3, nodal_principal_);
+  }
+
+  [[nodiscard]] std::vector<Field> fields() const override { return fields_; }
+
+  void evaluate(const State& state) override {
+    stress_of_.evaluate(state.displacement, stress_, energy_density_);
+    if (wants_von_mises_) find_von_mises(stress_, von_mises_);
+    if (wants_principal_) find_principal(stress_, principal_);
+    if (!wants_nodal_) return;
+    recover();
+    if (wants_nodal_von_mises_) find_von_mises(nodal_stress_, nodal_von_mises_);
+    if (wants_nodal_principal_) find_principal(nodal_stress_, nodal_principal_);
+  }
+
+ private:
+  static void find_von_mises(const std::vector<double>& stress, std::vector<double>& result) {
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = von_mises_stress(stress.data() + tensor_components * i);
+  }
+  static void find_principal(const std::vector<double>& stress, std::vector<double>& result) {
+    for (std::size_t i = 0; 3 * i < result.size(); ++i) {
+      const std::array<double, 3> values = principal_stresses(stress.data() + tensor_components * i);
+      std::copy(values.begin(), values.end(), result.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    }
+  }
+  void recover() {
+    for (Index node = 0; node < recovery_.rows(); ++node) {
+      Eigen::Matrix<double, tensor_components, 1> sum = Eigen::Matrix<double, tensor_components, 1>::Zero();
+      for (SparseRowMatrix::InnerIterator entry(recovery_, node); entry; ++entry) {
+        sum += entry.value() * Eigen::Map<const Eigen::Matrix<double, tensor_components, 1>>(
+                                   stress_.data() + tensor_components * entry.col());
+      }
+      Eigen::Map<Eigen::Matrix<double, tensor_components, 1>>(
+          nodal_stress_.data() + tensor_components * space_.number[static_cast<std::size_t>(node)]) = sum;
+    }
+  }
+
+  const DisplacementSpace& space_;
+  CellStress stress_of_;
+  bool wants_nodal_, wants_von_mises_ = false, wants_principal_ = false;
+  bool wants_nodal_von_mises_ = false, wants_nodal_principal_ = false;
+  SparseRowMatrix recovery_;
+  std::vector<Field> fields_;
+  std::vector<double> stress_, von_mises_, principal_, energy_density_;
+  std::vector<double> nodal_stress_, nodal_von_mises_, nodal_principal_;
+};
+
+}  // namespace
+
+std::unique_ptr<FieldSource> make_stress_fields(const FieldContext& context) {
+  return std::make_unique<StressFields>(context);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,202 @@
+#include "ricochet/fem/stress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "ricochet/fem/nodal_recovery.hpp"
+#include "support/box_mesh.hpp"
+
+/// @file Stress of cells, what is recovered at the nodes from it, and strain energy.
+namespace ricochet::test_support {
+namespace {
+
+struct StressCase {
+  ElementKind kind;
+  PlaneState plane = PlaneState::strain;
+};
+
+std::unique_ptr<MeshedBody> curved_body(const StressCase& test, int count = 3) {
+  BoxMesh box;
+  box.shape = test.kind.shape;
+  box.counts.assign(static_cast<std::size_t>(test.kind.dimension()), count);
+  box.geometry_degree = test.kind.geometry_degree;
+  if (test.kind.contains_affine()) box.map = swirl_map(0.05);
+  return make_meshed_body(make_box_mesh(box), test.kind.displacement_degree, test.plane);
+}
+
+std::vector<StressCase> stress_cases() {
+  std::vector<StressCase> cases;
+  for (const ElementKind& kind : all_element_kinds()) {
+    cases.push_back({kind, PlaneState::strain});
+    if (kind.dimension() == 2) cases.push_back({kind, PlaneState::stress});
+  }
+  return cases;
+}
+
+class StressTest : public testing::TestWithParam<StressCase> {};
+
+/// Hooke's law by E and ν; in the plane with what keeps ε_zz, or σ_zz, at zero.
+TEST_P(StressTest, OfAnAffineDisplacement) {
+  const int d = GetParam().kind.dimension();
+  const auto body = curved_body(GetParam());
+  Matrix h(3, 3);
+  h << 0.31, -0.12, 0.07, 0.45, -0.23, 0.11, -0.19, 0.05, 0.28;
+  const Matrix gradient = h.topLeftCorner(d, d);
+  const Vector displacement = interpolate(body->space, affine_map(gradient, Vector::LinSpaced(d, 0.4, -0.9)));
+  const Material material = test_material();
+  const double nu = material.poisson(), young = material.young();
+  Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
+  strain.topLeftCorner(d, d) = 0.5 * (gradient + gradient.transpose());
+  if (GetParam().plane == PlaneState::stress) strain(2, 2) = -nu / (1.0 - nu) * strain.trace();
+  const Eigen::Matrix3d stress =
+      young / (1.0 + nu) * (strain + nu / (1.0 - 2.0 * nu) * strain.trace() * Eigen::Matrix3d::Identity());
+  const double energy = 0.5 * (stress.array() * strain.array()).sum();
+  const double size = stress.cwiseAbs().maxCoeff();
+
+  std::vector<double> found, density;
+  CellStress(body->body).evaluate(displacement, found, density);
+  ASSERT_EQ(static_cast<Index>(density.size()), body->mesh.cell_count());
+  const Eigen::Matrix3d deviator = stress - stress.trace() / 3.0 * Eigen::Matrix3d::Identity();
+  for (std::size_t cell = 0; cell < density.size(); ++cell) {
+    const double* s = found.data() + 6 * cell;
+    const double expected[] = {stress(0, 0), stress(0, 1), stress(0, 2), stress(1, 1), stress(1, 2), stress(2, 2)};
+    for (int k = 0; k < 6; ++k) ASSERT_NEAR(s[k], expected[k], 1e-12 * size) << k;
+    ASSERT_NEAR(density[cell], energy, 1e-12 * energy);
+    ASSERT_NEAR(von_mises_stress(s), std::sqrt(1.5) * deviator.norm(), 1e-12 * size);
+    const std::array<double, 3> principal = principal_stresses(s);
+    ASSERT_GE(principal[0], principal[1]);
+    ASSERT_GE(principal[1], principal[2]);
+    ASSERT_NEAR(principal[0] + principal[1] + principal[2], stress.trace(), 1e-12 * size);
+    ASSERT_NEAR(principal[0] * principal[1] * principal[2], stress.determinant(), 1e-12 * size * size * size);
+  }
+}
+
+/// Σ density × volume = ½UᵀKU of any displacement.
+TEST_P(StressTest, EnergyDensitiesAddUpToTheStrainEnergy) {
+  const auto body = curved_body(GetParam());
+  const SparseMatrix stiffness = assemble_stiffness(body->body, node_graph(body->space));
+  std::srand(5);
+  const Vector displacement = Vector::Random(body->space.dof_count());
+  std::vector<double> stress, density;
+  CellStress(body->body).evaluate(displacement, stress, density);
+  const Vector volumes = cell_volumes(body->body);
+  const double sum = volumes.dot(Eigen::Map<const Vector>(density.data(), volumes.size()));
+  const double energy = 0.5 * displacement.dot(stiffness * displacement);
+  EXPECT_NEAR(sum, energy, 1e-13 * energy);
+}
+
+/// A linear function sampled at the centres of the cells comes back at every node, corners included.
+TEST_P(StressTest, RecoveryIsExactForLinearFunctions) {
+  const auto body = curved_body(GetParam());
+  const int d = GetParam().kind.dimension();
+  const Vector slope = Vector::LinSpaced(d, 1.3, -0.7);
+  const SparseRowMatrix recovery = make_nodal_recovery(body->body);
+  Vector samples(body->mesh.cell_count());
+  Index cell = 0;
+  for (const CellBlock& block : body->space.cells) {
+    for (Index i = 0; i < block.size(); ++i, ++cell) {
+      Vector centre = Vector::Zero(d);
+      for (int k = 0; k < block.nodes_per_cell; ++k) centre += body->space.nodes.col(block.cell(i)[k]);
+      samples[cell] = 0.4 + slope.dot(centre) / block.nodes_per_cell;
+    }
+  }
+  const Vector found = recovery * samples;
+  for (Index node = 0; node < found.size(); ++node)
+    EXPECT_NEAR(found[node], 0.4 + slope.dot(body->space.nodes.col(node)), 1e-11);
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, StressTest, testing::ValuesIn(stress_cases()), [](const auto& info) {
+  return info.param.kind.label() + (info.param.plane == PlaneState::stress ? "_plane_stress" : "");
+});
+
+/// On a regular mesh the recovered stress is of (nearly) second order inside the body and of first on its boundary, so
+/// of order 3/2 in the mean; the cells' own of first.
+TEST(NodalRecovery, IsOfHigherOrder) {
+  const PointMap field = [](const Vector& x) {
+    Vector u(2);
+    u << x[0] * x[0] - x[0] * x[1], std::sin(2.0 * x[0]) * x[1];
+    return u;
+  };
+  const Material material = test_material();
+  const auto exact = [&](const Vector& x) {  // σ_xx of plane strain
+    const double xx = 2.0 * x[0] - x[1], yy = std::sin(2.0 * x[0]);
+    return material.lambda * (xx + yy) + 2.0 * material.mu * xx;
+  };
+  std::vector<double> inside, nodal, own;
+  for (const int count : {8, 16, 32}) {
+    BoxMesh box;
+    box.counts = {count, count};
+    box.distortion = 0.0;
+    const auto body = make_meshed_body(make_box_mesh(box), 1);
+    std::vector<double> stress, density;
+    CellStress(body->body).evaluate(interpolate(body->space, field), stress, density);
+    const Matrix components = Eigen::Map<const Matrix>(stress.data(), 6, body->mesh.cell_count());
+    const Vector recovered = make_nodal_recovery(body->body) * Vector(components.row(0).transpose());
+    double inside_error = 0.0, nodal_error = 0.0, own_error = 0.0;
+    for (Index node = 0; node < recovered.size(); ++node) {
+      const Vector x = body->space.nodes.col(node);
+      const double square = std::pow(recovered[node] - exact(x), 2);
+      nodal_error += square;
+      // Where the cells lie around the node on all sides.
+      if (x.minCoeff() > 0.01 && x.maxCoeff() < 0.99) inside_error += square;
+    }
+    const CellBlock& cells = body->space.cells.front();
+    for (Index cell = 0; cell < cells.size(); ++cell)
+      own_error += std::pow(components(0, cell) - exact(body->space.nodes.col(cells.cell(cell)[0])), 2);
+    inside.push_back(std::sqrt(inside_error / static_cast<double>(recovered.size())));
+    nodal.push_back(std::sqrt(nodal_error / static_cast<double>(recovered.size())));
+    own.push_back(std::sqrt(own_error / static_cast<double>(cells.size())));
+  }
+  for (std::size_t i = 1; i < nodal.size(); ++i) {
+    EXPECT_GT(std::log2(inside[i - 1] / inside[i]), 1.75);
+    EXPECT_GT(std::log2(nodal[i - 1] / nodal[i]), 1.35);
+    EXPECT_LT(std::log2(own[i - 1] / own[i]), 1.2);
+  }
+}
+
+/// Two materials side by side under the same strain: nothing of one leaks into the other but at the nodes between.
+TEST(NodalRecovery, KeepsMaterialsApart) {
+  BoxMesh box;
+  box.counts = {6, 4};
+  box.distortion = 0.0;
+  auto body = make_meshed_body(make_box_mesh(box), 1);
+  body->body.materials.push_back(body->body.materials.front());
+  const CellBlock& cells = body->space.cells.front();
+  Vector samples(cells.size());
+  for (Index cell = 0; cell < cells.size(); ++cell) {
+    double x = 0.0;
+    for (int k = 0; k < 3; ++k) x += body->space.nodes(0, cells.cell(cell)[k]) / 3.0;
+    const int material = x < 0.5 ? 0 : 1;
+    body->body.cell_material[static_cast<std::size_t>(cell)] = material;
+    samples[cell] = material == 0 ? 1.0 : 5.0;
+  }
+  const Vector found = make_nodal_recovery(body->body) * samples;
+  for (Index node = 0; node < found.size(); ++node) {
+    const double x = body->space.nodes(0, node);
+    EXPECT_NEAR(found[node], x < 0.49 ? 1.0 : x > 0.51 ? 5.0 : 3.0, 1e-12) << x;
+  }
+}
+
+/// Closed forms: uniaxial, hydrostatic, shear, with a double eigenvalue.
+TEST(Stress, OfKnownStates) {
+  const double uniaxial[] = {3.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  EXPECT_DOUBLE_EQ(von_mises_stress(uniaxial), 3.0);
+  EXPECT_EQ(principal_stresses(uniaxial), (std::array<double, 3>{3.0, 0.0, 0.0}));
+  const double pressure[] = {-2.0, 0.0, 0.0, -2.0, 0.0, -2.0};
+  EXPECT_EQ(von_mises_stress(pressure), 0.0);
+  for (const double each : principal_stresses(pressure)) EXPECT_DOUBLE_EQ(each, -2.0);
+  const double shear[] = {0.0, 0.0, 4.0, 0.0, 0.0, 0.0};
+  EXPECT_DOUBLE_EQ(von_mises_stress(shear), 4.0 * std::sqrt(3.0));
+  const std::array<double, 3> principal = principal_stresses(shear);
+  EXPECT_NEAR(principal[0], 4.0, 1e-14);
+  EXPECT_NEAR(principal[1], 0.0, 1e-14);
+  EXPECT_NEAR(principal[2], -4.0, 1e-14);
+  const double none[6] = {};
+  EXPECT_EQ(von_mises_stress(none), 0.0);
+  EXPECT_EQ(principal_stresses(none), (std::array<double, 3>{0.0, 0.0, 0.0}));
+}
+
+}  // namespace
+}  // namespace ricochet::test_support
