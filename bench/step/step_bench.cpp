@@ -98,7 +98,7 @@ double run(const Options& options) {
   timer.restart();
   Simulation simulation(model->problem, *scheme, model->initial, step_solver_options(input));
   const double start = timer.seconds();
-  HistoryRecorder recorder(model->problem, *model->rotation, model->probes);
+  HistoryRecorder recorder(model->problem, *model->rotation, model->sensors);
   simulation.advance();
   const double peak_alone = peak_memory();
   std::unique_ptr<Limits> limits;

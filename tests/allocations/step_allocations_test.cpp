@@ -72,7 +72,7 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
       std::vector<std::string> overrides = GetParam().overrides;
       overrides.push_back("time.end=3.0");
       CaseRun run(thrown_case(bodies[body], GetParam().mass, GetParam().time, GetParam().contact), overrides);
-      HistoryRecorder recorder(run.problem(), *run.model().rotation, run.model().probes);
+      HistoryRecorder recorder(run.problem(), *run.model().rotation, run.model().sensors);
       std::vector<ContactStatus> status;
       long same = 0;
       Tally apart, in_contact;

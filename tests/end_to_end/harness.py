@@ -55,6 +55,12 @@ def block_case(mesh="quadrilateral_o1_msh41_ascii.msh"):
     return BLOCK_CASE.format(mesh=MESHES / mesh)
 
 
+def with_more(path, text):
+    """A case of the collection with more sections, without its expectations, to be written anywhere."""
+    case = path.read_text(encoding="utf-8").split("[[expect]]")[0]
+    return case.replace('file = "', f'file = "{path.parent}/') + text
+
+
 def run(*arguments, directory=None, environment=None):
     """The finished process of the program, its output as text."""
     return subprocess.run([str(PROGRAM), *map(str, arguments)], cwd=directory, env=environment, text=True,

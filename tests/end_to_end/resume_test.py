@@ -15,11 +15,21 @@ import sys
 import time
 import unittest
 
-from harness import DISC, MESHES, PROGRAM, SCHEMES, TestCase, block_case, run, settings
+from harness import DISC, MESHES, PROGRAM, SCHEMES, TestCase, block_case, run, settings, with_more
 
 KILLS = 50
 FULL_DISKS = 24
-RESULTS = {"history.csv", "results.h5", "results.xdmf"}
+RESULTS = {"history.csv", "results.h5", "results.xdmf", "probes-3.csv"}
+
+PROBES = """
+[[probe]]
+name = "ground"
+contact = 0
+[[probe]]
+name = "body"
+group = "body"
+every = 3
+"""
 
 # What interrupted runs are made of: friction, a checkpoint often, a frame now and then.
 BUSY = {"contact.0.friction": 0.3, "initial.velocity": "[0.03,-0.1]", "output.checkpoint_every": 40,
@@ -55,10 +65,14 @@ def extrema(output):
 
 
 class Resume(TestCase):
-    def reference(self, values, case=DISC):
+    def setUp(self):
+        super().setUp()
+        self.disc = self.write("disc.toml", with_more(DISC, PROBES))
+
+    def reference(self, values, case=None):
         name = f"reference-{abs(hash(str(sorted(map(str, values.items())))))}"
         if not (self.folder / name).exists():
-            self.simulate(case, name, values)
+            self.simulate(case or self.disc, name, values)
         return self.folder / name
 
     def expect_same(self, expected, found):
@@ -81,7 +95,7 @@ class Resume(TestCase):
             duration = time.monotonic() - begun if completed < len(SCHEMES) else duration
             output = self.folder / f"killed-{completed}"
             while True:
-                process = start(DISC, output, values, "--resume")
+                process = start(self.disc, output, values, "--resume")
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(chance.uniform(0.0, max(0.7 * duration, 0.15)))
                 alive = process.poll() is None
@@ -103,7 +117,7 @@ class Resume(TestCase):
             values = {**busy("newmark"), "time.end": 0.5}
             del values["output.checkpoint_every"]
             expected = self.reference(values)
-            process = start(DISC, output, values)
+            process = start(self.disc, output, values)
             wait_for((output / "summary.json").exists)
             process.send_signal(number)
             text, errors = process.communicate()
@@ -116,14 +130,14 @@ class Resume(TestCase):
             rows = (output / "history.csv").read_text().splitlines()
             self.assertEqual(len(rows), summary["steps"] + 2)
             self.assertIn("interrupted", run("info", output).stdout)
-            self.expect_status(0, run("run", DISC, "-o", output, "--resume", "--quiet", "--threads", "2",
+            self.expect_status(0, run("run", self.disc, "-o", output, "--resume", "--quiet", "--threads", "2",
                                       *settings(values)))
             self.expect_same(expected, output)
             self.assertEqual(json.loads((output / "summary.json").read_text())["resumed_at"], [summary["steps"]])
 
     def test_a_second_signal_stops_at_once(self):
         output = self.folder / "out"
-        process = start(DISC, output, {"time.end": 100, "output.fields_every": 0})
+        process = start(self.disc, output, {"time.end": 100, "output.fields_every": 0})
         wait_for((output / "summary.json").exists)
         os.kill(process.pid, signal.SIGSTOP)
         os.waitpid(process.pid, os.WUNTRACED)
@@ -145,7 +159,7 @@ class Resume(TestCase):
         for k, bytes_left in enumerate(damaged):
             output = self.interrupted(values, f"damaged-{k}")
             checkpoints(output)[1].write_bytes(bytes_left)
-            process = self.expect_status(0, run("run", DISC, "-o", output, "--resume", *settings(values)))
+            process = self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
             self.assertIn("is damaged, the one before is taken", process.stderr)
             self.assertIn("checkpoint-000000760.ckpt", process.stderr)
             self.assertIn("resumed after step 720", process.stderr)
@@ -154,7 +168,7 @@ class Resume(TestCase):
         output = self.interrupted(values, "hopeless")
         for path in checkpoints(output):
             path.write_bytes(path.read_bytes()[:-1])
-        process = self.expect_status(2, run("run", DISC, "-o", output, "--resume", *settings(values)))
+        process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn("no checkpoint can be read", process.stderr)
 
     def interrupted(self, values, name):
@@ -176,13 +190,13 @@ class Resume(TestCase):
                                   ("contact.0.friction", 0.2, "contact.0.friction was 0.3, now it is 0.2"),
                                   ("time.end", 0.09, "time.end was 0.08, now it is 0.09"),
                                   ("output.fields_every", 8, "output.fields_every was 7, now it is 8")):
-            process = self.expect_status(2, run("run", DISC, "-o", output, "--resume", *settings({**values, key: value})))
+            process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings({**values, key: value})))
             self.assertIn(names, process.stderr)
             self.assertIn("--set", process.stderr)
         self.assertEqual(before, {path.name: path.read_bytes() for path in output.iterdir()})
         # What does not decide results may change; and another way to write a number is no change.
         free = {**values, "title": "\"another\"", "output.checkpoint_every": 3, "time.step": "1.0e-4"}
-        self.expect_status(0, run("run", DISC, "-o", output, "--resume", *settings(free)))
+        self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(free)))
         self.expect_same(self.reference(values), output)
 
     def test_refuses_another_mesh(self):
@@ -206,35 +220,35 @@ class Resume(TestCase):
         expected = self.reference(values)
         # From the beginning where nothing is there; and nothing is done where the run is complete.
         output = self.folder / "new"
-        process = self.expect_status(0, run("run", DISC, "-o", output, "--resume", *settings(values)))
+        process = self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn("starts from the beginning", process.stderr)
         self.expect_same(expected, output)
         written = {path: path.stat().st_mtime_ns for path in output.iterdir()}
-        process = self.expect_status(0, run("run", DISC, "-o", output, "--resume", *settings(values)))
+        process = self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn("complete", process.stderr)
         self.assertEqual(written, {path: path.stat().st_mtime_ns for path in output.iterdir()})
         # Results that another program has changed are not gone on with.
         output = self.interrupted(values, "cut")
         (output / "history.csv").write_text("step\n")
-        process = self.expect_status(4, run("run", DISC, "-o", output, "--resume", *settings(values)))
+        process = self.expect_status(4, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn("history.csv: has 5 bytes", process.stderr)
-        self.expect_status(1, run("run", DISC, "-o", output, "--resume", "--force"))
+        self.expect_status(1, run("run", self.disc, "-o", output, "--resume", "--force"))
 
     def test_one_run_at_a_time(self):
         output = self.folder / "out"
-        process = start(DISC, output, {"time.end": 100})
+        process = start(self.disc, output, {"time.end": 100})
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         wait_for((output / "summary.json").exists)
         for option in ("--force", "--resume", "--quiet"):
-            second = self.expect_status(4, run("run", DISC, "-o", output, option, "--set", "time.end=100"))
+            second = self.expect_status(4, run("run", self.disc, "-o", output, option, "--set", "time.end=100"))
             self.assertIn("another run is writing into this directory", second.stderr)
         self.assertIn("running", run("info", output).stdout)
         self.assertIsNone(process.poll())
 
     def fill_disk(self, output, values, limit):
         """Files cannot grow beyond a limit: what a write to a full disk gives, at a place that can be chosen."""
-        return start(DISC, output, values, "--resume",
+        return start(self.disc, output, values, "--resume",
                      preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY)))
 
     def test_full_disk_by_file_size(self):
@@ -251,7 +265,7 @@ class Resume(TestCase):
                 self.assertEqual(process.returncode, 4, errors)
                 self.assertIn("File too large", errors)
                 failed.update(name for name in ("history.csv", "results.h5", "results.xdmf", "ckpt") if name in errors)
-                self.expect_status(0, run("run", DISC, "-o", output, "--resume", "--quiet", *settings(values)))
+                self.expect_status(0, run("run", self.disc, "-o", output, "--resume", "--quiet", *settings(values)))
                 self.expect_same(expected, output)
         self.assertLessEqual({"results.h5"}, failed)
 
@@ -280,7 +294,7 @@ class Resume(TestCase):
             size = 20 + (needed - 20) * k // (FULL_DISKS // 2)
             with self.small_disk(size) as place:
                 output = place / "out"
-                process = run("run", DISC, "-o", output, "--quiet", *settings(values))
+                process = run("run", self.disc, "-o", output, "--quiet", *settings(values))
                 self.expect_status(4, process)
                 self.assertIn("No space left on device", process.stderr)
                 name = process.stderr.strip().splitlines()[-1].split(":")[1].strip()
@@ -289,7 +303,7 @@ class Resume(TestCase):
                 if (output / "results.xdmf").exists() and (output / "results.xdmf").stat().st_size > 0:
                     self.assertIn("</Xdmf>", (output / "results.xdmf").read_text())
                 subprocess.run(["mount", "-o", f"remount,size={3 * needed}k", place], check=True)
-                self.expect_status(0, run("run", DISC, "-o", output, "--resume", "--quiet", *settings(values)))
+                self.expect_status(0, run("run", self.disc, "-o", output, "--resume", "--quiet", *settings(values)))
                 self.expect_same(expected, output)
         print(f"full at {failed}", file=sys.stderr)
         self.assertLessEqual({"history.csv", "results.h5"}, set(failed.values()))
@@ -300,7 +314,7 @@ class Resume(TestCase):
             output.mkdir()
             subprocess.run(["mount", "-o", "remount,ro", place], check=True)
             for where in (output, place / "another"):
-                process = self.expect_status(4, run("run", DISC, "-o", where))
+                process = self.expect_status(4, run("run", self.disc, "-o", where))
                 self.assertIn("Read-only file system", process.stderr)
 
     def test_directory_of_someone_else(self):
@@ -309,7 +323,7 @@ class Resume(TestCase):
         output.chmod(0o555)
         if os.geteuid() == 0:
             self.skipTest("root may write anywhere")
-        process = self.expect_status(4, run("run", DISC, "-o", output))
+        process = self.expect_status(4, run("run", self.disc, "-o", output))
         self.assertIn("Permission denied", process.stderr)
 
 

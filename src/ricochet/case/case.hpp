@@ -95,9 +95,17 @@ struct TimeSection {
   double end = 0.0;
 };
 
+/// One of: a point, a segment, a boundary, a group, a contact.
 struct ProbeSection {
   std::string name;
-  std::vector<double> at;
+  std::vector<double> at;        ///< a point
+  std::vector<double> from, to;  ///< a segment
+  std::optional<double> within;  ///< of the segment: distance of its nodes
+  std::string boundary;          ///< a group of facets: force and moment
+  std::vector<double> about;     ///< of the moment; empty: the origin
+  std::string group;             ///< of cells or facets: averages and extrema
+  std::optional<long> contact;   ///< an index of [[contact]]
+  long every = 0;                ///< steps, into a file of their own; 0: with the rows of history.csv
 };
 
 struct OutputSection {

@@ -322,19 +322,60 @@ Section time_section() {
 }
 
 Section probe_section() {
-  return {.name = "probe",
-          .kind = SectionKind::list,
-          .doc = "A node whose motion is written to history.csv.",
-          .keys = {
-              {.name = "name",
-               .required = true,
-               .doc = "Prefix of its columns: letters, digits, _ and -; not the name of a standard column."},
-              {.name = "at",
-               .type = KeyType::vector,
-               .unit = "length",
-               .required = true,
-               .doc = "Where: the nearest node is taken, and its distance reported."},
-          }};
+  return {
+      .name = "probe",
+      .kind = SectionKind::list,
+      .alternatives = {{"at"}, {"from", "to"}, {"boundary"}, {"group"}, {"contact"}},
+      .doc =
+          "What is watched, in columns NAME.… of history.csv: the node nearest to a point, all nodes along a "
+          "segment, the force and moment on a boundary, averages and extrema of a group, or the resultant of a "
+          "contact.",
+      .keys = {
+          {.name = "name",
+           .required = true,
+           .doc = "Prefix of its columns: letters, digits, _ and -; not the name of a standard column."},
+          {.name = "at",
+           .type = KeyType::vector,
+           .unit = "length",
+           .doc = "A point: the nearest node is taken, and its distance reported. Columns NAME.displacement_x …, "
+                  "velocity_x …, and on a contact boundary gap, pressure, reaction_normal, reaction_tangential_x …"},
+          {.name = "from",
+           .type = KeyType::vector,
+           .unit = "length",
+           .doc = "One end of a segment: all nodes along it, from this end on, have the columns of a point, as "
+                  "NAME.0.displacement_x and so on."},
+          {.name = "to", .type = KeyType::vector, .unit = "length", .doc = "The other end of the segment."},
+          {.name = "within",
+           .type = KeyType::number,
+           .unit = "length",
+           .range = positive,
+           .doc = "Of a segment: nodes up to this distance from it belong to it; absent: 1e-6 of the body's size."},
+          {.name = "boundary",
+           .doc = "Name of a physical group of boundary facets: force and moment on the body of supports and "
+                  "obstacles at its nodes (given loads are not counted). Columns NAME.force_x …, NAME.moment_z, in 3D "
+                  "NAME.moment_x …"},
+          {.name = "about",
+           .type = KeyType::vector,
+           .unit = "length",
+           .doc = "Point that the moment of a boundary is about, in the reference configuration; absent: the "
+                  "origin."},
+          {.name = "group",
+           .doc = "Name of a physical group of cells or of boundary facets: columns "
+                  "NAME.displacement_average_x …, _minimum_, _maximum_, the same of the velocity, and of cells "
+                  "von_mises_average, _minimum, _maximum. Averages are over volume or area."},
+          {.name = "contact",
+           .type = KeyType::integer,
+           .unit = "1",
+           .range = nonnegative,
+           .doc = "Number of an entry of [[contact]], the first is 0: its force on the body NAME.force_x …, centre of "
+                  "pressure NAME.centre_x … (0 where it is open) and area in contact NAME.area (in 2D a length)."},
+          {.name = "every",
+           .type = KeyType::integer,
+           .unit = "steps",
+           .range = {.at_least = 1.0},
+           .doc = "Instead of history.csv: rows each so many steps in probes-EVERY.csv, with all probes of the same "
+                  "interval."},
+      }};
 }
 
 Section solver_section() {

@@ -69,7 +69,10 @@ void check_dimensions(const Case& input, int dimension) {
   check_expressions(input, "initial.displacement", input.initial.displacement, dimension);
   check_expressions(input, "initial.velocity", input.initial.velocity, dimension);
   for (std::size_t i = 0; i < input.probes.size(); ++i) {
-    check_length(input, fmt::format("probe.{}.at", i), input.probes[i].at.size(), dimension);
+    const ProbeSection& probe = input.probes[i];
+    for (const auto& [key, value] : {std::pair{"at", &probe.at}, std::pair{"from", &probe.from},
+                                     std::pair{"to", &probe.to}, std::pair{"about", &probe.about}})
+      check_length(input, fmt::format("probe.{}.{}", i, key), value->size(), dimension);
   }
 }
 
@@ -178,34 +181,6 @@ void add_initial_conditions(const Case& input, Model& model) {
   model.initial.static_equilibrium = input.initial.static_equilibrium;
   model.initial.displacement = evaluate(input.initial.displacement, "initial.displacement");
   model.initial.velocity = evaluate(input.initial.velocity, "initial.velocity");
-}
-
-void add_probes(const Case& input, Model& model) {
-  for (const ProbeSection& section : input.probes) {
-    const NearestNode nearest =
-        nearest_node(model.space, Eigen::Map<const Vector>(section.at.data(), static_cast<Index>(section.at.size())));
-    Probe probe{section.name, nearest.node, nearest.distance, -1};
-    const auto& nodes = model.problem.contact.nodes;
-    const auto entries = std::count(nodes.begin(), nodes.end(), nearest.node);
-    if (entries > 0) probe.contact_node = std::find(nodes.begin(), nodes.end(), nearest.node) - nodes.begin();
-    if (entries > 1) {
-      const auto pair =
-          static_cast<std::size_t>(model.problem.contact.node_pair[static_cast<std::size_t>(probe.contact_node)]);
-      log::warning(
-          fmt::format("probe \"{}\" is at a node that {} obstacles may touch: its gap, pressure and reaction are "
-                      "those of obstacle \"{}\"",
-                      probe.name, entries, model.contact_pairs[pair].obstacle_name));
-    }
-    const double body_size = extent(model.space.nodes);
-    const std::string message =
-        fmt::format("probe \"{}\": the nearest node is {:.3g} away", probe.name, probe.distance);
-    if (probe.distance > 0.1 * body_size) {
-      log::warning(message + fmt::format(", far for a body of size {:.3g}", body_size));
-    } else {
-      log::info(message);
-    }
-    model.probes.push_back(probe);
-  }
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,7 +20,10 @@ struct Model {
   std::vector<ContactPair> contact_pairs;
   SemidiscreteProblem problem;
   InitialConditions initial;
-  std::vector<Probe> probes;
+  std::vector<Probe> probes;                     ///< the nodes that are watched, those of segments too
+  std::vector<std::shared_ptr<Sensor>> sensors;  ///< with a column in history.csv
+  /// Those with a file of their own, by the steps between its rows.
+  std::map<long, std::vector<std::shared_ptr<Sensor>>> sampled_sensors;
   std::unique_ptr<RotationGauge> rotation;
 
   Model() = default;

@@ -165,6 +165,20 @@ ProbeSection read_probe(const SectionReader& reader) {
   ProbeSection probe;
   probe.name = reader.text("name");
   probe.at = reader.vector("at");
+  probe.from = reader.vector("from");
+  probe.to = reader.vector("to");
+  probe.within = reader.optional_number("within");
+  probe.boundary = reader.text("boundary");
+  probe.about = reader.vector("about");
+  probe.group = reader.text("group");
+  probe.contact = reader.optional_integer("contact");
+  probe.every = reader.optional_integer("every").value_or(0);
+  const auto only_with = [&](const char* key, const char* other) {
+    if (reader.is_given(key) && !reader.is_given(other))
+      reader.add_problem(key, fmt::format("\"{}\" is for probes with \"{}\" only", key, other));
+  };
+  only_with("within", "from");
+  only_with("about", "boundary");
   const std::vector<std::string> columns = history_column_names();
   if (reader.is_usable("name") && !is_plain_name(probe.name)) {
     reader.add_problem("name", fmt::format("the name \"{}\" can only have letters, digits, _ and -", probe.name));

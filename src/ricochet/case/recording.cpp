@@ -24,8 +24,13 @@ long default_frames(long steps, Index dofs) {
   return std::lround(std::min(most, least + static_cast<double>(steps) * static_cast<double>(dofs) / work_per_frame));
 }
 
-HistoryWriter open_history(const std::string& path, const std::vector<std::string>& columns, const Snapshot* snapshot) {
-  return snapshot != nullptr ? HistoryWriter(path, *snapshot, "history") : HistoryWriter(path, columns);
+HistoryWriter open_history(const std::string& path, const std::vector<std::string>& columns, const Snapshot* snapshot,
+                           const std::string& name) {
+  return snapshot != nullptr ? HistoryWriter(path, *snapshot, name) : HistoryWriter(path, columns);
+}
+
+std::string sampled_name(long every) {
+  return fmt::format("probes-{}", every);
 }
 
 }  // namespace
@@ -51,12 +56,18 @@ bool FieldSchedule::includes(long step) const {
 
 Recording::Recording(const Case& input, const Model& model, const std::string& directory, long steps,
                      const Snapshot* snapshot)
-    : recorder_(model.problem, *model.rotation, model.probes),
-      history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot)),
+    : recorder_(model.problem, *model.rotation, model.sensors),
+      history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot, "history")),
       history_every_(input.output.history_every),
       fields_(input, steps, model.problem.dof_count()),
       steps_(steps) {
   if (fields_.any()) open_results(input.output, model, directory, snapshot);
+  for (const auto& [every, sensors] : model.sampled_sensors) {
+    SensorRecorder recorder(model.problem, sensors);
+    HistoryWriter file =
+        open_history(directory + "/" + sampled_name(every) + ".csv", recorder.columns(), snapshot, sampled_name(every));
+    sampled_.push_back({every, std::move(recorder), std::move(file)});
+  }
   if (snapshot == nullptr) return;
   digest_.load(*snapshot, "digest", recorder_.columns().size());
   rotation_warned_ = snapshot->flag("rotation_warned");
@@ -81,17 +92,29 @@ void Recording::record(const State& state, EnergyAccount& account) {
     digest_.add(row);
     watch_rotation(row);
   }
+  for (Sampled& sampled : sampled_) {
+    if (state.step % sampled.every == 0 || state.step == steps_) sampled.file.write(sampled.recorder.row(state));
+  }
   if (results_ && fields_.includes(state.step)) results_->write(state);
   if (since_flush_.seconds() > flush_interval) {
-    history_.flush();
+    flush();
     since_flush_.restart();
   }
   seconds_ += timer.seconds();
 }
 
+void Recording::flush() {
+  history_.flush();
+  for (Sampled& sampled : sampled_) sampled.file.flush();
+}
+
 void Recording::save(Snapshot& snapshot) {
   history_.sync();
   history_.save(snapshot, "history");
+  for (Sampled& sampled : sampled_) {
+    sampled.file.sync();
+    sampled.file.save(snapshot, sampled_name(sampled.every));
+  }
   if (results_) {
     results_->sync();
     results_->save(snapshot, "results");

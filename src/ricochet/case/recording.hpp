@@ -38,7 +38,7 @@ class Recording {
   void record(const State& state, EnergyAccount& account);
   /// What is needed to go on; the files are on the disk then.
   void save(Snapshot& snapshot);
-  void flush() { history_.flush(); }
+  void flush();
   /// What there is so far.
   void describe(RunSummary& summary) const;
   /// Spent here.
@@ -52,6 +52,13 @@ class Recording {
 
   HistoryRecorder recorder_;
   HistoryWriter history_;
+  /// Probes with an interval of their own.
+  struct Sampled {
+    long every;
+    SensorRecorder recorder;
+    HistoryWriter file;
+  };
+  std::vector<Sampled> sampled_;
   std::optional<ResultsWriter> results_;
   HistoryDigest digest_;
   long history_every_;

@@ -71,6 +71,11 @@ std::vector<std::string> RunDirectory::results() const {
   for (const char* name : result_files) {
     if (fs::exists(file(name))) result.push_back(file(name));
   }
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_, problem)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("probes-") && name.ends_with(".csv")) result.push_back(entry.path().string());
+  }
   const std::vector<std::string> others = left_behind(-1);
   result.insert(result.end(), others.begin(), others.end());
   return result;

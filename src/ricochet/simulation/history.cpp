@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "ricochet/base/parallel.hpp"
@@ -10,26 +9,6 @@
 namespace ricochet {
 
 namespace {
-
-constexpr std::array<const char*, 3> axis_suffix{"_x", "_y", "_z"};
-
-void add_vector_columns(std::vector<std::string>& columns, const std::string& name, int dimension) {
-  for (int k = 0; k < dimension; ++k) columns.push_back(name + axis_suffix[static_cast<std::size_t>(k)]);
-}
-
-/// A vector of space, never on the heap.
-using SpaceVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
-
-/// The force of a contact point on the body: r_N n − t r_T.
-SpaceVector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point) {
-  SpaceVector force = forces.normal_reaction[point] * contact.normals.col(point);
-  const Index tangents = contact.dimension - 1;
-  if (forces.tangential_reaction.size() > 0) {
-    force.noalias() -= contact.tangents[static_cast<std::size_t>(point)] *
-                       forces.tangential_reaction.segment(point * tangents, tangents);
-  }
-  return force;
-}
 
 /// One number for each rigid motion.
 struct RigidVector {
@@ -83,19 +62,15 @@ std::vector<std::string> HistoryRecorder::standard_columns(int dimension) {
 }
 
 HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
-                                 std::vector<Probe> probes)
+                                 std::vector<std::shared_ptr<Sensor>> sensors)
     : problem_(problem),
       rotation_(rotation),
-      probes_(std::move(probes)),
+      observer_(problem),
+      sensors_(std::move(sensors)),
       columns_(standard_columns(problem.dimension)),
-      momentum_of_(momenta_of_rigid_velocities(problem)),
-      trace_transposed_(problem.contact.trace.transpose()) {
-  for (const Probe& probe : probes_) {
-    add_vector_columns(columns_, probe.name + ".displacement", problem.dimension);
-    add_vector_columns(columns_, probe.name + ".velocity", problem.dimension);
-    if (probe.contact_node < 0) continue;
-    for (const char* name : {".gap", ".pressure", ".reaction_normal"}) columns_.push_back(probe.name + name);
-    add_vector_columns(columns_, probe.name + ".reaction_tangential", problem.dimension);
+      momentum_of_(momenta_of_rigid_velocities(problem)) {
+  for (const auto& sensor : sensors_) {
+    for (const std::string& column : sensor->columns()) columns_.push_back(column);
   }
   row_.reserve(columns_.size());
 }
@@ -108,33 +83,37 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
                works.obstacle, works.damping, works.numerical_dissipation, account.residual(energies)});
   add_contact_force(state);
   add_momentum(account.velocity());
-  add_contact_state(state);
-  for (const Probe& probe : probes_) add_probe(state, probe);
+  const Observation observation = observer_.observe(state);
+  add_contact_state(observation);
+  for (const auto& sensor : sensors_) sensor->observe(observation, row_);
   return row_;
 }
 
 void HistoryRecorder::add_contact_force(const State& state) {
   SpaceVector force = SpaceVector::Zero(problem_.dimension);
   for (Index i = 0; i < problem_.contact.size(); ++i) force += contact_force(problem_.contact, state.forces, i);
-  add_vector(force);
+  append(force, row_);
 }
 
 void HistoryRecorder::add_momentum(const Vector& velocity) {
   // Linear, then angular: the order of the columns.
-  add_vector(parallel_sum<RigidVector>(velocity.size(), [&](Index first, Index last) {
+  append(parallel_sum<RigidVector>(
+             velocity.size(),
+             [&](Index first, Index last) {
                RigidVector part;
                for (Index k = 0; k < momentum_of_.cols(); ++k) {
                  part.values[k] =
                      momentum_of_.col(k).segment(first, last - first).dot(velocity.segment(first, last - first));
                }
                return part;
-             }).values.head(momentum_of_.cols()));
+             })
+             .values.head(momentum_of_.cols()),
+         row_);
 }
 
-void HistoryRecorder::add_contact_state(const State& state) {
+void HistoryRecorder::add_contact_state(const Observation& observation) {
+  const State& state = observation.state;
   row_.push_back(rotation_.largest(state.displacement));
-  problem_.node_gaps(state.displacement, state.time, gap_);
-  pressure_.noalias() = problem_.contact.pressure_recovery * state.forces.normal_reaction;
   // Points without friction neither stick nor slip.
   double active = 0.0;
   double sticking = 0.0;
@@ -144,31 +123,30 @@ void HistoryRecorder::add_contact_state(const State& state) {
     sticking += status == ContactStatus::stick ? 1.0 : 0.0;
     slipping += status == ContactStatus::slip ? 1.0 : 0.0;
   }
-  const double penetration = gap_.size() > 0 ? std::max(0.0, -gap_.minCoeff()) : 0.0;
+  const double penetration = observation.gap.size() > 0 ? std::max(0.0, -observation.gap.minCoeff()) : 0.0;
   for (const double value : {active, sticking, slipping, penetration, static_cast<double>(state.iterations)})
     row_.push_back(value);
 }
 
-void HistoryRecorder::add_probe(const State& state, const Probe& probe) {
-  const int d = problem_.dimension;
-  const ContactBoundary& contact = problem_.contact;
-  add_vector(state.displacement.segment(probe.node * d, d));
-  add_vector(state.velocity.segment(probe.node * d, d));
-  if (probe.contact_node < 0) return;
-  // The force on the node, from all points of this obstacle whose trace reaches it.
-  const int pair = contact.node_pair[static_cast<std::size_t>(probe.contact_node)];
-  SpaceVector force = SpaceVector::Zero(d);
-  for (SparseRowMatrix::InnerIterator entry(trace_transposed_, probe.node); entry; ++entry) {
-    if (problem_.obstacle_of_point(entry.col()) != problem_.obstacles[static_cast<std::size_t>(pair)]) continue;
-    force += entry.value() * contact_force(contact, state.forces, entry.col());
+Observation Observer::observe(const State& state) {
+  problem_.node_gaps(state.displacement, state.time, gap_);
+  pressure_.noalias() = problem_.contact.pressure_recovery * state.forces.normal_reaction;
+  return {state, gap_, pressure_};
+}
+
+SensorRecorder::SensorRecorder(const SemidiscreteProblem& problem, std::vector<std::shared_ptr<Sensor>> sensors)
+    : observer_(problem), sensors_(std::move(sensors)), columns_{"step", "time"} {
+  for (const auto& sensor : sensors_) {
+    for (const std::string& column : sensor->columns()) columns_.push_back(column);
   }
-  const SpaceVector normal = contact.node_normals.col(probe.contact_node);
-  const double normal_force = normal.dot(force);
-  for (const double value : {gap_[probe.contact_node], pressure_[probe.contact_node], normal_force}) {
-    row_.push_back(value);
-  }
-  force -= normal_force * normal;
-  add_vector(force);
+  row_.reserve(columns_.size());
+}
+
+const std::vector<double>& SensorRecorder::row(const State& state) {
+  row_.assign({static_cast<double>(state.step), state.time});
+  const Observation observation = observer_.observe(state);
+  for (const auto& sensor : sensors_) sensor->observe(observation, row_);
+  return row_;
 }
 
 void HistoryDigest::add(const std::vector<double>& row) {

@@ -1,53 +1,69 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/simulation/energy_account.hpp"
+#include "ricochet/simulation/sensor.hpp"
 
 /// @file One row of numbers per step: energies, works, forces, momenta, counts, probes.
 namespace ricochet {
 
-/// A node that is watched.
-struct Probe {
-  std::string name;
-  Index node = 0;
-  double distance = 0.0;    ///< from the point asked for
-  Index contact_node = -1;  ///< its (first) entry among the nodes of the contact boundary, or −1
+/// What sensors observe, computed once per row.
+class Observer {
+ public:
+  explicit Observer(const SemidiscreteProblem& problem) : problem_(problem) {}
+  [[nodiscard]] Observation observe(const State& state);
+
+ private:
+  const SemidiscreteProblem& problem_;
+  Vector gap_, pressure_;
+};
+
+/// Rows of some sensors alone: step, time, and their columns.
+class SensorRecorder {
+ public:
+  SensorRecorder(const SemidiscreteProblem& problem, std::vector<std::shared_ptr<Sensor>> sensors);
+
+  [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
+  /// The reference stays valid until the next call.
+  [[nodiscard]] const std::vector<double>& row(const State& state);
+
+ private:
+  Observer observer_;
+  std::vector<std::shared_ptr<Sensor>> sensors_;
+  std::vector<std::string> columns_;
+  std::vector<double> row_;
 };
 
 class HistoryRecorder {
  public:
-  HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation, std::vector<Probe> probes);
+  HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
+                  std::vector<std::shared_ptr<Sensor>> sensors = {});
 
   /// Names of the columns, in the order of a row.
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
-  /// The standard columns alone (no probes), for a body of this dimension: names that a probe cannot have.
+  /// The standard columns alone (no sensors), for a body of this dimension: names that a probe cannot have.
   [[nodiscard]] static std::vector<std::string> standard_columns(int dimension);
   /// The row of a state. The reference stays valid until the next call.
   [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
 
  private:
-  template <class Values>
-  void add_vector(const Values& values) {
-    for (Index k = 0; k < values.size(); ++k) row_.push_back(values[k]);
-  }
   void add_contact_force(const State& state);
   void add_momentum(const Vector& velocity);
-  void add_contact_state(const State& state);
-  void add_probe(const State& state, const Probe& probe);
+  void add_contact_state(const Observation& observation);
 
   const SemidiscreteProblem& problem_;
   const RotationGauge& rotation_;
-  std::vector<Probe> probes_;
+  Observer observer_;
+  std::vector<std::shared_ptr<Sensor>> sensors_;
   std::vector<std::string> columns_;
   std::vector<double> row_;
   /// M times the rigid velocities: translations along the axes, and rotations about the axes through the origin (in 2D
   /// about z). Products of the velocity with them are the momenta, since M is symmetric. dofs × 3 or 6.
   Matrix momentum_of_;
-  Vector gap_, pressure_;
-  SparseRowMatrix trace_transposed_;  ///< nodes × points
 };
 
 /// What a column did over a run.

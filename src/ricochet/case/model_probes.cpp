@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/case/model_parts.hpp"
+
+/// @file What [[probe]] asks for.
+namespace ricochet {
+
+namespace {
+
+/// Part of the body's size up to which a node lies on a segment.
+constexpr double on_segment = 1e-6;
+
+Vector vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+}
+
+class ProbeMaker {
+ public:
+  ProbeMaker(const Case& input, Model& model) : input_(input), model_(model) {}
+
+  void make(std::size_t number) {
+    const ProbeSection& section = input_.probes[number];
+    const std::string key = fmt::format("probe.{}", number);
+    const std::size_t before = count();
+    if (!section.at.empty()) add_point(section);
+    if (!section.from.empty()) add_segment(section, key);
+    if (!section.boundary.empty()) add_boundary(section, key);
+    if (!section.group.empty()) add_group(section, key);
+    if (section.contact) add_contact(section, key);
+    if (count() == before) refuse(input_, key + ".name", fmt::format("probe \"{}\" names no group", section.name));
+  }
+
+ private:
+  [[nodiscard]] std::size_t count() const {
+    std::size_t result = model_.sensors.size();
+    for (const auto& [every, sensors] : model_.sampled_sensors) result += sensors.size();
+    return result;
+  }
+  void add(const ProbeSection& section, std::shared_ptr<Sensor> sensor) {
+    auto& sensors = section.every > 0 ? model_.sampled_sensors[section.every] : model_.sensors;
+    sensors.push_back(std::move(sensor));
+  }
+
+  void add_node(const ProbeSection& section, const std::string& name, Index node, double distance) {
+    Probe probe{name, node, distance, -1};
+    const auto& nodes = model_.problem.contact.nodes;
+    const auto entries = std::count(nodes.begin(), nodes.end(), node);
+    if (entries > 0) probe.contact_node = std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
+    if (entries > 1) {
+      const auto pair =
+          static_cast<std::size_t>(model_.problem.contact.node_pair[static_cast<std::size_t>(probe.contact_node)]);
+      log::warning(
+          fmt::format("probe \"{}\" is at a node that {} obstacles may touch: its gap, pressure and reaction are "
+                      "those of obstacle \"{}\"",
+                      name, entries, model_.contact_pairs[pair].obstacle_name));
+    }
+    add(section, make_point_sensor(model_.problem, probe));
+    model_.probes.push_back(probe);
+  }
+
+  void add_point(const ProbeSection& section) {
+    const NearestNode nearest = nearest_node(model_.space, vector_of(section.at));
+    add_node(section, section.name, nearest.node, nearest.distance);
+    const double body_size = extent(model_.space.nodes);
+    const std::string message =
+        fmt::format("probe \"{}\": the nearest node is {:.3g} away", section.name, nearest.distance);
+    if (nearest.distance > 0.1 * body_size) {
+      log::warning(message + fmt::format(", far for a body of size {:.3g}", body_size));
+    } else {
+      log::info(message);
+    }
+  }
+
+  /// Nodes from one end to the other.
+  void add_segment(const ProbeSection& section, const std::string& key) {
+    const Vector from = vector_of(section.from), to = vector_of(section.to);
+    const double length = (to - from).norm();
+    if (!(length > 0.0)) refuse(input_, key + ".to", "the two ends of the segment are the same point");
+    const Vector direction = (to - from) / length;
+    const double limit = section.within.value_or(on_segment * extent(model_.space.nodes));
+    struct Found {
+      double along;
+      Index number, node;
+      double distance;
+    };
+    std::vector<Found> found;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (Index node = 0; node < model_.space.node_count(); ++node) {
+      const Vector arm = model_.space.nodes.col(node) - from;
+      const double along = std::clamp(arm.dot(direction), 0.0, length);
+      const double distance = (arm - along * direction).norm();
+      nearest = std::min(nearest, distance);
+      if (distance <= limit)
+        found.push_back({along, model_.space.number[static_cast<std::size_t>(node)], node, distance});
+    }
+    if (found.empty()) {
+      refuse(input_, key + ".from",
+             fmt::format("no node lies within {:.3g} of the segment; the nearest is {:.3g} away: give \"within\"",
+                         limit, nearest));
+    }
+    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+      return std::pair(a.along, a.number) < std::pair(b.along, b.number);
+    });
+    for (std::size_t i = 0; i < found.size(); ++i)
+      add_node(section, fmt::format("{}.{}", section.name, i), found[i].node, found[i].distance);
+    log::info(fmt::format("probe \"{}\": {} nodes along the segment", section.name, found.size()));
+  }
+
+  void add_boundary(const ProbeSection& section, const std::string& key) {
+    const std::vector<Index> facets = boundary_at(input_, key + ".boundary", model_.mesh, section.boundary);
+    const Vector about = section.about.empty() ? Vector(Vector::Zero(model_.mesh.dimension)) : vector_of(section.about);
+    add(section, make_boundary_sensor(section.name, model_.problem, facet_nodes(model_.space, facets), about));
+  }
+
+  void add_group(const ProbeSection& section, const std::string& key) {
+    const int dimension = model_.mesh.dimension;
+    if (model_.mesh.find_group(section.group, dimension - 1) != nullptr &&
+        model_.mesh.find_group(section.group, dimension) == nullptr) {
+      const Group& group = group_at(input_, key + ".group", model_.mesh, section.group, dimension - 1);
+      add(section, make_facet_group_sensor(section.name, model_.body, group.members));
+      return;
+    }
+    const Group& group = group_at(input_, key + ".group", model_.mesh, section.group, dimension);
+    add(section, make_cell_group_sensor(section.name, model_.body, group.members));
+  }
+
+  void add_contact(const ProbeSection& section, const std::string& key) {
+    const auto count = static_cast<long>(input_.contacts.size());
+    if (*section.contact >= count) {
+      refuse(input_, key + ".contact",
+             fmt::format("there is no contact {}: the case has {} of them, numbered from 0", *section.contact, count));
+    }
+    add(section, make_contact_sensor(section.name, model_.problem, static_cast<int>(*section.contact)));
+  }
+
+  const Case& input_;
+  Model& model_;
+};
+
+}  // namespace
+
+void add_probes(const Case& input, Model& model) {
+  ProbeMaker maker(input, model);
+  for (std::size_t i = 0; i < input.probes.size(); ++i) maker.make(i);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,22 @@
+#include "ricochet/simulation/sensor.hpp"
+
+#include <array>
+
+namespace ricochet {
+
+void add_vector_columns(std::vector<std::string>& columns, const std::string& name, int dimension) {
+  constexpr std::array<const char*, 3> axis_suffix{"_x", "_y", "_z"};
+  for (int k = 0; k < dimension; ++k) columns.push_back(name + axis_suffix[static_cast<std::size_t>(k)]);
+}
+
+SpaceVector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point) {
+  SpaceVector force = forces.normal_reaction[point] * contact.normals.col(point);
+  const Index tangents = contact.dimension - 1;
+  if (forces.tangential_reaction.size() > 0) {
+    force.noalias() -= contact.tangents[static_cast<std::size_t>(point)] *
+                       forces.tangential_reaction.segment(point * tangents, tangents);
+  }
+  return force;
+}
+
+}  // namespace ricochet

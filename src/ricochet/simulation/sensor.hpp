@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/fem/assembly.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/state.hpp"
+
+/// @file What is watched besides the whole body: points, boundaries, groups, contacts. To add a kind: a file in
+/// sensors/ with a class, its function here, and its keys in the section [[probe]] of a case.
+namespace ricochet {
+
+/// A node that is watched.
+struct Probe {
+  std::string name;
+  Index node = 0;
+  double distance = 0.0;    ///< from the point (or the segment) asked for
+  Index contact_node = -1;  ///< its (first) entry among the nodes of the contact boundary, or −1
+};
+
+/// A state, and what several sensors want to know of it.
+struct Observation {
+  const State& state;
+  const Vector& gap;       ///< per node of the contact boundary
+  const Vector& pressure;  ///< likewise
+};
+
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+  /// Names of its columns: the sensor's name, a dot, and what it is.
+  [[nodiscard]] virtual std::vector<std::string> columns() const = 0;
+  /// Appends their values; allocates nothing after the first time.
+  virtual void observe(const Observation& observation, std::vector<double>& row) = 0;
+};
+
+/// Motion of a node and, on the contact boundary, its gap, pressure and contact force.
+[[nodiscard]] std::unique_ptr<Sensor> make_point_sensor(const SemidiscreteProblem& problem, const Probe& probe);
+
+/// Force and moment on the body of what supports and obstacles do to the nodes of some facets. Moments are about
+/// `about`, with reference positions. Loads that are given are not part of it.
+[[nodiscard]] std::unique_ptr<Sensor> make_boundary_sensor(const std::string& name, const SemidiscreteProblem& problem,
+                                                           const std::vector<Index>& nodes, const Vector& about);
+
+/// Average (over volume or area), least and largest value of displacement and velocity in some cells or facets, and of
+/// cells also of von Mises' stress.
+[[nodiscard]] std::unique_ptr<Sensor> make_cell_group_sensor(const std::string& name, const Body& body,
+                                                             const std::vector<Index>& cells);
+[[nodiscard]] std::unique_ptr<Sensor> make_facet_group_sensor(const std::string& name, const Body& body,
+                                                              const std::vector<Index>& facets);
+
+/// Resultant of a contact (an index of [[contact]]): force on the body, centre of pressure Σ r_N x / Σ r_N with the
+/// positions x of the moment (0 where open), and area of the points that carry a force (in 2D a length).
+[[nodiscard]] std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
+                                                          int contact);
+
+// For those who write sensors:
+
+/// A vector of space, never on the heap.
+using SpaceVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+/// "name_x", "name_y", … appended.
+void add_vector_columns(std::vector<std::string>& columns, const std::string& name, int dimension);
+/// The force of a contact point on the body: r_N n − t r_T.
+[[nodiscard]] SpaceVector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point);
+template <class Values>
+void append(const Values& values, std::vector<double>& row) {
+  for (Index k = 0; k < values.size(); ++k) row.push_back(values[k]);
+}
+
+}  // namespace ricochet

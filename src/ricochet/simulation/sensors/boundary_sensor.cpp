@@ -1,0 +1,88 @@
+#include <Eigen/Geometry>
+
+#include "ricochet/simulation/sensor.hpp"
+
+namespace ricochet {
+
+namespace {
+
+class BoundarySensor final : public Sensor {
+ public:
+  BoundarySensor(std::string name, const SemidiscreteProblem& problem, const std::vector<Index>& nodes,
+                 const Vector& about)
+      : name_(std::move(name)), problem_(problem) {
+    const Index d = problem.dimension;
+    std::vector<char> inside(static_cast<std::size_t>(problem.nodes.cols()), 0);
+    for (const Index node : nodes) inside[static_cast<std::size_t>(node)] = 1;
+    const auto arm = [&](Index node) {
+      Eigen::Vector3d result = Eigen::Vector3d::Zero();
+      result.head(d) = problem.nodes.col(node) - about;
+      return result;
+    };
+    for (Index i = 0; i < problem.supports.size(); ++i) {
+      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+      if (inside[static_cast<std::size_t>(dof / d)] != 0) supports_.push_back({i, dof % d, arm(dof / d)});
+    }
+    // Of a point's force the part Σ c_ij acts on these nodes, with the moment Σ c_ij X_j × force.
+    for (Index point = 0; point < problem.contact.size(); ++point) {
+      Point own{point, 0.0, Eigen::Vector3d::Zero()};
+      for (SparseRowMatrix::InnerIterator entry(problem.contact.trace, point); entry; ++entry) {
+        if (inside[static_cast<std::size_t>(entry.col())] == 0) continue;
+        own.part += entry.value();
+        own.arm += entry.value() * arm(entry.col());
+      }
+      if (own.part != 0.0 || !own.arm.isZero(0.0)) points_.push_back(own);
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> columns() const override {
+    std::vector<std::string> columns;
+    add_vector_columns(columns, name_ + ".force", problem_.dimension);
+    if (problem_.dimension == 2) columns.push_back(name_ + ".moment_z");
+    if (problem_.dimension == 3) add_vector_columns(columns, name_ + ".moment", 3);
+    return columns;
+  }
+
+  void observe(const Observation& observation, std::vector<double>& row) override {
+    const Index d = problem_.dimension;
+    const StepForces& forces = observation.state.forces;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
+    for (const Support& support : supports_) {
+      const Eigen::Vector3d own = forces.support_reaction[support.number] * Eigen::Vector3d::Unit(support.component);
+      force += own;
+      moment += support.arm.cross(own);
+    }
+    for (const Point& point : points_) {
+      Eigen::Vector3d own = Eigen::Vector3d::Zero();
+      own.head(d) = contact_force(problem_.contact, forces, point.number);
+      force += point.part * own;
+      moment += point.arm.cross(own);
+    }
+    append(force.head(d), row);
+    append(moment.tail(d == 2 ? 1 : 3), row);
+  }
+
+ private:
+  struct Support {
+    Index number, component;
+    Eigen::Vector3d arm;
+  };
+  struct Point {
+    Index number;
+    double part;
+    Eigen::Vector3d arm;
+  };
+  std::string name_;
+  const SemidiscreteProblem& problem_;
+  std::vector<Support> supports_;
+  std::vector<Point> points_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_boundary_sensor(const std::string& name, const SemidiscreteProblem& problem,
+                                             const std::vector<Index>& nodes, const Vector& about) {
+  return std::make_unique<BoundarySensor>(name, problem, nodes, about);
+}
+
+}  // namespace ricochet

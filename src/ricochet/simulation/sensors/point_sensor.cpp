@@ -1,0 +1,64 @@
+#include <utility>
+
+#include "ricochet/simulation/sensor.hpp"
+
+namespace ricochet {
+
+namespace {
+
+class PointSensor final : public Sensor {
+ public:
+  PointSensor(const SemidiscreteProblem& problem, Probe probe) : problem_(problem), probe_(std::move(probe)) {
+    if (probe_.contact_node < 0) return;
+    // All points of this obstacle whose trace reaches the node.
+    const ContactBoundary& contact = problem.contact;
+    const int pair = contact.node_pair[static_cast<std::size_t>(probe_.contact_node)];
+    for (Index point = 0; point < contact.size(); ++point) {
+      if (problem.obstacle_of_point(point) != problem.obstacles[static_cast<std::size_t>(pair)]) continue;
+      for (SparseRowMatrix::InnerIterator entry(contact.trace, point); entry; ++entry) {
+        if (entry.col() == probe_.node) points_.emplace_back(point, entry.value());
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> columns() const override {
+    std::vector<std::string> columns;
+    const int d = problem_.dimension;
+    add_vector_columns(columns, probe_.name + ".displacement", d);
+    add_vector_columns(columns, probe_.name + ".velocity", d);
+    if (probe_.contact_node < 0) return columns;
+    for (const char* name : {".gap", ".pressure", ".reaction_normal"}) columns.push_back(probe_.name + name);
+    add_vector_columns(columns, probe_.name + ".reaction_tangential", d);
+    return columns;
+  }
+
+  void observe(const Observation& observation, std::vector<double>& row) override {
+    const Index d = problem_.dimension;
+    const State& state = observation.state;
+    append(state.displacement.segment(probe_.node * d, d), row);
+    append(state.velocity.segment(probe_.node * d, d), row);
+    if (probe_.contact_node < 0) return;
+    SpaceVector force = SpaceVector::Zero(d);
+    for (const auto& [point, weight] : points_) force += weight * contact_force(problem_.contact, state.forces, point);
+    const SpaceVector normal = problem_.contact.node_normals.col(probe_.contact_node);
+    const double normal_force = normal.dot(force);
+    for (const double value :
+         {observation.gap[probe_.contact_node], observation.pressure[probe_.contact_node], normal_force})
+      row.push_back(value);
+    force -= normal_force * normal;
+    append(force, row);
+  }
+
+ private:
+  const SemidiscreteProblem& problem_;
+  Probe probe_;
+  std::vector<std::pair<Index, double>> points_;  ///< with the part of their force that acts on the node
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_point_sensor(const SemidiscreteProblem& problem, const Probe& probe) {
+  return std::make_unique<PointSensor>(problem, probe);
+}
+
+}  // namespace ricochet

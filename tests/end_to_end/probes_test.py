@@ -1,0 +1,207 @@
+"""Probes and sensors: what they say of one another, of the fields and of the laws."""
+
+import json
+import unittest
+
+import meshio
+import numpy
+
+from harness import DISC, MESHES, SOURCE, History, TestCase, block_case, run, with_more
+
+DISC_PROBES = """
+[[probe]]
+name = "rim"
+boundary = "lower"
+[[probe]]
+name = "body"
+group = "body"
+[[probe]]
+name = "half"
+group = "lower"
+[[probe]]
+name = "floor"
+contact = 0
+[[probe]]
+name = "axis"
+from = [0.0, 0.041]
+to = [0.0, 0.001]
+within = 5e-4
+every = 10
+[[probe]]
+name = "top"
+at = [0.0, 0.041]
+every = 10
+"""
+
+BALL_PROBES = """
+[[probe]]
+name = "ball"
+group = "ball"
+[[probe]]
+name = "ground"
+contact = 0
+[[probe]]
+name = "under"
+boundary = "lower"
+about = [0.0, 0.0, 0.5]
+"""
+
+
+def vector(history, name, axes="xy"):
+    return numpy.array([history[f"{name}_{axis}"] for axis in axes]).T
+
+
+class Probes(TestCase):
+    def test_a_disc_with_friction(self):
+        case = self.write("disc.toml", with_more(DISC, DISC_PROBES))
+        results = self.simulate(case, values={
+            "contact.0.friction": 0.3, "initial.velocity": "[0.05,-0.1]", "time.end": 0.03, "mass.type": "consistent",
+            "output.fields_every": 10, "output.fields": '["all"]'})
+        history = History(results / "history.csv")
+        # One contact, whose nodes are those of the boundary: three ways to the same force.
+        force = vector(history, "contact_force")
+        self.assertGreater(numpy.abs(force[:, 0]).max(), 1.0)
+        size = numpy.abs(force).max()
+        for name in ("rim.force", "floor.force"):
+            numpy.testing.assert_allclose(vector(history, name), force, rtol=0, atol=1e-13 * size)
+        # The consistent mass times the mean velocity is the momentum: polygons of straight triangles.
+        points, cells, read = self.frames(results)
+        mass = 6000.0 * sum(0.5 * numpy.cross(points[t[1], :2] - points[t[0], :2], points[t[2], :2] - points[t[0], :2])
+                            for t in cells)
+        numpy.testing.assert_allclose(mass * vector(history, "body.velocity_average"), vector(history, "momentum"),
+                                      rtol=0, atol=1e-12 * abs(mass))
+        self.compare_extrema(history, read)
+        self.compare_samples(results, history)
+
+    def frames(self, results):
+        with meshio.xdmf.TimeSeriesReader(results / "results.xdmf") as reader:
+            points, cells = reader.read_points_cells()
+            return points, cells[0].data, [reader.read_data(k) for k in range(reader.num_steps)]
+
+    def compare_extrema(self, history, read):
+        rows = {at: i for i, at in enumerate(history["time"])}
+        lower = numpy.unique(meshio.read(SOURCE / "cases/disc/disc.msh").cells_dict["line"])
+        in_boundary = numpy.isin(numpy.arange(len(read[0][1]["gap"])), lower) & ~numpy.isnan(read[0][1]["gap"])
+        for at, nodal, cell in read:
+            row = rows[at]
+            for k, axis in enumerate("xy"):
+                for motion in ("displacement", "velocity"):
+                    for name, values in (("body", nodal[motion][:, k]), ("half", nodal[motion][in_boundary, k])):
+                        self.assertEqual(history[f"{name}.{motion}_minimum_{axis}"][row], values.min())
+                        self.assertEqual(history[f"{name}.{motion}_maximum_{axis}"][row], values.max())
+            stress = cell["von_mises"][0]
+            self.assertEqual(history["body.von_mises_minimum"][row], stress.min())
+            self.assertEqual(history["body.von_mises_maximum"][row], stress.max())
+            self.assertTrue(stress.min() <= history["body.von_mises_average"][row] <= stress.max() or stress.max() == 0)
+
+    def compare_samples(self, results, history):
+        sampled = History(results / "probes-10.csv")
+        self.assertEqual(sampled["step"], history["step"][::10])
+        self.assertEqual(sampled["time"], history["time"][::10])
+        # The segment runs from the top to the lowest node, which the case watches in every row.
+        last = max(int(name.split(".")[1]) for name in sampled.names if name.startswith("axis."))
+        self.assertGreater(last, 5)
+        for column in ("displacement_x", "displacement_y", "velocity_y", "reaction_normal", "reaction_tangential_x", "gap"):
+            self.assertEqual(sampled[f"axis.{last}.{column}"], history[f"lowest.{column}"][::10])
+        self.assertEqual(sampled["axis.0.displacement_y"], sampled["top.displacement_y"])
+        summary = json.loads((results / "summary.json").read_text())
+        along = [p for p in summary["probes"] if p["name"].startswith("axis.")]
+        heights = [p["position"][1] for p in along]
+        self.assertEqual(heights, sorted(heights, reverse=True))
+        self.assertTrue(all(abs(p["position"][0]) <= 5e-4 and abs(p["position"][0]) == p["distance"] for p in along))
+
+    def test_centre_and_area_of_a_contact(self):
+        """A block on its edge: every contact node is watched, so the resultant can be summed here."""
+        bottom = ('[[probe]]\nname = "edge"\nfrom = [0.1, 0.2]\nto = [1.3, 0.1]\nwithin = 1e-3\n'
+                  '[[probe]]\nname = "contact"\ncontact = 0\n'
+                  '[[probe]]\nname = "bottom"\nboundary = "bottom"\nabout = [0.3, -0.2]\n')
+        case = self.write("case.toml", block_case() + bottom)
+        results = self.simulate(case, values={"time.end": 1.0, "contact.0.friction": 0.4})
+        history = History(results / "history.csv")
+        summary = json.loads((results / "summary.json").read_text())
+        nodes = [p for p in summary["probes"] if p["name"].startswith("edge.")]
+        self.assertEqual(len(nodes), 4)
+        normal = numpy.array([history[f"{p['name']}.reaction_normal"] for p in nodes])
+        tangential = numpy.array([history[f"{p['name']}.reaction_tangential_x"] for p in nodes])
+        x = numpy.array([p["position"][0] + numpy.array(history[f"{p['name']}.displacement_x"]) for p in nodes])
+        total = normal.sum(axis=0)
+        size = total.max()
+        closed = total > 0
+        self.assertGreater(closed.sum(), 5)
+        self.assertGreater((~closed).sum(), 5)
+        numpy.testing.assert_allclose(history["contact.force_y"], total, rtol=0, atol=1e-12 * size)
+        numpy.testing.assert_allclose(history["contact.force_x"], tangential.sum(axis=0), rtol=0, atol=1e-12 * size)
+        centre = numpy.array(history["contact.centre_x"])
+        numpy.testing.assert_allclose(centre[closed], ((normal * x).sum(axis=0) / numpy.where(closed, total, 1))[closed],
+                                      rtol=1e-12)
+        self.assertFalse(centre[~closed].any())
+        self.assertFalse(numpy.array(history["contact.area"])[~closed].any())
+        # Nodal forces: each node has half of the edges beside it.
+        length = numpy.hypot(1.2, 0.1) / 3
+        share = length * numpy.array([0.5, 1.0, 1.0, 0.5])
+        numpy.testing.assert_allclose(history["contact.area"], ((normal > 0) * share[:, None]).sum(axis=0), atol=1e-12)
+        arm = numpy.array([[p["position"][0] - 0.3, p["position"][1] + 0.2] for p in nodes])
+        moment = (arm[:, :1] * normal - arm[:, 1:] * tangential).sum(axis=0)
+        numpy.testing.assert_allclose(history["bottom.moment_z"], moment, rtol=0, atol=1e-12 * size)
+
+    def test_supports_carry_the_weight(self):
+        """At rest under gravity, the sides held: force and moment of the supports are minus those of the weight."""
+        text = block_case().replace('[[contact]]\ngroup = "bottom"\nobstacle = "floor"\n', "")
+        text = text[:text.index("[obstacle.floor]")] + text[text.index("[load]"):]
+        text += ('[[support]]\ngroup = "sides"\ncomponents = ["x", "y"]\n[initial]\ndisplacement = "static"\n'
+                 '[[probe]]\nname = "sides"\nboundary = "sides"\n')
+        results = self.simulate(self.write("case.toml", text), values={"time.end": 0.05})
+        history = History(results / "history.csv")
+        mesh = meshio.read(MESHES / "quadrilateral_o1_msh41_ascii.msh")
+        area, first = 0.0, 0.0
+        for quad in mesh.cells_dict["quad"]:
+            for t in (quad[[0, 1, 2]], quad[[0, 2, 3]]):
+                p = mesh.points[t][:, :2]
+                own = 0.5 * abs(numpy.cross(p[1] - p[0], p[2] - p[0]))
+                area += own
+                first += own * p[:, 0].mean()
+        for row in range(len(history.rows)):
+            self.assertAlmostEqual(history["sides.force_x"][row], 0.0, delta=1e-11)
+            self.assertAlmostEqual(history["sides.force_y"][row], 10.0 * area, delta=1e-11)
+            self.assertAlmostEqual(history["sides.moment_z"][row], 10.0 * first, delta=1e-11)
+
+    def test_a_ball(self):
+        path = SOURCE / "cases/ball/ball.toml"
+        case = self.write("ball.toml", with_more(path, BALL_PROBES))
+        results = self.simulate(case, values={"output.fields_every": 40})
+        history = History(results / "history.csv")
+        force = vector(history, "contact_force", "xyz")
+        size = numpy.abs(force).max()
+        self.assertGreater(size, 0)
+        for name in ("ground.force", "under.force"):
+            numpy.testing.assert_allclose(vector(history, name, "xyz"), force, rtol=0, atol=1e-12 * size)
+        self.assertGreater(max(history["ground.area"]), 0)
+        read = self.frames(results)[2]
+        rows = {at: i for i, at in enumerate(history["time"])}
+        for at, _, cell in read:
+            self.assertEqual(history["ball.von_mises_maximum"][rows[at]], cell["von_mises"][0].max())
+
+    def test_what_is_refused(self):
+        for probe, message in (
+                ('at = [0.0, 0.0]\ngroup = "body"', "group"),
+                ('contact = 1', "there is no contact 1: the case has 1 of them, numbered from 0"),
+                ('contact = -1', "at least 0"),
+                ('group = "bodies"', "bodies"),
+                ('boundary = "body"', "body"),
+                ('boundary = ""', "names no group"),
+                ('from = [5.0, 5.0]\nto = [6.0, 6.0]', 'give "within"'),
+                ('from = [5.0, 5.0]\nto = [5.0, 5.0]', "same point"),
+                ('from = [5.0, 5.0]', '"to"'),
+                ('group = "body"\nabout = [0.0, 0.0]', 'for probes with "boundary" only'),
+                ('at = [0.0, 0.0]\nwithin = 1.0', 'for probes with "from" only'),
+                ('boundary = "bottom"\nabout = [0.0, 0.0, 1.0]', "has 3 entries"),
+                ('at = [0.0, 0.0]\nevery = 0', "every"),
+                ('', "at")):
+            case = self.write("bad.toml", block_case() + f'[[probe]]\nname = "p"\n{probe}\n')
+            process = self.expect_status(2, run("run", case, "-o", self.folder / "bad"))
+            self.assertIn(message, process.stderr, probe)
+            self.assertRegex(process.stderr, r"bad\.toml:\d+:\d+", probe)
+
+
+if __name__ == "__main__":
+    unittest.main()
