@@ -60,9 +60,13 @@ std::string status_text(const std::vector<ContactStatus>& status) {
 }
 
 void print_record(const ContactSolution& solution) {
-  fmt::print("  {:>9}  {:<14} {}\n", "iteration", "phase", "residual");
-  for (std::size_t k = 0; k < solution.record.size(); ++k)
-    fmt::print("  {:>9}  {:<14} {:.3e}\n", k + 1, solution.record[k].phase, solution.record[k].residual);
+  fmt::print("  {:>9}  {:<14} {:<9}  {:>6} {:>6} {:>6} {:>7}\n", "iteration", "phase", "residual", "closed", "stick",
+             "slip", "changed");
+  for (std::size_t k = 0; k < solution.record.size(); ++k) {
+    const ContactIteration& line = solution.record[k];
+    fmt::print("  {:>9}  {:<14} {:.3e}  {:>6} {:>6} {:>6} {:>7}\n", k + 1, line.phase, line.residual, line.closed,
+               line.sticking, line.slipping, line.changed);
+  }
 }
 
 void print_problem(const FclibProblem& file) {

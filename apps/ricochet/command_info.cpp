@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "contact_text.hpp"
+#include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/model.hpp"
 #include "ricochet/case/read_case.hpp"
@@ -13,7 +14,6 @@
 #include "ricochet/case/run_description.hpp"
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
-#include "ricochet/io/run_directory.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/scheme/critical_step.hpp"
 
@@ -73,20 +73,13 @@ double ratio(double a, double b) {
   return b != 0.0 ? a / b : 0.0;
 }
 
-/// A run that has neither ended nor is going on was killed.
-std::string status_text(const std::string& directory, const RunSummary& s) {
-  if (s.status == "done") return "";
-  if (s.status == "failed") return " (FAILED)";
-  return s.status == "running" && !RunDirectory::is_in_use(directory) ? " (interrupted)"
-                                                                      : fmt::format(" ({})", s.status);
-}
-
 void describe_result(const std::string& directory) {
   const RunSummary s = read_summary(directory + "/summary.json");
   const ColumnDigest energy = s.digest("total_energy");
   const ColumnDigest residual = s.digest("energy_residual");
   fmt::print("{}: {}{}\n", directory, s.title.empty() ? s.case_file : s.title, status_text(directory, s));
   if (!s.message.empty()) fmt::print("  {}\n", s.message);
+  print_progress(directory, s);
   fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass, s.dimension, s.degree);
   fmt::print("  {} nodes, {} cells, {} contact points, {} steps of {:g}, {} frames\n", s.nodes, s.cells,
              s.contact_points, s.steps, s.step, s.frames);
@@ -96,6 +89,10 @@ void describe_result(const std::string& directory) {
              energy.maximum);
   fmt::print("  energy account closes to {:.1e} of the largest energy\n",
              ratio(std::max(std::abs(residual.minimum), std::abs(residual.maximum)), s.energy_scale()));
+  for (const CheckResult& check : s.checks) {
+    if (check.limit > 0.0 && check.largest > check.limit)
+      fmt::print("  CHECK FAILED: {} reaches {:.2g}, more than {:g}\n", check.name, check.largest, check.limit);
+  }
   print_friction(s);
   fmt::print("  deepest interpenetration {:.3g}, largest rotation {:.3g} rad\n", s.digest("max_penetration").maximum,
              s.digest("max_rotation").maximum);
@@ -155,6 +152,8 @@ int info(const std::vector<std::string>& paths) {
       describe_result(path);
     } else if (fs::path(path).extension() == ".toml") {
       describe_case(path);
+    } else if (fs::path(path).extension() == ".ckpt") {
+      describe_checkpoint(path);
     } else if (is_hdf5_file(path) || fs::path(path).extension() == ".hdf5") {
       describe_contact_problem(path);
     } else {

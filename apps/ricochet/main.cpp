@@ -70,8 +70,9 @@ int dispatch(int argc, char** argv) {
 
   CLI::App* info = app.add_subcommand(
       "info",
-      "Describe a mesh, a case, a contact problem or a result in a few lines; several results are compared in a table");
-  info->add_option("path", arguments.info_paths, "mesh, case file, FCLib file or output directory")
+      "Describe a mesh, a case, a contact problem, a checkpoint, or a run that goes on or has ended, in a few lines; "
+      "several runs are compared in a table");
+  info->add_option("path", arguments.info_paths, "mesh, case file, FCLib file, checkpoint or output directory")
       ->required()
       ->type_name("FILE_OR_DIR");
   add_common(*info, arguments);

@@ -119,6 +119,13 @@ struct OutputSection {
   double checkpoint_seconds = 300.0;  ///< of the clock on the wall; 0: by steps only
 };
 
+struct CheckSection {
+  double energy_residual = 1e-8;   ///< relative to the largest energy; 0: not checked
+  double momentum = 1e-8;          ///< relative to the largest momentum and the sum of all impulses
+  double angular_momentum = 1e-8;  ///< likewise, times the distance of the body from the origin
+  bool stops = false;              ///< the run ends where an account does not close, else it warns
+};
+
 struct SolverSection {
   std::string method = "auto";
   double tolerance = 1e-10;
@@ -150,6 +157,7 @@ struct Case {
   std::vector<ProbeSection> probes;
   SolverSection solver;
   OutputSection output;
+  CheckSection check;
   std::vector<ExpectSection> expectations;
   std::vector<std::string> overridden;              ///< key paths given by --set
   std::map<std::string, SourceLocation> locations;  ///< key path ("contact.0.group") → where it stands

@@ -473,6 +473,42 @@ Section output_section() {
           }};
 }
 
+Section check_section() {
+  const Range small{.at_least = 0.0, .below = 1.0};
+  return {
+      .name = "check",
+      .doc =
+          "What a run must keep, whatever the case: a run that breaks its own account of energy or momentum says "
+          "so. summary.json has the largest residuals under `checks`.",
+      .keys = {
+          {.name = "energy_residual",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "1e-8",
+           .range = small,
+           .doc = "Largest energy_residual, relative to the largest energy so far; 0: not checked."},
+          {.name = "momentum",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "1e-8",
+           .range = small,
+           .doc = "What the impulses of all forces may leave unexplained of the change of momentum, relative to the "
+                  "largest momentum and the sum of all impulses; 0: not checked."},
+          {.name = "angular_momentum",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "1e-8",
+           .range = small,
+           .doc = "The same of angular momentum, relative to that times the largest distance of a node from the "
+                  "origin. Not checked with degree 1 on curved cells, whose functions contain no rotations."},
+          {.name = "on_failure",
+           .type = KeyType::choice,
+           .standard = "warn",
+           .choices = {"warn", "stop"},
+           .doc = "\"warn\": once per account; \"stop\": the run ends with status 3."},
+      }};
+}
+
 Section expect_section() {
   return {.name = "expect",
           .kind = SectionKind::list,
@@ -517,9 +553,10 @@ const std::vector<NewmarkPreset>& newmark_presets() {
 
 const std::vector<Section>& case_sections() {
   static const std::vector<Section> sections{
-      top_section(),     mesh_section(),     material_section(), obstacle_section(), contact_section(),
-      support_section(), traction_section(), load_section(),     initial_section(),  mass_section(),
-      time_section(),    solver_section(),   probe_section(),    output_section(),   expect_section()};
+      top_section(),     mesh_section(),    material_section(), obstacle_section(),
+      contact_section(), support_section(), traction_section(), load_section(),
+      initial_section(), mass_section(),    time_section(),     solver_section(),
+      probe_section(),   output_section(),  check_section(),    expect_section()};
   return sections;
 }
 

@@ -217,7 +217,8 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   const double read_seconds = timer.restart();
   check_dimensions(input, model->mesh.dimension);
   model->space = make_displacement_space(model->mesh, input.mesh.degree);
-  if (input.mesh.degree == 1 && is_curved(model->mesh)) {
+  model->contains_rotations = input.mesh.degree > 1 || !is_curved(model->mesh);
+  if (!model->contains_rotations) {
     log::warning(
         "the mesh has curved cells but the displacement is of degree 1: on curved cells its functions do not contain "
         "rigid rotations, so angular momentum is kept only to the order h²; use mesh.degree = 2 or a straight mesh");

@@ -20,6 +20,7 @@ struct Model {
   std::vector<ContactPair> contact_pairs;
   SemidiscreteProblem problem;
   InitialConditions initial;
+  bool contains_rotations = true;                ///< false: degree 1 on curved cells
   std::vector<Probe> probes;                     ///< the nodes that are watched, those of segments too
   std::vector<std::shared_ptr<Sensor>> sensors;  ///< with a column in history.csv
   /// Those with a file of their own, by the steps between its rows.

@@ -277,6 +277,9 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems, Remar
                    .history_every = output.integer("history_every"),
                    .checkpoint_every = output.integer("checkpoint_every"),
                    .checkpoint_seconds = output.number("checkpoint_seconds")};
+  const SectionReader check = sections.one("check");
+  result.check = {check.number("energy_residual"), check.number("momentum"), check.number("angular_momentum"),
+                  check.text("on_failure") == "stop"};
   if (result.output.fields_every && result.output.fields_interval) {
     output.add_problem("fields_interval",
                        "\"fields_every\" and \"fields_interval\" exclude each other: give one of them");

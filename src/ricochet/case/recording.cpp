@@ -54,10 +54,11 @@ bool FieldSchedule::includes(long step) const {
   return interval_ > 0.0 ? intervals(step) > intervals(step - 1) : every_ > 0 && step % every_ == 0;
 }
 
-Recording::Recording(const Case& input, const Model& model, const std::string& directory, long steps,
-                     const Snapshot* snapshot)
+Recording::Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
+                     const std::string& directory, long steps, const Snapshot* snapshot)
     : recorder_(model.problem, *model.rotation, model.sensors),
       history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot, "history")),
+      checks_(input, model, scheme, state, recorder_.columns(), snapshot),
       history_every_(input.output.history_every),
       fields_(input, steps, model.problem.dof_count()),
       steps_(steps) {
@@ -85,12 +86,14 @@ void Recording::open_results(const OutputSection& output, const Model& model, co
 
 void Recording::record(const State& state, EnergyAccount& account) {
   Timer timer;
+  if (state.step > 0) checks_.enter_step(state);
   if (state.step % history_every_ == 0 || state.step == steps_) {
     const std::vector<double>& row = recorder_.row(state, account);
     check_finite(row);
     history_.write(row);
     digest_.add(row);
     watch_rotation(row);
+    checks_.watch(row, state);
   }
   for (Sampled& sampled : sampled_) {
     if (state.step % sampled.every == 0 || state.step == steps_) sampled.file.write(sampled.recorder.row(state));
@@ -120,6 +123,7 @@ void Recording::save(Snapshot& snapshot) {
     results_->save(snapshot, "results");
   }
   digest_.save(snapshot, "digest");
+  checks_.save(snapshot, "checks");
   snapshot.save("rotation_warned", rotation_warned_);
 }
 
@@ -127,6 +131,7 @@ void Recording::describe(RunSummary& summary) const {
   summary.frames = results_ ? results_->frames() : 0;
   summary.columns = recorder_.columns();
   summary.digests = digest_.columns();
+  summary.checks = checks_.results();
 }
 
 /// Energies are squares: they leave the range of numbers long before the displacement does.

@@ -4,6 +4,7 @@
 
 #include "ricochet/base/timer.hpp"
 #include "ricochet/case/model.hpp"
+#include "ricochet/case/run_checks.hpp"
 #include "ricochet/io/history_file.hpp"
 #include "ricochet/io/results_file.hpp"
 #include "ricochet/io/summary.hpp"
@@ -29,12 +30,13 @@ class FieldSchedule {
 
 class Recording {
  public:
-  /// Of a run of so many steps into a directory: new files, or those of the run that the snapshot belongs to. Throws
-  /// Error(file_access).
-  Recording(const Case& input, const Model& model, const std::string& directory, long steps, const Snapshot* snapshot);
+  /// Of a run of so many steps, from this state on, into a directory: new files, or those of the run that the snapshot
+  /// belongs to. Throws Error(file_access).
+  Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
+            const std::string& directory, long steps, const Snapshot* snapshot);
 
   /// Of the state after every step, the first one included. Throws Error(file_access), and Error(not_converged) when
-  /// the motion has grown beyond all bounds.
+  /// the motion has grown beyond all bounds or breaks an account that is to stop it.
   void record(const State& state, EnergyAccount& account);
   /// What is needed to go on; the files are on the disk then.
   void save(Snapshot& snapshot);
@@ -61,6 +63,7 @@ class Recording {
   std::vector<Sampled> sampled_;
   std::optional<ResultsWriter> results_;
   HistoryDigest digest_;
+  RunChecks checks_;
   long history_every_;
   FieldSchedule fields_;
   long steps_;

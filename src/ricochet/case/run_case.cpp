@@ -17,6 +17,7 @@
 #include "ricochet/case/run_judgement.hpp"
 #include "ricochet/case/run_times.hpp"
 #include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/failure_bundle.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/simulation/simulation.hpp"
@@ -92,6 +93,7 @@ class Run {
   void take_steps();
   void stop(int signal);
   void write_checkpoint();
+  void write_failure_bundle();
   void report_progress();
   void describe_progress(RunSummary& summary) const;
   void finish();
@@ -107,6 +109,7 @@ class Run {
   std::optional<Snapshot> snapshot_;  ///< that the run goes on from
   std::optional<Simulation> simulation_;
   std::optional<ContactExport> contact_export_;
+  std::optional<FailureBundle> failure_bundle_;
   std::optional<Recording> recording_;
   double contact_before_ = 0.0;
   RunSummary summary_;
@@ -188,13 +191,16 @@ void Run::begin() {
   } else {
     remove_old_run(directory_, options_);
   }
-  if (!options_.export_contact.empty()) {
-    contact_export_.emplace(options_.export_contact, export_directory(options_), describe_provenance(input_, summary_));
-    simulation_->observe_contact([this](const ContactProblem& problem, const ContactSolution& solution) {
-      contact_export_->write(problem, solution);
-    });
-  }
-  recording_.emplace(input_, *model_, options_.output_directory, steps_, snapshot_ ? &*snapshot_ : nullptr);
+  const ContactProvenance provenance = describe_provenance(input_, summary_);
+  if (!options_.export_contact.empty())
+    contact_export_.emplace(options_.export_contact, export_directory(options_), provenance);
+  failure_bundle_.emplace(options_.output_directory, provenance);
+  simulation_->observe_contact([this](const ContactProblem& problem, const ContactSolution& solution) {
+    if (!solution.solved()) failure_bundle_->take_problem(problem, solution, simulation_->state().step + 1);
+    if (contact_export_) contact_export_->write(problem, solution);
+  });
+  recording_.emplace(input_, *model_, *scheme_, simulation_->state(), options_.output_directory, steps_,
+                     snapshot_ ? &*snapshot_ : nullptr);
   if (!snapshot_) recording_->record(simulation_->state(), simulation_->account());
   snapshot_.reset();
   contact_before_ = simulation_->contact_seconds();
@@ -223,6 +229,10 @@ void Run::take_steps() {
     while (simulation.state().step < steps_) {
       if (const int signal = options_.stop_signal ? options_.stop_signal() : 0; signal != 0) return stop(signal);
       const Timer timer;
+      if (log::enabled(log::Level::debug)) {
+        log::debug(fmt::format("step {}, t = {:.9g}", simulation.state().step + 1,
+                               static_cast<double>(simulation.state().step + 1) * scheme_->step()));
+      }
       if (contact_export_) contact_export_->begin_step(simulation.state().step + 1);
       simulation.advance();
       times_.steps += timer.seconds();
@@ -234,6 +244,20 @@ void Run::take_steps() {
     recording_->flush();
   } catch (const Error& problem) {
     failure_ = problem;
+    if (problem.kind() == ErrorKind::not_converged) write_failure_bundle();
+  }
+}
+
+/// The state before the step that failed and its contact problem; the message tells where they are.
+void Run::write_failure_bundle() {
+  Snapshot snapshot;
+  simulation_->save(snapshot);
+  save_identity(input_, *model_, snapshot);
+  try {
+    const std::string note = failure_bundle_->write(simulation_->state().step + 1, snapshot, failure_->what());
+    failure_ = Error(failure_->kind(), fmt::format("{}\n{}", failure_->what(), note));
+  } catch (const Error& problem) {
+    log::warning(problem.what());
   }
 }
 

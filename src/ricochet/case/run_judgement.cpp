@@ -18,24 +18,17 @@ constexpr double large_rotation = 1.0;
 
 void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
   const double scale = summary.energy_scale();
+  const bool contact_creates = summary.digest("contact_work").maximum > 0.01 * scale;
+  const bool friction_creates = summary.digest("friction_work").maximum > 0.01 * scale;
   // A body that is merely displaced has no energy but the rounding of these terms: nothing to judge.
-  const Vector magnitude = state.displacement.cwiseAbs();
-  const double terms = magnitude.dot(problem.internal_force->tangent().cwiseAbs() * magnitude);
-  if (scale <= 1e-14 * terms) return;
-  const auto largest = [&](const char* column) {
-    const ColumnDigest digest = summary.digest(column);
-    return std::max(std::abs(digest.minimum), std::abs(digest.maximum));
+  const auto is_rounding = [&] {
+    const Vector magnitude = state.displacement.cwiseAbs();
+    const double terms = magnitude.dot(problem.internal_force->tangent().cwiseAbs() * magnitude);
+    return scale <= 1e-14 * terms;
   };
-  if (largest("energy_residual") > 1e-8 * scale) {
-    log::warning(fmt::format(
-        "the energy account does not close: its residual reaches {:.2g} of the largest energy, by rounding{}; "
-        "stiffnesses or densities that differ by many orders of magnitude, a Poisson's ratio at 1/2 or an "
-        "extreme time.step are likely causes; do not trust this run to more digits than that",
-        largest("energy_residual") / scale,
-        summary.solver == "iterative" ? " or by solver.tolerance (make it smaller, or solver.method = \"direct\")"
-                                      : ""));
-  }
-  if (summary.digest("contact_work").maximum > 0.01 * scale) {
+  const bool rotates = summary.digest("max_rotation").maximum > large_rotation;
+  if (!(contact_creates || friction_creates || rotates) || is_rounding()) return;
+  if (contact_creates) {
     const bool best = (summary.scheme == "newmark" || summary.scheme == "semi-explicit") && problem.has_singular_mass();
     log::warning(
         fmt::format("contact forces have created energy: contact_work reaches {:.2g} of the largest energy; {}",
@@ -44,13 +37,13 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
                            "starts inside an obstacle"
                          : "it comes from the time scheme: use newmark with mass \"equivalent\""));
   }
-  if (summary.digest("friction_work").maximum > 0.01 * scale) {
+  if (friction_creates) {
     log::warning(fmt::format(
         "friction has created energy: friction_work reaches {:.2g} of the largest energy; it comes from the "
         "weights that {} gives to the forces at the two ends of a step: take a smaller time.step",
         summary.digest("friction_work").maximum / scale, summary.scheme));
   }
-  if (summary.digest("max_rotation").maximum > large_rotation) {
+  if (rotates) {
     log::warning(
         fmt::format("cells rotate by up to {:.3g} rad: this is far outside small strain, and the motion is not that "
                     "of a real body; a body much softer or faster than was meant (units?) or one that spins",

@@ -42,6 +42,20 @@ void take_out_scale(FclibProblem& problem, double scale) {
   for (FclibSolution& guess : problem.guesses) guess.reaction /= scale;
 }
 
+std::string describe_problem(const ContactProblem& problem, const ContactProvenance& provenance, long step,
+                             double time) {
+  Index eligible = 0;
+  for (Index i = 0; i < problem.points(); ++i) eligible += problem.is_eligible(i) ? 1 : 0;
+  return fmt::format(
+      "Contact problem of step {} (t = {:.9g}).\n{}\n"
+      "u: gap and slip as lengths, (y/s, w/sigma) with y = q + s G delta and w = p + sigma B_T delta of the scheme's "
+      "stage, delta the displacement increment. r = (r_N, -r_T): contact forces on the body, r_N >= 0 pressing, r_T "
+      "opposed to the slip. W = H A^-1 H^T with H = [G; B_T], A the scheme's operator. Units are those of the case.\n"
+      "Points: the {} contact points that may touch in this step; /fclib_local/info/points has their numbers among "
+      "all, counted from 0. The others stay open.",
+      step, time, provenance.origin, eligible);
+}
+
 }  // namespace
 
 std::vector<StepRange> parse_steps(const std::string& text) {
@@ -71,6 +85,19 @@ std::vector<std::string> exported_contact_problems(const std::string& directory)
   return result;
 }
 
+void write_contact_problem(const std::string& path, const ContactProblem& problem, const ContactSolution& solution,
+                           const ContactProvenance& provenance, long step, const std::string& remark, int stage) {
+  const double time = static_cast<double>(step) * provenance.step_size;
+  FclibProblem file = make_fclib(problem, provenance.dimension, &solution);
+  take_out_scale(file, problem.reaction_scale);
+  file.title = fmt::format("{}: step {}{}, t = {:.9g}", provenance.title, step,
+                           stage > 1 ? fmt::format(", stage {}", stage) : "", time);
+  file.description = describe_problem(problem, provenance, step, time) + (remark.empty() ? "" : "\n" + remark) +
+                     (file.description.empty() ? "" : "\n" + file.description);
+  file.math_info = "W is symmetric and positive semi-definite.\n" + file.math_info;
+  write_fclib(path, file);
+}
+
 ContactExport::ContactExport(std::vector<StepRange> steps, std::string directory, ContactProvenance provenance)
     : steps_(std::move(steps)), directory_(std::move(directory)), provenance_(std::move(provenance)) {
   std::error_code problem;
@@ -93,29 +120,12 @@ void ContactExport::begin_step(long step) {
   if (wanted_) ++steps_seen_;
 }
 
-std::string ContactExport::description(const ContactProblem& problem) const {
-  Index eligible = 0;
-  for (Index i = 0; i < problem.points(); ++i) eligible += problem.is_eligible(i) ? 1 : 0;
-  return fmt::format(
-      "Contact problem of step {} (t = {:.9g}).\n{}\n"
-      "u: gap and slip as lengths, (y/s, w/sigma) with y = q + s G delta and w = p + sigma B_T delta of the scheme's "
-      "stage, delta the displacement increment. r = (r_N, -r_T): contact forces on the body, r_N >= 0 pressing, r_T "
-      "opposed to the slip. W = H A^-1 H^T with H = [G; B_T], A the scheme's operator. Units are those of the case.\n"
-      "Points: the {} contact points that may touch in this step; /fclib_local/info/points has their numbers among "
-      "all, counted from 0. The others stay open.",
-      step_, time(), provenance_.origin, eligible);
-}
-
 void ContactExport::write(const ContactProblem& problem, const ContactSolution& solution) {
   if (!wanted_) return;
-  FclibProblem file = make_fclib(problem, provenance_.dimension, &solution);
-  take_out_scale(file, problem.reaction_scale);
-  const std::string stage = written_in_step_ > 0 ? fmt::format("-stage-{}", written_in_step_ + 1) : "";
-  file.title = fmt::format("{}: step {}{}, t = {:.9g}", provenance_.title, step_,
-                           stage.empty() ? "" : fmt::format(", stage {}", written_in_step_ + 1), time());
-  file.description = description(problem) + (file.description.empty() ? "" : "\n" + file.description);
-  file.math_info = "W is symmetric and positive semi-definite.\n" + file.math_info;
-  write_fclib((fs::path(directory_) / fmt::format("step-{:06d}{}.hdf5", step_, stage)).string(), file);
+  const int stage = written_in_step_ + 1;
+  const std::string suffix = stage > 1 ? fmt::format("-stage-{}", stage) : "";
+  write_contact_problem((fs::path(directory_) / fmt::format("step-{:06d}{}.hdf5", step_, suffix)).string(), problem,
+                        solution, provenance_, step_, "", stage);
   if (written_in_step_++ == 0) ++steps_written_;
   ++files_;
 }

@@ -27,6 +27,13 @@ struct ContactProvenance {
   double step_size = 0.0;  ///< a step ends at its number times this
 };
 
+/// Writes a contact problem of a step and what was found of its solution, reactions and W in the units of the case (r
+/// and W of `problem` without their scale). `remark`: a line more in the description. Throws Error(file_access), and
+/// Error(invalid_input) for problems that FCLib's format cannot state.
+void write_contact_problem(const std::string& path, const ContactProblem& problem, const ContactSolution& solution,
+                           const ContactProvenance& provenance, long step, const std::string& remark = "",
+                           int stage = 1);
+
 class ContactExport {
  public:
   /// Makes the directory. Throws Error(file_access).
@@ -34,17 +41,13 @@ class ContactExport {
 
   /// What is written from now on belongs to this step.
   void begin_step(long step);
-  /// Writes the problem and its solution where the step is one of those asked for: reactions and W in the units of the
-  /// case, r and W of `problem` without their scale. Throws Error(file_access), and Error(invalid_input) for problems
-  /// that FCLib's format cannot state.
+  /// Writes the problem and its solution where the step is one of those asked for, see above.
   void write(const ContactProblem& problem, const ContactSolution& solution);
   /// What was written, and how many of the steps asked for had nothing to write or were not reached, in a line.
   [[nodiscard]] std::string report() const;
 
  private:
   [[nodiscard]] bool asked_for(long step) const;
-  [[nodiscard]] double time() const { return static_cast<double>(step_) * provenance_.step_size; }
-  [[nodiscard]] std::string description(const ContactProblem& problem) const;
 
   std::vector<StepRange> steps_;
   std::string directory_;

@@ -15,6 +15,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/failure_bundle.hpp"
 
 namespace ricochet {
 
@@ -86,6 +87,7 @@ std::vector<std::string> RunDirectory::left_behind(long step) const {
   for (const char* name : {"summary.json.new", "results.h5.pattern"}) {
     if (fs::exists(file(name))) result.push_back(file(name));
   }
+  for (const std::string& failure : failure_files(path_)) result.push_back(failure);
   std::error_code problem;
   for (const fs::directory_entry& entry : fs::directory_iterator(path_, problem)) {
     const std::string name = entry.path().filename().string();

@@ -19,7 +19,7 @@ class RunDirectory {
   /// Files that a run has left here: results, summary, checkpoints.
   [[nodiscard]] std::vector<std::string> results() const;
   /// Files that an interrupted run has left here and that a run which goes on after this step has no use for:
-  /// unfinished ones, and checkpoints of later steps, which are damaged.
+  /// unfinished ones, what is left of a step that failed, and checkpoints of later steps, which are damaged.
   [[nodiscard]] std::vector<std::string> left_behind(long step) const;
 
   /// Is a run writing into this directory now?

@@ -71,6 +71,13 @@ Json contacts_to_json(const RunSummary& summary) {
   return result;
 }
 
+Json checks_to_json(const RunSummary& summary) {
+  Json result = Json::object();
+  for (const CheckResult& check : summary.checks)
+    result[check.name] = {{"limit", number(check.limit)}, {"largest", number(check.largest)}};
+  return result;
+}
+
 Json expectations_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (const ExpectationResult& e : summary.expectations) {
@@ -141,6 +148,7 @@ std::string to_json(const RunSummary& s) {
                      {"contacts", contacts_to_json(s)},
                      {"probes", probes_to_json(s)},
                      {"extrema", extrema_to_json(s)},
+                     {"checks", checks_to_json(s)},
                      {"warnings", s.warnings},
                      {"expectations", expectations_to_json(s)},
                      {"parameters", s.parameters}};
@@ -193,6 +201,9 @@ RunSummary read_summary(const std::string& path) {
     s.time_per_step = json.at("seconds_per_step");
     s.warnings = json.at("warnings").get<std::vector<std::string>>();
     for (const auto& [phase, seconds] : json.at("timings_seconds").items()) s.timings.emplace_back(phase, seconds);
+    const Json checks = json.value("checks", Json::object());
+    for (const auto& [name, check] : checks.items())
+      s.checks.push_back({name, to_number(check.at("limit")), to_number(check.at("largest"))});
     for (const auto& contact : json.at("contacts")) {
       s.contacts.push_back({contact.at("group"), contact.at("obstacle"), contact.at("multipliers"),
                             contact.at("friction"), contact.at("friction_bound"), contact.at("obstacle_velocity"),

@@ -22,6 +22,13 @@ struct ExpectationResult {
   std::string note;
 };
 
+/// An account that a run must keep.
+struct CheckResult {
+  std::string name;
+  double limit = 0.0;    ///< relative; 0: not checked
+  double largest = 0.0;  ///< what was missing, relative
+};
+
 /// A [[contact]] entry as it ran.
 struct ContactDescription {
   std::string group, obstacle, multipliers;
@@ -58,6 +65,7 @@ struct RunSummary {
   double time_per_step = 0.0;                           ///< seconds
   std::vector<std::string> columns;
   std::vector<ColumnDigest> digests;  ///< per column, over the rows written
+  std::vector<CheckResult> checks = {};
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;
   std::string contact_export;  ///< what became of contact problems to be exported, in words; not in the file

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
 
 namespace ricochet {
@@ -264,11 +265,27 @@ void CondensedContact::choose_friction(const Stage& stage) {
 
 void CondensedContact::solve_contact() {
   const Timer timer;
-  solver_->solve(contact_, {}, contact_solution_);
+  solver_->solve(contact_, {.record = log::enabled(log::Level::debug)}, contact_solution_);
   solver_seconds_ += timer.seconds();
+  if (log::enabled(log::Level::debug)) tell_iterations();
   if (contact_solution_.solved()) return;
   if (observer_) observer_(contact_, contact_solution_);
   throw_not_solved();
+}
+
+/// A line per iteration, for those who want to see where a step spends its time or why it fails.
+void CondensedContact::tell_iterations() const {
+  if (contact_solution_.record.empty()) {
+    log::debug(fmt::format("contact: {} points, none that iterations were needed for", contact_.points()));
+    return;
+  }
+  for (std::size_t k = 0; k < contact_solution_.record.size(); ++k) {
+    const ContactIteration& line = contact_solution_.record[k];
+    log::debug(fmt::format("contact: {} points, iteration {} ({}): residual {:.2e}, {} closed{}, {} changed",
+                           contact_.points(), k + 1, line.phase, line.residual, line.closed,
+                           friction_ ? fmt::format(" ({} stick, {} slip)", line.sticking, line.slipping) : "",
+                           line.changed));
+  }
 }
 
 void CondensedContact::report() const {

@@ -58,6 +58,7 @@ class CondensedContact {
   void find_offsets(const Stage& stage, const Vector& y);
   void choose_friction(const Stage& stage);
   void solve_contact();
+  void tell_iterations() const;
   void give(StageSolution& solution) const;
   [[noreturn]] void throw_not_solved() const;
 

@@ -178,6 +178,10 @@ TEST(ReadCase, FillsInEveryDefault) {
   EXPECT_EQ(read.output.history_every, 1);
   EXPECT_EQ(read.output.checkpoint_every, 0);
   EXPECT_EQ(read.output.checkpoint_seconds, 300.0);
+  EXPECT_EQ(read.check.energy_residual, 1e-8);
+  EXPECT_EQ(read.check.momentum, 1e-8);
+  EXPECT_EQ(read.check.angular_momentum, 1e-8);
+  EXPECT_FALSE(read.check.stops);
   EXPECT_EQ(read.values, (std::map<std::string, std::string>{{"title", ""},
                                                              {"mesh.file", "a.msh"},
                                                              {"mesh.scale", "1"},
@@ -200,7 +204,11 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"output.fields_precision", "double"},
                                                              {"output.compression", "0"},
                                                              {"output.checkpoint_every", "0"},
-                                                             {"output.checkpoint_seconds", "300"}}));
+                                                             {"output.checkpoint_seconds", "300"},
+                                                             {"check.energy_residual", "1e-08"},
+                                                             {"check.momentum", "1e-08"},
+                                                             {"check.angular_momentum", "1e-08"},
+                                                             {"check.on_failure", "warn"}}));
 }
 
 TEST(ReadCase, FillsInDefaultsOfOptionalSections) {

@@ -7,6 +7,8 @@
 #include <fstream>
 
 #include "fclib_support.hpp"
+#include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/failure_bundle.hpp"
 
 namespace ricochet::test {
 namespace {
@@ -111,6 +113,38 @@ TEST(ContactExport, AFileInThePlaceOfTheDirectory) {
         ContactExport({{1, 1}}, file.path, {});
       },
       file.path + ": cannot make this directory", ErrorKind::file_access);
+}
+
+/// A contact problem that was not solved can be read and solved later; where FCLib cannot state it, that is said.
+TEST(FailureBundle, HoldsTheStateAndTheProblem) {
+  const TemporaryDirectory directory;
+  fs::create_directories(directory.path);
+  FailureBundle bundle(directory.path, {"Title", "origin", 2, 0.5});
+  ContactSolution unsolved = solution();
+  unsolved.outcome = ContactOutcome::not_converged;
+  unsolved.reason = "it circles";
+  bundle.take_problem(problem(), unsolved, 7);
+  Snapshot snapshot;
+  snapshot.save("state.step", std::int64_t{6});
+  const std::string note = bundle.write(7, snapshot, "step 7: what failed");
+  const std::vector<std::string> files = failure_files(directory.path);
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_TRUE(files[0].ends_with("/failure-000000007.ckpt"));
+  EXPECT_TRUE(files[1].ends_with("/failure-000000007.hdf5"));
+  for (const std::string& file : files) EXPECT_NE(note.find(file), std::string::npos) << note;
+  const Snapshot read = read_checkpoint(files[0]);
+  EXPECT_EQ(read.text("failure.message"), "step 7: what failed");
+  EXPECT_EQ(read.integer("state.step"), 6);
+  const FclibProblem stated = read_fclib(files[1]);
+  EXPECT_NE(stated.description.find("This problem was not solved: it circles."), std::string::npos)
+      << stated.description;
+  EXPECT_NE(stated.title.find("step 7, t = 3.5"), std::string::npos) << stated.title;
+
+  ContactProblem bounded = problem();
+  bounded.friction_bound = Vector::Ones(2);
+  FailureBundle other(directory.path, {"Title", "origin", 2, 0.5});
+  other.take_problem(bounded, unsolved, 8);
+  EXPECT_NE(other.write(8, snapshot, "").find("the contact problem could not be written"), std::string::npos);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ void PrimalDualActiveSet::find_violations(const ContactSystem& system, const Con
 }
 
 std::string PrimalDualActiveSet::solve(const ContactSystem& system, ContactIterate& current, int& iterations,
-                                       int& factorizations) {
+                                       int& factorizations, const Watch& watch) {
   const std::vector<ContactPoint>& points = system.points();
   renumber(system);
   active_.assign(points.size(), 0);
@@ -81,6 +81,7 @@ std::string PrimalDualActiveSet::solve(const ContactSystem& system, ContactItera
       base_.clear();
       for (const Index row : factor_.base()) base_.push_back(system.problem_row(row));
     }
+    if (watch) watch(current);
     find_violations(system, current);
     if (violations_.empty()) return "";
     if (violations_.size() < fewest) {
@@ -131,7 +132,7 @@ std::string ActiveSetSolver::iterate(const ContactSystem& system, const ContactO
   for (const ContactPoint& point : system.points()) friction = friction || point.has_friction();
   if (!friction) {
     const std::string reason = frictionless_.solve(system, current, solution.newton_steps, solution.factorizations);
-    note(system, options, "active set", system.residual(current), solution);
+    note(system, options, "active set", system.residual(current), current.reaction, solution);
     return reason;
   }
   const int limit = options.iteration_limit > 0 ? options.iteration_limit : 100;
@@ -143,7 +144,7 @@ std::string ActiveSetSolver::iterate(const ContactSystem& system, const ContactO
     system.evaluate(next_);
     if (step_.refine(next_, next_.reaction)) system.evaluate(next_);
     std::swap(current, next_);
-    note(system, options, "active set", system.residual(current), solution);
+    note(system, options, "active set", system.residual(current), current.reaction, solution);
   }
   return "the states of the points still change after the largest number of iterations";
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,11 @@ namespace ricochet {
 class PrimalDualActiveSet {
  public:
   /// A system whose points have no friction, with entries in dense form. Counts its steps in `iterations`. Returns why
-  /// it ended without a solution, or nothing: `current` is the solution, evaluated.
-  std::string solve(const ContactSystem& system, ContactIterate& current, int& iterations, int& factorizations);
+  /// it ended without a solution, or nothing: `current` is the solution, evaluated. Shows what it has come to after
+  /// every step to `watch`, if there is one.
+  using Watch = std::function<void(const ContactIterate& current)>;
+  std::string solve(const ContactSystem& system, ContactIterate& current, int& iterations, int& factorizations,
+                    const Watch& watch = {});
   void reset() {
     factor_.reset();
     base_.clear();

@@ -235,7 +235,7 @@ std::string Admm::iterate(const ContactSystem& system, const ContactOptions& opt
   for (int k = 1; k <= limit; ++k) {
     advance(system);
     const double residual = measure(system);
-    note(system, options, "admm", residual, solution);
+    note(system, options, "admm", residual, z_, solution);
     if (!std::isfinite(residual)) return indefinite;
     if (residual <= options.tolerance * system.data() || k % verdict_interval == 0 || k == limit) {
       candidate_.reaction = z_;

@@ -226,7 +226,8 @@ bool AutomaticSolver::accelerated(const ContactWork& work) {
       residual = system.residual(work.current);
       residual_per_change = residual / change;
     }
-    note(system, work.options, "sweep", work.options.record ? system.residual(work.current) : residual, work.solution);
+    note(system, work.options, "sweep", work.options.record ? system.residual(work.current) : residual,
+         work.current.reaction, work.solution);
     best = std::min(best, residual);
     const bool arrived = residual <= target;
     if (arrived || residual < rough_digits * exact_residual) {
@@ -259,7 +260,7 @@ bool AutomaticSolver::sweep(const ContactWork& work, int sweeps, double damping)
   int unchanged = 0;
   for (int k = 1; k <= sweeps && unchanged < 2; ++k) {
     const bool changed = sweeps_.sweep(work.system, damping, work.current);
-    note(work.system, work.options, "sweep", work.system.residual(work.current), work.solution);
+    note(work.system, work.options, "sweep", work.system.residual(work.current), work.current.reaction, work.solution);
     unchanged = changed || long_run ? 0 : unchanged + 1;
     if (!long_run || k % 16 != 0) continue;
     work.system.evaluate(work.current);
@@ -332,9 +333,15 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   if (!system.has_entries()) return iterate_with_products(work);
   const bool cold = current.reaction.isZero(0.0);
   if (!cold && work.is_done(current)) return "";
-  if (system.dense() != nullptr && !has_friction(system) &&
-      frictionless_.solve(system, current, solution.iterations, solution.factorizations) == "")
-    return "";
+  if (system.dense() != nullptr && !has_friction(system)) {
+    PrimalDualActiveSet::Watch watch;
+    if (options.record) {
+      watch = [&](const ContactIterate& now) {
+        record(system, options, "active set", system.residual(now), now.reaction, solution);
+      };
+    }
+    if (frictionless_.solve(system, current, solution.iterations, solution.factorizations, watch) == "") return "";
+  }
   best_.restart(work);
   if (cold) best_.merit = std::numeric_limits<double>::infinity();
   if (!cold && prefers_newton(work)) {

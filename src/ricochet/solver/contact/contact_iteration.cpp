@@ -68,10 +68,47 @@ Vector IterativeContactSolver::warm_start() const {
   return start;
 }
 
+namespace {
+
+/// What a point does, by its reaction alone.
+ContactStatus status_of(const ContactPoint& point, const Vector& reaction) {
+  if (!(reaction[point.first] > 0.0)) return ContactStatus::open;
+  if (!point.has_friction()) return ContactStatus::closed;
+  const double limit = point.friction_limit(reaction[point.first]) * (1.0 - 1e-9);
+  const double length = reaction.segment(point.first + 1, point.size - 1).norm();
+  return length < limit ? ContactStatus::stick : ContactStatus::slip;
+}
+
+/// Takes the states of the points over into the solution's record.
+ContactIteration count_states(const ContactSystem& system, const Vector& reaction, ContactSolution& solution) {
+  ContactIteration counts;
+  for (const ContactPoint& point : system.points()) {
+    const ContactStatus status = status_of(point, reaction);
+    ContactStatus& before = solution.record_status[static_cast<std::size_t>(point.point)];
+    counts.changed += status != before ? 1 : 0;
+    counts.closed += status != ContactStatus::open ? 1 : 0;
+    counts.slipping += status == ContactStatus::slip ? 1 : 0;
+    counts.sticking += status == ContactStatus::stick ? 1 : 0;
+    before = status;
+  }
+  return counts;
+}
+
+}  // namespace
+
 void IterativeContactSolver::note(const ContactSystem& system, const ContactOptions& options, const char* phase,
-                                  double residual, ContactSolution& solution) {
+                                  double residual, const Vector& reaction, ContactSolution& solution) {
   ++solution.iterations;
-  if (options.record) solution.record.push_back({phase, residual / system.data()});
+  record(system, options, phase, residual, reaction, solution);
+}
+
+void IterativeContactSolver::record(const ContactSystem& system, const ContactOptions& options, const char* phase,
+                                    double residual, const Vector& reaction, ContactSolution& solution) {
+  if (!options.record) return;
+  ContactIteration line = count_states(system, reaction, solution);
+  line.phase = phase;
+  line.residual = residual / system.data();
+  solution.record.push_back(line);
 }
 
 void ContactOptions::validate() const {
@@ -285,6 +322,7 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
   solution.iterations = solution.newton_steps = solution.factorizations = 0;
   solution.residual = solution.rounding_floor = 0.0;
   solution.record.clear();
+  if (options.record) solution.record_status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
   solution.reaction.setZero(problem.rows());
   solution.status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
   solution.motion = problem.offset;
@@ -309,6 +347,7 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
     system_.take_reaction(solution.reaction, current_.reaction);
     if (!current_.reaction.allFinite()) current_.reaction.setZero();  // scaled beyond the range of numbers
     start(current_.reaction);
+    if (options.record) count_states(system_, current_.reaction, solution);
     run(options, solution);
     find_motion(problem, solution);
     if (!works_on_candidates() || !take_in_penetrating(problem, options, solution)) break;

@@ -24,9 +24,13 @@ class IterativeContactSolver : public ContactSolver {
   virtual std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
                               ContactSolution& solution) = 0;
 
-  /// Counts an iteration, and notes it in the record. `residual`: not yet divided by the data.
+  /// Counts an iteration, and notes it in the record with the reactions it has come to. `residual`: not yet divided by
+  /// the data.
   static void note(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
-                   ContactSolution& solution);
+                   const Vector& reaction, ContactSolution& solution);
+  /// Notes it without counting, where a record is asked for.
+  static void record(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
+                     const Vector& reaction, ContactSolution& solution);
 
  protected:
   /// Why such a problem is not for this solver; empty: it is.

@@ -47,6 +47,9 @@ enum class ContactOutcome : char {
 struct ContactIteration {
   const char* phase = "";  ///< "sweep", "newton", …
   double residual = 0.0;   ///< after it, relative
+  /// Points that press, of those with friction the ones on and off the limit, and points that do another thing than
+  /// after the iteration before (before the first: than the reactions it starts from).
+  Index closed = 0, slipping = 0, sticking = 0, changed = 0;
 };
 
 struct ContactSolution {
@@ -66,6 +69,7 @@ struct ContactSolution {
   int newton_steps = 0;    ///< of them, those with a linear system
   int factorizations = 0;  ///< of those, the ones that could not use the factor of an earlier step
   std::vector<ContactIteration> record;
+  std::vector<ContactStatus> record_status;  ///< per point, after the last iteration of the record: work space
 
   [[nodiscard]] bool solved() const { return outcome == ContactOutcome::solved; }
 };

@@ -80,7 +80,7 @@ std::string Extragradient::iterate(const ContactSystem& system, const ContactOpt
   for (int k = 1; k <= limit; ++k) {
     advance(system, current);
     const double residual = system.residual(current);
-    note(system, options, "extragradient", residual, solution);
+    note(system, options, "extragradient", residual, current.reaction, solution);
     if (!std::isfinite(residual)) break;
     if (verdict_.is_solved(system, k, residual, current)) return "";
   }

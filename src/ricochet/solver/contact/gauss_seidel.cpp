@@ -58,7 +58,7 @@ class GaussSeidelSolver final : public IterativeContactSolver {
     for (int k = 1; k <= limit; ++k) {
       sweeps_.sweep(system, 1.0, current);
       const double residual = system.residual(current);
-      note(system, options, "sweep", residual, solution);
+      note(system, options, "sweep", residual, current.reaction, solution);
       if (!std::isfinite(residual)) return "the sweeps diverged: W is not positive definite";
       // u gathers the rounding of its updates; the verdict is on a fresh one.
       if (residual > options.tolerance * system.data() && k % 16 != 0) continue;

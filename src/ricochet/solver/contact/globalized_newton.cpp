@@ -135,7 +135,8 @@ bool GlobalizedNewton::run(const ContactWork& work, bool line_search, BestIterat
     ++work.solution.newton_steps;
     if (!full_step(work, reduction)) return false;
     reduction = next_reduction(work);
-    IterativeContactSolver::note(system, work.options, "newton", system.residual(trial_), work.solution);
+    IterativeContactSolver::note(system, work.options, "newton", system.residual(trial_), trial_.reaction,
+                                 work.solution);
     if (system.is_solved(trial_, work.options.tolerance)) {
       std::swap(work.current, trial_);
       if (work.is_done(work.current) || ++inexact == inexact_limit) return true;

@@ -130,7 +130,7 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
     std::swap(current.reaction, next_.reaction);
     std::swap(current.motion, next_.motion);
     const double residual = system.residual(current);
-    note(system, options, "gradient", residual, solution);
+    note(system, options, "gradient", residual, current.reaction, solution);
     if (!std::isfinite(residual)) break;
     if (holds_ && is_held_problem_solved(system, current)) hold(system, current, residual);
     if (!holds_ && k == next_comparison) {

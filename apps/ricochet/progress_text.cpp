@@ -1,0 +1,80 @@
+#include "progress_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/failure_bundle.hpp"
+#include "ricochet/io/progress.hpp"
+#include "ricochet/io/run_directory.hpp"
+
+namespace ricochet::program {
+
+namespace {
+
+bool is_running(const std::string& directory, const RunSummary& summary) {
+  return summary.status == "running" && RunDirectory::is_in_use(directory);
+}
+
+double seconds_of(const RunSummary& summary, const std::string& phase) {
+  const auto found = std::find_if(summary.timings.begin(), summary.timings.end(),
+                                  [&](const auto& timing) { return timing.first == phase; });
+  return found != summary.timings.end() ? found->second : 0.0;
+}
+
+}  // namespace
+
+std::string status_text(const std::string& directory, const RunSummary& summary) {
+  if (summary.status == "done") return "";
+  if (summary.status == "failed") return " (FAILED)";
+  // A run that has neither ended nor is going on was killed.
+  return is_running(directory, summary) ? " (running)" : " (interrupted)";
+}
+
+void print_progress(const std::string& directory, const RunSummary& summary) {
+  if (summary.status == "done") return;
+  const auto done = static_cast<double>(summary.steps), all = static_cast<double>(summary.all_steps);
+  fmt::print("  step {} of {} ({:.3g} %), t = {:.6g}", summary.steps, summary.all_steps, 100.0 * done / all,
+             done * summary.step);
+  const double seconds =
+      seconds_of(summary, "steps") + seconds_of(summary, "output") + seconds_of(summary, "checkpoints");
+  if (done > 0.0 && seconds > 0.0) {
+    fmt::print(", {:.3g} steps per second", done / seconds);
+    if (is_running(directory, summary)) fmt::print(", {} left", duration_text(seconds / done * (all - done)));
+  }
+  fmt::print("\n");
+  const std::vector<CheckpointFile> checkpoints = checkpoint_files(directory);
+  if (checkpoints.empty()) {
+    fmt::print("  no checkpoint yet\n");
+  } else {
+    fmt::print("  checkpoint of step {}: {}\n", checkpoints.back().step, checkpoints.back().path);
+  }
+  if (!is_running(directory, summary)) fmt::print("  `ricochet run` with --resume goes on with it\n");
+  for (const std::string& file : failure_files(directory)) fmt::print("  of the step that failed: {}\n", file);
+}
+
+void describe_checkpoint(const std::string& path) {
+  const Snapshot snapshot = read_checkpoint(path);
+  const bool failed = snapshot.has("failure.message");
+  fmt::print("{}: {} step {}, t = {:.9g}, of a run with Ricochet {}\n", path,
+             failed ? "left by a run that failed; the state of" : "checkpoint of", snapshot.integer("state.step"),
+             snapshot.real("state.time"), snapshot.text("identity.version"));
+  if (failed) fmt::print("  {}\n", snapshot.text("failure.message"));
+  const Vector& displacement = snapshot.reals("state.displacement");
+  const Vector& velocity = snapshot.reals("state.velocity");
+  const Vector& reaction = snapshot.reals("state.normal_reaction");
+  const auto largest = [](const Vector& values) { return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0.0; };
+  fmt::print("  {} dofs, largest displacement {:.6g}, largest velocity {:.6g}\n", displacement.size(),
+             largest(displacement), largest(velocity));
+  fmt::print("  {} contact points, {} closed, largest normal reaction {:.6g}\n", reaction.size(),
+             (reaction.array() > 0.0).count(), largest(reaction));
+  const Snapshot::Texts& keys = snapshot.texts("identity.case.keys");
+  const Snapshot::Texts& values = snapshot.texts("identity.case.values");
+  for (const char* wanted : {"time.scheme", "mass.type", "time.step", "time.end"}) {
+    const auto at = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), wanted) - keys.begin());
+    if (at < std::min(keys.size(), values.size())) fmt::print("  {} = {}\n", wanted, values[at]);
+  }
+}
+
+}  // namespace ricochet::program

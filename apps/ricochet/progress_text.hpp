@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "ricochet/io/summary.hpp"
+
+/// @file Runs that go on, were interrupted or failed, in words.
+namespace ricochet::program {
+
+/// After the title of a run that is not complete: " (running)", " (interrupted)", " (FAILED)".
+[[nodiscard]] std::string status_text(const std::string& directory, const RunSummary& summary);
+
+/// How far it is, how fast it goes, and what can be done with it.
+void print_progress(const std::string& directory, const RunSummary& summary);
+
+/// A checkpoint, or the state that a failed step has left.
+void describe_checkpoint(const std::string& path);
+
+}  // namespace ricochet::program

@@ -1,0 +1,139 @@
+#include "ricochet/case/run_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+
+namespace ricochet {
+
+namespace {
+
+std::size_t column_of(const std::vector<std::string>& columns, const std::string& name) {
+  return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
+}
+
+}  // namespace
+
+RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme, const State& state,
+                     const std::vector<std::string>& columns, const Snapshot* snapshot)
+    : model_(model),
+      stops_(input.check.stops),
+      momentum_(model.problem, scheme, state),
+      kinetic_(column_of(columns, "kinetic_energy")),
+      elastic_(column_of(columns, "elastic_energy")),
+      total_(column_of(columns, "total_energy")),
+      residual_(column_of(columns, "energy_residual")),
+      momentum_column_(column_of(columns, "momentum_x")),
+      angular_column_(column_of(columns, model.problem.dimension == 2 ? "angular_momentum_z" : "angular_momentum_x")) {
+  const std::string solver =
+      input.solver.method == "direct" ? "" : ", or solver.tolerance where steps are solved by iterations";
+  energy_.result.name = "energy_residual";
+  energy_.result.limit = input.check.energy_residual;
+  energy_.advice =
+      "stiffnesses or densities that differ by many orders of magnitude, a Poisson's ratio at 1/2 or an extreme "
+      "time.step "
+      "are likely causes" +
+      solver + "; do not trust this run to more digits than that";
+  linear_.result.name = "momentum";
+  linear_.result.limit = input.check.momentum;
+  linear_.advice = "the same causes are likely as for energy that is missing" + solver;
+  angular_.result.name = "angular_momentum";
+  angular_.result.limit = input.check.angular_momentum;
+  angular_.advice = linear_.advice;
+  // The functions of degree 1 on curved cells do not contain rotations.
+  if (!model.contains_rotations) angular_.result.limit = 0.0;
+  if (snapshot == nullptr) return;
+  momentum_.load(*snapshot, "checks.impulse");
+  const Vector& numbers = snapshot->reals("checks.state", 13);
+  start_ = {numbers.head(3), numbers.segment(3, 3)};
+  energy_scale_ = numbers[6];
+  momentum_scale_ = numbers[7];
+  ignored_scale_ = numbers[8];
+  energy_.result.largest = numbers[9];
+  linear_.result.largest = numbers[10];
+  angular_.result.largest = numbers[11];
+  has_start_ = numbers[12] != 0.0;
+  const Snapshot::Integers& told = snapshot->integers("checks.told", 0, 1);
+  if (told.size() != 3) return;
+  energy_.told = told[0] != 0;
+  linear_.told = told[1] != 0;
+  angular_.told = told[2] != 0;
+}
+
+void RunChecks::save(Snapshot& snapshot, const std::string& name) const {
+  momentum_.save(snapshot, name + ".impulse");
+  Vector numbers(13);
+  numbers << start_.force, start_.moment, energy_scale_, momentum_scale_, ignored_scale_, energy_.result.largest,
+      linear_.result.largest, angular_.result.largest, has_start_ ? 1.0 : 0.0;
+  snapshot.save(name + ".state", numbers);
+  snapshot.save(name + ".told", Snapshot::Integers{energy_.told ? 1 : 0, linear_.told ? 1 : 0, angular_.told ? 1 : 0});
+}
+
+Resultant RunChecks::momentum(const std::vector<double>& row) const {
+  Resultant result;
+  const auto d = static_cast<std::size_t>(model_.problem.dimension);
+  for (std::size_t k = 0; k < d; ++k) result.force[static_cast<Index>(k)] = row[momentum_column_ + k];
+  if (d == 2) {
+    result.moment[2] = row[angular_column_];
+  } else {
+    for (std::size_t k = 0; k < d; ++k) result.moment[static_cast<Index>(k)] = row[angular_column_ + k];
+  }
+  return result;
+}
+
+void RunChecks::watch(const std::vector<double>& row, const State& state) {
+  const Resultant now = momentum(row);
+  if (!has_start_) {
+    start_ = now;
+    has_start_ = true;
+  }
+  energy_scale_ = std::max({energy_scale_, std::abs(row[total_]), std::abs(row[kinetic_]), std::abs(row[elastic_])});
+  momentum_scale_ = std::max(momentum_scale_, now.force.norm());
+  const double momentum_scale = momentum_scale_ + momentum_.size();
+  judge(energy_, std::abs(row[residual_]), energy_scale_, row, state);
+  judge(linear_, (now.force - start_.force - momentum_.impulse().force).norm(), momentum_scale, row, state);
+  judge(angular_, (now.moment - start_.moment - momentum_.impulse().moment).norm(), momentum_scale * momentum_.arm(),
+        row, state);
+}
+
+void RunChecks::judge(Account& account, double residual, double scale, const std::vector<double>& row,
+                      const State& state) {
+  CheckResult& result = account.result;
+  if (!(scale > 0.0)) return;
+  const bool broken = result.limit > 0.0 && residual > result.limit * scale;
+  if (broken && &account == &energy_ && !account.told) {
+    // Asked again only when there is much more energy: it takes as long as some steps.
+    if (scale < 10.0 * ignored_scale_) return;
+    if (is_rounding_of_energy(scale, state)) {
+      ignored_scale_ = scale;
+      return;
+    }
+  }
+  result.largest = std::max(result.largest, residual / scale);
+  if (!broken || account.told) return;
+  account.told = true;
+  const std::string what = &account == &energy_ ? "energy" : &account == &linear_ ? "momentum" : "angular momentum";
+  const std::string message = fmt::format(
+      "at t = {:.6g} (step {:.0f}) the account of {} does not close: {:.2g} of the largest {} are missing, "
+      "more than check.{} = {:g}; {}",
+      row[1], row[0], what, residual / scale, what, result.name, result.limit, account.advice);
+  if (stops_) throw Error(ErrorKind::not_converged, message);
+  log::warning(message);
+}
+
+/// A body that is merely displaced has no energy but the rounding of the terms of UᵀKU.
+bool RunChecks::is_rounding_of_energy(double scale, const State& state) const {
+  const Vector magnitude = state.displacement.cwiseAbs();
+  const double terms = magnitude.dot(model_.problem.internal_force->tangent().cwiseAbs() * magnitude);
+  return scale <= 1e-14 * terms;
+}
+
+std::vector<CheckResult> RunChecks::results() const {
+  return {energy_.result, linear_.result, angular_.result};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/case/model.hpp"
+#include "ricochet/io/summary.hpp"
+#include "ricochet/simulation/momentum_account.hpp"
+
+/// @file What a run must keep: its accounts of energy, momentum and angular momentum. Section [check] of a case.
+namespace ricochet {
+
+class RunChecks {
+ public:
+  /// Opens the accounts on a starting state, or on the state of the snapshot. `columns` are those of history.csv.
+  RunChecks(const Case& input, const Model& model, const Scheme& scheme, const State& state,
+            const std::vector<std::string>& columns, const Snapshot* snapshot);
+  void save(Snapshot& snapshot, const std::string& name) const;
+
+  /// After every step.
+  void enter_step(const State& state) { momentum_.enter_step(state); }
+  /// A row of history.csv. Warns the first time that an account does not balance, or throws Error(not_converged) where
+  /// the case asks for that.
+  void watch(const std::vector<double>& row, const State& state);
+  [[nodiscard]] std::vector<CheckResult> results() const;
+
+ private:
+  struct Account {
+    CheckResult result;
+    std::string advice;
+    bool told = false;
+  };
+  void judge(Account& account, double residual, double scale, const std::vector<double>& row, const State& state);
+  [[nodiscard]] bool is_rounding_of_energy(double scale, const State& state) const;
+  [[nodiscard]] Resultant momentum(const std::vector<double>& row) const;
+
+  const Model& model_;
+  bool stops_;
+  MomentumAccount momentum_;
+  std::size_t kinetic_, elastic_, total_, residual_, momentum_column_, angular_column_;
+  Resultant start_;
+  bool has_start_ = false;
+  double energy_scale_ = 0.0, momentum_scale_ = 0.0, ignored_scale_ = 0.0;
+  Account energy_, linear_, angular_;
+};
+
+}  // namespace ricochet

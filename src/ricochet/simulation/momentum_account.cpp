@@ -1,0 +1,92 @@
+#include "ricochet/simulation/momentum_account.hpp"
+
+#include <Eigen/Geometry>
+
+#include "ricochet/simulation/sensor.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// In space, also of a vector in the plane.
+template <class Values>
+Eigen::Vector3d in_space(const Values& values) {
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  result.head(values.size()) = values;
+  return result;
+}
+
+void add(Resultant& sum, const Eigen::Vector3d& position, const Eigen::Vector3d& force) {
+  sum.force += force;
+  sum.moment += position.cross(force);
+}
+
+}  // namespace
+
+MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state)
+    : problem_(problem), step_(scheme.step()), rule_(scheme.work_rule()) {
+  arm_ = problem.nodes.colwise().norm().maxCoeff();
+  constant_load_ = of_nodes(problem.loads.constant());
+  positions_ = (problem.contact.trace * problem.nodes.transpose()).transpose();
+  previous_ = resultant(state.forces);
+}
+
+void MomentumAccount::save(Snapshot& snapshot, const std::string& name) const {
+  Vector numbers(7);
+  numbers << impulse_.force, impulse_.moment, size_;
+  snapshot.save(name, numbers);
+}
+
+void MomentumAccount::load(const Snapshot& snapshot, const std::string& name) {
+  const Vector& numbers = snapshot.reals(name, 7);
+  impulse_.force = numbers.head(3);
+  impulse_.moment = numbers.segment(3, 3);
+  size_ = numbers[6];
+}
+
+Resultant MomentumAccount::of_nodes(const Vector& force) const {
+  const Index d = problem_.dimension;
+  Resultant result;
+  for (Index node = 0; node < problem_.nodes.cols(); ++node)
+    add(result, in_space(problem_.nodes.col(node)), in_space(force.segment(node * d, d)));
+  return result;
+}
+
+MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const {
+  const Index d = problem_.dimension;
+  Sum sum{constant_load_, constant_load_.force.norm()};
+  const auto include = [&sum](const Resultant& part, double sign = 1.0) {
+    sum.total.force += sign * part.force;
+    sum.total.moment += sign * part.moment;
+    sum.size += part.force.norm();
+  };
+  Resultant contact, supports;
+  for (Index i = 0; i < forces.normal_reaction.size(); ++i) {
+    if (forces.normal_reaction[i] != 0.0)
+      add(contact, in_space(positions_.col(i)), in_space(contact_force(problem_.contact, forces, i)));
+  }
+  include(contact);
+  for (Index i = 0; i < forces.support_reaction.size(); ++i) {
+    const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];
+    add(supports, in_space(problem_.nodes.col(dof / d)), forces.support_reaction[i] * Eigen::Vector3d::Unit(dof % d));
+    sum.size += std::abs(forces.support_reaction[i]);
+  }
+  include(supports);
+  if (forces.varying_load.size() > 0) include(of_nodes(forces.varying_load));
+  if (forces.damping_force.size() > 0) include(of_nodes(forces.damping_force), -1.0);
+  return sum;
+}
+
+void MomentumAccount::enter_step(const State& state) {
+  const auto enter = [this](const Sum& sum, double weight) {
+    impulse_.force += step_ * weight * sum.total.force;
+    impulse_.moment += step_ * weight * sum.total.moment;
+    size_ += step_ * weight * sum.size;
+  };
+  const Sum current = resultant(state.forces);
+  if (rule_.previous_weight != 0.0) enter(previous_, rule_.previous_weight);
+  enter(current, rule_.current_weight);
+  previous_ = current;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "ricochet/scheme/scheme.hpp"
+
+/// @file Impulses of the forces that act on the body: what changes its momentum.
+///
+/// A rigid velocity does no work on the stress, so its product with the momentum equation is the balance of momentum:
+/// over a step P₁ − P₀ = h (w₀ F₀ + w₁ F₁), with the resultants F of the loads, obstacles, supports and damping at the
+/// two ends and the scheme's weights (WorkRule). The same for moments about the origin with reference positions. It
+/// holds to rounding where the displacement's functions contain rigid rotations: not for degree 1 on curved cells.
+namespace ricochet {
+
+/// Resultant and moment, or momentum and angular momentum.
+struct Resultant {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+};
+
+class MomentumAccount {
+ public:
+  /// Opens the account on a starting state.
+  MomentumAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  /// Of an account that was saved at the state this one was opened on.
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// Enters a step with the forces at its end (in the state).
+  void enter_step(const State& state);
+  /// Since the start.
+  [[nodiscard]] const Resultant& impulse() const { return impulse_; }
+  /// Σ of the sizes of all impulses, of each kind of force by itself: what their sum is rounded to.
+  [[nodiscard]] double size() const { return size_; }
+  /// Largest distance of a node from the origin.
+  [[nodiscard]] double arm() const { return arm_; }
+
+ private:
+  struct Sum {
+    Resultant total;
+    double size = 0.0;
+  };
+  [[nodiscard]] Sum resultant(const StepForces& forces) const;
+  [[nodiscard]] Resultant of_nodes(const Vector& force) const;
+
+  const SemidiscreteProblem& problem_;
+  double step_;
+  WorkRule rule_;
+  double arm_ = 0.0;
+  Resultant constant_load_;
+  Points positions_;  ///< of the contact points: Σ_j c_ij X_j
+  Sum previous_;
+  Resultant impulse_;
+  double size_ = 0.0;
+};
+
+}  // namespace ricochet

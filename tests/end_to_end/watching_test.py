@@ -1,0 +1,137 @@
+"""Runs that are looked at while they go on, and what is left of those that fail."""
+
+import json
+import re
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import DISC, PROGRAM, SCHEMES, History, TestCase, block_case, run, settings
+
+
+class Watching(TestCase):
+    def start(self, *arguments):
+        process = subprocess.Popen([PROGRAM, "run", DISC, "-o", self.folder / "out", "--quiet", *arguments],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_for(self, condition):
+        deadline = time.monotonic() + 60
+        while not condition():
+            self.assertLess(time.monotonic(), deadline, "nothing has happened")
+            time.sleep(0.05)
+
+    def test_a_run_that_goes_on(self):
+        """info: progress, rate, time left, energy, warnings, checkpoint; and a history that grows, as tail -f shows."""
+        output = self.folder / "out"
+        process = self.start("--set", "time.end=1000", "--set", "output.checkpoint_every=2000")
+        history = output / "history.csv"
+        self.wait_for(lambda: history.exists() and len(list(output.glob("*.ckpt"))) == 2)
+        sizes = set()
+        self.wait_for(lambda: sizes.add(history.stat().st_size) or len(sizes) > 3)
+        summary = output / "summary.json"
+        self.wait_for(lambda: json.loads(summary.read_text())["steps"] > 4000)
+        text = self.expect_status(0, run("info", output)).stdout
+        self.assertIn("(running)", text)
+        found = re.search(r"step (\d+) of 10000000 \(([\d.e-]+) %\), t = ([\d.e-]+), ([\d.e+]+) steps per second, (.*) left",
+                          text)
+        self.assertIsNotNone(found, text)
+        step = int(found[1])
+        self.assertAlmostEqual(float(found[3]), step * 1e-4, delta=1e-5 * step)
+        self.assertGreater(float(found[4]), 10.0)
+        for words in ("energy account closes to", "checkpoint of step", "warning: at t =", "energy 0.0376"):
+            self.assertIn(words, text)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        text = self.expect_status(0, run("info", output)).stdout
+        self.assertIn("(interrupted)", text)
+        self.assertIn("--resume", text)
+        self.assertNotIn(" left", text.split("\n")[1])
+        newest = sorted(output.glob("*.ckpt"))[-1]
+        text = self.expect_status(0, run("info", newest)).stdout
+        self.assertIn(f"checkpoint of step {int(newest.stem.split('-')[1])}, t = ", text)
+        newest.write_bytes(newest.read_bytes()[:-3])
+        self.assertIn("cut off", self.expect_status(2, run("info", newest)).stderr)
+
+    def test_debug_tells_every_contact_iteration(self):
+        for friction in (0.0, 0.3):
+            values = {"contact.0.friction": friction, "initial.velocity": "[0.05,-0.1]", "time.end": 0.014}
+            output = self.folder / f"out-{friction}"
+            process = self.expect_status(0, run("run", DISC, "-o", output, "--log-level", "debug", *settings(values)))
+            told, step = {}, 0
+            changes = 0
+            for line in process.stderr.splitlines():
+                if found := re.match(r"debug: step (\d+), t = ", line):
+                    step = int(found[1])
+                if found := re.match(r"debug: contact: \d+ points, iteration (\d+) \(([\w -]+)\): residual (\S+), (\d+) "
+                                     r"closed(?: \((\d+) stick, (\d+) slip\))?, (\d+) changed", line):
+                    told[step] = told.get(step, 0) + 1
+                    float(found[3])
+                    changes += int(found[7])
+                    if friction:
+                        self.assertEqual(int(found[5]) + int(found[6]), int(found[4]))
+            history = History(output / "history.csv")
+            iterations = {int(s): int(n) for s, n in zip(history["step"], history["iterations"]) if n > 0}
+            self.assertGreater(len(iterations), 20)
+            self.assertEqual(told, iterations)
+            self.assertGreater(changes, 0)
+            # To be told of it changes nothing.
+            again = self.simulate(DISC, f"quiet-{friction}", values)
+            self.assertEqual((again / "history.csv").read_bytes(), (output / "history.csv").read_bytes())
+
+    def test_accounts_that_do_not_close(self):
+        for check in ("energy_residual", "momentum", "angular_momentum"):
+            limit = {"check.energy_residual": 1e-6, f"check.{check}": 1e-17}
+            output = self.folder / f"warn-{check}"
+            process = self.expect_status(0, run("run", DISC, "-o", output, "--quiet", "--set", "time.end=0.02",
+                                                *settings(limit)))
+            name = {"energy_residual": "energy"}.get(check, check.replace("_", " "))
+            self.assertEqual(process.stderr.count("does not close"), 1, process.stderr)
+            self.assertIn(f"the account of {name} does not close", process.stderr)
+            self.assertIn(f"check.{check} = 1e-17", process.stderr)
+            result = json.loads((output / "summary.json").read_text())["checks"][check]
+            self.assertEqual(result["limit"], 1e-17)
+            self.assertGreater(result["largest"], 1e-17)
+            self.assertIn(f"CHECK FAILED: {check}", run("info", output).stdout)
+            stopped = self.folder / f"stop-{check}"
+            process = self.expect_status(3, run("run", DISC, "-o", stopped, "--quiet", "--set", "time.end=0.02",
+                                                "--set", 'check.on_failure="stop"', *settings(limit)))
+            self.assertIn("does not close", process.stderr)
+            self.assertLess(len(History(stopped / "history.csv").rows), 201)
+
+    def test_accounts_close_by_default(self):
+        """In every scheme, far below the limits."""
+        for scheme, mass in SCHEMES.items():
+            values = {"time.scheme": scheme, "mass.type": mass, "contact.0.friction": 0.3, "time.end": 0.05}
+            output = self.simulate(DISC, f"closes-{scheme}", values)
+            for name, check in json.loads((output / "summary.json").read_text())["checks"].items():
+                self.assertEqual(check["limit"], 1e-8)
+                self.assertLess(check["largest"], 1e-11, f"{scheme}: {name}")
+
+    def test_a_failed_step_leaves_its_state(self):
+        case = self.write("case.toml", block_case().replace('preset = "trapezoidal"', "beta = 0.25\ngamma = 0.5"))
+        output = self.folder / "out"
+        process = self.expect_status(3, run("run", case, "-o", output, "--quiet", *settings(
+            {"time.beta": 0.25, "time.gamma": 0, "time.end": 1000, "output.fields_every": 0})))
+        left = list(output.glob("failure-*.ckpt"))
+        self.assertEqual(len(left), 1)
+        self.assertIn(str(left[0]), process.stderr)
+        self.assertIn("use a stable scheme", process.stderr)
+        summary = json.loads((output / "summary.json").read_text())
+        text = self.expect_status(0, run("info", left[0])).stdout
+        self.assertIn(f"the state of step {summary['steps']}", text)
+        self.assertIn("no longer finite", text)
+        text = self.expect_status(0, run("info", output)).stdout
+        self.assertIn("(FAILED)", text)
+        self.assertIn(str(left[0]), text)
+        # It is no checkpoint, and belongs to the results that are not overwritten.
+        self.assertEqual(list(output.glob("checkpoint-*")), [])
+        self.expect_status(0, run("run", case, "-o", output, "--force", "--quiet"))
+        self.assertEqual(list(output.glob("failure-*")), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,125 @@
+#include "ricochet/simulation/momentum_account.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/case/names.hpp"
+#include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
+
+// P(t) − P(0) is the impulse of the forces, to rounding, and so it is with moments: every scheme, mass and multiplier
+// space, with friction on a moving plane, loads that vary, damping and supports.
+
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+using test_support::thrown_bodies;
+using test_support::thrown_case;
+using test_support::ThrownBody;
+
+Resultant momentum(const CaseRun& run, const HistoryRecorder& recorder, const std::vector<double>& row) {
+  Resultant result;
+  const auto value = [&](const std::string& name) {
+    const auto& columns = recorder.columns();
+    return row[static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin())];
+  };
+  const bool flat = run.problem().dimension == 2;
+  result.force << value("momentum_x"), value("momentum_y"), flat ? 0.0 : value("momentum_z");
+  if (flat) {
+    result.moment[2] = value("angular_momentum_z");
+  } else {
+    result.moment << value("angular_momentum_x"), value("angular_momentum_y"), value("angular_momentum_z");
+  }
+  return result;
+}
+
+/// Largest difference, relative to all impulses and momenta; −1: the program refuses the case.
+struct Difference {
+  double momentum = -1.0, angular = -1.0;
+};
+Difference largest_difference(const std::string& text) {
+  std::unique_ptr<CaseRun> run;
+  try {
+    run = std::make_unique<CaseRun>(text);
+  } catch (const Error&) {
+    return {};
+  }
+  HistoryRecorder recorder(run->problem(), *run->model().rotation);
+  MomentumAccount account(run->problem(), run->scheme(), run->state());
+  const auto now = [&] { return momentum(*run, recorder, recorder.row(run->state(), run->simulation().account())); };
+  const Resultant start = now();
+  double force = 0.0, moment = 0.0, size = start.force.norm();
+  run->run(
+      [&] {
+        account.enter_step(run->state());
+        const Resultant at = now();
+        force = std::max(force, (at.force - start.force - account.impulse().force).norm());
+        moment = std::max(moment, (at.moment - start.moment - account.impulse().moment).norm());
+        size = std::max(size, at.force.norm());
+      },
+      false);
+  size += account.size();
+  EXPECT_GT(size, 0.0);
+  return {force / size, moment / (size * account.arm())};
+}
+
+std::string busy_case(const ThrownBody& body, const std::string& mass, const std::string& time,
+                      const std::string& contact) {
+  const bool flat = body.dimension == 2;
+  std::string text =
+      thrown_case(body, mass, time, contact, flat ? "velocity = [0.2, 0.0]\n" : "velocity = [0.2, 0.1, 0.0]\n");
+  text.replace(text.find("mu = 20.0\n"), 10, "mu = 20.0\ndamping = { mass = 0.05 }\n");
+  return text + "[[traction]]\ngroup = \"contact\"\nvalue = " +
+         (flat ? "[\"0.1*sin(9*t)\", \"x\"]\n" : "[\"0.1*sin(9*t)\", \"0\", \"y\"]\n");
+}
+
+TEST(MomentumAccount, BalancesInEverySchemeMassAndMultiplierSpace) {
+  const std::vector<ThrownBody> bodies = thrown_bodies();
+  int runs = 0;
+  for (const std::string& scheme : scheme_names()) {
+    for (const std::string& mass : mass_names()) {
+      for (const std::string& multipliers : multiplier_space_names()) {
+        const std::string time =
+            "scheme = \"" + scheme + "\"\n" + (scheme == "newmark" ? "beta = 0.3025\ngamma = 0.6\n" : "");
+        const Difference found = largest_difference(
+            busy_case(bodies[0], mass, time,
+                      "friction = 0.3\nmultipliers = \"" + multipliers + "\"\nunstable_multipliers = \"allow\"\n"));
+        if (found.momentum < 0.0) continue;
+        ++runs;
+        EXPECT_LT(found.momentum, 1e-13) << scheme << ' ' << mass << ' ' << multipliers;
+        EXPECT_LT(found.angular, 1e-13) << scheme << ' ' << mass << ' ' << multipliers;
+      }
+    }
+  }
+  EXPECT_GT(runs, 30);
+  for (const std::size_t body : {std::size_t{2}, std::size_t{3}, std::size_t{4}}) {
+    const Difference found =
+        largest_difference(busy_case(bodies[body], "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
+                                     "friction = 0.3\nmultipliers = \"p1\"\nunstable_multipliers = \"allow\"\n"));
+    EXPECT_LT(found.momentum, 1e-13) << bodies[body].name;
+    EXPECT_LT(found.angular, 1e-13) << bodies[body].name;
+  }
+}
+
+TEST(MomentumAccount, BalancesWithMovingSupports) {
+  for (const auto& [scheme, mass] :
+       {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"}, std::pair{"midpoint", "consistent"},
+        std::pair{"klr-conserving", "consistent"}, std::pair{"semi-explicit", "equivalent-lumped"}}) {
+    const Difference found =
+        largest_difference("[mesh]\nfile = \"" RICOCHET_TEST_DATA
+                           "/meshes/quadrilateral_o1_msh41_ascii.msh\"\n"
+                           "[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n"
+                           "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.05]\nnormal = [0.0, 1.0]\n"
+                           "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.4\n"
+                           "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\", \"y\"]\nvalue = \"-0.1*sin(7*t)\"\n"
+                           "[mass]\ntype = \"" +
+                           std::string(mass) + "\"\n[time]\nscheme = \"" + scheme + "\"\nstep = 0.004\nend = 0.8\n");
+    EXPECT_GE(found.momentum, 0.0) << scheme;
+    EXPECT_LT(found.momentum, 1e-13) << scheme;
+    EXPECT_LT(found.angular, 1e-13) << scheme;
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
