@@ -102,7 +102,7 @@ class CommandLine(TestCase):
     def test_a_run_is_not_overwritten_without_force(self):
         output = self.simulate(self.case)
         before = {path.name: path.read_bytes() for path in output.iterdir()}
-        self.assertEqual(sorted(before), ["history.csv", "results.h5", "results.xdmf", "summary.json"])
+        self.assertEqual(sorted(before), ["history.csv", "obstacles.xdmf", "results.h5", "results.xdmf", "summary.json"])
         process = self.expect_status(4, run("run", self.case, "-o", output, "--quiet"))
         self.assertIn("--force", process.stderr)
         self.assertEqual({path.name: path.read_bytes() for path in output.iterdir()}, before)

@@ -239,6 +239,7 @@ class ResultsFiles(TestCase):
             side = self.folder / "out" / "results.xdmf"
             # Made empty first: that is before its first frame.
             if side.exists() and side.stat().st_size > 0:
+                xml.etree.ElementTree.parse(side.with_name("obstacles.xdmf"))
                 tree = xml.etree.ElementTree.parse(side)
                 counts.add(sum(1 for _ in tree.iter("Time")))
             os.kill(process.pid, signal.SIGCONT)
@@ -302,6 +303,27 @@ class ResultsFiles(TestCase):
         for fields in ("fields_every = 3\nfields_interval = 0.1", "fields = []", "fields = [\"stres\"]"):
             case = self.write("bad.toml", block_case() + "[output]\n" + fields + "\n")
             self.expect_status(2, run("run", case, "-o", self.folder / "bad"))
+
+    def test_obstacles(self):
+        """The planes, where they are at the time of each frame, as far as the body reaches."""
+        text = block_case().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nvelocity = [0.3, -0.05]")
+        results = self.simulate(self.write("case.toml", text))
+        side = (results / "results.xdmf").read_text()
+        self.assertLess(side.index('xi:include href="obstacles.xdmf"'), side.index('Grid Name="body" GridType="Coll'))
+        times = [at for at, _ in frames(results)[2]]
+        tree = xml.etree.ElementTree.parse(results / "obstacles.xdmf")
+        shown = []
+        for grid in tree.iter("Grid"):
+            if grid.get("GridType") == "Uniform":
+                at = float(grid.find("Time").get("Value"))
+                points = numpy.array(grid.find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
+                shown.append(at)
+                numpy.testing.assert_allclose(points[:, 1], -0.05 * at, rtol=0, atol=1e-15)
+                self.assertLess(points[:, 0].min(), 0.1)
+                self.assertGreater(points[:, 0].max(), 1.5)
+                self.assertFalse(points[:, 2].any())
+                self.assertEqual(grid.find("Topology/DataItem").text.split(), ["0", "1"])
+        self.assertEqual(shown, times)
 
     def test_ten_thousand_frames_stay_openable(self):
         case = self.write("case.toml", block_case() + "[output]\nfields_every = 1\n")

@@ -19,7 +19,7 @@ from harness import DISC, MESHES, PROGRAM, SCHEMES, TestCase, block_case, run, s
 
 KILLS = 50
 FULL_DISKS = 24
-RESULTS = {"history.csv", "results.h5", "results.xdmf", "probes-3.csv"}
+RESULTS = {"history.csv", "results.h5", "results.xdmf", "obstacles.xdmf", "probes-3.csv"}
 
 PROBES = """
 [[probe]]

@@ -35,6 +35,26 @@ class Plane final : public Obstacle {
   }
   [[nodiscard]] bool moves() const override { return rotation_rate_ != 0.0 || !velocity_.isZero(0.0); }
   [[nodiscard]] Vector translation(double time) const override { return time * velocity_; }
+  /// What moves along the plane is not seen, what turns is.
+  [[nodiscard]] Points surface(const Vector& centre, double radius, double time) const override {
+    const Vector lift = translation(time).dot(normal_) * normal_;
+    const Vector middle = centre - gap(centre) * normal_ + lift;
+    if (normal_.size() == 2) {
+      const Eigen::Vector2d along(normal_[1], -normal_[0]);
+      Points ends(2, 2);
+      ends << middle - radius * along, middle + radius * along;
+      return ends;
+    }
+    const Eigen::Vector3d axis = normal_;
+    const Eigen::Vector3d first = Eigen::AngleAxisd(rotation_rate_ * time, axis) * axis.unitOrthogonal().eval();
+    const Eigen::Vector3d second = axis.cross(first);
+    Points corners(3, 4);
+    for (int k = 0; k < 4; ++k) {
+      const double a = k == 0 || k == 3 ? -radius : radius, b = k < 2 ? -radius : radius;
+      corners.col(k) = Eigen::Vector3d(middle) + a * first + b * second;
+    }
+    return corners;
+  }
   [[nodiscard]] Vector surface_velocity(const Vector& position, double time) const override {
     if (rotation_rate_ == 0.0) return velocity_;
     const Eigen::Vector3d axis = normal_;

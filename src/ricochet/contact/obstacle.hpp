@@ -24,6 +24,9 @@ class Obstacle {
   [[nodiscard]] virtual bool moves() const = 0;
   /// Displacement of the obstacle as a whole since t = 0: the gap at t is that of position − translation(t) at 0.
   [[nodiscard]] virtual Vector translation(double time) const = 0;
+  /// For pictures: points of the surface at a time (d × count), in order along it in 2D, the corners of quadrilaterals
+  /// in 3D (four after each other), as far as `radius` around the point of the surface nearest to `centre`.
+  [[nodiscard]] virtual Points surface(const Vector& centre, double radius, double time) const = 0;
   /// Velocity of the obstacle's material at a position of its surface: v + ω × (position − its point at that time).
   [[nodiscard]] virtual Vector surface_velocity(const Vector& position, double time) const = 0;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/obstacle_surfaces.hpp"
 #include "ricochet/io/vtk_order.hpp"
 #include "ricochet/io/xdmf_file.hpp"
 
@@ -79,7 +80,7 @@ struct ResultsWriter::Implementation {
                  const ResultsOptions& options, const Snapshot* snapshot, const std::string& name);
   [[nodiscard]] std::string grid(double time, long frame) const;
 
-  std::string path, side_path;
+  std::string path, side_path, obstacle_path;
   std::vector<std::unique_ptr<FieldSource>> sources;
   std::vector<Field> fields;
   std::vector<const void*> values;  ///< of the fields
@@ -87,6 +88,8 @@ struct ResultsWriter::Implementation {
   std::string mesh;                 ///< XDMF shared by all frames
   std::optional<FrameFile> file;
   std::optional<XdmfFile> side;
+  ObstacleSurfaces obstacles;
+  std::optional<XdmfFile> obstacle_side;
 };
 
 ResultsWriter::Implementation::Implementation(const std::string& directory, const Body& body,
@@ -94,8 +97,10 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
                                               const Snapshot* snapshot, const std::string& name)
     : path(directory + "/results.h5"),
       side_path(directory + "/results.xdmf"),
+      obstacle_path(directory + "/obstacles.xdmf"),
       sources(make_field_sources({body, problem, wanted_fields(options.fields)})),
-      precision(options.file.single ? 4 : 8) {
+      precision(options.file.single ? 4 : 8),
+      obstacles(problem) {
   for (const auto& source : sources) {
     for (const Field& field : source->fields()) fields.push_back(field);
   }
@@ -106,9 +111,11 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
   const std::vector<FixedDataset> fixed{node_positions(space), std::move(cells.set)};
   if (snapshot == nullptr) {
     file.emplace(path, fixed, datasets_of(fields), options.file);
-    side.emplace(side_path);
+    if (obstacles.any()) obstacle_side.emplace(obstacle_path, "obstacles");
+    side.emplace(side_path, "body", obstacles.any() ? "obstacles.xdmf" : "");
   } else {
     file.emplace(path, fixed, datasets_of(fields), options.file, *snapshot, name + ".frames");
+    if (obstacles.any()) obstacle_side.emplace(obstacle_path, *snapshot, name + ".obstacles");
     side.emplace(side_path, *snapshot, name + ".side");
   }
 }
@@ -145,6 +152,7 @@ void ResultsWriter::write(const State& state) {
   const long frame = own.file->frames();
   own.file->append(own.values);
   // What the side-file names is in the file by now, even if the run is killed before the next frame.
+  if (own.obstacle_side) own.obstacle_side->append(own.obstacles.grid(state.time));
   own.side->append(own.grid(state.time, frame));
 }
 
@@ -155,11 +163,13 @@ long ResultsWriter::frames() const {
 void ResultsWriter::save(Snapshot& snapshot, const std::string& name) const {
   implementation_->file->save(snapshot, name + ".frames");
   implementation_->side->save(snapshot, name + ".side");
+  if (implementation_->obstacle_side) implementation_->obstacle_side->save(snapshot, name + ".obstacles");
 }
 
 void ResultsWriter::sync() const {
   sync_to_disk(implementation_->path);
   sync_to_disk(implementation_->side_path);
+  if (implementation_->obstacle_side) sync_to_disk(implementation_->obstacle_path);
 }
 
 }  // namespace ricochet

@@ -11,6 +11,8 @@
 ///
 /// results.h5:  /mesh/nodes (nodes × 3), /mesh/cells (cells × nodes in VTK's order, or XDMF's mixed list),
 ///   /frames/NNNNNN/… the fields (see fields/field_source.hpp and the README).
+///
+/// Beside them, where there are obstacles, obstacles.xdmf with their surfaces, which results.xdmf includes.
 namespace ricochet {
 
 struct ResultsOptions {

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What a run leaves in its directory, checkpoints aside.
-constexpr const char* result_files[] = {"history.csv", "summary.json", "results.h5", "results.xdmf"};
+constexpr const char* result_files[] = {"history.csv", "summary.json", "results.h5", "results.xdmf", "obstacles.xdmf"};
 
 int open_directory(const std::string& path) {
   return open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

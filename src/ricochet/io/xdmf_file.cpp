@@ -1,5 +1,7 @@
 #include "ricochet/io/xdmf_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 
 #include "ricochet/io/durable_file.hpp"
@@ -8,16 +10,19 @@ namespace ricochet {
 
 namespace {
 
-const std::string head =
-    "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
-    "    <Grid Name=\"time\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
 const std::string tail = "    </Grid>\n  </Domain>\n</Xdmf>\n";
 
 }  // namespace
 
-XdmfFile::XdmfFile(std::string path)
+XdmfFile::XdmfFile(std::string path, const std::string& collection, const std::string& included)
     : path_(std::move(path)), file_(path_, std::ios::in | std::ios::out | std::ios::trunc | std::ios::binary) {
   if (!file_) throw_file_error(path_, "write", errno);
+  std::string head =
+      "<?xml version=\"1.0\"?>\n<Xdmf xmlns:xi=\"http://www.w3.org/2001/XInclude\" Version=\"3.0\">\n  <Domain>\n";
+  // First: readers that know one collection only take the last.
+  if (!included.empty())
+    head += fmt::format("    <xi:include href=\"{}\" xpointer=\"xpointer(/Xdmf/Domain/Grid)\"/>\n", included);
+  head += fmt::format("    <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", collection);
   append(head);
 }
 

@@ -10,8 +10,9 @@ namespace ricochet {
 
 class XdmfFile {
  public:
-  /// A new file. Throws Error(file_access).
-  explicit XdmfFile(std::string path);
+  /// A new file of a collection of this name. `included`: another such file, beside it, whose collection is shown with
+  /// this one; empty: none. Throws Error(file_access).
+  XdmfFile(std::string path, const std::string& collection, const std::string& included = "");
   /// Goes on after the grids that were there when save() was called. Throws Error(file_access) where it is not that
   /// file.
   XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name);

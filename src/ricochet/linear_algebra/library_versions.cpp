@@ -21,7 +21,7 @@ std::string blas_version() {
 
 /// Which of the compiled versions of a function runs, see base/instruction_sets.hpp.
 const char* instruction_set() {
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
   if (__builtin_cpu_supports("x86-64-v4")) return "x86-64-v4";
   if (__builtin_cpu_supports("x86-64-v3")) return "x86-64-v3";
 #endif
