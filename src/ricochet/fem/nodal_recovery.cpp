@@ -2,6 +2,8 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "ricochet/base/parallel.hpp"
 
@@ -13,6 +15,9 @@ namespace {
 constexpr int widest_patch = 3;
 /// Of the columns of the fit: what is less dependent than this determines nothing.
 constexpr double dependence = 1e-3;
+/// Σ |weights| up to which a fit is taken: it says how much the value at the node may exceed those of the cells. Few
+/// cells on one side of a node determine a linear function, but extrapolate whatever else they hold by far.
+constexpr double most_amplification = 2.5;
 
 class Recovery {
  public:
@@ -78,38 +83,51 @@ class Recovery {
     patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
   }
 
+  using Weights = std::vector<std::pair<Index, double>>;
+
   /// The value at the node of the fit Σ_c (a + b·(x_c − x))² → min is a sum of the cells' values with these weights.
-  std::vector<std::pair<Index, double>> fit(Index node, int of_material) const {
+  Weights fit(Index node, int of_material) const {
     std::vector<Index> patch;
     visit_cells(node, [&](Index cell) {
       if (material(cell) == of_material) patch.push_back(cell);
     });
     const std::vector<Index> nearest = patch;
-    for (int attempt = 0; attempt < widest_patch; ++attempt) {
-      const auto count = static_cast<Index>(patch.size());
-      if (count > dimension_) {
-        Matrix columns(count, dimension_ + 1);
-        columns.col(0).setOnes();
-        for (Index i = 0; i < count; ++i) {
-          columns.row(i).tail(dimension_) =
-              (centres_.col(patch[static_cast<std::size_t>(i)]) - body_.space->nodes.col(node)).transpose();
-        }
-        columns.rightCols(dimension_) /= columns.rightCols(dimension_).norm();
-        Eigen::ColPivHouseholderQR<Matrix> factor(columns);
-        factor.setThreshold(dependence);
-        if (factor.rank() == dimension_ + 1) {
-          // a = e₀ᵀ (columns)⁺ values: the first row of the pseudo-inverse.
-          const Matrix inverse = factor.solve(Matrix::Identity(count, count));
-          std::vector<std::pair<Index, double>> result;
-          for (Index i = 0; i < count; ++i) result.emplace_back(patch[static_cast<std::size_t>(i)], inverse(0, i));
-          return result;
-        }
-      }
-      widen(of_material, patch);
+    Weights best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int attempt = 0; attempt < widest_patch && least > most_amplification; ++attempt) {
+      if (attempt > 0) widen(of_material, patch);
+      Weights found = fit(node, patch);
+      if (found.empty()) continue;
+      double amplification = 0.0;
+      for (const auto& [cell, weight] : found) amplification += std::abs(weight);
+      if (amplification >= least) continue;
+      least = amplification;
+      best = std::move(found);
     }
-    std::vector<std::pair<Index, double>> mean;
-    for (const Index cell : nearest) mean.emplace_back(cell, 1.0 / static_cast<double>(nearest.size()));
-    return mean;
+    if (!best.empty()) return best;
+    for (const Index cell : nearest) best.emplace_back(cell, 1.0 / static_cast<double>(nearest.size()));
+    return best;
+  }
+
+  /// None where the cells of the patch do not determine a linear function.
+  Weights fit(Index node, const std::vector<Index>& patch) const {
+    const auto count = static_cast<Index>(patch.size());
+    if (count <= dimension_) return {};
+    Matrix columns(count, dimension_ + 1);
+    columns.col(0).setOnes();
+    for (Index i = 0; i < count; ++i) {
+      columns.row(i).tail(dimension_) =
+          (centres_.col(patch[static_cast<std::size_t>(i)]) - body_.space->nodes.col(node)).transpose();
+    }
+    columns.rightCols(dimension_) /= columns.rightCols(dimension_).norm();
+    Eigen::ColPivHouseholderQR<Matrix> factor(columns);
+    factor.setThreshold(dependence);
+    if (factor.rank() <= dimension_) return {};
+    // a = e₀ᵀ (columns)⁺ values: the first row of the pseudo-inverse.
+    const Matrix inverse = factor.solve(Matrix::Identity(count, count));
+    Weights result;
+    for (Index i = 0; i < count; ++i) result.emplace_back(patch[static_cast<std::size_t>(i)], inverse(0, i));
+    return result;
   }
 
   const Body& body_;
