@@ -234,6 +234,19 @@ class Resume(TestCase):
         self.assertIn("history.csv: has 5 bytes", process.stderr)
         self.expect_status(1, run("run", self.disc, "-o", output, "--resume", "--force"))
 
+    def test_results_of_nobody_knows_what_are_not_overwritten(self):
+        """Nothing in the directory says that they are of this case: a job that ran before must not be lost."""
+        values = busy("newmark")
+        for k, summary in enumerate((None, "", "{}")):
+            output = self.folder / f"foreign{k}"
+            output.mkdir()
+            (output / "history.csv").write_text("step,time\n0,0\n")
+            if summary is not None:
+                (output / "summary.json").write_text(summary)
+            process = self.expect_status(4, run("run", self.disc, "-o", output, "--resume", *settings(values)))
+            self.assertIn("neither a checkpoint nor a summary.json", process.stderr)
+            self.assertEqual((output / "history.csv").read_text(), "step,time\n0,0\n")
+
     def test_one_run_at_a_time(self):
         output = self.folder / "out"
         process = start(self.disc, output, {"time.end": 100})

@@ -17,6 +17,7 @@
 #include "ricochet/case/run_judgement.hpp"
 #include "ricochet/case/run_times.hpp"
 #include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/failure_bundle.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/io/run_directory.hpp"
@@ -66,12 +67,19 @@ void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
                           contact));
 }
 
-/// Takes away what an earlier run left (this one may write no fields). Called when the new run is ready to start, so
-/// that a case that is refused costs nothing.
-void remove_old_run(const RunDirectory& directory, const RunOptions& options) {
+/// Takes away what an earlier run left (this one may write no fields) and says which run is here now. Called when the
+/// new run is ready to start, so that a case that is refused costs nothing. Whenever it is interrupted, summary.json
+/// describes a run that --resume may start from its beginning, or one that is there to its end.
+void replace_old_run(const RunDirectory& directory, const RunOptions& options, RunSummary summary) {
   const std::string contact = export_directory(options);
   const std::vector<std::string> problems = exported_contact_problems(contact);
-  remove_files(directory.results());
+  const std::string summary_path = directory.file("summary.json");
+  remove_files(directory.left_behind(-1));
+  summary.status = "running";
+  write_durably(summary_path, to_json(summary));
+  std::vector<std::string> results = directory.results();
+  std::erase(results, summary_path);
+  remove_files(results);
   remove_files(problems);
   std::error_code problem;
   if (!problems.empty() && std::filesystem::is_empty(contact, problem)) std::filesystem::remove(contact, problem);
@@ -106,6 +114,7 @@ class Run {
   RunTimes times_;
   std::unique_ptr<Model> model_;
   std::unique_ptr<Scheme> scheme_;
+  bool knows_what_ran_ = false;       ///< to be resumed: there is a summary, and it is that of this case
   std::optional<Snapshot> snapshot_;  ///< that the run goes on from
   std::optional<Simulation> simulation_;
   std::optional<ContactExport> contact_export_;
@@ -139,8 +148,9 @@ bool Run::is_complete() {
   } catch (const Error&) {
     return false;  // a summary is not waited for until it is on the disk: checkpoints are
   }
-  if (!summary_.parameters.empty())
-    require_same_case(input_, summary_.version, summary_.parameters, options_.output_directory);
+  if (summary_.parameters.empty()) return false;
+  knows_what_ran_ = true;
+  require_same_case(input_, summary_.version, summary_.parameters, options_.output_directory);
   if (summary_.status != "done") return false;
   log::info(fmt::format("{}: this run is complete, there is nothing to resume", options_.output_directory));
   return true;
@@ -154,6 +164,12 @@ void Run::find_checkpoint() {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: cannot be resumed: no checkpoint can be read; start anew with --force",
                             options_.output_directory));
+  } else if (const std::vector<std::string> results = directory_.results(); !knows_what_ran_ && !results.empty()) {
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format("{}: cannot be resumed: there are results ({}), but neither a checkpoint nor a summary.json "
+                    "that says what ran; choose another directory with -o, or start anew with --force",
+                    options_.output_directory, std::filesystem::path(results.front()).filename().string()));
   } else {
     log::info(fmt::format("{}: there is no checkpoint, the run starts from the beginning", options_.output_directory));
   }
@@ -189,7 +205,7 @@ void Run::begin() {
     remove_files(directory_.left_behind(simulation_->state().step));
     log::info(fmt::format("resumed after step {} of {}", simulation_->state().step, steps_));
   } else {
-    remove_old_run(directory_, options_);
+    replace_old_run(directory_, options_, summary_);
   }
   const ContactProvenance provenance = describe_provenance(input_, summary_);
   if (!options_.export_contact.empty())
