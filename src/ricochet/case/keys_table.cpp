@@ -428,7 +428,8 @@ Section output_section() {
                .type = KeyType::integer,
                .unit = "steps",
                .range = nonnegative,
-               .doc = "Fields are written each so many steps; 0: never; absent: about a hundred times in the run."},
+               .doc = "Fields are written each so many steps; 0: never; absent: up to a hundred times in the run, less "
+                      "often in runs of a few seconds."},
               {.name = "fields_interval",
                .type = KeyType::number,
                .unit = "time",
