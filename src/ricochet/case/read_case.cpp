@@ -57,9 +57,13 @@ void list_effective_values(const Remarks& remarks, Case& result) {
 }  // namespace
 
 Case read_case(const std::string& path, const std::vector<std::string>& overrides) {
+  return read_case_text(read_text(path), path, overrides);
+}
+
+Case read_case_text(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
   Case result;
   result.path = path;
-  TomlNode root = parse_toml(read_text(path), path);
+  TomlNode root = parse_toml(text, path);
   Problems problems;
   Remarks remarks;
   result.overridden = apply_overrides(root, overrides, problems);

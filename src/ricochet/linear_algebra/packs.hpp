@@ -4,7 +4,7 @@
 
 /// @file A few numbers side by side, for loops that are compiled for several instruction sets. Included by source files
 /// only: how wide vectors are passed to functions depends on the instruction set, so all calls must be inlined.
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
