@@ -10,10 +10,12 @@ import pathlib
 import random
 import resource
 import signal
+import struct
 import subprocess
 import sys
 import time
 import unittest
+import zlib
 
 from harness import DISC, MESHES, PROGRAM, SCHEMES, TestCase, block_case, run, settings, with_more
 
@@ -198,6 +200,26 @@ class Resume(TestCase):
         free = {**values, "title": "\"another\"", "output.checkpoint_every": 3, "time.step": "1.0e-4"}
         self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(free)))
         self.expect_same(self.reference(values), output)
+
+    def test_refuses_another_version(self):
+        """As if another version had written the checkpoint, and summary.json."""
+        values = busy("newmark")
+        output = self.interrupted(values, "out")
+        version = json.loads((output / "summary.json").read_text())["ricochet_version"]
+        other = version[:-1] + chr(ord(version[-1]) ^ 1)
+        newest = checkpoints(output)[-1]
+        content = newest.read_bytes()
+        at = content.index(version.encode(), content.index(b"identity.version"))
+        content = content[:at] + other.encode() + content[at + len(other):-4]
+        newest.write_bytes(content + struct.pack("<I", zlib.crc32(content)))
+        says = f"it ran with Ricochet {other}, this is {version}"
+        process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values)))
+        self.assertIn(says, process.stderr)
+        for checkpoint in checkpoints(output):
+            checkpoint.unlink()
+        (output / "summary.json").write_text((output / "summary.json").read_text().replace(version, other))
+        process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values)))
+        self.assertIn(says, process.stderr)
 
     def test_refuses_another_mesh(self):
         mesh = self.folder / "block.msh"
