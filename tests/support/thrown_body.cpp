@@ -1,5 +1,6 @@
 #include "support/thrown_body.hpp"
 
+#include "ricochet/case/names.hpp"
 #include "support/case_run.hpp"
 
 namespace ricochet::test_support {
@@ -26,6 +27,51 @@ std::string thrown_case(const ThrownBody& body, const std::string& mass, const s
          (flat ? "gravity = [0.3, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*y\", \"-0.5+0.2*x\"]\n"
                : "gravity = [0.3, 0.1, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*z\", \"0.1\", \"-0.5+0.2*x\"]\n") +
          "[mass]\ntype = \"" + mass + "\"\n[time]\n" + time + "step = 0.01\nend = 1.5\n";
+}
+
+std::string dragged_case(const ThrownBody& body, const std::string& mass, const std::string& time,
+                         const std::string& contact) {
+  const bool flat = body.dimension == 2;
+  std::string text =
+      thrown_case(body, mass, time, contact, flat ? "velocity = [0.2, 0.0]\n" : "velocity = [0.2, 0.1, 0.0]\n");
+  text.replace(text.find("mu = 20.0\n"), 10, "mu = 20.0\ndamping = { mass = 0.05 }\n");
+  return text + "[[traction]]\ngroup = \"contact\"\nvalue = " +
+         (flat ? "[\"0.1*sin(9*t)\", \"x\"]\n" : "[\"0.1*sin(9*t)\", \"0\", \"y\"]\n");
+}
+
+std::string Discretization::time() const {
+  return "scheme = \"" + scheme + "\"\n" + (scheme == "newmark" ? "beta = 0.3025\ngamma = 0.6\n" : "");
+}
+
+std::string Discretization::contact() const {
+  return "friction = 0.3\nmultipliers = \"" + multipliers + "\"\nunstable_multipliers = \"allow\"\n";
+}
+
+std::vector<Discretization> all_discretizations() {
+  std::vector<Discretization> result;
+  for (const std::string& scheme : scheme_names()) {
+    for (const std::string& mass : mass_names()) {
+      for (const std::string& multipliers : multiplier_space_names()) result.push_back({scheme, mass, multipliers});
+    }
+  }
+  return result;
+}
+
+std::vector<SupportedCase> moving_support_cases() {
+  std::vector<SupportedCase> result;
+  for (const auto& [scheme, mass] :
+       {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"}, std::pair{"midpoint", "consistent"},
+        std::pair{"klr-conserving", "consistent"}, std::pair{"semi-explicit", "equivalent-lumped"}}) {
+    result.push_back({scheme, "[mesh]\nfile = \"" RICOCHET_TEST_DATA "/meshes/quadrilateral_o1_msh41_ascii.msh\"\n"
+                              "[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n"
+                              "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.05]\nnormal = [0.0, 1.0]\n"
+                              "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.4\n"
+                              "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\", \"y\"]\nvalue = "
+                              "\"-0.1*sin(7*t)\"\n[mass]\ntype = \"" +
+                                  std::string(mass) + "\"\n[time]\nscheme = \"" + scheme +
+                                  "\"\nstep = 0.004\nend = 0.8\n"});
+  }
+  return result;
 }
 
 }  // namespace ricochet::test_support

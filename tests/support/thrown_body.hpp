@@ -22,4 +22,25 @@ std::vector<ThrownBody> thrown_bodies();
 std::string thrown_case(const ThrownBody& body, const std::string& mass, const std::string& time,
                         const std::string& contact = "", const std::string& obstacle = "");
 
+/// The same with friction's company: a plane that moves, a load that varies in time and space, mass damping.
+std::string dragged_case(const ThrownBody& body, const std::string& mass, const std::string& time,
+                         const std::string& contact);
+
+/// Every scheme, mass and multiplier space that is registered, whether they go together or not.
+struct Discretization {
+  std::string scheme, mass, multipliers;
+
+  /// Lines of [time] and [[contact]], with friction.
+  [[nodiscard]] std::string time() const;
+  [[nodiscard]] std::string contact() const;
+  [[nodiscard]] std::string label() const { return scheme + ' ' + mass + ' ' + multipliers; }
+};
+std::vector<Discretization> all_discretizations();
+
+/// A block pushed into the floor by supports that move, also on contact nodes: 200 steps, under every scheme.
+struct SupportedCase {
+  std::string scheme, text;
+};
+std::vector<SupportedCase> moving_support_cases();
+
 }  // namespace ricochet::test_support

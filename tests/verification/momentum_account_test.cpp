@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/case/names.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
@@ -14,8 +13,8 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::dragged_case;
 using test_support::thrown_bodies;
-using test_support::thrown_case;
 using test_support::ThrownBody;
 
 Resultant momentum(const CaseRun& run, const HistoryRecorder& recorder, const std::vector<double>& row) {
@@ -64,57 +63,29 @@ Difference largest_difference(const std::string& text) {
   return {force / size, moment / (size * account.arm())};
 }
 
-std::string busy_case(const ThrownBody& body, const std::string& mass, const std::string& time,
-                      const std::string& contact) {
-  const bool flat = body.dimension == 2;
-  std::string text =
-      thrown_case(body, mass, time, contact, flat ? "velocity = [0.2, 0.0]\n" : "velocity = [0.2, 0.1, 0.0]\n");
-  text.replace(text.find("mu = 20.0\n"), 10, "mu = 20.0\ndamping = { mass = 0.05 }\n");
-  return text + "[[traction]]\ngroup = \"contact\"\nvalue = " +
-         (flat ? "[\"0.1*sin(9*t)\", \"x\"]\n" : "[\"0.1*sin(9*t)\", \"0\", \"y\"]\n");
-}
-
 TEST(MomentumAccount, BalancesInEverySchemeMassAndMultiplierSpace) {
   const std::vector<ThrownBody> bodies = thrown_bodies();
   int runs = 0;
-  for (const std::string& scheme : scheme_names()) {
-    for (const std::string& mass : mass_names()) {
-      for (const std::string& multipliers : multiplier_space_names()) {
-        const std::string time =
-            "scheme = \"" + scheme + "\"\n" + (scheme == "newmark" ? "beta = 0.3025\ngamma = 0.6\n" : "");
-        const Difference found = largest_difference(
-            busy_case(bodies[0], mass, time,
-                      "friction = 0.3\nmultipliers = \"" + multipliers + "\"\nunstable_multipliers = \"allow\"\n"));
-        if (found.momentum < 0.0) continue;
-        ++runs;
-        EXPECT_LT(found.momentum, 1e-13) << scheme << ' ' << mass << ' ' << multipliers;
-        EXPECT_LT(found.angular, 1e-13) << scheme << ' ' << mass << ' ' << multipliers;
-      }
-    }
+  for (const test_support::Discretization& each : test_support::all_discretizations()) {
+    const Difference found = largest_difference(dragged_case(bodies[0], each.mass, each.time(), each.contact()));
+    if (found.momentum < 0.0) continue;
+    ++runs;
+    EXPECT_LT(found.momentum, 1e-13) << each.label();
+    EXPECT_LT(found.angular, 1e-13) << each.label();
   }
   EXPECT_GT(runs, 30);
   for (const std::size_t body : {std::size_t{2}, std::size_t{3}, std::size_t{4}}) {
     const Difference found =
-        largest_difference(busy_case(bodies[body], "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
-                                     "friction = 0.3\nmultipliers = \"p1\"\nunstable_multipliers = \"allow\"\n"));
+        largest_difference(dragged_case(bodies[body], "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
+                                        "friction = 0.3\nmultipliers = \"p1\"\nunstable_multipliers = \"allow\"\n"));
     EXPECT_LT(found.momentum, 1e-13) << bodies[body].name;
     EXPECT_LT(found.angular, 1e-13) << bodies[body].name;
   }
 }
 
 TEST(MomentumAccount, BalancesWithMovingSupports) {
-  for (const auto& [scheme, mass] :
-       {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"}, std::pair{"midpoint", "consistent"},
-        std::pair{"klr-conserving", "consistent"}, std::pair{"semi-explicit", "equivalent-lumped"}}) {
-    const Difference found =
-        largest_difference("[mesh]\nfile = \"" RICOCHET_TEST_DATA
-                           "/meshes/quadrilateral_o1_msh41_ascii.msh\"\n"
-                           "[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n"
-                           "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.05]\nnormal = [0.0, 1.0]\n"
-                           "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.4\n"
-                           "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\", \"y\"]\nvalue = \"-0.1*sin(7*t)\"\n"
-                           "[mass]\ntype = \"" +
-                           std::string(mass) + "\"\n[time]\nscheme = \"" + scheme + "\"\nstep = 0.004\nend = 0.8\n");
+  for (const auto& [scheme, text] : test_support::moving_support_cases()) {
+    const Difference found = largest_difference(text);
     EXPECT_GE(found.momentum, 0.0) << scheme;
     EXPECT_LT(found.momentum, 1e-13) << scheme;
     EXPECT_LT(found.angular, 1e-13) << scheme;

@@ -19,8 +19,8 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::dragged_case;
 using test_support::thrown_bodies;
-using test_support::thrown_case;
 using test_support::ThrownBody;
 
 bool same_bits(const Vector& a, const Vector& b) {
@@ -79,17 +79,6 @@ bool resumes_to_the_same_bits(const std::string& text, const std::set<long>& at)
   return true;
 }
 
-/// Friction on a plane that moves, a load that varies and mass damping.
-std::string busy_case(const ThrownBody& body, const std::string& mass, const std::string& time,
-                      const std::string& contact) {
-  const bool flat = body.dimension == 2;
-  std::string text =
-      thrown_case(body, mass, time, contact, flat ? "velocity = [0.2, 0.0]\n" : "velocity = [0.2, 0.1, 0.0]\n");
-  text.replace(text.find("mu = 20.0\n"), 10, "mu = 20.0\ndamping = { mass = 0.05 }\n");
-  return text + "[[traction]]\ngroup = \"contact\"\nvalue = " +
-         (flat ? "[\"0.1*sin(9*t)\", \"0\"]\n" : "[\"0.1*sin(9*t)\", \"0\", \"0\"]\n");
-}
-
 TEST(Resume, EverySchemeMassAndMultiplierSpace) {
   // With contact on one side, so that every mass can be made.
   const ThrownBody block{
@@ -98,19 +87,11 @@ TEST(Resume, EverySchemeMassAndMultiplierSpace) {
           "block", "Rectangle(1)={0,0.03,0,1,0.7}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};",
           0.2, 1)};
   std::map<std::string, int> runs;
-  for (const std::string& scheme : scheme_names()) {
-    for (const std::string& mass : mass_names()) {
-      for (const std::string& multipliers : multiplier_space_names()) {
-        std::string time = "scheme = \"" + scheme + "\"\n";
-        if (scheme == "newmark") time += "beta = 0.3025\ngamma = 0.6\n";
-        const std::string contact =
-            "friction = 0.3\nmultipliers = \"" + multipliers + "\"\nunstable_multipliers = \"allow\"\n";
-        std::string text = busy_case(block, mass, time, contact);
-        text.replace(text.find("end = 1.5"), 9, "end = 0.4");
-        if (!resumes_to_the_same_bits(text, {0, 1, 7, 23, 39})) continue;
-        for (const std::string& name : {scheme, mass, multipliers}) ++runs[name];
-      }
-    }
+  for (const test_support::Discretization& each : test_support::all_discretizations()) {
+    std::string text = dragged_case(block, each.mass, each.time(), each.contact());
+    text.replace(text.find("end = 1.5"), 9, "end = 0.4");
+    if (!resumes_to_the_same_bits(text, {0, 1, 7, 23, 39})) continue;
+    for (const std::string& name : {each.scheme, each.mass, each.multipliers}) ++runs[name];
   }
   for (const auto& names : {scheme_names(), mass_names(), multiplier_space_names()}) {
     for (const std::string& name : names) EXPECT_GT(runs[name], 0) << name;
@@ -127,7 +108,7 @@ class ResumeVariant : public ::testing::TestWithParam<Variant> {};
 TEST_P(ResumeVariant, GoesOnWithTheSameBits) {
   const Variant& variant = GetParam();
   const ThrownBody body = thrown_bodies()[variant.body];
-  EXPECT_TRUE(resumes_to_the_same_bits(busy_case(body, variant.mass, variant.time, variant.contact) + variant.more,
+  EXPECT_TRUE(resumes_to_the_same_bits(dragged_case(body, variant.mass, variant.time, variant.contact) + variant.more,
                                        {2, 40, 75, 149}));
 }
 
@@ -147,21 +128,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Variant{"ExplicitBall", "scheme = \"semi-explicit\"\n", "equivalent-lumped", friction, "", 3}),
     [](const auto& info) { return info.param.name; });
 
-/// Supports that move, also on contact nodes, where schemes keep more than the state's vectors.
+/// Where schemes keep more than the state's vectors.
 TEST(Resume, MovingSupports) {
-  for (const auto& [scheme, mass] :
-       {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"}, std::pair{"midpoint", "consistent"},
-        std::pair{"klr-conserving", "consistent"}, std::pair{"semi-explicit", "equivalent-lumped"}}) {
-    const std::string text = "[mesh]\nfile = \"" RICOCHET_TEST_DATA
-                             "/meshes/quadrilateral_o1_msh41_ascii.msh\"\n"
-                             "[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n"
-                             "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.05]\nnormal = [0.0, 1.0]\n"
-                             "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.4\n"
-                             "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\", \"y\"]\nvalue = \"-0.1*sin(7*t)\"\n"
-                             "[mass]\ntype = \"" +
-                             std::string(mass) + "\"\n[time]\nscheme = \"" + scheme + "\"\nstep = 0.004\nend = 0.8\n";
+  for (const auto& [scheme, text] : test_support::moving_support_cases())
     EXPECT_TRUE(resumes_to_the_same_bits(text, {0, 3, 60, 61, 150, 199})) << scheme;
-  }
 }
 
 }  // namespace
