@@ -69,16 +69,30 @@ void describe_case(const std::string& path) {
   if (model->problem.mass.is_diagonal()) print_critical_step(input.time.step, central_difference_limit(model->problem));
 }
 
+/// The lines of a message after its first one further in.
+std::string indented(std::string text) {
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1))
+    text.insert(at + 1, "  ");
+  return text;
+}
+
 double ratio(double a, double b) {
   return b != 0.0 ? a / b : 0.0;
 }
 
+void require_run(const std::string& directory) {
+  if (fs::exists(directory + "/summary.json")) return;
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: no run is in this directory: it holds no summary.json", directory));
+}
+
 void describe_result(const std::string& directory) {
+  require_run(directory);
   const RunSummary s = read_summary(directory + "/summary.json");
   const ColumnDigest energy = s.digest("total_energy");
   const ColumnDigest residual = s.digest("energy_residual");
   fmt::print("{}: {}{}\n", directory, s.title.empty() ? s.case_file : s.title, status_text(directory, s));
-  if (!s.message.empty()) fmt::print("  {}\n", s.message);
+  if (!s.message.empty()) fmt::print("  {}\n", indented(s.message));
   print_progress(directory, s);
   fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass, s.dimension, s.degree);
   fmt::print("  {} nodes, {} cells, {} contact points, {} steps of {:g}, {} frames\n", s.nodes, s.cells,

@@ -23,9 +23,13 @@ void print_expectations(const std::vector<ExpectationResult>& expectations) {
       std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return e.checked && e.holds; });
   const auto left_out =
       std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return !e.checked; });
-  fmt::print("  {} of {} expectations hold", hold, static_cast<long>(expectations.size()) - left_out);
-  if (left_out > 0) fmt::print("; {} do not apply to this run (summary.json says why)", left_out);
-  fmt::print("\n");
+  const auto checked = static_cast<long>(expectations.size()) - left_out;
+  const std::string others = fmt::format("{} do not apply to this run (summary.json says why)", left_out);
+  if (checked == 0) {
+    fmt::print("  expectations: {}\n", others);
+  } else {
+    fmt::print("  {} of {} expectations hold{}\n", hold, checked, left_out > 0 ? "; " + others : "");
+  }
   for (const ExpectationResult& e : expectations) {
     if (!e.checked || e.holds) continue;
     fmt::print("  DOES NOT HOLD: {} (wanted {}, found {:.9g}{})\n", e.quantity, e.wanted, e.value,

@@ -36,7 +36,8 @@ int dispatch(int argc, char** argv) {
   app.footer(
       "Exit status: 0 done; 1 wrong use of the command line; 2 invalid case or mesh; 3 a step did not converge;\n"
       "4 cannot read or write a file; 5 done, but an [[expect]] entry of the case does not hold;\n"
-      "130 and 143 stopped by SIGINT or SIGTERM with a checkpoint, from which run --resume goes on.");
+      "129, 130 and 143 stopped by SIGHUP, SIGINT or SIGTERM with a checkpoint, from which run --resume goes on;\n"
+      "70 a defect of Ricochet itself.");
   Arguments arguments;
 
   CLI::App* run = app.add_subcommand("run", "Run a case");

@@ -6,6 +6,7 @@
 
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/failure_bundle.hpp"
+#include "ricochet/io/history_file.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/io/run_directory.hpp"
 
@@ -34,14 +35,18 @@ std::string status_text(const std::string& directory, const RunSummary& summary)
 
 void print_progress(const std::string& directory, const RunSummary& summary) {
   if (summary.status == "done") return;
+  // The summary is seconds old, and older than the history where the run was killed.
+  const long step =
+      std::max(summary.steps, last_history_row(directory + "/history.csv").value_or(std::pair(0L, 0.0)).first);
   const auto done = static_cast<double>(summary.steps), all = static_cast<double>(summary.all_steps);
-  fmt::print("  step {} of {} ({:.3g} %), t = {:.6g}", summary.steps, summary.all_steps, 100.0 * done / all,
-             done * summary.step);
+  fmt::print("  step {} of {} ({:.3g} %), t = {:.6g}", step, summary.all_steps, 100.0 * static_cast<double>(step) / all,
+             static_cast<double>(step) * summary.step);
   const double seconds =
       seconds_of(summary, "steps") + seconds_of(summary, "output") + seconds_of(summary, "checkpoints");
   if (done > 0.0 && seconds > 0.0) {
     fmt::print(", {:.3g} steps per second", done / seconds);
-    if (is_running(directory, summary)) fmt::print(", {} left", duration_text(seconds / done * (all - done)));
+    if (is_running(directory, summary))
+      fmt::print(", {} left", duration_text(seconds / done * (all - static_cast<double>(step))));
   }
   fmt::print("\n");
   const std::vector<CheckpointFile> checkpoints = checkpoint_files(directory);
@@ -50,7 +55,8 @@ void print_progress(const std::string& directory, const RunSummary& summary) {
   } else {
     fmt::print("  checkpoint of step {}: {}\n", checkpoints.back().step, checkpoints.back().path);
   }
-  if (!is_running(directory, summary)) fmt::print("  `ricochet run` with --resume goes on with it\n");
+  if (!is_running(directory, summary))
+    fmt::print("  `ricochet run` with --resume {}\n", checkpoints.empty() ? "starts it anew" : "goes on with it");
   for (const std::string& file : failure_files(directory)) fmt::print("  of the step that failed: {}\n", file);
 }
 

@@ -22,7 +22,8 @@ void receive(int signal) {
 void catch_stop_signals() {
   // A file that may not grow any more is an error like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
-  constexpr int stop_signals[] = {SIGINT, SIGTERM};
+  // SIGHUP: the terminal or the connection to it has gone.
+  constexpr int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
   for (const int signal : stop_signals) {
     struct sigaction action {};
     action.sa_handler = receive;

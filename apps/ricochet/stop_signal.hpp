@@ -1,6 +1,6 @@
 #pragma once
 
-/// @file SIGINT and SIGTERM: the first asks the run to stop at the end of its step, a second one stops at once.
+/// @file SIGINT, SIGTERM and SIGHUP: the first asks the run to stop at the end of its step, a second one stops at once.
 namespace ricochet::program {
 
 void catch_stop_signals();

@@ -135,8 +135,18 @@ class CommandLine(TestCase):
         process = self.expect_status(0, run("run", case, "-o", self.folder / "held", "--quiet"))
         self.assertIn("holds", process.stdout)
         case.write_text(text.replace("total_energy", "totl_energy"), encoding="utf-8")
-        process = self.expect_status(5, run("run", case, "-o", self.folder / "unknown", "--quiet"))
-        self.assertIn('did you mean "total_energy"', process.stderr)
+        for process in (run("run", case, "-o", self.folder / "unknown", "--quiet"), run("validate", case)):
+            self.expect_status(2, process)
+            self.assertRegex(process.stderr, r'expecting\.toml:\d+:\d+: history\.csv has no column "totl_energy"; did you '
+                                             'mean "total_energy"')
+        self.assertFalse((self.folder / "unknown").exists())
+        # All wrong groups, and a mesh that is not there, are told with their places.
+        case.write_text(text.replace('"body"', '"boddy"').replace('"bottom"', '"botom"'), encoding="utf-8")
+        process = self.expect_status(2, run("validate", case))
+        self.assertRegex(process.stderr, r'(?s)expecting\.toml:\d+:\d+: .*"boddy".*expecting\.toml:\d+:\d+: .*"botom"')
+        for name in ("nothere.msh", "nothere.geo"):
+            process = self.expect_status(4, run("validate", case, "--set", f"mesh.file={name}"))
+            self.assertIn(f"nothere.{name[-3:]}; a relative path", process.stderr)
 
     def test_streams(self):
         output = self.folder / "out"

@@ -295,6 +295,11 @@ class ResultsFiles(TestCase):
             self.assertEqual(file["mesh/nodes"].dtype, numpy.float64)
             self.assertEqual(file["frames/000003/stress"].compression, "gzip")
             self.assertEqual(file["frames/000003/stress"].shape, (780, 6))
+        # Of a small body nothing is compressed: it would grow.
+        case = self.write("case.toml", block_case())
+        sizes = [(self.simulate(case, f"block{level}", {"output.compression": level}) / "results.h5").stat().st_size
+                 for level in (0, 9)]
+        self.assertEqual(sizes[0], sizes[1])
 
     def test_fields_by_time(self):
         results = self.simulate(DISC, values={"time.end": 0.0105, "output.fields_interval": 0.00225})

@@ -114,7 +114,7 @@ class Resume(TestCase):
         self.assertGreater(resumed, kills // 4, f"seed {seed}")
 
     def test_stopped_by_signals(self):
-        for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+        for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)):
             output = self.folder / f"stopped-{status}"
             values = {**busy("newmark"), "time.end": 0.5}
             del values["output.checkpoint_every"]
@@ -131,7 +131,9 @@ class Resume(TestCase):
             self.assertEqual([int(path.stem.split("-")[1]) for path in checkpoints(output)], [summary["steps"]])
             rows = (output / "history.csv").read_text().splitlines()
             self.assertEqual(len(rows), summary["steps"] + 2)
-            self.assertIn("interrupted", run("info", output).stdout)
+            said = run("info", output).stdout
+            self.assertIn("(interrupted)", said)
+            self.assertIn(f"stopped by {number.name} after step {summary['steps']}", said)
             self.expect_status(0, run("run", self.disc, "-o", output, "--resume", "--quiet", "--threads", "2",
                                       *settings(values)))
             self.expect_same(expected, output)
@@ -300,6 +302,9 @@ class Resume(TestCase):
                 self.assertEqual(process.returncode, 4, errors)
                 self.assertIn("File too large", errors)
                 failed.update(name for name in ("history.csv", "results.h5", "results.xdmf", "ckpt") if name in errors)
+                said = run("info", output).stdout  # the summary still has its place
+                self.assertIn("(FAILED)", said)
+                self.assertIn("File too large", said)
                 self.expect_status(0, run("run", self.disc, "-o", output, "--resume", "--quiet", *settings(values)))
                 self.expect_same(expected, output)
         self.assertLessEqual({"results.h5"}, failed)

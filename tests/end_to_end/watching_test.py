@@ -50,7 +50,11 @@ class Watching(TestCase):
         self.assertIn("(interrupted)", text)
         self.assertIn("--resume", text)
         self.assertNotIn(" left", text.split("\n")[1])
+        # As far as its history says, which is newer than its summary.
+        last = history.read_text().rsplit("\n", 2)[1].split(",")[0]
+        self.assertIn(f"step {last} of 10000000", text)
         newest = sorted(output.glob("*.ckpt"))[-1]
+        self.assertLessEqual(int(newest.stem.split("-")[1]), int(last))
         text = self.expect_status(0, run("info", newest)).stdout
         self.assertIn(f"checkpoint of step {int(newest.stem.split('-')[1])}, t = ", text)
         newest.write_bytes(newest.read_bytes()[:-3])
@@ -123,6 +127,9 @@ class Watching(TestCase):
         summary = json.loads((output / "summary.json").read_text())
         text = self.expect_status(0, run("info", left[0])).stdout
         self.assertIn(f"the state of step {summary['steps']}", text)
+        # The step whose row of the history is not there.
+        self.assertIn(f"step {int(left[0].stem.split('-')[1])} ", summary["message"])
+        self.assertEqual(int(left[0].stem.split("-")[1]), len(History(output / "history.csv").rows))
         self.assertIn("no longer finite", text)
         text = self.expect_status(0, run("info", output)).stdout
         self.assertIn("(FAILED)", text)

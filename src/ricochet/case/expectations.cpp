@@ -5,6 +5,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/case/problems.hpp"
 #include "ricochet/case/quantity.hpp"
 #include "ricochet/case/run_case.hpp"
 #include "ricochet/io/history_file.hpp"
@@ -13,12 +14,16 @@ namespace ricochet {
 
 namespace {
 
+std::string no_column(const std::string& name, const std::vector<std::string>& names) {
+  const std::string near = nearest_name(name, names);
+  return fmt::format("history.csv has no column \"{}\"{}", name,
+                     near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
+}
+
 const std::vector<double>& column_of(const HistoryTable& history, const std::string& name) {
   const auto found = history.columns.find(name);
   if (found != history.columns.end() && !found->second.empty()) return found->second;
-  const std::string near = nearest_name(name, history.names);
-  throw Error(ErrorKind::invalid_input, fmt::format("history.csv has no column \"{}\"{}", name,
-                                                    near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
+  throw Error(ErrorKind::invalid_input, no_column(name, history.names));
 }
 
 double value_in_row(const std::vector<double>& column, const Quantity& quantity) {
@@ -91,6 +96,18 @@ bool holds(const ExpectSection& expect, double value) {
 }
 
 }  // namespace
+
+void check_expected_columns(const Case& input, const std::vector<std::string>& columns) {
+  Problems problems;
+  for (std::size_t i = 0; i < input.expectations.size(); ++i) {
+    const ExpectSection& expect = input.expectations[i];
+    const Quantity quantity = parse_quantity(expect.quantity);
+    if (quantity.kind == Quantity::Kind::summary_value || !reason_not_to_check(input, expect).empty()) continue;
+    if (std::find(columns.begin(), columns.end(), quantity.name) == columns.end())
+      problems.add(input.where(fmt::format("expect.{}.quantity", i)), no_column(quantity.name, columns));
+  }
+  problems.raise();
+}
 
 std::vector<ExpectationResult> check_expectations(const Case& input, const std::string& output_directory,
                                                   const std::string& summary_json) {

@@ -428,8 +428,8 @@ Section output_section() {
                .type = KeyType::integer,
                .unit = "steps",
                .range = nonnegative,
-               .doc = "Fields are written each so many steps; 0: never; absent: up to a hundred times in the run, less "
-                      "often in runs of a few seconds."},
+               .doc = "Fields are written each so many steps; 0: never; absent: 10 + steps * dofs / 80000 "
+                      "times in the run, but at most 100 times."},
               {.name = "fields_interval",
                .type = KeyType::number,
                .unit = "time",

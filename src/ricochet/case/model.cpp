@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/case/model_parts.hpp"
+#include "ricochet/case/problems.hpp"
 #include "ricochet/fem/exterior_facets.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
@@ -95,6 +97,39 @@ std::vector<Index> boundary_at(const Case& input, const std::string& key_path, c
                        facet_tags(mesh, interior)));
   }
   return group.members;
+}
+
+namespace {
+
+/// All wrong names of groups at once.
+void check_groups(const Case& input, const Mesh& mesh) {
+  Problems problems;
+  const auto check = [&](const std::string& key_path, const std::string& name, int dimension) {
+    try {
+      (void)mesh.group(name, dimension);
+    } catch (const Error& problem) {
+      problems.add(input.where(key_path), problem.what());
+    }
+  };
+  const auto check_boundaries = [&](const char* section, const auto& entries) {
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      check(fmt::format("{}.{}.group", section, i), entries[i].group, mesh.dimension - 1);
+  };
+  for (std::size_t i = 0; i < input.materials.size(); ++i)
+    check(fmt::format("material.{}.group", i), input.materials[i].group, mesh.dimension);
+  check_boundaries("contact", input.contacts);
+  check_boundaries("support", input.supports);
+  check_boundaries("traction", input.tractions);
+  problems.raise();
+}
+
+}  // namespace
+
+void require_mesh_file(const Case& input) {
+  if (std::filesystem::exists(input.mesh.file)) return;
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: there is no file {}; a relative path is relative to the folder of the case file",
+                          input.where("mesh.file").text(), input.mesh.file));
 }
 
 void assign_materials(const Case& input, Model& model) {
@@ -213,9 +248,11 @@ std::unique_ptr<Scheme> make_scheme(const TimeSection& time) {
 std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   auto model = std::make_unique<Model>();
   Timer timer;
+  require_mesh_file(input);
   model->mesh = read_mesh({input.mesh.file, input.mesh.size, input.mesh.scale, input.mesh.degree});
   const double read_seconds = timer.restart();
   check_dimensions(input, model->mesh.dimension);
+  check_groups(input, model->mesh);
   model->space = make_displacement_space(model->mesh, input.mesh.degree);
   model->contains_rotations = input.mesh.degree > 1 || !is_curved(model->mesh);
   if (!model->contains_rotations) {

@@ -35,6 +35,9 @@ struct Model {
 /// The scheme that [time] asks for.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const TimeSection& time);
 
+/// Throws Error(file_access), at its place in the case, where the mesh file is not there.
+void require_mesh_file(const Case& input);
+
 /// Seconds spent in the phases of building a model.
 struct BuildTimes {
   double read_mesh = 0.0;

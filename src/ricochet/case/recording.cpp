@@ -20,7 +20,7 @@ constexpr double flush_interval = 1.0;
 /// A hundred; fewer in runs of small bodies that take less than a second, where writing that many would take as long as
 /// the steps.
 long default_frames(long steps, Index dofs) {
-  constexpr double least = 10.0, most = 100.0, work_per_frame = 5e4;
+  constexpr double least = 10.0, most = 100.0, work_per_frame = 8e4;
   return std::lround(std::min(most, least + static_cast<double>(steps) * static_cast<double>(dofs) / work_per_frame));
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 
@@ -29,6 +30,8 @@ namespace {
 
 /// summary.json says how far a run is this often, in seconds.
 constexpr double report_interval = 2.0;
+/// Dofs from which on the start of a run takes seconds, and says so.
+constexpr Index large_body = 20000;
 
 std::string export_directory(const RunOptions& options) {
   const bool elsewhere = !options.export_contact.empty() && !options.export_contact_to.empty();
@@ -53,7 +56,9 @@ void check_export(const Case& input, const RunOptions& options, long steps) {
 }
 
 void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
-  if (const std::vector<std::string> results = directory.results(); !results.empty()) {
+  std::vector<std::string> results = directory.results();
+  if (results.empty()) results = directory.left_behind(-1);
+  if (!results.empty()) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: holds a run already ({}); choose another directory with -o, go on with that run with "
                             "--resume, or overwrite it with --force",
@@ -98,10 +103,12 @@ class Run {
   void find_checkpoint();
   void begin();
   void begin_simulation();
+  void open_files();
+  void start_recording();
   void take_steps();
   void stop(int signal);
   void write_checkpoint();
-  void write_failure_bundle();
+  void write_failure_bundle(long step);
   void report_progress();
   void describe_progress(RunSummary& summary) const;
   void finish();
@@ -134,6 +141,7 @@ RunSummary Run::go() {
     refuse_old_run(directory_, options_);
   }
   begin();
+  open_files();
   take_steps();
   finish();
   if (failure_) throw Error(*failure_);
@@ -180,6 +188,11 @@ void Run::begin() {
   BuildTimes build;
   model_ = build_model(input_, &build);
   times_.add_build(build);
+  check_expected_columns(input_, HistoryRecorder(model_->problem, *model_->rotation, model_->sensors).columns());
+  if (model_->problem.dof_count() >= large_body) {
+    log::info(fmt::format("{} dofs, {} contact points; preparing the steps", model_->problem.dof_count(),
+                          model_->problem.contact.size()));
+  }
   std::string difference;
   if (snapshot_) difference = compare_model(input_, *model_, *snapshot_);
   Timer timer;
@@ -207,6 +220,25 @@ void Run::begin() {
   } else {
     replace_old_run(directory_, options_, summary_);
   }
+}
+
+/// An error here is told in the summary, as one of a step is.
+void Run::open_files() {
+  try {
+    start_recording();
+  } catch (const Error& problem) {
+    summary_.status = "failed";
+    summary_.message = problem.what();
+    summary_.steps = simulation_->state().step;
+    try {
+      write_summary(summary_path(), summary_);
+    } catch (const Error&) {  // what has failed first is what a user must hear
+    }
+    throw;
+  }
+}
+
+void Run::start_recording() {
   const ContactProvenance provenance = describe_provenance(input_, summary_);
   if (!options_.export_contact.empty())
     contact_export_.emplace(options_.export_contact, export_directory(options_), provenance);
@@ -241,15 +273,15 @@ void Run::take_steps() {
     return (output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
            (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds);
   };
+  long step = simulation.state().step;
   try {
     while (simulation.state().step < steps_) {
       if (const int signal = options_.stop_signal ? options_.stop_signal() : 0; signal != 0) return stop(signal);
       const Timer timer;
-      if (log::enabled(log::Level::debug)) {
-        log::debug(fmt::format("step {}, t = {:.9g}", simulation.state().step + 1,
-                               static_cast<double>(simulation.state().step + 1) * scheme_->step()));
-      }
-      if (contact_export_) contact_export_->begin_step(simulation.state().step + 1);
+      ++step;
+      if (log::enabled(log::Level::debug))
+        log::debug(fmt::format("step {}, t = {:.9g}", step, static_cast<double>(step) * scheme_->step()));
+      if (contact_export_) contact_export_->begin_step(step);
       simulation.advance();
       times_.steps += timer.seconds();
       recording_->record(simulation.state(), simulation.account());
@@ -260,17 +292,18 @@ void Run::take_steps() {
     recording_->flush();
   } catch (const Error& problem) {
     failure_ = problem;
-    if (problem.kind() == ErrorKind::not_converged) write_failure_bundle();
+    if (problem.kind() == ErrorKind::not_converged) write_failure_bundle(step);
   }
 }
 
-/// The state before the step that failed and its contact problem; the message tells where they are.
-void Run::write_failure_bundle() {
+/// The state before the step that failed (or after it, where its results are not to be had) and its contact problem;
+/// the message tells where they are.
+void Run::write_failure_bundle(long step) {
   Snapshot snapshot;
   simulation_->save(snapshot);
   save_identity(input_, *model_, snapshot);
   try {
-    const std::string note = failure_bundle_->write(simulation_->state().step + 1, snapshot, failure_->what());
+    const std::string note = failure_bundle_->write(step, snapshot, failure_->what());
     failure_ = Error(failure_->kind(), fmt::format("{}\n{}", failure_->what(), note));
   } catch (const Error& problem) {
     log::warning(problem.what());
@@ -280,8 +313,8 @@ void Run::write_failure_bundle() {
 void Run::stop(int signal) {
   write_checkpoint();
   summary_.status = "interrupted";
-  summary_.message = fmt::format("stopped by signal {} after step {} of {}; run --resume goes on from there", signal,
-                                 simulation_->state().step, steps_);
+  summary_.message = fmt::format("stopped by SIG{} after step {} of {}; run --resume goes on from there",
+                                 sigabbrev_np(signal), simulation_->state().step, steps_);
 }
 
 void Run::write_checkpoint() {
@@ -336,13 +369,16 @@ void Run::finish() {
   if (contact_export_) summary_.contact_export = contact_export_->report();
   if (summary_.status == "done")
     summary_.expectations = check_expectations(input_, options_.output_directory, to_json(summary_));
-  try {
-    recording_->flush();
-    write_summary(summary_path(), summary_);
-  } catch (const Error&) {
-    // What has failed first is what a user must hear.
-    if (!failure_) throw;
-  }
+  const auto attempt = [this](const auto& write) {
+    try {
+      write();
+    } catch (const Error&) {
+      // What has failed first is what a user must hear, here and in the summary, if there is room for that.
+      if (!failure_) throw;
+    }
+  };
+  attempt([this] { recording_->flush(); });
+  attempt([this] { write_summary(summary_path(), summary_); });
 }
 
 }  // namespace

@@ -36,6 +36,10 @@ RunSummary run_case(const Case& input, const RunOptions& options);
 /// Number of steps to the end time; the last step ends at or after it.
 [[nodiscard]] long step_count(const TimeSection& time);
 
+/// Throws Error(invalid_input), at its place in the case, where an [[expect]] entry that applies is about a column that
+/// history.csv will not have.
+void check_expected_columns(const Case& input, const std::vector<std::string>& columns);
+
 /// Evaluates the [[expect]] entries of a case on a finished run.
 [[nodiscard]] std::vector<ExpectationResult> check_expectations(const Case& input, const std::string& output_directory,
                                                                 const std::string& summary_json);

@@ -85,14 +85,18 @@ void write_durably(const std::string& path, const std::string& content) {
 }
 
 void cut_back(const std::string& path, std::int64_t length) {
+  const auto refuse = [&](const std::string& state) {
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format("{}: {}, but had {} bytes when the checkpoint was written: it has been changed since; put it "
+                    "back, or start anew with --force",
+                    path, state, length));
+  };
+  if (!std::filesystem::exists(path)) refuse("is missing");
   const OpenFile file(path, O_WRONLY);
   struct stat about {};
   if (fstat(file.descriptor(), &about) != 0) throw_file_error(path, "look at", errno);
-  if (about.st_size < length) {
-    throw Error(ErrorKind::file_access,
-                fmt::format("{}: has {} bytes, but had {} when the checkpoint was written: it has been changed since",
-                            path, about.st_size, length));
-  }
+  if (about.st_size < length) refuse(fmt::format("has {} bytes", about.st_size));
   if (ftruncate(file.descriptor(), length) != 0) throw_file_error(path, "cut back", errno);
 }
 

@@ -22,6 +22,8 @@ namespace {
 
 /// What a frame takes besides its numbers: names, extents, index.
 constexpr std::int64_t administration = 65536;
+/// Bytes of a data set from which on it is compressed.
+constexpr Index least_compressed = 16384;
 
 void check(const std::string& path, bool good, const std::string& what) {
   if (!good) {
@@ -103,8 +105,10 @@ struct FrameFile::Prepared {
   Prepared(const std::vector<DatasetLayout>& layout, const FrameFileOptions& options) {
     for (const DatasetLayout& each : layout) datasets.emplace_back(each, options);
   }
+  /// Small sets would grow: the index of a compressed one takes some 2 kB.
   static bool is_compressed(const DatasetLayout& layout, const FrameFileOptions& options) {
-    return options.compression > 0 && layout.rows > 0;
+    const Index bytes = entries(layout.rows, layout.columns) * (layout.whole || options.single ? 4 : 8);
+    return options.compression > 0 && bytes >= least_compressed;
   }
 };
 

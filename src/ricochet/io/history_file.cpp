@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <iterator>
@@ -53,6 +54,30 @@ void HistoryWriter::flush() {
 void HistoryWriter::sync() {
   flush();
   sync_to_disk(path_);
+}
+
+std::optional<std::pair<long, double>> last_history_row(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const auto size = static_cast<std::int64_t>(file.tellg());
+  std::string tail;
+  for (std::int64_t length = 4096; size > 0; length *= 8) {
+    length = std::min(length, size);
+    tail.resize(static_cast<std::size_t>(length));
+    file.seekg(size - length);
+    if (!file.read(tail.data(), length)) return {};
+    const std::size_t end = tail.rfind('\n');
+    const std::size_t before = end == std::string::npos || end == 0 ? std::string::npos : tail.rfind('\n', end - 1);
+    if (before != std::string::npos) {
+      const char* const last = tail.data() + end;
+      double step = 0.0, time = 0.0;
+      const auto [comma, problem] = std::from_chars(tail.data() + before + 1, last, step);
+      if (problem != std::errc() || comma == last) return {};
+      if (std::from_chars(comma + 1, last, time).ec != std::errc()) return {};
+      return std::pair(static_cast<long>(step), time);
+    }
+    if (length == size) return {};
+  }
+  return {};
 }
 
 HistoryTable read_history(const std::string& path) {

@@ -7,6 +7,13 @@
 
 namespace ricochet {
 
+namespace {
+
+/// Seconds between lines of a run that is not watched at a terminal; it says something at each tenth anyway.
+constexpr double longest_silence = 60.0;
+
+}  // namespace
+
 std::string duration_text(double seconds) {
   if (seconds < 60.0) return fmt::format("{:.1f} s", seconds);
   const long whole = static_cast<long>(seconds);
@@ -32,8 +39,11 @@ void Progress::update(long step, double time) {
     if (step < steps_ && now - last_drawn_ < 0.1) return;
     last_drawn_ = now;
     draw(step, time);
-  } else if (step * 10 >= next_tenth_ * steps_) {
+  } else {
+    const double now = timer_.seconds();
+    if (step * 10 < next_tenth_ * steps_ && now - last_drawn_ < longest_silence) return;
     next_tenth_ = step * 10 / steps_ + 1;
+    last_drawn_ = now;
     draw(step, time);
   }
 }

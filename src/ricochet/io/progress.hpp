@@ -28,7 +28,7 @@ class Progress {
   bool terminal_;
   bool open_ = false;
   long next_tenth_ = 1;
-  double last_drawn_ = -1.0;
+  double last_drawn_ = 0.0;
   Timer timer_;
 };
 

@@ -34,7 +34,7 @@ int open_directory(const std::string& path) {
 
 RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
   std::error_code problem;
-  fs::create_directories(path_, problem);
+  is_new_ = fs::create_directories(path_, problem);
   if (problem || !fs::is_directory(path_)) {
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", path_,
                                                     problem ? problem.message() : "a file of that name is there"));
@@ -60,6 +60,8 @@ RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
 }
 
 RunDirectory::~RunDirectory() {
+  std::error_code not_empty;
+  if (is_new_) fs::remove(path_, not_empty);
   if (lock_ >= 0) close(lock_);
 }
 
@@ -77,8 +79,6 @@ std::vector<std::string> RunDirectory::results() const {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("probes-") && name.ends_with(".csv")) result.push_back(entry.path().string());
   }
-  const std::vector<std::string> others = left_behind(-1);
-  result.insert(result.end(), others.begin(), others.end());
   return result;
 }
 

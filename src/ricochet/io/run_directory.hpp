@@ -11,15 +11,17 @@ class RunDirectory {
   /// Makes the directory where it is missing, and keeps other runs out of it until this object or the process ends,
   /// however it ends. Throws Error(file_access): it cannot be made or written to, or another run is in it.
   explicit RunDirectory(std::string path);
+  /// Removes the directory again where this object has made it and nothing has been written into it.
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
 
   [[nodiscard]] std::string file(const std::string& name) const;
-  /// Files that a run has left here: results, summary, checkpoints.
+  /// Results that a run has left here, and its summary.
   [[nodiscard]] std::vector<std::string> results() const;
   /// Files that an interrupted run has left here and that a run which goes on after this step has no use for:
-  /// unfinished ones, what is left of a step that failed, and checkpoints of later steps, which are damaged.
+  /// unfinished ones, what is left of a step that failed, and checkpoints of later steps, which are damaged. All that
+  /// are no results: of step −1.
   [[nodiscard]] std::vector<std::string> left_behind(long step) const;
 
   /// Is a run writing into this directory now?
@@ -28,6 +30,7 @@ class RunDirectory {
  private:
   std::string path_;
   int lock_ = -1;
+  bool is_new_ = false;
 };
 
 /// Removes files. Throws Error(file_access).

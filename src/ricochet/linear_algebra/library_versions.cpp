@@ -12,6 +12,12 @@ namespace ricochet {
 
 namespace {
 
+#if defined(__clang__)
+constexpr const char* compiler = __VERSION__;
+#else
+constexpr const char* compiler = "GCC " __VERSION__;
+#endif
+
 /// "0.3.21" of "OpenBLAS 0.3.21 NO_LAPACKE DYNAMIC_ARCH …".
 std::string blas_version() {
   const std::string_view config = openblas_get_config();
@@ -31,9 +37,9 @@ const char* instruction_set() {
 }  // namespace
 
 std::string library_versions() {
-  return fmt::format("OpenBLAS {} ({}), {}, Eigen {}.{}.{}, compiled by " __VERSION__ " for {}", blas_version(),
+  return fmt::format("OpenBLAS {} ({}), {}, Eigen {}.{}.{}, compiled by {} for {}", blas_version(),
                      openblas_get_corename(), SparseCholesky::library(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                     EIGEN_MINOR_VERSION, instruction_set());
+                     EIGEN_MINOR_VERSION, compiler, instruction_set());
 }
 
 }  // namespace ricochet

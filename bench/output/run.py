@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""What results cost: a whole run that writes them against the same run that writes no fields.
+
+    ./dev bench output [--repeat 15]
+
+Each time the runs are made one after the other, in changing order; the ratio is that of their whole times, start of the
+program included, and the table shows its median and quartiles with the size of results.h5. Writes the table of
+docs/reliability.md.
+"""
+
+import argparse
+import pathlib
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "reliability.md"
+MARKS = "<!-- output cost: written by ./dev bench output -->\n", "<!-- end of output cost -->\n"
+
+VARIANTS = {
+    "no fields": ["output.fields_every=0"],
+    "default": [],
+    "single precision, compression 1": ["output.fields_precision=single", "output.compression=1"],
+    "all fields": ['output.fields=["all"]'],
+    "a checkpoint each 100 steps": ["output.checkpoint_every=100"],
+}
+
+
+def case(directory, name, dimension, size, steps):
+    """The disc or ball of bench/step falls onto a floor: contact in the last two fifths of the steps."""
+    mesh = directory / f"{name}-{size}.msh"
+    subprocess.run(["gmsh", str(ROOT / "bench" / "step" / f"{name}.geo"), f"-{dimension}", "-setnumber", "size",
+                    repr(size), "-format", "msh41", "-o", str(mesh), "-v", "0"], check=True)
+    zeros = ", ".join(["0.0"] * (dimension - 1))
+    path = directory / f"{name}-{size}.toml"
+    path.write_text(
+        f'[mesh]\nfile = "{mesh}"\n[[material]]\ngroup = "body"\ndensity = 1.0\nlambda = 1e4\nmu = 5e3\n'
+        f'[obstacle.floor]\ntype = "plane"\npoint = [{zeros}, 0.0]\nnormal = [{zeros}, 1.0]\n'
+        f'[[contact]]\ngroup = "lower"\nobstacle = "floor"\n[load]\ngravity = [{zeros}, -9.81]\n'
+        f'[initial]\nvelocity = [{zeros}, -1.0]\n[mass]\ntype = "equivalent"\n'
+        f'[time]\nscheme = "newmark"\npreset = "trapezoidal"\nstep = {0.16 / steps!r}\nend = 0.16\n')
+    return path
+
+
+def seconds(program, path, output, settings):
+    command = [program, "run", path, "-o", output, "--force", "--quiet", "--threads", "1", "--log-level", "error"]
+    for setting in settings:
+        command += ["--set", setting]
+    started = time.perf_counter()
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    return time.perf_counter() - started
+
+
+def measure(program, path, directory, repeat):
+    """Per variant: the ratios to the run without fields, the sizes of results.h5."""
+    ratios, sizes, plain = {name: [] for name in VARIANTS}, {}, []
+    for k in range(repeat):
+        times = {}
+        names = list(VARIANTS)
+        for name in names[k % len(names):] + names[:k % len(names)]:
+            output = directory / "out"
+            shutil.rmtree(output, ignore_errors=True)
+            times[name] = seconds(program, path, output, VARIANTS[name])
+            results = output / "results.h5"
+            sizes[name] = results.stat().st_size / 1e6 if results.exists() else 0.0
+        plain.append(times["no fields"])
+        for name in VARIANTS:
+            ratios[name].append(times[name] / times["no fields"])
+    return statistics.median(plain), ratios, sizes
+
+
+def cell(ratios, size):
+    low, middle, high = statistics.quantiles(ratios, n=4)
+    return f"{middle:.2f} ({low:.2f}–{high:.2f}), {size:.0f} MB"
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./dev bench output", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--repeat", type=int, default=15, help="times that each run is made (default: %(default)s)")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="where the program is")
+    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    arguments = parser.parse_args()
+    if arguments.repeat < 2:
+        parser.error("each run is made twice at least")
+    if arguments.check:
+        return 0
+    table = f"| body | without fields | {' | '.join(list(VARIANTS)[1:])} |\n|{'---|' * (len(VARIANTS) + 1)}\n"
+    with tempfile.TemporaryDirectory() as folder:
+        directory = pathlib.Path(folder)
+        for label, name, dimension, size, steps in (("disc, 1,060 dofs, 1500 steps", "disc", 2, 0.09, 1500),
+                                                    ("disc, 18,000 dofs, 300 steps", "disc", 2, 0.0202, 300),
+                                                    ("ball, 4,060 dofs, 400 steps", "ball", 3, 0.155, 400),
+                                                    ("ball, 12,000 dofs, 160 steps", "ball", 3, 0.101, 160)):
+            path = case(directory, name, dimension, size, steps)
+            plain, ratios, sizes = measure(arguments.build / "ricochet", path, directory, arguments.repeat)
+            cells = [cell(ratios[variant], sizes[variant]) for variant in list(VARIANTS)[1:]]
+            line = f"| {label} | {plain:.2f} s | {' | '.join(cells)} |\n"
+            print(line, end="", flush=True)
+            table += line
+    text = PAGE.read_text(encoding="utf-8")
+    first, last = text.index(MARKS[0]) + len(MARKS[0]), text.index(MARKS[1])
+    PAGE.write_text(text[:first] + table + text[last:], encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
