@@ -8,6 +8,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/version.hpp"
+#include "stop_signal.hpp"
 
 namespace {
 
@@ -30,7 +31,7 @@ void add_common(CLI::App& command, Arguments& arguments) {
 }
 
 int dispatch(int argc, char** argv) {
-  CLI::App app{"Ricochet simulates elastic bodies that strike, rest on and leave rigid obstacles."};
+  CLI::App app{"Ricochet simulates elastic bodies that strike, rest on, slide along and leave rigid obstacles."};
   app.set_version_flag("--version", std::string("ricochet ") + version);
   app.require_subcommand(1);
   app.footer(
@@ -117,6 +118,7 @@ int dispatch(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ricochet::program::let_signals_come();
   try {
     return dispatch(argc, argv);
   } catch (const ricochet::Error& problem) {

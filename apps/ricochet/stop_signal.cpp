@@ -17,13 +17,29 @@ void receive(int signal) {
   static_cast<void>(!write(STDERR_FILENO, text, sizeof(text) - 1));
 }
 
+// SIGHUP: the terminal or the connection to it has gone.
+constexpr int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
+
+/// Threads that libraries start before main() begins (OpenBLAS does) inherit what is blocked here: signals are for the
+/// main thread alone, which holds them back while METIS works (linear_algebra/sparse_cholesky.cpp).
+sigset_t before_libraries;
+void hold_signals(int, char**, char**) {
+  sigset_t held;
+  sigemptyset(&held);
+  for (const int signal : stop_signals) sigaddset(&held, signal);
+  sigprocmask(SIG_BLOCK, &held, &before_libraries);
+}
+__attribute__((section(".preinit_array"), used)) void (*const hold_signals_first)(int, char**, char**) = hold_signals;
+
 }  // namespace
+
+void let_signals_come() {
+  sigprocmask(SIG_SETMASK, &before_libraries, nullptr);
+}
 
 void catch_stop_signals() {
   // A file that may not grow any more is an error like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
-  // SIGHUP: the terminal or the connection to it has gone.
-  constexpr int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
   for (const int signal : stop_signals) {
     struct sigaction action {};
     action.sa_handler = receive;

@@ -139,6 +139,28 @@ class Resume(TestCase):
             self.expect_same(expected, output)
             self.assertEqual(json.loads((output / "summary.json").read_text())["resumed_at"], [summary["steps"]])
 
+    def test_stopped_while_it_starts(self):
+        """Also where METIS orders a matrix, which catches SIGTERM on its own account."""
+        mesh = self.folder / "fine.msh"
+        subprocess.run(["gmsh", DISC.with_name("disc.geo"), "-2", "-clscale", "0.2", "-o", mesh, "-v", "0"], check=True)
+        values = {"mesh.file": f'"{mesh}"', "time.end": 2, "output.fields_every": 0}
+        begun = time.monotonic()
+        process = start(self.disc, self.folder / "first", values)
+        wait_for((self.folder / "first" / "summary.json").exists)
+        duration = time.monotonic() - begun
+        process.kill()
+        process.communicate()
+        chance = random.Random(1)
+        for k in range(8):
+            output = self.folder / f"early{k}"
+            process = start(self.disc, output, values)
+            time.sleep(chance.uniform(0.1, 1.0) * duration)
+            process.send_signal(signal.SIGTERM)
+            _, errors = process.communicate()
+            self.assertIn(process.returncode, (143, -signal.SIGTERM), errors)  # or before there was anything to keep
+            if process.returncode == 143:
+                self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "interrupted")
+
     def test_a_second_signal_stops_at_once(self):
         output = self.folder / "out"
         process = start(self.disc, output, {"time.end": 100, "output.fields_every": 0})
@@ -251,6 +273,13 @@ class Resume(TestCase):
         process = self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn("complete", process.stderr)
         self.assertEqual(written, {path: path.stat().st_mtime_ns for path in output.iterdir()})
+        # What it is expected to hold is asked again.
+        case = self.write("expecting.toml", self.disc.read_text() + '[[expect]]\nquantity = "history.time[-1]"\nvalue = 1.0\n'
+                          'absolute = 0.1\n')
+        self.expect_status(5, run("run", case, "-o", self.folder / "expecting", "--quiet", "--set", "output.fields_every=0"))
+        process = self.expect_status(5, run("run", case, "-o", self.folder / "expecting", "--resume", "--quiet", "--set",
+                                            "output.fields_every=0"))
+        self.assertIn("DOES NOT HOLD: history.time[-1]", process.stdout)
         # Results that another program has changed are not gone on with.
         output = self.interrupted(values, "cut")
         (output / "history.csv").write_text("step\n")

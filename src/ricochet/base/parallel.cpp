@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "ricochet/base/blocked_signals.hpp"
 #include "ricochet/base/error.hpp"
 
 namespace ricochet {
@@ -50,6 +51,7 @@ class Pool {
   /// `count` threads, the caller's included.
   explicit Pool(int count) : count_(count), problems_(static_cast<std::size_t>(count * parts_per_thread)) {
     threads_.reserve(static_cast<std::size_t>(count - 1));
+    const BlockedSignals signals_are_for_the_caller;
     for (int i = 1; i < count; ++i) threads_.emplace_back([this] { serve(); });
   }
   Pool(const Pool&) = delete;

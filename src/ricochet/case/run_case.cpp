@@ -161,6 +161,9 @@ bool Run::is_complete() {
   require_same_case(input_, summary_.version, summary_.parameters, options_.output_directory);
   if (summary_.status != "done") return false;
   log::info(fmt::format("{}: this run is complete, there is nothing to resume", options_.output_directory));
+  if (!options_.export_contact.empty())
+    log::warning("--export-contact: the run is complete, nothing more is exported; make it again with --force");
+  summary_.expectations = check_expectations(input_, options_.output_directory, to_json(summary_));
   return true;
 }
 
@@ -338,6 +341,7 @@ void Run::write_checkpoint() {
 
 void Run::describe_progress(RunSummary& summary) const {
   recording_->describe(summary);
+  summary.factor_entries = simulation_->factor_entries();
   summary.steps = simulation_->state().step;
   RunTimes times = times_;
   times.contact += simulation_->contact_seconds() - contact_before_;

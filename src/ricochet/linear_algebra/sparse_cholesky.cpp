@@ -3,10 +3,12 @@
 #include <cholmod.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <new>
 #include <stdexcept>
 
+#include "ricochet/base/blocked_signals.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/memory.hpp"
 #include "ricochet/linear_algebra/blas_threads.hpp"
@@ -78,10 +80,34 @@ cholmod_sparse view(const SparseMatrix& matrix) {
 
 }  // namespace
 
+namespace {
+
+/// METIS puts back the handlers that it finds, but so that they serve for one signal only.
+class KeptHandlers {
+ public:
+  KeptHandlers() {
+    for (std::size_t i = 0; i < before_.size(); ++i) sigaction(signals[i], nullptr, &before_[i]);
+  }
+  ~KeptHandlers() {
+    for (std::size_t i = 0; i < before_.size(); ++i) sigaction(signals[i], &before_[i], nullptr);
+  }
+  KeptHandlers(const KeptHandlers&) = delete;
+  KeptHandlers& operator=(const KeptHandlers&) = delete;
+
+ private:
+  static constexpr std::array<int, 2> signals{SIGTERM, SIGABRT};
+  std::array<struct sigaction, 2> before_{};
+};
+
+}  // namespace
+
 /// The permutation, and the lower triangle of P A Pᵀ. Given in the order of the factor, it is not copied again.
 void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
   permutation.resize(static_cast<std::size_t>(matrix.cols()));
   cholmod_sparse upper = view(matrix);
+  // METIS catches SIGTERM while it works, and jumps out of that with its own work half done.
+  const BlockedSignals until_ordered;
+  const KeptHandlers kept;
   if (cholmod_metis(&upper, nullptr, 0, 1, permutation.data(), &common) == 0)
     throw std::runtime_error("ordering the matrix failed (METIS)");
   places.resize(permutation.size());
@@ -125,7 +151,8 @@ void SparseCholesky::Implementation::factorize() {
   std::frexp(largest, &exponent);
   scale = largest > 0.0 ? std::ldexp(1.0, -exponent) : 1.0;
   for (int k = 0; k < begins[ordered->ncol]; ++k) values[k] *= scale;
-  release_freed_memory();  // the most that a run takes is taken here
+  release_freed_memory();                      // the most that a run takes is taken here
+  const BlockedSignals on_threads_of_cholmod;  // made by the first call, they are there when METIS works again
   cholmod_factorize(ordered, factor, &common);
   cholmod_free_sparse(&ordered, &common);
   if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
