@@ -12,6 +12,7 @@
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
 #include "ricochet/case/run_description.hpp"
+#include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
@@ -76,21 +77,31 @@ std::string indented(std::string text) {
   return text;
 }
 
-double ratio(double a, double b) {
-  return b != 0.0 ? a / b : 0.0;
-}
-
-void require_run(const std::string& directory) {
-  if (fs::exists(directory + "/summary.json")) return;
-  throw Error(ErrorKind::file_access,
-              fmt::format("{}: no run is in this directory: it holds no summary.json", directory));
+/// None: the directory has checkpoints, but no summary that can be read.
+std::optional<RunSummary> summary_of(const std::string& directory) {
+  const bool has_checkpoint = !checkpoint_files(directory).empty();
+  if (!fs::exists(directory + "/summary.json") && !has_checkpoint) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: no run is in this directory: it holds no summary.json", directory));
+  }
+  try {
+    return read_summary(directory + "/summary.json");
+  } catch (const Error&) {
+    if (!has_checkpoint) throw;
+    return {};
+  }
 }
 
 void describe_result(const std::string& directory) {
-  require_run(directory);
-  const RunSummary s = read_summary(directory + "/summary.json");
+  const std::optional<RunSummary> found = summary_of(directory);
+  if (!found) {
+    fmt::print(
+        "{}: an interrupted run whose summary.json is missing or damaged; `ricochet run` with --resume goes on\n",
+        directory);
+    return describe_checkpoint(checkpoint_files(directory).back().path);
+  }
+  const RunSummary& s = *found;
   const ColumnDigest energy = s.digest("total_energy");
-  const ColumnDigest residual = s.digest("energy_residual");
   fmt::print("{}: {}{}\n", directory, s.title.empty() ? s.case_file : s.title, status_text(directory, s));
   if (!s.message.empty()) fmt::print("  {}\n", indented(s.message));
   print_progress(directory, s);
@@ -101,8 +112,7 @@ void describe_result(const std::string& directory) {
   if (std::isfinite(s.critical_step)) print_critical_step(s.step, s.critical_step);
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
              energy.maximum);
-  fmt::print("  energy account closes to {:.1e} of the largest energy\n",
-             ratio(std::max(std::abs(residual.minimum), std::abs(residual.maximum)), s.energy_scale()));
+  fmt::print("  {}\n", energy_account_text(s));
   for (const CheckResult& check : s.checks) {
     if (check.limit > 0.0 && check.largest > check.limit)
       fmt::print("  CHECK FAILED: {} reaches {:.2g}, more than {:g}\n", check.name, check.largest, check.limit);

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "contact_text.hpp"
+#include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
@@ -39,16 +40,12 @@ void print_expectations(const std::vector<ExpectationResult>& expectations) {
 
 void print_summary(const RunSummary& s, const std::string& directory) {
   const ColumnDigest energy = s.digest("total_energy");
-  const ColumnDigest residual = s.digest("energy_residual");
-  const double scale = s.energy_scale();
-  const double largest_residual = std::max(std::abs(residual.minimum), std::abs(residual.maximum));
   fmt::print("{}\n", s.title.empty() ? s.case_file : s.title);
   fmt::print("  scheme {}, mass {}, {} nodes, {} contact points, {} steps of {:g}\n", s.scheme, s.mass, s.nodes,
              s.contact_points, s.steps, s.step);
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
              energy.maximum);
-  fmt::print("  energy account closes to {:.1e} of the largest energy\n",
-             scale > 0.0 ? largest_residual / scale : largest_residual);
+  fmt::print("  {}\n", energy_account_text(s));
   print_friction(s);
   fmt::print("  deepest interpenetration {:.3g}, largest rotation of a cell {:.3g} rad\n",
              s.digest("max_penetration").maximum, s.digest("max_rotation").maximum);

@@ -33,6 +33,16 @@ std::string status_text(const std::string& directory, const RunSummary& summary)
   return is_running(directory, summary) ? " (running)" : " (interrupted)";
 }
 
+std::string energy_account_text(const RunSummary& summary) {
+  const ColumnDigest residual = summary.digest("energy_residual");
+  const double largest = std::max(std::abs(residual.minimum), std::abs(residual.maximum));
+  const double energy = summary.energy_scale(), work = summary.work_scale();
+  std::string text =
+      fmt::format("energy account closes to {:.1e} of the largest energy", energy > 0.0 ? largest / energy : largest);
+  if (work > 1e3 * energy) text += fmt::format(", {:.1e} of the largest work", largest / work);
+  return text;
+}
+
 void print_progress(const std::string& directory, const RunSummary& summary) {
   if (summary.status == "done") return;
   // The summary is seconds old, and older than the history where the run was killed.

@@ -10,6 +10,9 @@ namespace ricochet::program {
 /// After the title of a run that is not complete: " (running)", " (interrupted)", " (FAILED)".
 [[nodiscard]] std::string status_text(const std::string& directory, const RunSummary& summary);
 
+/// How well the account of energy closes.
+[[nodiscard]] std::string energy_account_text(const RunSummary& summary);
+
 /// How far it is, how fast it goes, and what can be done with it.
 void print_progress(const std::string& directory, const RunSummary& summary);
 

@@ -275,10 +275,10 @@ class ResultsFiles(TestCase):
         xx, xy, xz, yy, yz, zz = stress.T
         tensors = numpy.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1)
         size = max(numpy.abs(stress).max(), 1e-300)
-        numpy.testing.assert_allclose(principal, numpy.linalg.eigvalsh(tensors)[:, ::-1], rtol=0, atol=1e-7 * size)
+        numpy.testing.assert_allclose(principal, numpy.linalg.eigvalsh(tensors)[:, ::-1], rtol=0, atol=1e-13 * size)
         a, b, c = principal.T
         expected = numpy.sqrt(0.5 * ((a - b)**2 + (b - c)**2 + (c - a)**2))
-        numpy.testing.assert_allclose(von_mises, expected, rtol=0, atol=1e-6 * size)
+        numpy.testing.assert_allclose(von_mises, expected, rtol=0, atol=1e-13 * size)
 
     def test_fields_that_are_asked_for_single_and_compressed(self):
         values = {"time.end": 0.02, "output.fields_every": 20, "output.fields": '["velocity", "stress", "contact_status"]'}

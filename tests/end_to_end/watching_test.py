@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from harness import DISC, PROGRAM, SCHEMES, History, TestCase, block_case, run, settings
+from harness import DISC, PROGRAM, SCHEMES, SOURCE, History, TestCase, block_case, run, settings
 
 
 class Watching(TestCase):
@@ -57,8 +57,15 @@ class Watching(TestCase):
         self.assertLessEqual(int(newest.stem.split("-")[1]), int(last))
         text = self.expect_status(0, run("info", newest)).stdout
         self.assertIn(f"checkpoint of step {int(newest.stem.split('-')[1])}, t = ", text)
+        summary.write_text("{}")
+        text = self.expect_status(0, run("info", output)).stdout
+        self.assertIn("summary.json is missing or damaged", text)
+        self.assertIn(f"checkpoint of step {int(newest.stem.split('-')[1])}, t = ", text)
         newest.write_bytes(newest.read_bytes()[:-3])
         self.assertIn("cut off", self.expect_status(2, run("info", newest)).stderr)
+
+    def test_a_directory_without_a_run(self):
+        self.assertIn("no run is in this directory", self.expect_status(4, run("info", self.folder)).stderr)
 
     def test_debug_tells_every_contact_iteration(self):
         for friction in (0.0, 0.3):
@@ -114,6 +121,25 @@ class Watching(TestCase):
             for name, check in json.loads((output / "summary.json").read_text())["checks"].items():
                 self.assertEqual(check["limit"], 1e-8)
                 self.assertLess(check["largest"], 1e-11, f"{scheme}: {name}")
+
+    def test_works_that_cancel(self):
+        """A block held on a belt: friction and the belt do the same work, thousands of times all energies there are."""
+        block = SOURCE / "cases" / "incline" / "block.msh"
+        text = block_case(block).replace('"body"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0',
+                                         '"block"\ndensity = 7800.0\nyoung = 2e11\npoisson = 0.3')
+        text = text.replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nvelocity = [5e6, 0.0]")
+        text = text.replace('"bottom"\nobstacle = "floor"', '"base"\nobstacle = "floor"\nfriction = 0.3')
+        text += '[[support]]\ngroup = "top"\ncomponents = ["x"]\n[initial]\ndisplacement = "static"\n'
+        output = self.folder / "out"
+        process = self.expect_status(0, run("run", self.write("belt.toml", text), "-o", output, "--quiet", "--set",
+                                            "time.step=1e-4", "--set", "time.end=0.05", "--set",
+                                            'mass.type="equivalent"', "--set", 'check.on_failure="stop"'))
+        history = History(output / "history.csv")
+        energy = max(map(abs, history["total_energy"] + history["elastic_energy"]))
+        self.assertGreater(max(map(abs, history["friction_work"])), 1e4 * energy)
+        self.assertGreater(max(map(abs, history["energy_residual"])), 1e-8 * energy)
+        self.assertIn("of the largest work", process.stdout)
+        self.assertLess(json.loads((output / "summary.json").read_text())["checks"]["energy_residual"]["largest"], 1e-8)
 
     def test_a_failed_step_leaves_its_state(self):
         case = self.write("case.toml", block_case().replace('preset = "trapezoidal"', "beta = 0.25\ngamma = 0.5"))

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/simulation/sensor.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
@@ -81,6 +82,38 @@ TEST(MomentumAccount, BalancesInEverySchemeMassAndMultiplierSpace) {
     EXPECT_LT(found.momentum, 1e-13) << bodies[body].name;
     EXPECT_LT(found.angular, 1e-13) << bodies[body].name;
   }
+}
+
+/// Under Tresca's law points without pressure may carry friction: it counts, in the account and in a contact's
+/// resultant.
+TEST(MomentumAccount, BalancesUnderTrescasLaw) {
+  int without_pressure = 0;
+  for (const auto& [scheme, mass] : {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"},
+                                     std::pair{"midpoint", "consistent"}, std::pair{"klr-conserving", "consistent"}}) {
+    for (const ThrownBody& body : {thrown_bodies()[0], thrown_bodies()[3]}) {
+      const std::string text =
+          dragged_case(body, mass, std::string("scheme = \"") + scheme + "\"\n", "friction_bound = 0.3\n");
+      const Difference found = largest_difference(text);
+      EXPECT_GE(found.momentum, 0.0);
+      EXPECT_LT(found.momentum, 1e-13) << scheme << ' ' << body.name;
+      EXPECT_LT(found.angular, 1e-13) << scheme << ' ' << body.name;
+      CaseRun run(text);
+      const std::unique_ptr<Sensor> contact = make_contact_sensor("contact", run.problem(), 0);
+      run.run([&] {
+        const StepForces& forces = run.state().forces;
+        SpaceVector sum = SpaceVector::Zero(body.dimension);
+        for (Index i = 0; i < run.problem().contact.size(); ++i) {
+          sum += contact_force(run.problem().contact, forces, i);
+          if (forces.normal_reaction[i] == 0.0 && carries_force(forces, i)) ++without_pressure;
+        }
+        std::vector<double> row;
+        const Vector none;
+        contact->observe({run.state(), none, none}, row);
+        for (int k = 0; k < body.dimension; ++k) EXPECT_EQ(row[static_cast<std::size_t>(k)], sum[k]);
+      });
+    }
+  }
+  EXPECT_GT(without_pressure, 0);
 }
 
 TEST(MomentumAccount, BalancesWithMovingSupports) {

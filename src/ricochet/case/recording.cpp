@@ -51,7 +51,8 @@ double FieldSchedule::intervals(long step) const {
 
 bool FieldSchedule::includes(long step) const {
   if (step == 0 || step == steps_) return any();
-  return interval_ > 0.0 ? intervals(step) > intervals(step - 1) : every_ > 0 && step % every_ == 0;
+  if (interval_ > 0.0) return interval_ <= step_size_ || intervals(step) > intervals(step - 1);
+  return every_ > 0 && step % every_ == 0;
 }
 
 Recording::Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,

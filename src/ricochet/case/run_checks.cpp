@@ -12,6 +12,9 @@ namespace ricochet {
 
 namespace {
 
+/// What a sum of works is rounded to, relative to the largest.
+constexpr double rounding_of_works = 1e-12;
+
 std::size_t column_of(const std::vector<std::string>& columns, const std::string& name) {
   return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
 }
@@ -29,6 +32,9 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
       residual_(column_of(columns, "energy_residual")),
       momentum_column_(column_of(columns, "momentum_x")),
       angular_column_(column_of(columns, model.problem.dimension == 2 ? "angular_momentum_z" : "angular_momentum_x")) {
+  for (const char* work :
+       {"load_work", "contact_work", "friction_work", "support_work", "obstacle_work", "damping_work"})
+    works_.push_back(column_of(columns, work));
   const std::string solver =
       input.solver.method == "direct" ? "" : ", or solver.tolerance where steps are solved by iterations";
   energy_.result.name = "energy_residual";
@@ -48,7 +54,7 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
   if (!model.contains_rotations) angular_.result.limit = 0.0;
   if (snapshot == nullptr) return;
   momentum_.load(*snapshot, "checks.impulse");
-  const Vector& numbers = snapshot->reals("checks.state", 13);
+  const Vector& numbers = snapshot->reals("checks.state", 14);
   start_ = {numbers.head(3), numbers.segment(3, 3)};
   energy_scale_ = numbers[6];
   momentum_scale_ = numbers[7];
@@ -57,6 +63,7 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
   linear_.result.largest = numbers[10];
   angular_.result.largest = numbers[11];
   has_start_ = numbers[12] != 0.0;
+  work_scale_ = numbers[13];
   const Snapshot::Integers& told = snapshot->integers("checks.told", 0, 1);
   if (told.size() != 3) return;
   energy_.told = told[0] != 0;
@@ -66,9 +73,9 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
 
 void RunChecks::save(Snapshot& snapshot, const std::string& name) const {
   momentum_.save(snapshot, name + ".impulse");
-  Vector numbers(13);
+  Vector numbers(14);
   numbers << start_.force, start_.moment, energy_scale_, momentum_scale_, ignored_scale_, energy_.result.largest,
-      linear_.result.largest, angular_.result.largest, has_start_ ? 1.0 : 0.0;
+      linear_.result.largest, angular_.result.largest, has_start_ ? 1.0 : 0.0, work_scale_;
   snapshot.save(name + ".state", numbers);
   snapshot.save(name + ".told", Snapshot::Integers{energy_.told ? 1 : 0, linear_.told ? 1 : 0, angular_.told ? 1 : 0});
 }
@@ -94,7 +101,10 @@ void RunChecks::watch(const std::vector<double>& row, const State& state) {
   energy_scale_ = std::max({energy_scale_, std::abs(row[total_]), std::abs(row[kinetic_]), std::abs(row[elastic_])});
   momentum_scale_ = std::max(momentum_scale_, now.force.norm());
   const double momentum_scale = momentum_scale_ + momentum_.size();
-  judge(energy_, std::abs(row[residual_]), energy_scale_, row, state);
+  for (const std::size_t work : works_) work_scale_ = std::max(work_scale_, std::abs(row[work]));
+  // Of works that cancel rounding is left, which no limit can be below.
+  const double rounding = energy_.result.limit > 0.0 ? rounding_of_works * work_scale_ / energy_.result.limit : 0.0;
+  judge(energy_, std::abs(row[residual_]), std::max(energy_scale_, rounding), row, state);
   judge(linear_, (now.force - start_.force - momentum_.impulse().force).norm(), momentum_scale, row, state);
   judge(angular_, (now.moment - start_.moment - momentum_.impulse().moment).norm(), momentum_scale * momentum_.arm(),
         row, state);

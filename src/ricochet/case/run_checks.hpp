@@ -40,7 +40,8 @@ class RunChecks {
   std::size_t kinetic_, elastic_, total_, residual_, momentum_column_, angular_column_;
   Resultant start_;
   bool has_start_ = false;
-  double energy_scale_ = 0.0, momentum_scale_ = 0.0, ignored_scale_ = 0.0;
+  std::vector<std::size_t> works_;  ///< columns
+  double work_scale_ = 0.0, energy_scale_ = 0.0, momentum_scale_ = 0.0, ignored_scale_ = 0.0;
   Account energy_, linear_, angular_;
 };
 

@@ -100,13 +100,26 @@ ColumnDigest RunSummary::digest(const std::string& column) const {
   return i < digests.size() ? digests[i] : ColumnDigest{};
 }
 
-double RunSummary::energy_scale() const {
-  double scale = 0.0;
-  for (const char* column : {"total_energy", "kinetic_energy", "elastic_energy"}) {
-    const ColumnDigest digested = digest(column);
-    scale = std::max({scale, std::abs(digested.minimum), std::abs(digested.maximum)});
+namespace {
+
+double largest_size(const RunSummary& summary, std::initializer_list<const char*> columns) {
+  double largest = 0.0;
+  for (const char* column : columns) {
+    const ColumnDigest digested = summary.digest(column);
+    largest = std::max({largest, std::abs(digested.minimum), std::abs(digested.maximum)});
   }
-  return scale;
+  return largest;
+}
+
+}  // namespace
+
+double RunSummary::energy_scale() const {
+  return largest_size(*this, {"total_energy", "kinetic_energy", "elastic_energy"});
+}
+
+double RunSummary::work_scale() const {
+  return largest_size(*this,
+                      {"load_work", "contact_work", "friction_work", "support_work", "obstacle_work", "damping_work"});
 }
 
 std::string to_json(const RunSummary& s) {

@@ -75,6 +75,8 @@ struct RunSummary {
   /// Largest |total_energy| + |algorithmic_energy| bound, the scale of the energy account: max of |first|, |min|, |max|
   /// of total energy and of kinetic and elastic energy.
   [[nodiscard]] double energy_scale() const;
+  /// Largest |work| of any kind. Works that cancel may be far larger than all energies.
+  [[nodiscard]] double work_scale() const;
 };
 
 [[nodiscard]] std::string to_json(const RunSummary& summary);

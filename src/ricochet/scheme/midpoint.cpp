@@ -47,8 +47,12 @@ class Midpoint final : public Scheme {
     const StageSolution& solution = solutions.front();
     increment = h * state.velocity + 2.0 * solution.increment;  // 2 (x − U₀)
     state.displacement += increment;
-    state.velocity += (4.0 / h) * solution.increment;  // 2 (U₁−U₀)/h − V₀
-    for (const Index dof : problem.massless_dofs) state.velocity[dof] = increment[dof] / h;
+    state.velocity += (4.0 / h) * solution.increment;           // 2 (U₁−U₀)/h − V₀
+    state.acceleration = (4.0 / (h * h)) * solution.increment;  // (V₁−V₀)/h
+    for (const Index dof : problem.massless_dofs) {
+      state.velocity[dof] = increment[dof] / h;
+      state.acceleration[dof] = 0.0;
+    }
     take_contact(solution, obstacle_velocity_, h, state);
     if (problem.loads.varies()) problem.loads.varying(state.time + 0.5 * h, state.forces.varying_load);
     if (problem.has_damping()) state.forces.damping_force.noalias() = problem.damping * increment * (1.0 / h);

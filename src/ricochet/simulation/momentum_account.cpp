@@ -62,7 +62,8 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const 
   };
   Resultant contact, supports;
   for (Index i = 0; i < forces.normal_reaction.size(); ++i) {
-    if (forces.normal_reaction[i] != 0.0)
+    // Under Tresca's law a point without pressure may still carry friction.
+    if (carries_force(forces, i))
       add(contact, in_space(positions_.col(i)), in_space(contact_force(problem_.contact, forces, i)));
   }
   include(contact);

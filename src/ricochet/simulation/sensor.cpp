@@ -9,6 +9,13 @@ void add_vector_columns(std::vector<std::string>& columns, const std::string& na
   for (int k = 0; k < dimension; ++k) columns.push_back(name + axis_suffix[static_cast<std::size_t>(k)]);
 }
 
+bool carries_force(const StepForces& forces, Index point) {
+  if (forces.normal_reaction[point] != 0.0) return true;
+  if (forces.tangential_reaction.size() == 0) return false;
+  const Index tangents = forces.tangential_reaction.size() / forces.normal_reaction.size();
+  return !forces.tangential_reaction.segment(point * tangents, tangents).isZero(0.0);
+}
+
 SpaceVector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point) {
   SpaceVector force = forces.normal_reaction[point] * contact.normals.col(point);
   const Index tangents = contact.dimension - 1;

@@ -52,7 +52,7 @@ class Sensor {
                                                               const std::vector<Index>& facets);
 
 /// Resultant of a contact (an index of [[contact]]): force on the body, centre of pressure Σ r_N x / Σ r_N with the
-/// positions x of the moment (0 where open), and area of the points that carry a force (in 2D a length).
+/// positions x of the moment (0 where open), and area of the points that are pressed (in 2D a length).
 [[nodiscard]] std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                                           int contact);
 
@@ -62,6 +62,8 @@ class Sensor {
 using SpaceVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
 /// "name_x", "name_y", … appended.
 void add_vector_columns(std::vector<std::string>& columns, const std::string& name, int dimension);
+/// False for the many points that are open.
+[[nodiscard]] bool carries_force(const StepForces& forces, Index point);
 /// The force of a contact point on the body: r_N n − t r_T.
 [[nodiscard]] SpaceVector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point);
 template <class Values>

@@ -28,9 +28,9 @@ class ContactSensor final : public Sensor {
     SpaceVector force = SpaceVector::Zero(d), centre = SpaceVector::Zero(d);
     double pressing = 0.0, area = 0.0;
     for (const Index point : points_) {
+      if (carries_force(state.forces, point)) force += contact_force(contact, state.forces, point);
       const double normal = state.forces.normal_reaction[point];
       if (!(normal > 0.0)) continue;
-      force += contact_force(contact, state.forces, point);
       pressing += normal;
       area += contact.weights[point];
       for (SparseRowMatrix::InnerIterator entry(contact.trace, point); entry; ++entry) {
