@@ -7,6 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/case/run_judgement.hpp"
 
 namespace ricochet {
 
@@ -118,7 +119,7 @@ void RunChecks::judge(Account& account, double residual, double scale, const std
   if (broken && &account == &energy_ && !account.told) {
     // Asked again only when there is much more energy: it takes as long as some steps.
     if (scale < 10.0 * ignored_scale_) return;
-    if (is_rounding_of_energy(scale, state)) {
+    if (is_rounding_of_energy(scale, model_.problem, state)) {
       ignored_scale_ = scale;
       return;
     }
@@ -133,13 +134,6 @@ void RunChecks::judge(Account& account, double residual, double scale, const std
       row[1], row[0], what, residual / scale, what, result.name, result.limit, account.advice);
   if (stops_) throw Error(ErrorKind::not_converged, message);
   log::warning(message);
-}
-
-/// A body that is merely displaced has no energy but the rounding of the terms of UᵀKU.
-bool RunChecks::is_rounding_of_energy(double scale, const State& state) const {
-  const Vector magnitude = state.displacement.cwiseAbs();
-  const double terms = magnitude.dot(model_.problem.internal_force->tangent().cwiseAbs() * magnitude);
-  return scale <= 1e-14 * terms;
 }
 
 std::vector<CheckResult> RunChecks::results() const {

@@ -31,7 +31,6 @@ class RunChecks {
     bool told = false;
   };
   void judge(Account& account, double residual, double scale, const std::vector<double>& row, const State& state);
-  [[nodiscard]] bool is_rounding_of_energy(double scale, const State& state) const;
   [[nodiscard]] Resultant momentum(const std::vector<double>& row) const;
 
   const Model& model_;

@@ -16,18 +16,18 @@ constexpr double large_rotation = 1.0;
 
 }  // namespace
 
+bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, const State& state) {
+  const Vector magnitude = state.displacement.cwiseAbs();
+  const double terms = magnitude.dot(problem.internal_force->tangent().cwiseAbs() * magnitude);
+  return energy <= 1e-14 * terms;
+}
+
 void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
   const double scale = summary.energy_scale();
   const bool contact_creates = summary.digest("contact_work").maximum > 0.01 * scale;
   const bool friction_creates = summary.digest("friction_work").maximum > 0.01 * scale;
-  // A body that is merely displaced has no energy but the rounding of these terms: nothing to judge.
-  const auto is_rounding = [&] {
-    const Vector magnitude = state.displacement.cwiseAbs();
-    const double terms = magnitude.dot(problem.internal_force->tangent().cwiseAbs() * magnitude);
-    return scale <= 1e-14 * terms;
-  };
   const bool rotates = summary.digest("max_rotation").maximum > large_rotation;
-  if (!(contact_creates || friction_creates || rotates) || is_rounding()) return;
+  if (!(contact_creates || friction_creates || rotates) || is_rounding_of_energy(scale, problem, state)) return;
   if (contact_creates) {
     const bool best = (summary.scheme == "newmark" || summary.scheme == "semi-explicit") && problem.has_singular_mass();
     log::warning(

@@ -10,4 +10,7 @@ namespace ricochet {
 /// Warns of what the account of energy says that a user should hear.
 void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state);
 
+/// Is an energy no more than what ½UᵀKU is rounded to? That of a body that is merely displaced is.
+[[nodiscard]] bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, const State& state);
+
 }  // namespace ricochet
