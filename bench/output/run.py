@@ -18,6 +18,9 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench" / "step"))
+import bodies
+
 PAGE = ROOT / "docs" / "reliability.md"
 MARKS = "<!-- output cost: written by ./dev bench output -->\n", "<!-- end of output cost -->\n"
 
@@ -28,22 +31,6 @@ VARIANTS = {
     "all fields": ['output.fields=["all"]'],
     "a checkpoint each 100 steps": ["output.checkpoint_every=100"],
 }
-
-
-def case(directory, name, dimension, size, steps):
-    """The disc or ball of bench/step falls onto a floor: contact in the last two fifths of the steps."""
-    mesh = directory / f"{name}-{size}.msh"
-    subprocess.run(["gmsh", str(ROOT / "bench" / "step" / f"{name}.geo"), f"-{dimension}", "-setnumber", "size",
-                    repr(size), "-format", "msh41", "-o", str(mesh), "-v", "0"], check=True)
-    zeros = ", ".join(["0.0"] * (dimension - 1))
-    path = directory / f"{name}-{size}.toml"
-    path.write_text(
-        f'[mesh]\nfile = "{mesh}"\n[[material]]\ngroup = "body"\ndensity = 1.0\nlambda = 1e4\nmu = 5e3\n'
-        f'[obstacle.floor]\ntype = "plane"\npoint = [{zeros}, 0.0]\nnormal = [{zeros}, 1.0]\n'
-        f'[[contact]]\ngroup = "lower"\nobstacle = "floor"\n[load]\ngravity = [{zeros}, -9.81]\n'
-        f'[initial]\nvelocity = [{zeros}, -1.0]\n[mass]\ntype = "equivalent"\n'
-        f'[time]\nscheme = "newmark"\npreset = "trapezoidal"\nstep = {0.16 / steps!r}\nend = 0.16\n')
-    return path
 
 
 def seconds(program, path, output, settings):
@@ -96,7 +83,8 @@ def main():
                                                     ("disc, 18,000 dofs, 300 steps", "disc", 2, 0.0202, 300),
                                                     ("ball, 4,060 dofs, 400 steps", "ball", 3, 0.155, 400),
                                                     ("ball, 12,000 dofs, 160 steps", "ball", 3, 0.101, 160)):
-            path = case(directory, name, dimension, size, steps)
+            newmark = f'scheme = "newmark"\npreset = "trapezoidal"\nstep = {0.16 / steps!r}\nend = 0.16\n'
+            path = bodies.case(directory, (name, dimension, size), time=newmark, output="")
             plain, ratios, sizes = measure(arguments.build / "ricochet", path, directory, arguments.repeat)
             cells = [cell(ratios[variant], sizes[variant]) for variant in list(VARIANTS)[1:]]
             line = f"| {label} | {plain:.2f} s | {' | '.join(cells)} |\n"

@@ -13,42 +13,15 @@ import pathlib
 import subprocess
 import sys
 
+from bodies import STEP, STEPS, case, mesh
+
 HERE = pathlib.Path(__file__).resolve().parent
 # (name, dimension, size of cells): about 18,000, 74,000 and 200,000 dofs in 2D, 12,000 and 100,000 in 3D.
 RATIO_BODIES = [("disc", 2, 0.0202), ("disc", 2, 0.0101), ("disc", 2, 0.00605), ("ball", 3, 0.101), ("ball", 3, 0.0475)]
 PEER_BODIES = [("disc", 2, 0.0202), ("disc", 2, 0.0101), ("ball", 3, 0.101)]
 SCALING_BODIES = ([("disc", 2, size) for size in (0.09, 0.05, 0.0275, 0.0155, 0.0086, 0.0048, 0.0027)]
                   + [("ball", 3, size) for size in (0.25, 0.165, 0.107, 0.072, 0.0475, 0.032, 0.0212)])
-STEP = 1e-3
-STEPS = 160  # the body is in contact from step 92 on
 SCALING_STEPS = 112
-
-
-def mesh(directory, name, dimension, size):
-    path = directory / f"{name}-{size:g}.msh"
-    if not path.exists():
-        subprocess.run(["gmsh", str(HERE / f"{name}.geo"), f"-{dimension}", "-setnumber", "size", repr(size), "-format", "msh22",
-                        "-o", str(path), "-v", "0"], check=True)
-    return path
-
-
-NEWMARK = f'scheme = "newmark"\npreset = "textbook-half"\nstep = {STEP}\nend = {STEP * STEPS}\n'
-
-
-def case(directory, body, mass="equivalent", friction=0.0, method="", time=NEWMARK, down=0.0):
-    """The path of a case file; `time` is its section, `down` how far the body starts nearer to the floor."""
-    name, dimension, size = body
-    zeros = ", ".join(["0.0"] * (dimension - 1))
-    path = directory / f"{name}-{size:g}-{mass}-{friction:g}{'-' if method else ''}{method}.toml"
-    sliding = 0.5 if friction > 0.0 else 0.0
-    solver = f'[solver]\nmethod = "{method}"\n' if method else ""
-    path.write_text(
-        f'[mesh]\nfile = "{mesh(directory, *body)}"\n[[material]]\ngroup = "body"\ndensity = 1.0\nlambda = 1e4\nmu = 5e3\n'
-        f'[obstacle.floor]\ntype = "plane"\npoint = [{zeros}, 0.0]\nnormal = [{zeros}, 1.0]\n'
-        f'[[contact]]\ngroup = "lower"\nobstacle = "floor"\nfriction = {friction}\n[load]\ngravity = [{zeros}, -9.81]\n'
-        f'[initial]\ndisplacement = [{zeros}, {-down!r}]\nvelocity = [{", ".join([repr(sliding)] + ["0.0"] * (dimension - 2))}, -1.0]\n'
-        f'[mass]\ntype = "{mass}"\n[time]\n{time}[output]\nfields_every = 0\n{solver}')
-    return path
 
 
 def ours(arguments, path, *options):

@@ -1,0 +1,35 @@
+"""The disc and the ball that benchmarks let fall: their meshes and case files."""
+
+import pathlib
+import subprocess
+
+HERE = pathlib.Path(__file__).resolve().parent
+STEP = 1e-3
+STEPS = 160  # the body is in contact from step 92 on
+
+
+def mesh(directory, name, dimension, size):
+    path = directory / f"{name}-{size:g}.msh"
+    if not path.exists():
+        subprocess.run(["gmsh", str(HERE / f"{name}.geo"), f"-{dimension}", "-setnumber", "size", repr(size), "-format", "msh22",
+                        "-o", str(path), "-v", "0"], check=True)
+    return path
+
+
+NEWMARK = f'scheme = "newmark"\npreset = "textbook-half"\nstep = {STEP}\nend = {STEP * STEPS}\n'
+
+
+def case(directory, body, mass="equivalent", friction=0.0, method="", time=NEWMARK, down=0.0, output="fields_every = 0\n"):
+    """The path of a case file; `time` and `output` are its sections, `down` how far the body starts nearer to the floor."""
+    name, dimension, size = body
+    zeros = ", ".join(["0.0"] * (dimension - 1))
+    path = directory / f"{name}-{size:g}-{mass}-{friction:g}{'-' if method else ''}{method}.toml"
+    sliding = 0.5 if friction > 0.0 else 0.0
+    solver = f'[solver]\nmethod = "{method}"\n' if method else ""
+    path.write_text(
+        f'[mesh]\nfile = "{mesh(directory, *body)}"\n[[material]]\ngroup = "body"\ndensity = 1.0\nlambda = 1e4\nmu = 5e3\n'
+        f'[obstacle.floor]\ntype = "plane"\npoint = [{zeros}, 0.0]\nnormal = [{zeros}, 1.0]\n'
+        f'[[contact]]\ngroup = "lower"\nobstacle = "floor"\nfriction = {friction}\n[load]\ngravity = [{zeros}, -9.81]\n'
+        f'[initial]\ndisplacement = [{zeros}, {-down!r}]\nvelocity = [{", ".join([repr(sliding)] + ["0.0"] * (dimension - 2))}, -1.0]\n'
+        f'[mass]\ntype = "{mass}"\n[time]\n{time}[output]\n{output}{solver}')
+    return path
