@@ -6,7 +6,7 @@
 #include <vector>
 
 /// @file The table of everything a case file may say. Reading, checking, the JSON Schema and the documentation page are
-/// all driven by it. A new key is one entry in keys_table.cpp and one line in read_sections.cpp that puts it into the
+/// all driven by it. A new key is one entry in keys_table*.cpp and one line in read_sections.cpp that puts it into the
 /// Case.
 namespace ricochet {
 

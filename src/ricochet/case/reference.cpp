@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* introduction = R"page(# The case file
 
-<!-- Generated from the table of keys in src/ricochet/case/keys_table.cpp. Change it there; a test compares. -->
+<!-- Generated from the table of keys in src/ricochet/case/keys_table*.cpp. Change it there; a test compares. -->
 
 A case file is a [TOML](https://toml.io) document that says everything about a run. `ricochet validate CASE.toml` checks it,
 `ricochet schema` prints its JSON Schema, for editors that complete and check while one types.
