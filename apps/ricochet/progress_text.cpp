@@ -46,8 +46,7 @@ std::string energy_account_text(const RunSummary& summary) {
 void print_progress(const std::string& directory, const RunSummary& summary) {
   if (summary.status == "done") return;
   // The summary is seconds old, and older than the history where the run was killed.
-  const long step =
-      std::max(summary.steps, last_history_row(directory + "/history.csv").value_or(std::pair(0L, 0.0)).first);
+  const long step = std::max(summary.steps, last_history_step(directory + "/history.csv"));
   const auto done = static_cast<double>(summary.steps), all = static_cast<double>(summary.all_steps);
   fmt::print("  step {} of {} ({:.3g} %), t = {:.6g}", step, summary.all_steps, 100.0 * static_cast<double>(step) / all,
              static_cast<double>(step) * summary.step);

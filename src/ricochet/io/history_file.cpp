@@ -56,28 +56,24 @@ void HistoryWriter::sync() {
   sync_to_disk(path_);
 }
 
-std::optional<std::pair<long, double>> last_history_row(const std::string& path) {
+long last_history_step(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const auto size = static_cast<std::int64_t>(file.tellg());
   std::string tail;
-  for (std::int64_t length = 4096; size > 0; length *= 8) {
-    length = std::min(length, size);
+  // More and more of its end, until a whole row is in it.
+  for (std::int64_t length = 0; length < size;) {
+    length = std::min<std::int64_t>(std::max<std::int64_t>(8 * length, 4096), size);
     tail.resize(static_cast<std::size_t>(length));
     file.seekg(size - length);
-    if (!file.read(tail.data(), length)) return {};
+    if (!file.read(tail.data(), length)) return 0;
     const std::size_t end = tail.rfind('\n');
     const std::size_t before = end == std::string::npos || end == 0 ? std::string::npos : tail.rfind('\n', end - 1);
-    if (before != std::string::npos) {
-      const char* const last = tail.data() + end;
-      double step = 0.0, time = 0.0;
-      const auto [comma, problem] = std::from_chars(tail.data() + before + 1, last, step);
-      if (problem != std::errc() || comma == last) return {};
-      if (std::from_chars(comma + 1, last, time).ec != std::errc()) return {};
-      return std::pair(static_cast<long>(step), time);
-    }
-    if (length == size) return {};
+    if (before == std::string::npos) continue;
+    double step = 0.0;
+    std::from_chars(tail.data() + before + 1, tail.data() + end, step);
+    return static_cast<long>(step);
   }
-  return {};
+  return 0;
 }
 
 HistoryTable read_history(const std::string& path) {

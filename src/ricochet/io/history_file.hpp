@@ -2,9 +2,7 @@
 
 #include <fstream>
 #include <map>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
@@ -42,8 +40,8 @@ struct HistoryTable {
   std::map<std::string, std::vector<double>> columns;
 };
 
-/// Step and time of the last row that is complete, of a file that may still be written to; none without rows.
-[[nodiscard]] std::optional<std::pair<long, double>> last_history_row(const std::string& path);
+/// Step of the last row that is complete, of a file that may still be written to; 0 without rows.
+[[nodiscard]] long last_history_step(const std::string& path);
 
 /// Throws Error(file_access) or Error(invalid_input) with the line.
 [[nodiscard]] HistoryTable read_history(const std::string& path);
