@@ -1,4 +1,5 @@
 #include "support/thrown_body.hpp"
+#include "support/paths.hpp"
 
 #include "ricochet/case/names.hpp"
 #include "support/case_run.hpp"
@@ -62,12 +63,13 @@ std::vector<SupportedCase> moving_support_cases() {
   for (const auto& [scheme, mass] :
        {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"}, std::pair{"midpoint", "consistent"},
         std::pair{"klr-conserving", "consistent"}, std::pair{"semi-explicit", "equivalent-lumped"}}) {
-    result.push_back({scheme, "[mesh]\nfile = \"" RICOCHET_TEST_DATA "/meshes/quadrilateral_o1_msh41_ascii.msh\"\n"
-                              "[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n"
-                              "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.05]\nnormal = [0.0, 1.0]\n"
-                              "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.4\n"
-                              "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\", \"y\"]\nvalue = "
-                              "\"-0.1*sin(7*t)\"\n[mass]\ntype = \"" +
+    result.push_back({scheme, "[mesh]\nfile = \"" + data_path("meshes/quadrilateral_o1_msh41_ascii.msh") +
+                                  "\"\n"
+                                  "[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n"
+                                  "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.05]\nnormal = [0.0, 1.0]\n"
+                                  "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.4\n"
+                                  "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\", \"y\"]\nvalue = "
+                                  "\"-0.1*sin(7*t)\"\n[mass]\ntype = \"" +
                                   std::string(mass) + "\"\n[time]\nscheme = \"" + scheme +
                                   "\"\nstep = 0.004\nend = 0.8\n"});
   }

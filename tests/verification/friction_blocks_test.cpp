@@ -7,6 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
+#include "support/paths.hpp"
 
 // Stiff blocks that slide like rigid ones: to rest, down a slope, along with a belt. The cases of cases/incline and
 // cases/conveyor with other schemes and masses, held against the closed forms, and each other.
@@ -25,7 +26,7 @@ const double passage = 0.1 / std::sqrt(5.0e6 / 1000.0);
 
 /// Runs a case of cases/ with overrides.
 CaseRun run_case_file(const std::string& name, std::vector<std::string> overrides) {
-  const std::string cases = std::string(RICOCHET_SOURCE_DIR) + "/cases/";
+  const std::string cases = test_support::source_path("cases/");
   std::ifstream file(cases + name);
   EXPECT_TRUE(file) << name;
   std::stringstream text;

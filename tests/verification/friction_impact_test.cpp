@@ -11,6 +11,7 @@
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
 #include "support/case_run.hpp"
+#include "support/paths.hpp"
 #include "support/thrown_body.hpp"
 
 // Oblique impacts: what momentum, angular momentum and Coulomb's law demand of any body, and the stick and slip of
@@ -97,7 +98,7 @@ TEST(ObliqueImpact, MomentumAndAngularMomentumBalanceInEveryStep) {
 }
 
 std::string cases() {
-  return std::string(RICOCHET_SOURCE_DIR) + "/cases/";
+  return test_support::source_path("cases/");
 }
 
 /// What came of throwing the disc of cases/oblique.

@@ -5,6 +5,7 @@
 #include "case_text.hpp"
 #include "ricochet/case/keys.hpp"
 #include "ricochet/case/names.hpp"
+#include "support/paths.hpp"
 
 namespace ricochet::case_test {
 
@@ -85,7 +86,7 @@ TEST(CaseKeys, AreDocumentedAndHaveUnits) {
 }
 
 TEST(CaseReference, IsTheDocumentationPage) {
-  EXPECT_EQ(file_text(std::string(RICOCHET_SOURCE_DIR) + "/docs/case-file.md"), case_reference())
+  EXPECT_EQ(file_text(test_support::source_path("docs/case-file.md")), case_reference())
       << "docs/case-file.md is generated: write case_reference() into it";
 }
 

@@ -14,12 +14,13 @@
 #include "ricochet/mesh/mesh_cache.hpp"
 #include "ricochet/mesh/raw_mesh.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
+#include "support/paths.hpp"
 
 /// @file Helpers for the tests of meshes.
 namespace ricochet::test {
 
 inline std::string mesh_path(const std::string& name) {
-  return std::string(RICOCHET_TEST_DATA) + "/meshes/" + name;
+  return test_support::data_path("meshes/" + name);
 }
 
 inline std::string mesh_content(const std::string& name) {

@@ -16,6 +16,7 @@
 #include "ricochet/contact/multiplier_space.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "support/box_mesh.hpp"
+#include "support/paths.hpp"
 
 /// @file The contact boundary: supports on it, several groups and obstacles, friction, units, and what is refused.
 namespace ricochet::test_support {
@@ -259,7 +260,7 @@ TEST(ContactBoundary, RefusesWhatIsNotDetermined) {
 /// Contact points and entries of a row of the trace on a flat side of 8 squares or 8 × 8: prints and checks the table
 /// of docs/multipliers.md.
 TEST(ContactBoundary, HasTheSizesOfThePage) {
-  std::ifstream page(std::string(RICOCHET_SOURCE_DIR) + "/docs/multipliers.md");
+  std::ifstream page(source_path("docs/multipliers.md"));
   const std::string text{std::istreambuf_iterator<char>(page), std::istreambuf_iterator<char>()};
   for (const CellShape shape : {CellShape::quadrilateral, CellShape::tetrahedron, CellShape::hexahedron}) {
     for (const int degree : {1, 2}) {

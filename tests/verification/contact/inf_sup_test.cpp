@@ -11,6 +11,7 @@
 
 #include "ricochet/contact/multiplier_space.hpp"
 #include "support/box_mesh.hpp"
+#include "support/paths.hpp"
 
 /// @file Which pairs of displacement and multiplier spaces are inf–sup stable: the numerical constant on families of
 /// meshes. The test prints the table of docs/multipliers.md, and checks the numbers that the page has.
@@ -120,7 +121,7 @@ double constant(const Family& family, const std::string& multipliers, int n) {
 /// The table of the page: family → per space the constants on its meshes.
 std::map<std::string, std::vector<std::vector<double>>> documented() {
   std::map<std::string, std::vector<std::vector<double>>> result;
-  std::ifstream page(std::string(RICOCHET_SOURCE_DIR) + "/docs/multipliers.md");
+  std::ifstream page(source_path("docs/multipliers.md"));
   std::string line;
   while (std::getline(page, line)) {
     std::vector<std::string> cells;

@@ -13,6 +13,7 @@
 #include "ricochet/mesh/reference_cell.hpp"
 #include "ricochet/simulation/static_equilibrium.hpp"
 #include "support/box_mesh.hpp"
+#include "support/paths.hpp"
 
 /// @file Contact patch test: a block pressed on a tilted plane by a uniform pressure on the opposite side. The exact
 /// solution is a uniform stress, so the contact pressure is uniform. The test prints the table of docs/multipliers.md,
@@ -204,7 +205,7 @@ bool pulls(const ElementKind& kind, const std::string& multipliers) {
 /// The table of the page: row → cell by cell.
 std::map<std::string, std::vector<std::string>> documented() {
   std::map<std::string, std::vector<std::string>> result;
-  std::ifstream page(std::string(RICOCHET_SOURCE_DIR) + "/docs/multipliers.md");
+  std::ifstream page(source_path("docs/multipliers.md"));
   std::string line;
   while (std::getline(page, line)) {
     std::vector<std::string> cells;

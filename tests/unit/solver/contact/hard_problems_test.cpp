@@ -10,6 +10,7 @@
 #include "ricochet/io/fclib_file.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "support/hard_contact_problems.hpp"
+#include "support/paths.hpp"
 
 /// @file The default solver on problems that are hard: redundant points, wedges, twelve orders of magnitude, no points
 /// and thousands. What it calls solved is judged in long double; what it does not solve it must say.
@@ -349,7 +350,7 @@ TEST(HardContact, FiveThousandPoints) {
 /// A finite element problem on which the default solver's own Newton iteration comes back to where it was: another
 /// Newton method takes over, instead of thousands of sweeps.
 TEST(HardContact, NewtonThatCycles) {
-  const ContactProblem problem = reduce(read_fclib(RICOCHET_TEST_DATA "/contact/newton-cycles.hdf5")).problem;
+  const ContactProblem problem = reduce(read_fclib(test_support::data_path("contact/newton-cycles.hdf5"))).problem;
   for (const double tolerance : {0.0, 1e-10}) {
     const ContactSolution solution = solve(problem, tolerance);
     EXPECT_TRUE(solution.solved()) << solution.reason;
