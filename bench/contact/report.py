@@ -8,9 +8,9 @@ import argparse
 import datetime
 import json
 import pathlib
-import re
 import statistics
 import subprocess
+import sys
 
 import matplotlib
 
@@ -19,6 +19,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench"))
+from page import write_parts
+
 DEFAULT = ("ricochet", "automatic", False)
 INFINITE = float("inf")
 
@@ -260,11 +263,7 @@ def report(directory, results="results.json", sequences="sequences.json", only_p
     if only_print:
         print("\n\n".join(parts.values()))
         return
-    page = ROOT / "docs/contact-solvers.md"
-    text = page.read_text()
-    for name, table in parts.items():
-        text = re.sub(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda match: match[1] + table + "\n" + match[2], text, flags=re.S)
-    page.write_text(text)
+    write_parts(ROOT / "docs/contact-solvers.md", parts)
     profile(results, ROOT / "docs/figures/contact-solvers.png")
 
 

@@ -18,11 +18,9 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench" / "step"))
+sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "bench" / "step")]
 import bodies
-
-PAGE = ROOT / "docs" / "reliability.md"
-MARKS = "<!-- output cost: written by ./dev bench output -->\n", "<!-- end of output cost -->\n"
+from page import write_parts
 
 VARIANTS = {
     "no fields": ["output.fields_every=0"],
@@ -76,7 +74,7 @@ def main():
         parser.error("each run is made twice at least")
     if arguments.check:
         return 0
-    table = f"| body | without fields | {' | '.join(list(VARIANTS)[1:])} |\n|{'---|' * (len(VARIANTS) + 1)}\n"
+    lines = [f"| body | without fields | {' | '.join(list(VARIANTS)[1:])} |", f"|{'---|' * (len(VARIANTS) + 1)}"]
     with tempfile.TemporaryDirectory() as folder:
         directory = pathlib.Path(folder)
         for label, name, dimension, size, steps in (("disc, 1,060 dofs, 1500 steps", "disc", 2, 0.09, 1500),
@@ -87,12 +85,9 @@ def main():
             path = bodies.case(directory, (name, dimension, size), time=newmark, output="")
             plain, ratios, sizes = measure(arguments.build / "ricochet", path, directory, arguments.repeat)
             cells = [cell(ratios[variant], sizes[variant]) for variant in list(VARIANTS)[1:]]
-            line = f"| {label} | {plain:.2f} s | {' | '.join(cells)} |\n"
-            print(line, end="", flush=True)
-            table += line
-    text = PAGE.read_text(encoding="utf-8")
-    first, last = text.index(MARKS[0]) + len(MARKS[0]), text.index(MARKS[1])
-    PAGE.write_text(text[:first] + table + text[last:], encoding="utf-8")
+            lines.append(f"| {label} | {plain:.2f} s | {' | '.join(cells)} |")
+            print(lines[-1], flush=True)
+    write_parts(ROOT / "docs" / "reliability.md", {"output": "\n".join(lines)})
     return 0
 
 

@@ -3,13 +3,16 @@
 import datetime
 import math
 import pathlib
-import re
 import statistics
+import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from page import write_parts
 
 COLOURS = {"2D": "#2b6cb0", "3D": "#c53030", "3D iterative": "#b7791f"}
 PHASES = (("open", "open"), ("changing", "closing"), ("closed", "closed"))
@@ -180,11 +183,4 @@ def report(everything, docs):
         plot_scaling(everything["scaling"], docs / "figures" / "step-scaling.png")
     if "threads" in everything:
         parts["threads"] = thread_table(everything["threads"])
-    page = docs / "performance.md"
-    text = page.read_text(encoding="utf-8")
-    for name, content in parts.items():
-        pattern = re.compile(f"(<!-- {name} -->\n).*?(<!-- end -->)", re.S)
-        if not pattern.search(text):
-            raise SystemExit(f"{page}: has no place for \"{name}\"")
-        text = pattern.sub(lambda match: match[1] + content + "\n" + match[2], text)
-    page.write_text(text, encoding="utf-8")
+    write_parts(docs / "performance.md", parts)
