@@ -18,7 +18,7 @@ int validate(const std::string& case_file, const std::vector<std::string>& overr
     return 0;
   }
   const std::unique_ptr<Model> model = build_model(input);
-  check_expected_columns(input, HistoryRecorder(model->problem, *model->rotation, model->sensors).columns());
+  check_expected_columns(input, *model);
   // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
   const Simulation simulation(model->problem, *scheme, model->initial, step_solver_options(input));

@@ -1,8 +1,8 @@
 #include "support/thrown_body.hpp"
-#include "support/paths.hpp"
 
 #include "ricochet/case/names.hpp"
 #include "support/case_run.hpp"
+#include "support/paths.hpp"
 
 namespace ricochet::test_support {
 

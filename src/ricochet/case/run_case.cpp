@@ -191,7 +191,7 @@ void Run::begin() {
   BuildTimes build;
   model_ = build_model(input_, &build);
   times_.add_build(build);
-  check_expected_columns(input_, HistoryRecorder(model_->problem, *model_->rotation, model_->sensors).columns());
+  check_expected_columns(input_, *model_);
   if (model_->problem.dof_count() >= large_body) {
     log::info(fmt::format("{} dofs, {} contact points; preparing the steps", model_->problem.dof_count(),
                           model_->problem.contact.size()));

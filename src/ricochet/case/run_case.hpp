@@ -12,6 +12,8 @@
 /// @file Running a case: everything between a case file and an output directory.
 namespace ricochet {
 
+struct Model;
+
 /// What [solver] asks for.
 [[nodiscard]] StepSolverOptions step_solver_options(const Case& input);
 
@@ -38,7 +40,7 @@ RunSummary run_case(const Case& input, const RunOptions& options);
 
 /// Throws Error(invalid_input), at its place in the case, where an [[expect]] entry that applies is about a column that
 /// history.csv will not have.
-void check_expected_columns(const Case& input, const std::vector<std::string>& columns);
+void check_expected_columns(const Case& input, const Model& model);
 
 /// Evaluates the [[expect]] entries of a case on a finished run.
 [[nodiscard]] std::vector<ExpectationResult> check_expectations(const Case& input, const std::string& output_directory,

@@ -33,9 +33,7 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
       residual_(column_of(columns, "energy_residual")),
       momentum_column_(column_of(columns, "momentum_x")),
       angular_column_(column_of(columns, model.problem.dimension == 2 ? "angular_momentum_z" : "angular_momentum_x")) {
-  for (const char* work :
-       {"load_work", "contact_work", "friction_work", "support_work", "obstacle_work", "damping_work"})
-    works_.push_back(column_of(columns, work));
+  for (const char* work : work_columns) works_.push_back(column_of(columns, work));
   const std::string solver =
       input.solver.method == "direct" ? "" : ", or solver.tolerance where steps are solved by iterations";
   energy_.result.name = "energy_residual";

@@ -69,9 +69,9 @@ long last_history_step(const std::string& path) {
     const std::size_t end = tail.rfind('\n');
     const std::size_t before = end == std::string::npos || end == 0 ? std::string::npos : tail.rfind('\n', end - 1);
     if (before == std::string::npos) continue;
-    double step = 0.0;
+    long step = 0;
     std::from_chars(tail.data() + before + 1, tail.data() + end, step);
-    return static_cast<long>(step);
+    return step;
   }
   return 0;
 }

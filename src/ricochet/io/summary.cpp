@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -102,7 +103,8 @@ ColumnDigest RunSummary::digest(const std::string& column) const {
 
 namespace {
 
-double largest_size(const RunSummary& summary, std::initializer_list<const char*> columns) {
+template <class Columns>
+double largest_size(const RunSummary& summary, const Columns& columns) {
   double largest = 0.0;
   for (const char* column : columns) {
     const ColumnDigest digested = summary.digest(column);
@@ -114,12 +116,11 @@ double largest_size(const RunSummary& summary, std::initializer_list<const char*
 }  // namespace
 
 double RunSummary::energy_scale() const {
-  return largest_size(*this, {"total_energy", "kinetic_energy", "elastic_energy"});
+  return largest_size(*this, std::array{"total_energy", "kinetic_energy", "elastic_energy"});
 }
 
 double RunSummary::work_scale() const {
-  return largest_size(*this,
-                      {"load_work", "contact_work", "friction_work", "support_work", "obstacle_work", "damping_work"});
+  return largest_size(*this, work_columns);
 }
 
 std::string to_json(const RunSummary& s) {

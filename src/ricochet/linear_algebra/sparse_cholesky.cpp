@@ -78,10 +78,6 @@ cholmod_sparse view(const SparseMatrix& matrix) {
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 /// METIS puts back the handlers that it finds, but so that they serve for one signal only.
 class KeptHandlers {
  public:

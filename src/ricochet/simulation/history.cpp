@@ -42,14 +42,10 @@ Matrix momenta_of_rigid_velocities(const SemidiscreteProblem& problem) {
 }  // namespace
 
 std::vector<std::string> HistoryRecorder::standard_columns(int dimension) {
-  std::vector<std::string> columns{"step",           "time",
-                                   "kinetic_energy", "elastic_energy",
-                                   "load_potential", "algorithmic_energy",
-                                   "total_energy",   "load_work",
-                                   "contact_work",   "friction_work",
-                                   "support_work",   "obstacle_work",
-                                   "damping_work",   "numerical_dissipation",
-                                   "energy_residual"};
+  std::vector<std::string> columns{
+      "step", "time", "kinetic_energy", "elastic_energy", "load_potential", "algorithmic_energy", "total_energy"};
+  columns.insert(columns.end(), work_columns.begin(), work_columns.end());
+  columns.insert(columns.end(), {"numerical_dissipation", "energy_residual"});
   add_vector_columns(columns, "contact_force", dimension);
   add_vector_columns(columns, "momentum", dimension);
   if (dimension == 2) columns.emplace_back("angular_momentum_z");
@@ -61,17 +57,23 @@ std::vector<std::string> HistoryRecorder::standard_columns(int dimension) {
   return columns;
 }
 
+std::vector<std::string> HistoryRecorder::columns_of(int dimension,
+                                                     const std::vector<std::shared_ptr<Sensor>>& sensors) {
+  std::vector<std::string> columns = standard_columns(dimension);
+  for (const auto& sensor : sensors) {
+    for (const std::string& column : sensor->columns()) columns.push_back(column);
+  }
+  return columns;
+}
+
 HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
                                  std::vector<std::shared_ptr<Sensor>> sensors)
     : problem_(problem),
       rotation_(rotation),
       observer_(problem),
       sensors_(std::move(sensors)),
-      columns_(standard_columns(problem.dimension)),
+      columns_(columns_of(problem.dimension, sensors_)),
       momentum_of_(momenta_of_rigid_velocities(problem)) {
-  for (const auto& sensor : sensors_) {
-    for (const std::string& column : sensor->columns()) columns_.push_back(column);
-  }
   row_.reserve(columns_.size());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,10 @@ class SensorRecorder {
   std::vector<double> row_;
 };
 
+/// The columns that are works, cumulative.
+inline constexpr std::array work_columns{"load_work",    "contact_work",  "friction_work",
+                                         "support_work", "obstacle_work", "damping_work"};
+
 class HistoryRecorder {
  public:
   HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
@@ -45,6 +50,9 @@ class HistoryRecorder {
 
   /// Names of the columns, in the order of a row.
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
+  /// The same of a history that is yet to come.
+  [[nodiscard]] static std::vector<std::string> columns_of(int dimension,
+                                                           const std::vector<std::shared_ptr<Sensor>>& sensors);
   /// The standard columns alone (no sensors), for a body of this dimension: names that a probe cannot have.
   [[nodiscard]] static std::vector<std::string> standard_columns(int dimension);
   /// The row of a state. The reference stays valid until the next call.
