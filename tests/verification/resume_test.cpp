@@ -24,8 +24,9 @@ using test_support::thrown_bodies;
 using test_support::ThrownBody;
 
 bool same_bits(const Vector& a, const Vector& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+  if (a.size() != b.size()) return false;
+  // An empty vector has no address that memcmp takes.
+  return a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
 }
 
 void expect_same(const Snapshot& expected, const Snapshot& found, const std::string& trace) {
