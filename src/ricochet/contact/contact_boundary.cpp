@@ -18,6 +18,14 @@ namespace ricochet {
 
 namespace {
 
+std::vector<Index> facets_of(const std::vector<ContactPair>& pairs) {
+  std::vector<Index> result;
+  for (const ContactPair& pair : pairs) result.insert(result.end(), pair.facets.begin(), pair.facets.end());
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
 /// A patch with its space and the multipliers in use.
 struct Patch {
   const Obstacle* obstacle = nullptr;
@@ -297,6 +305,7 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
   }
   ContactBoundary boundary;
   boundary.dimension = body.space->dimension;
+  boundary.facets = facets_of(pairs);
   const Index count = number_points(patches);
   resize(boundary, count);
   Operators operators(boundary.dimension);

@@ -49,6 +49,7 @@ using FreeComponent = std::function<bool(Index node, int component)>;
 /// identity: each node is a contact point, once per obstacle that may touch it.
 struct ContactBoundary {
   int dimension = 2;
+  std::vector<Index> facets;  ///< of all pairs, numbered through all blocks, ascending, each once
 
   // Per contact point:
   std::vector<int> pair;         ///< index of the ContactPair it came from (the first that names it)

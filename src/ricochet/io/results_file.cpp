@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -24,35 +26,59 @@ FixedDataset node_positions(const DisplacementSpace& space) {
   return set;
 }
 
-/// Cells of several shapes are one list, in which each begins with XDMF's number of its shape.
-struct Cells {
-  FixedDataset set{"/mesh/cells", 0, 0, {}, {}};
-  std::string topology;  ///< XDMF
+/// Cells (or facets) of a block by their numbers in it.
+struct Part {
+  const CellBlock* block;
+  std::vector<Index> members;
 };
 
-Cells cells_of(const DisplacementSpace& space) {
-  Cells result;
-  const bool mixed = space.cells.size() > 1;
-  Index count = 0;
-  std::string type = "Mixed";
-  for (const CellBlock& block : space.cells) {
-    count += block.size();
-    const VtkCell cell = vtk_cell(block.shape, space.degree);
-    if (!mixed) type = cell.xdmf_name;
-    for (Index i = 0; i < block.size(); ++i) {
-      if (mixed) result.set.integers.push_back(cell.xdmf_number);
+/// One row for each cell; cells of several shapes are one list, in which each begins with XDMF's number of its shape.
+FixedDataset connectivity(const DisplacementSpace& space, const std::string& name, const std::vector<Part>& parts) {
+  FixedDataset set{name, 0, 0, {}, {}};
+  const bool mixed = parts.size() > 1;
+  for (const Part& part : parts) {
+    const VtkCell cell = vtk_cell(part.block->shape, space.degree);
+    for (const Index i : part.members) {
+      if (mixed) set.integers.push_back(cell.xdmf_number);
       for (const int k : cell.from_ours)
-        result.set.integers.push_back(space.number[static_cast<std::size_t>(block.cell(i)[k])]);
+        set.integers.push_back(space.number[static_cast<std::size_t>(part.block->cell(i)[k])]);
     }
   }
-  result.set.columns = mixed ? 0 : space.cells.front().nodes_per_cell;
-  result.set.rows = mixed ? static_cast<Index>(result.set.integers.size()) : count;
-  result.topology = fmt::format(
+  set.columns = mixed ? 0 : parts.front().block->nodes_per_cell;
+  set.rows = static_cast<Index>(set.integers.size()) / std::max<Index>(set.columns, 1);
+  return set;
+}
+
+FixedDataset cells_of(const DisplacementSpace& space) {
+  std::vector<Part> parts;
+  for (const CellBlock& block : space.cells) {
+    parts.push_back({&block, std::vector<Index>(static_cast<std::size_t>(block.size()))});
+    std::iota(parts.back().members.begin(), parts.back().members.end(), Index{0});
+  }
+  return connectivity(space, "/mesh/cells", parts);
+}
+
+FixedDataset contact_facets_of(const DisplacementSpace& space, const ContactBoundary& contact) {
+  std::vector<Part> parts;
+  for (const Index facet : contact.facets) {
+    const FacetPlace place = locate_facet(space, facet);
+    const CellBlock* block = &space.facets[place.block];
+    if (parts.empty() || parts.back().block != block) parts.push_back({block, {}});
+    parts.back().members.push_back(place.local);
+  }
+  return connectivity(space, "/mesh/contact_facets", parts);
+}
+
+/// XDMF of the cells.
+std::string topology_of(const DisplacementSpace& space, const FixedDataset& cells) {
+  Index count = 0;
+  for (const CellBlock& block : space.cells) count += block.size();
+  const bool mixed = space.cells.size() > 1;
+  return fmt::format(
       "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\"><DataItem Format=\"HDF\" NumberType=\"Int\" "
       "Precision=\"8\" Dimensions=\"{}\">results.h5:/mesh/cells</DataItem></Topology>\n",
-      type, count,
-      mixed ? fmt::format("{}", result.set.rows) : fmt::format("{} {}", result.set.rows, result.set.columns));
-  return result;
+      mixed ? "Mixed" : vtk_cell(space.cells.front().shape, space.degree).xdmf_name, count,
+      mixed ? fmt::format("{}", cells.rows) : fmt::format("{} {}", cells.rows, cells.columns));
 }
 
 std::string geometry_of(const DisplacementSpace& space) {
@@ -106,9 +132,9 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
   }
   for (const Field& field : fields) values.push_back(field.values);
   const DisplacementSpace& space = *body.space;
-  Cells cells = cells_of(space);
-  mesh = cells.topology + geometry_of(space);
-  const std::vector<FixedDataset> fixed{node_positions(space), std::move(cells.set)};
+  std::vector<FixedDataset> fixed{node_positions(space), cells_of(space)};
+  mesh = topology_of(space, fixed.back()) + geometry_of(space);
+  if (!problem.contact.facets.empty()) fixed.push_back(contact_facets_of(space, problem.contact));
   if (snapshot == nullptr) {
     file.emplace(path, fixed, datasets_of(fields), options.file);
     if (obstacles.any()) obstacle_side.emplace(obstacle_path, "obstacles");

@@ -10,7 +10,8 @@
 /// @file Fields over time: results.h5 and its XDMF 3.0 side-file results.xdmf, one dataset per frame and field.
 ///
 /// results.h5:  /mesh/nodes (nodes × 3), /mesh/cells (cells × nodes in VTK's order, or XDMF's mixed list),
-///   /frames/NNNNNN/… the fields (see fields/field_source.hpp and the README).
+///   /mesh/contact_facets likewise where there are any, /frames/NNNNNN/… the fields (see fields/field_source.hpp and
+///   the README).
 ///
 /// Beside them, where there are obstacles, obstacles.xdmf with their surfaces, which results.xdmf includes.
 namespace ricochet {

@@ -68,7 +68,9 @@ VtkCell vtk_cell(CellShape shape, int degree) {
   result.from_ours = vtk_vertices(shape);
   switch (shape) {
     case CellShape::interval:
-      break;  // facets are not written
+      result.xdmf_name = degree == 1 ? "Polyline" : "Edge_3";
+      result.xdmf_number = degree == 1 ? 2 : 34;
+      break;
     case CellShape::triangle:
       result.xdmf_name = degree == 1 ? "Triangle" : "Tri_6";
       result.xdmf_number = degree == 1 ? 4 : 36;
