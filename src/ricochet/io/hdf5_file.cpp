@@ -142,21 +142,29 @@ std::int64_t Hdf5Reader::size(const std::string& name) const {
 void Hdf5Reader::check_size(const Dataset& set, std::int64_t expected_size, std::size_t bytes_per_entry) const {
   const std::int64_t found = size(set.name);
   if (found != expected_size) fail(set.name, fmt::format("has {} entries where {} are expected", found, expected_size));
+  check_stored(set, found, bytes_per_entry);
+}
+
+void Hdf5Reader::check_stored(const Dataset& set, std::int64_t entries, std::size_t bytes_per_entry) const {
   // A damaged header may claim more than there is: say so before memory is asked for it.
   const Hdf5Handle properties(H5Dget_create_plist(set.set), H5Pclose);
   const bool filtered = properties < 0 || H5Pget_nfilters(properties) > 0;
   const auto stored = static_cast<std::uint64_t>(H5Dget_storage_size(set.set));
   std::error_code problem;
   const std::uint64_t in_file = fs::file_size(path_, problem);
-  const auto needed = static_cast<std::uint64_t>(expected_size) * bytes_per_entry;
-  if (found > 0 && (stored == 0 || (!filtered && (stored < needed || needed > in_file))))
-    fail(set.name, fmt::format("the file does not hold its {} entries: it is cut off or damaged", found));
+  const auto needed = static_cast<std::uint64_t>(entries) * bytes_per_entry;
+  if (entries > 0 && (stored == 0 || (!filtered && (stored < needed || needed > in_file))))
+    fail(set.name, fmt::format("the file does not hold its {} entries: it is cut off or damaged", entries));
 }
 
-Vector Hdf5Reader::numbers(const Dataset& set, std::int64_t expected_size) const {
+void Hdf5Reader::check_numbers(const Dataset& set) const {
   const H5T_class_t kind = H5Tget_class(set.type);
   if (kind != H5T_INTEGER && kind != H5T_FLOAT)
     fail(set.name, fmt::format("holds {} where numbers are expected", kind_name(kind)));
+}
+
+Vector Hdf5Reader::numbers(const Dataset& set, std::int64_t expected_size) const {
+  check_numbers(set);
   check_size(set, expected_size, H5Tget_size(set.type));
   Vector result(expected_size);
   if (result.size() > 0 && H5Dread(set.set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()) < 0)
@@ -193,6 +201,53 @@ Vector Hdf5Reader::reals(const std::string& name, std::int64_t expected_size) co
   Vector values = numbers(set, expected_size);
   const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
   if (bad != values.end()) fail(name, fmt::format("entry {} is {}, which is not finite", bad - values.begin(), *bad));
+  return values;
+}
+
+std::pair<Index, Index> Hdf5Reader::extents(const std::string& name) const {
+  const Dataset set(*this, name);
+  const int rank = H5Sget_simple_extent_ndims(set.space);
+  if (rank != 1 && rank != 2) fail(name, fmt::format("has {} dimensions where one or two are expected", rank));
+  hsize_t sizes[2] = {0, 0};
+  H5Sget_simple_extent_dims(set.space, sizes, nullptr);
+  return {static_cast<Index>(sizes[0]), static_cast<Index>(sizes[1])};
+}
+
+void Hdf5Reader::check_table(const Dataset& set, Index rows, Index columns) const {
+  const auto [found_rows, found_columns] = extents(set.name);
+  if (found_rows != rows || found_columns != columns) {
+    fail(set.name, fmt::format("has {} rows and {} columns where {} and {} are expected", found_rows, found_columns,
+                               rows, columns));
+  }
+  check_numbers(set);
+  check_stored(set, rows * std::max<Index>(columns, 1), H5Tget_size(set.type));
+}
+
+void Hdf5Reader::table(const std::string& name, Index rows, Index columns, std::vector<float>& values) const {
+  const Dataset set(*this, name);
+  check_table(set, rows, columns);
+  values.resize(static_cast<std::size_t>(rows * std::max<Index>(columns, 1)));
+  if (!values.empty() && H5Dread(set.set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    fail(name, "cannot be read: the file is damaged");
+}
+
+Matrix Hdf5Reader::real_table(const std::string& name, Index rows, Index columns) const {
+  const Dataset set(*this, name);
+  check_table(set, rows, columns);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values(rows, std::max<Index>(columns, 1));
+  if (values.size() > 0 && H5Dread(set.set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    fail(name, "cannot be read: the file is damaged");
+  if (!values.allFinite()) fail(name, "holds numbers that are not finite");
+  return values;
+}
+
+std::vector<std::int64_t> Hdf5Reader::whole_table(const std::string& name, Index rows, Index columns) const {
+  const Dataset set(*this, name);
+  check_table(set, rows, columns);
+  if (H5Tget_class(set.type) != H5T_INTEGER) fail(name, "holds no whole numbers");
+  std::vector<std::int64_t> values(static_cast<std::size_t>(rows * std::max<Index>(columns, 1)));
+  if (!values.empty() && H5Dread(set.set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    fail(name, "cannot be read: the file is damaged");
   return values;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ricochet/base/types.hpp"
@@ -34,6 +35,13 @@ class Hdf5Reader {
   [[nodiscard]] std::vector<std::int64_t> integers(const std::string& name, std::int64_t expected_size) const;
   /// Also throws where a number is not finite.
   [[nodiscard]] Vector reals(const std::string& name, std::int64_t expected_size) const;
+  /// Rows and columns (0: one dimension) of a data set of one or two dimensions.
+  [[nodiscard]] std::pair<Index, Index> extents(const std::string& name) const;
+  /// Numbers row by row, of exactly so many rows and columns (0: one dimension): in single precision, where NaN and
+  /// infinities are left as they are; finite ones in double precision; whole ones.
+  void table(const std::string& name, Index rows, Index columns, std::vector<float>& values) const;
+  [[nodiscard]] Matrix real_table(const std::string& name, Index rows, Index columns) const;
+  [[nodiscard]] std::vector<std::int64_t> whole_table(const std::string& name, Index rows, Index columns) const;
   [[nodiscard]] std::string text(const std::string& name) const;
   /// Throws Error(invalid_input): "PATH: NAME: message".
   [[noreturn]] void fail(const std::string& name, const std::string& message) const;
@@ -42,6 +50,9 @@ class Hdf5Reader {
   struct Dataset;
   [[nodiscard]] bool has(const std::string& name, bool group) const;
   void check_size(const Dataset& set, std::int64_t expected_size, std::size_t bytes_per_entry) const;
+  void check_stored(const Dataset& set, std::int64_t entries, std::size_t bytes_per_entry) const;
+  void check_numbers(const Dataset& set) const;
+  void check_table(const Dataset& set, Index rows, Index columns) const;
   [[nodiscard]] Vector numbers(const Dataset& set, std::int64_t expected_size) const;
 
   std::string path_;

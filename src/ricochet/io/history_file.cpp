@@ -76,7 +76,7 @@ long last_history_step(const std::string& path) {
   return 0;
 }
 
-HistoryTable read_history(const std::string& path) {
+HistoryTable read_history(const std::string& path, bool may_grow) {
   std::ifstream file(path);
   if (!file) throw Error(ErrorKind::file_access, fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
   HistoryTable table;
@@ -90,6 +90,7 @@ HistoryTable read_history(const std::string& path) {
   std::vector<std::vector<double>*> columns;
   for (const std::string& name : table.names) columns.push_back(&table.columns[name]);
   for (long number = 2; std::getline(file, line); ++number) {
+    if (may_grow && file.eof()) break;  // no end of line: it is being written
     const char* at = line.data();
     const char* const end = line.data() + line.size();
     for (std::size_t i = 0; i < columns.size(); ++i) {

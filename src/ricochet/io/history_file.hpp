@@ -43,7 +43,8 @@ struct HistoryTable {
 /// Step of the last row that is complete, of a file that may still be written to; 0 without rows.
 [[nodiscard]] long last_history_step(const std::string& path);
 
-/// Throws Error(file_access) or Error(invalid_input) with the line.
-[[nodiscard]] HistoryTable read_history(const std::string& path);
+/// `may_grow`: of a run that goes on or was stopped, whose last row may not be complete and is left out then. Throws
+/// Error(file_access) or Error(invalid_input) with the line.
+[[nodiscard]] HistoryTable read_history(const std::string& path, bool may_grow = false);
 
 }  // namespace ricochet

@@ -1,0 +1,126 @@
+#include "ricochet/io/results_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/frame_file.hpp"
+#include "ricochet/io/hdf5_file.hpp"
+#include "ricochet/io/vtk_order.hpp"
+
+namespace ricochet {
+
+struct ResultsReader::File {
+  explicit File(const std::string& path) : reader(path) {}
+  Hdf5Reader reader;
+};
+
+namespace {
+
+std::vector<CellShape> shapes_of(int dimension) {
+  if (dimension == 1) return {CellShape::interval};
+  if (dimension == 2) return {CellShape::triangle, CellShape::quadrilateral};
+  return {CellShape::tetrahedron, CellShape::hexahedron};
+}
+
+/// Reads connectivity as results_file.cpp writes it: a table of cells of one shape, or XDMF's mixed list.
+class Connectivity {
+ public:
+  Connectivity(const Hdf5Reader& file, std::string name, int dimension, int degree, Index nodes)
+      : file_(file), name_(std::move(name)), dimension_(dimension), degree_(degree), nodes_(nodes) {}
+
+  [[nodiscard]] std::vector<CellBlock> read() {
+    const auto [rows, columns] = file_.extents(name_);
+    const std::vector<std::int64_t> list = file_.whole_table(name_, rows, columns);
+    if (columns > 0) {
+      const CellShape shape =
+          shape_of([this, columns = columns](CellShape s) { return node_count(s, degree_) == columns; },
+                   fmt::format("cells of {} nodes", columns));
+      for (Index row = 0; row < rows; ++row) append(shape, list.data() + row * columns);
+    } else {
+      for (std::size_t at = 0; at < list.size();) {
+        const std::int64_t number = list[at++];
+        const CellShape shape =
+            shape_of([this, number](CellShape s) { return vtk_cell(s, degree_).xdmf_number == number; },
+                     fmt::format("cells of XDMF's kind {}", number));
+        const auto size = static_cast<std::size_t>(node_count(shape, degree_));
+        if (at + size > list.size()) file_.fail(name_, "the last cell is not complete");
+        append(shape, list.data() + at);
+        at += size;
+      }
+    }
+    return std::move(blocks_);
+  }
+
+ private:
+  template <class Predicate>
+  [[nodiscard]] CellShape shape_of(const Predicate& fits, const std::string& what) const {
+    for (const CellShape shape : shapes_of(dimension_)) {
+      if (fits(shape)) return shape;
+    }
+    file_.fail(name_, fmt::format("there are no {} in dimension {} with degree {}", what, dimension_, degree_));
+  }
+
+  void append(CellShape shape, const std::int64_t* in_file) {
+    if (blocks_.empty() || blocks_.back().shape != shape) {
+      blocks_.push_back({shape, node_count(shape, degree_), {}, {}});
+      order_ = vtk_cell(shape, degree_).from_ours;
+    }
+    CellBlock& block = blocks_.back();
+    const std::size_t begin = block.nodes.size();
+    block.nodes.resize(begin + order_.size());
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      if (in_file[k] < 0 || in_file[k] >= nodes_)
+        file_.fail(name_, fmt::format("node {} does not exist: there are {}", in_file[k], nodes_));
+      block.nodes[begin + static_cast<std::size_t>(order_[k])] = static_cast<Index>(in_file[k]);
+    }
+    block.tags.push_back(static_cast<std::int64_t>(block.tags.size()) + 1);
+  }
+
+  const Hdf5Reader& file_;
+  std::string name_;
+  int dimension_, degree_;
+  Index nodes_;
+  std::vector<CellBlock> blocks_;
+  std::vector<int> order_;
+};
+
+}  // namespace
+
+ResultsReader::ResultsReader(const std::string& directory, int dimension, int degree)
+    : file_(std::make_unique<File>(directory + "/results.h5")),
+      dimension_(dimension),
+      degree_(degree),
+      frames_(read_xdmf_frames(directory + "/results.xdmf")) {
+  const Hdf5Reader& file = file_->reader;
+  const std::string name = "/mesh/nodes";
+  const auto [rows, columns] = file.extents(name);
+  if (columns != 3) file.fail(name, fmt::format("has {} columns where 3 are expected", columns));
+  nodes_ = file.real_table(name, rows, columns).transpose();
+  cells_ = Connectivity(file, "/mesh/cells", dimension_, degree_, rows).read();
+  if (file.has_dataset("/mesh/contact_facets"))
+    contact_facets_ = Connectivity(file, "/mesh/contact_facets", dimension_ - 1, degree_, rows).read();
+}
+
+ResultsReader::~ResultsReader() = default;
+
+Index ResultsReader::cell_count() const {
+  Index count = 0;
+  for (const CellBlock& block : cells_) count += block.size();
+  return count;
+}
+
+const XdmfField* ResultsReader::find_field(const std::string& name) const {
+  const auto found =
+      std::find_if(frames_.fields.begin(), frames_.fields.end(), [&](const XdmfField& f) { return f.name == name; });
+  return found == frames_.fields.end() ? nullptr : &*found;
+}
+
+void ResultsReader::read(Index frame, const XdmfField& field, std::vector<float>& values) const {
+  file_->reader.table(FrameFile::frame_name(frame) + "/" + field.name, field.on_nodes ? nodes_.cols() : cell_count(),
+                      field.components > 1 ? field.components : 0, values);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,139 @@
+#include "ricochet/io/xdmf_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// A document of ours, read from front to back.
+class Scanner {
+ public:
+  explicit Scanner(const std::string& path) : path_(path) {
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw_file_error(path, "read", errno);
+    text_.assign(std::istreambuf_iterator<char>(file), {});
+  }
+
+  /// Goes behind the next occurrence; false (and stays) where there is none before `end`.
+  bool find(std::string_view what, std::size_t end = std::string::npos) {
+    const std::size_t found = text_.find(what, at_);
+    if (found == std::string::npos || found >= end) return false;
+    at_ = found + what.size();
+    return true;
+  }
+  /// Where `what` is found next; the end of the text where it is not.
+  [[nodiscard]] std::size_t next(std::string_view what) const { return std::min(text_.find(what, at_), text_.size()); }
+  /// What comes before the next occurrence of `end`, which must be there.
+  std::string_view until(std::string_view end) {
+    const std::size_t found = text_.find(end, at_);
+    if (found == std::string::npos) fail(fmt::format("'{}' is missing", end));
+    const std::string_view result = std::string_view(text_).substr(at_, found - at_);
+    at_ = found + end.size();
+    return result;
+  }
+  void expect(std::string_view what) {
+    if (!find(what)) fail(fmt::format("'{}' is missing", what));
+  }
+  [[nodiscard]] double number(std::string_view text) const {
+    double value = 0.0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+      fail(fmt::format("'{}' is not a number", text));
+    return value;
+  }
+  [[nodiscard]] std::vector<double> numbers(std::string_view text) const {
+    std::vector<double> result;
+    for (std::size_t begin = text.find_first_not_of(" \n"); begin < text.size();) {
+      const std::size_t end = std::min(text.find_first_of(" \n", begin), text.size());
+      result.push_back(number(text.substr(begin, end - begin)));
+      begin = text.find_first_not_of(" \n", end);
+    }
+    return result;
+  }
+  [[nodiscard]] std::vector<int> whole_numbers(std::string_view text, double limit) const {
+    std::vector<int> result;
+    for (const double value : numbers(text)) {
+      if (!(value >= 0.0 && value < limit) || value != std::trunc(value)) fail(fmt::format("{} is no index", value));
+      result.push_back(static_cast<int>(value));
+    }
+    return result;
+  }
+  [[noreturn]] void fail(const std::string& problem) const {
+    const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
+    throw Error(ErrorKind::invalid_input, fmt::format("{}:{}: {}: the file is damaged", path_, line, problem));
+  }
+
+ private:
+  std::string path_, text_;
+  std::size_t at_ = 0;
+};
+
+constexpr std::string_view grid = "<Grid Name=\"body\" GridType=\"Uniform\">";
+constexpr std::string_view obstacle_grid = "<Grid Name=\"obstacles\" GridType=\"Uniform\">";
+
+XdmfField field_of(Scanner& file) {
+  XdmfField field;
+  field.name = file.until("\"");
+  file.expect("AttributeType=\"");
+  const std::string_view type = file.until("\"");
+  field.components = type == "Scalar" ? 1 : type == "Vector" ? 3 : 6;
+  file.expect("Center=\"");
+  field.on_nodes = file.until("\"") == "Node";
+  return field;
+}
+
+}  // namespace
+
+XdmfFrames read_xdmf_frames(const std::string& path) {
+  Scanner file(path);
+  XdmfFrames result;
+  while (file.find(grid)) {
+    file.expect("<Time Value=\"");
+    result.times.push_back(file.number(file.until("\"")));
+    if (result.times.size() > 1) continue;
+    const std::size_t end = file.next("</Grid>");
+    while (file.find("<Attribute Name=\"", end)) result.fields.push_back(field_of(file));
+  }
+  return result;
+}
+
+std::vector<ObstacleFrame> read_obstacle_frames(const std::string& path) {
+  Scanner file(path);
+  std::vector<ObstacleFrame> result;
+  while (file.find(obstacle_grid)) {
+    ObstacleFrame frame;
+    file.expect("<Time Value=\"");
+    frame.time = file.number(file.until("\""));
+    file.expect("NodesPerElement=\"");
+    frame.corners = static_cast<int>(file.number(file.until("\"")));
+    const auto item = [&file] {
+      file.expect("<DataItem");
+      file.expect(">");
+      return file.until("</DataItem>");
+    };
+    const std::string_view cells = item();
+    frame.positions = file.numbers(item());
+    frame.cells = file.whole_numbers(cells, static_cast<double>(frame.positions.size() / 3));
+    frame.obstacle = file.whole_numbers(item(), 1e6);
+    if (frame.corners < 2 || frame.corners > 4 || frame.positions.size() % 3 != 0 ||
+        frame.cells.size() != frame.obstacle.size() * static_cast<std::size_t>(frame.corners)) {
+      file.fail("points, cells and obstacles do not go together");
+    }
+    result.push_back(std::move(frame));
+  }
+  return result;
+}
+
+}  // namespace ricochet
