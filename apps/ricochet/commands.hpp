@@ -26,11 +26,18 @@ struct ContactArguments {
   bool list = false;  ///< the solvers, nothing else
 };
 
+struct ReportArguments {
+  std::vector<std::string> directories;
+  std::string output;  ///< empty: report.html in the directory, or in the folder that all directories are in
+  double most_megabytes = 20.0;
+};
+
 int run(const RunArguments& arguments);
 int validate(const std::string& case_file, const std::vector<std::string>& overrides);
 int info(const std::vector<std::string>& paths);
 int schema(bool markdown);
 int contact(const ContactArguments& arguments);
+int report(const ReportArguments& arguments);
 /// A contact problem in a few lines.
 void describe_contact_problem(const std::string& path);
 

@@ -17,6 +17,7 @@ using namespace ricochet;
 struct Arguments {
   program::RunArguments run;
   program::ContactArguments contact;
+  program::ReportArguments report;
   std::string validate_file;
   std::vector<std::string> validate_overrides;
   std::vector<std::string> info_paths;
@@ -96,6 +97,21 @@ int dispatch(int argc, char** argv) {
       "was found is reported with its residual; 4 cannot read or write a file.");
   add_common(*contact, arguments);
 
+  CLI::App* report = app.add_subcommand("report", "Show one run or several in a page for the browser, one HTML file");
+  report->add_option("directories", arguments.report.directories, "output directories of runs")
+      ->required()
+      ->type_name("DIR");
+  report
+      ->add_option("-o,--output", arguments.report.output,
+                   "HTML file (default: report.html in the directory, or in the folder that all are in)")
+      ->type_name("FILE.html");
+  report
+      ->add_option("--size-limit", arguments.report.most_megabytes,
+                   "megabytes that the file has at most; runs that take more are thinned (default: 20)")
+      ->type_name("MB")
+      ->check(CLI::Range(1.0, 2000.0));
+  add_common(*report, arguments);
+
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
   schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
 
@@ -112,6 +128,7 @@ int dispatch(int argc, char** argv) {
   if (validate->parsed()) return program::validate(arguments.validate_file, arguments.validate_overrides);
   if (info->parsed()) return program::info(arguments.info_paths);
   if (contact->parsed()) return program::contact(arguments.contact);
+  if (report->parsed()) return program::report(arguments.report);
   return program::schema(arguments.markdown);
 }
 

@@ -1,0 +1,239 @@
+#include "ricochet/report/body_part.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace ricochet {
+
+namespace {
+
+/// Numbers of all frames together that are held in memory at most.
+constexpr double most_numbers = 2.5e8;
+
+/// On nodes of the contact boundary; elsewhere they say nothing.
+constexpr std::array contact_names{"contact_pressure", "friction_traction", "gap", "contact_status"};
+
+bool is_contact(const std::string& name) {
+  return std::find(contact_names.begin(), contact_names.end(), name) != contact_names.end();
+}
+
+/// Value i of a scalar field, or the length of vector i.
+float magnitude(const std::vector<float>& values, int components, Index i) {
+  if (components == 1) return values[static_cast<std::size_t>(i)];
+  const float* v = values.data() + 3 * i;
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+}  // namespace
+
+BodyFrames::BodyFrames(const ResultsReader& results, Index most_triangles)
+    : results_(results),
+      dimension_(dimension(results.cells().front().shape)),
+      surface_(make_surface(results.nodes(), results.cells(), most_triangles)),
+      line_(make_contact_line(results.nodes(), results.contact_facets())) {
+  std::map<int, int> numbers;
+  for (const int cell : surface_.cells) {
+    const auto [place, is_new] = numbers.try_emplace(cell, static_cast<int>(cells_.size()));
+    if (is_new) cells_.push_back(cell);
+    triangle_cells_.push_back(place->second);
+  }
+  choose();
+  read_frames();
+}
+
+void BodyFrames::choose() {
+  for (int k = 0; k < dimension_; ++k)
+    deviations_.push_back({"xyz"[k] + std::string(), true, static_cast<Index>(surface_.nodes.size()), {}});
+  for (const XdmfField& field : results_.fields()) {
+    if (field.name == "displacement") continue;
+    if (is_contact(field.name)) {
+      if (!line_.nodes.empty()) contact_.push_back({field.name, true, static_cast<Index>(line_.nodes.size()), {}});
+    } else if (field.components > 3) {
+      left_out_.push_back(field.name);
+    } else {
+      const std::size_t columns = field.on_nodes ? surface_.nodes.size() : cells_.size();
+      fields_.push_back({field.name, field.on_nodes, static_cast<Index>(columns), {}});
+    }
+  }
+  double numbers = 0.0;
+  for (const auto* list : {&deviations_, &fields_, &contact_}) {
+    for (const Values& values : *list) numbers += static_cast<double>(values.columns);
+  }
+  const auto stride =
+      std::max<Index>(static_cast<Index>(std::ceil(numbers * static_cast<double>(frame_count()) / most_numbers)), 1);
+  for (Index frame = 0; frame < frame_count(); ++frame) {
+    if (frame % stride == 0 || frame + 1 == frame_count()) frames_.push_back(static_cast<int>(frame));
+  }
+}
+
+void BodyFrames::read_frames() {
+  std::vector<float> values;
+  for (const int frame : frames_) {
+    for (const XdmfField& field : results_.fields()) {
+      if (field.components > 3 || (is_contact(field.name) && line_.nodes.empty())) continue;
+      results_.read(frame, field, values);
+      if (field.name == "displacement") {
+        take_displacement(values);
+      } else if (is_contact(field.name)) {
+        take_contact(field, values);
+      } else {
+        take_field(field, values);
+      }
+    }
+  }
+}
+
+void BodyFrames::take_displacement(const std::vector<float>& field) {
+  std::array<double, 3> mean{};
+  for (std::size_t i = 0; i < field.size(); ++i) mean[i % 3] += static_cast<double>(field[i]);
+  for (double& component : mean) component /= static_cast<double>(field.size() / 3);
+  mean_.insert(mean_.end(), mean.begin(), mean.end());
+  for (std::size_t k = 0; k < deviations_.size(); ++k) {
+    for (const Index node : surface_.nodes) {
+      deviations_[k].values.push_back(
+          static_cast<float>(static_cast<double>(field[3 * static_cast<std::size_t>(node) + k]) - mean[k]));
+    }
+  }
+}
+
+void BodyFrames::take_contact(const XdmfField& field, const std::vector<float>& values) {
+  Values& own = *std::find_if(contact_.begin(), contact_.end(), [&](const Values& v) { return v.name == field.name; });
+  for (const Index node : line_.nodes) own.values.push_back(magnitude(values, field.components, node));
+}
+
+void BodyFrames::take_field(const XdmfField& field, const std::vector<float>& values) {
+  Values& own = *std::find_if(fields_.begin(), fields_.end(), [&](const Values& v) { return v.name == field.name; });
+  if (field.on_nodes) {
+    for (const Index node : surface_.nodes) own.values.push_back(magnitude(values, field.components, node));
+  } else {
+    for (const int cell : cells_) own.values.push_back(magnitude(values, field.components, cell));
+  }
+}
+
+std::vector<std::size_t> BodyFrames::kept(std::size_t stride) const {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    if (i % stride == 0 || i + 1 == frames_.size()) rows.push_back(i);
+  }
+  return rows;
+}
+
+std::vector<int> BodyFrames::frames_of(const std::vector<std::size_t>& rows) const {
+  std::vector<int> result;
+  for (const std::size_t row : rows) result.push_back(frames_[row]);
+  return result;
+}
+
+PackedArray BodyFrames::pack(const Values& values, const std::vector<std::size_t>& rows, int bits,
+                             PackedArrays& arrays) {
+  std::vector<float> chosen;
+  chosen.reserve(rows.size() * static_cast<std::size_t>(values.columns));
+  for (const std::size_t row : rows) {
+    const auto begin = values.values.begin() + static_cast<std::ptrdiff_t>(row) * values.columns;
+    chosen.insert(chosen.end(), begin, begin + values.columns);
+  }
+  const auto count = static_cast<Index>(rows.size());
+  if (values.name == "contact_status") return arrays.add_small_numbers(chosen, count, values.columns);
+  return arrays.add_levels(chosen, count, values.columns, bits);
+}
+
+void BodyFrames::pack_frames(const Quality& quality, const std::vector<std::size_t>& rows, PackedArrays& arrays,
+                             BodyPart& part) const {
+  part.frames = frames_of(rows);
+  part.displacement_bits = quality.displacement_bits;
+  part.field_bits = quality.field_bits;
+  std::vector<double> means;
+  for (const std::size_t row : rows)
+    means.insert(means.end(), {mean_[3 * row], mean_[3 * row + 1], mean_[3 * row + 2]});
+  part.mean = arrays.add_reals(means, static_cast<Index>(rows.size()), 3);
+  for (const Values& values : deviations_)
+    part.deviations.push_back(pack(values, rows, quality.displacement_bits, arrays));
+  for (const Values& values : fields_)
+    part.fields.push_back({values.name, values.on_nodes, pack(values, rows, quality.field_bits, arrays)});
+}
+
+ContactPart BodyFrames::pack_contact(std::size_t most_bytes, PackedArrays& arrays) const {
+  ContactPart part;
+  part.line = line_;
+  if (line_.nodes.empty()) return part;
+  if (!line_.position.empty())
+    part.position = arrays.add_reals(line_.position, 1, static_cast<Index>(line_.position.size()));
+  std::map<Index, int> numbers;
+  for (std::size_t i = 0; i < surface_.nodes.size(); ++i) numbers.emplace(surface_.nodes[i], static_cast<int>(i));
+  std::vector<int> nodes;
+  for (const Index node : line_.nodes) nodes.push_back(numbers.contains(node) ? numbers.at(node) : -1);
+  part.nodes = arrays.add_indices(nodes);
+  constexpr std::array<std::pair<int, std::size_t>, 7> qualities{
+      {{16, 1}, {12, 1}, {10, 1}, {10, 2}, {8, 4}, {8, 10}, {8, 30}}};
+  for (const auto& [bits, stride] : qualities) {
+    const std::vector<std::size_t> rows = kept(stride);
+    PackedArrays attempt = arrays;
+    std::vector<ContactQuantity> quantities;
+    for (const Values& values : contact_) quantities.push_back({values.name, pack(values, rows, bits, attempt)});
+    if (attempt.page_bytes() - arrays.page_bytes() > most_bytes && stride < qualities.back().second) continue;
+    arrays = std::move(attempt);
+    part.frames = frames_of(rows);
+    part.quantities = std::move(quantities);
+    break;
+  }
+  return part;
+}
+
+BodyPart BodyFrames::pack_body(std::size_t most_bytes, PackedArrays& arrays) const {
+  BodyPart part;
+  part.left_out = left_out_;
+  part.is_thinned = surface_.is_thinned;
+  part.nodes = static_cast<Index>(surface_.nodes.size());
+  part.triangles = surface_.triangle_count();
+  const std::size_t before = arrays.page_bytes();
+  std::vector<float> positions;
+  for (Index k = 0; k < dimension_; ++k) {
+    for (const Index node : surface_.nodes) positions.push_back(static_cast<float>(results_.nodes()(k, node)));
+  }
+  part.positions = arrays.add_levels(positions, dimension_, part.nodes, 16);
+  part.corners = arrays.add_indices(surface_.triangles);
+  part.triangle_cells = arrays.add_indices(triangle_cells_);
+  part.edges =
+      arrays.add_small_numbers(std::vector<float>(surface_.edges.begin(), surface_.edges.end()), 1, part.triangles);
+  const std::size_t fixed = arrays.page_bytes() - before;
+  const std::size_t left = most_bytes > fixed ? most_bytes - fixed : 0;
+
+  constexpr std::array<Quality, 13> qualities{{{16, 12, 1},
+                                               {14, 10, 1},
+                                               {12, 8, 1},
+                                               {11, 7, 1},
+                                               {11, 6, 1},
+                                               {12, 8, 2},
+                                               {11, 7, 2},
+                                               {11, 7, 3},
+                                               {10, 6, 5},
+                                               {10, 6, 8},
+                                               {10, 6, 15},
+                                               {10, 6, 30},
+                                               {10, 6, 100}}};
+  for (const Quality& quality : qualities) {
+    const std::vector<std::size_t> rows = kept(quality.stride);
+    const bool is_last = quality.stride == qualities.back().stride;
+    // A few frames from the middle tell about what all will take.
+    if (!is_last && rows.size() > 24) {
+      PackedArrays sample;
+      BodyPart ignored;
+      const auto middle = rows.begin() + static_cast<std::ptrdiff_t>(rows.size() / 2);
+      pack_frames(quality, {middle, middle + 6}, sample, ignored);
+      if (sample.page_bytes() * rows.size() / 6 > left + left / 4) continue;
+    }
+    PackedArrays attempt = arrays;
+    BodyPart result = part;
+    pack_frames(quality, rows, attempt, result);
+    if (attempt.page_bytes() - arrays.page_bytes() > left && !is_last) continue;
+    arrays = std::move(attempt);
+    result.is_coarse = quality.displacement_bits < qualities.front().displacement_bits;
+    return result;
+  }
+  return part;
+}
+
+}  // namespace ricochet

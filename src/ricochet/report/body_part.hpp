@@ -1,0 +1,99 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/report/contact_line.hpp"
+#include "ricochet/report/packed_array.hpp"
+#include "ricochet/report/run_data.hpp"
+#include "ricochet/report/surface.hpp"
+
+/// @file The body over time in a page, and its contact boundary.
+namespace ricochet {
+
+/// A quantity of the contact boundary, frames × nodes of the contact line.
+struct ContactQuantity {
+  std::string name;
+  PackedArray values;
+};
+
+struct ContactPart {
+  ContactLine line;
+  std::vector<int> frames;  ///< numbers of the frames that are there
+  PackedArray position;     ///< in the plane
+  PackedArray nodes;        ///< numbers of the nodes in the body's surface; −1: it does not show the node
+  std::vector<ContactQuantity> quantities;
+};
+
+/// A field of the body, frames × nodes or frames × cells of the surface.
+struct BodyField {
+  std::string name;
+  bool on_nodes = true;
+  PackedArray values;
+};
+
+struct BodyPart {
+  Index nodes = 0, triangles = 0;
+  PackedArray positions;                ///< dimension × nodes, reference configuration
+  PackedArray corners;                  ///< triangles × 3
+  PackedArray triangle_cells;           ///< of each triangle: its cell's number among those that can be seen
+  PackedArray edges;                    ///< see Surface
+  std::vector<int> frames;              ///< numbers of the frames that are there
+  PackedArray mean;                     ///< frames × 3: mean displacement of the nodes
+  std::vector<PackedArray> deviations;  ///< per dimension, frames × nodes: displacement less its mean
+  std::vector<BodyField> fields;
+  int displacement_bits = 0, field_bits = 0;  ///< of the levels
+  bool is_coarse = false;                     ///< these are fewer than they are where there is room
+  std::vector<std::string> left_out;          ///< fields that are not in the page
+  bool is_thinned = false;                    ///< triangles were merged
+};
+
+/// What bodies are made from, read once: the body as it is seen, all its frames (or so many as memory allows).
+class BodyFrames {
+ public:
+  /// Keeps a reference to the results.
+  BodyFrames(const ResultsReader& results, Index most_triangles);
+
+  /// In at most so many bytes of the page, as far as leaving out frames and coarser levels go.
+  [[nodiscard]] ContactPart pack_contact(std::size_t most_bytes, PackedArrays& arrays) const;
+  [[nodiscard]] BodyPart pack_body(std::size_t most_bytes, PackedArrays& arrays) const;
+  /// How many frames the run has.
+  [[nodiscard]] Index frame_count() const { return static_cast<Index>(results_.times().size()); }
+
+ private:
+  struct Values {
+    std::string name;
+    bool on_nodes = true;
+    Index columns = 0;
+    std::vector<float> values;  ///< frames × columns
+  };
+  struct Quality {
+    int displacement_bits, field_bits;
+    std::size_t stride;  ///< every so many of the frames that are here
+  };
+  void choose();
+  void read_frames();
+  void take_displacement(const std::vector<float>& field);
+  void take_contact(const XdmfField& field, const std::vector<float>& values);
+  void take_field(const XdmfField& field, const std::vector<float>& values);
+  /// Rows of the frames that a stride leaves, the last one always.
+  [[nodiscard]] std::vector<std::size_t> kept(std::size_t stride) const;
+  [[nodiscard]] std::vector<int> frames_of(const std::vector<std::size_t>& rows) const;
+  void pack_frames(const Quality& quality, const std::vector<std::size_t>& rows, PackedArrays& arrays,
+                   BodyPart& part) const;
+  [[nodiscard]] static PackedArray pack(const Values& values, const std::vector<std::size_t>& rows, int bits,
+                                        PackedArrays& arrays);
+
+  const ResultsReader& results_;
+  int dimension_;
+  Surface surface_;
+  ContactLine line_;
+  std::vector<int> cells_;           ///< the body's cells that can be seen
+  std::vector<int> triangle_cells_;  ///< numbers in cells_
+  std::vector<int> frames_;          ///< numbers of the frames that are here
+  std::vector<double> mean_;         ///< frames × 3
+  std::vector<Values> deviations_, fields_, contact_;
+  std::vector<std::string> left_out_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,60 @@
+#include "ricochet/report/history_part.hpp"
+
+#include <algorithm>
+
+namespace ricochet {
+
+namespace {
+
+std::vector<double> all_rows(const HistoryTable& history) {
+  std::vector<double> table;
+  for (const std::string& name : history.names) {
+    const std::vector<double>& column = history.columns.at(name);
+    table.insert(table.end(), column.begin(), column.end());
+  }
+  return table;
+}
+
+/// Two values for each `rows` rows: the least and the largest, in the order in which they come. Step and time, which
+/// rise, keep the first and the last row of each.
+std::vector<double> thinned(const std::vector<double>& column, std::size_t rows) {
+  std::vector<double> result;
+  for (std::size_t begin = 0; begin < column.size(); begin += rows) {
+    const auto first = column.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = column.begin() + static_cast<std::ptrdiff_t>(std::min(begin + rows, column.size()));
+    auto [least, largest] = std::minmax_element(first, last);
+    if (largest < least) std::swap(least, largest);
+    result.push_back(*least);
+    result.push_back(*largest);
+  }
+  return result;
+}
+
+}  // namespace
+
+HistoryPart pack_history(const HistoryTable& history, std::size_t most_bytes, PackedArrays& arrays) {
+  const auto columns = static_cast<Index>(history.names.size());
+  const auto rows = static_cast<Index>(history.columns.at(history.names.front()).size());
+  HistoryPart part;
+  // Numbers of 8 bytes hardly become smaller.
+  std::vector<double> table = all_rows(history);
+  if (base64_size(8 * table.size()) < 4 * most_bytes) {
+    PackedArrays alone;
+    part.table = alone.add_reals(table, columns, rows);
+    if (alone.page_bytes() <= most_bytes) {
+      part.table = arrays.add_reals(table, columns, rows);
+      return part;
+    }
+  }
+  const auto pairs = std::max<Index>(static_cast<Index>(most_bytes) * 3 / 4 / (16 * columns), 1);
+  part.rows_per_pair = std::max<Index>((rows + pairs - 1) / pairs, 3);
+  table.clear();
+  for (const std::string& name : history.names) {
+    const std::vector<double> column = thinned(history.columns.at(name), static_cast<std::size_t>(part.rows_per_pair));
+    table.insert(table.end(), column.begin(), column.end());
+  }
+  part.table = arrays.add_reals(table, columns, static_cast<Index>(table.size()) / columns);
+  return part;
+}
+
+}  // namespace ricochet

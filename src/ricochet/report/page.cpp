@@ -1,0 +1,249 @@
+#include "ricochet/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/durable_file.hpp"
+#include "ricochet/report/body_part.hpp"
+#include "ricochet/report/history_part.hpp"
+#include "ricochet/report/judgement.hpp"
+#include "ricochet/version.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Where the viewer wants the data, and what every report begins with.
+constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->";
+constexpr Index most_triangles = 200'000;
+
+Json to_json(const PackedArray& array) {
+  Json json{{"blob", array.blob}, {"rows", array.rows}, {"columns", array.columns}};
+  switch (array.coding) {
+    case Coding::reals:
+      json["coding"] = "reals";
+      break;
+    case Coding::indices:
+      json["coding"] = "indices";
+      break;
+    case Coding::levels:
+      json["coding"] = "levels";
+      json["bits"] = array.bits;
+      json["prediction"] = array.prediction;
+      json["low"] = array.low;
+      json["step"] = array.step;
+  }
+  return json;
+}
+
+Json to_json(const Judgement& j) {
+  return {{"energy_scale", j.energy_scale},
+          {"is_isolated", j.is_isolated},
+          {"energy_gain", j.energy_gain},
+          {"energy_loss", j.energy_loss},
+          {"energy_change", j.energy_change},
+          {"energy_residual", j.energy_residual},
+          {"force", j.force},
+          {"force_largest", j.force_largest},
+          {"force_variation", j.force_variation},
+          {"trend_variation", j.trend_variation},
+          {"roughness", j.roughness},
+          {"penetration", j.penetration},
+          {"relative_penetration", j.relative_penetration}};
+}
+
+Json times_of(const std::vector<int>& frames, const ResultsReader& results) {
+  Json times = Json::array();
+  for (const int frame : frames) times.push_back(results.times()[static_cast<std::size_t>(frame)]);
+  return times;
+}
+
+Json to_json(const ContactPart& part, const ResultsReader& results) {
+  Json json{{"times", times_of(part.frames, results)}, {"nodes", to_json(part.nodes)}};
+  if (!part.line.position.empty()) {
+    json["position"] = to_json(part.position);
+    json["pieces"] = part.line.pieces;
+  }
+  json["quantities"] = Json::array();
+  for (const ContactQuantity& quantity : part.quantities)
+    json["quantities"].push_back({{"name", quantity.name}, {"values", to_json(quantity.values)}});
+  return json;
+}
+
+Json to_json(const BodyPart& part, const ResultsReader& results) {
+  Json json{{"nodes", part.nodes},
+            {"triangles", part.triangles},
+            {"times", times_of(part.frames, results)},
+            {"positions", to_json(part.positions)},
+            {"corners", to_json(part.corners)},
+            {"triangle_cells", to_json(part.triangle_cells)},
+            {"edges", to_json(part.edges)},
+            {"mean", to_json(part.mean)}};
+  json["deviations"] = Json::array();
+  for (const PackedArray& deviation : part.deviations) json["deviations"].push_back(to_json(deviation));
+  json["fields"] = Json::array();
+  for (const BodyField& field : part.fields)
+    json["fields"].push_back({{"name", field.name}, {"on_nodes", field.on_nodes}, {"values", to_json(field.values)}});
+  return json;
+}
+
+/// Cells do not change; positions have one row where they do not either.
+Json obstacles_of(const RunData& run, PackedArrays& arrays) {
+  if (run.obstacles.empty()) return nullptr;
+  const ObstacleFrame& first = run.obstacles.front();
+  const bool moves = std::any_of(run.obstacles.begin(), run.obstacles.end(),
+                                 [&](const ObstacleFrame& f) { return f.positions != first.positions; });
+  std::vector<double> positions, times;
+  for (const ObstacleFrame& frame : run.obstacles) {
+    if (frame.positions.size() != first.positions.size() || (!moves && !times.empty())) continue;
+    times.push_back(frame.time);
+    positions.insert(positions.end(), frame.positions.begin(), frame.positions.end());
+  }
+  return {{"corners", first.corners},
+          {"cells", first.cells},
+          {"obstacle", first.obstacle},
+          {"times", times},
+          {"positions", to_json(arrays.add_reals(positions, static_cast<Index>(times.size()),
+                                                 static_cast<Index>(first.positions.size())))}};
+}
+
+class PageBuilder {
+ public:
+  PageBuilder(std::vector<RunData> runs, std::size_t most_bytes) : runs_(std::move(runs)), most_bytes_(most_bytes) {}
+
+  /// The data as they stand in the page.
+  [[nodiscard]] std::string data();
+  [[nodiscard]] std::vector<std::string> thinned() const { return thinned_; }
+
+ private:
+  Json start(const RunData& run);
+  void add_frames(const RunData& run, Json& json, std::size_t most_bytes);
+  void note(const RunData& run, Json& json, const std::string& sentence) {
+    json["thinned"].push_back(sentence);
+    thinned_.push_back(run.name + ": " + sentence);
+  }
+  [[nodiscard]] std::size_t left() const {
+    const std::size_t used = arrays_.page_bytes();
+    return most_bytes_ > used ? most_bytes_ - used : 0;
+  }
+
+  std::vector<RunData> runs_;
+  std::size_t most_bytes_;
+  PackedArrays arrays_;
+  std::vector<std::string> thinned_;
+};
+
+Json PageBuilder::start(const RunData& run) {
+  Json json{{"name", run.name}, {"directory", run.directory}, {"thinned", Json::array()}};
+  json["summary"] = Json::parse(run.summary_json);
+  json["judgement"] = to_json(judge(run));
+  json["columns"] = run.history.names;
+  const HistoryPart history = pack_history(run.history, most_bytes_ / 4 / runs_.size(), arrays_);
+  json["history"] = to_json(history.table);
+  json["rows_per_pair"] = history.rows_per_pair;
+  if (history.rows_per_pair > 0) {
+    note(run, json,
+         fmt::format("of each {} rows of the history its least and its largest value stand in the curves, so that the "
+                     "file stays small; history.csv has all {}",
+                     history.rows_per_pair, run.column("time").size()));
+  }
+  json["obstacles"] = obstacles_of(run, arrays_);
+  return json;
+}
+
+void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_bytes) {
+  json["body"] = json["contact"] = nullptr;
+  if (!run.results) return;
+  const BodyFrames frames(*run.results, most_triangles / static_cast<Index>(runs_.size()));
+  const std::size_t before = arrays_.page_bytes();
+  const ContactPart contact = frames.pack_contact(most_bytes / 4, arrays_);
+  const auto all = static_cast<std::size_t>(frames.frame_count());
+  const auto say_frames = [&](const char* of_what, std::size_t there) {
+    if (there == all) return;
+    note(run, json, fmt::format("{}: {} of the {} frames, so that the file stays small", of_what, there, all));
+  };
+  if (!contact.line.nodes.empty()) {
+    say_frames("the contact boundary", contact.frames.size());
+    json["contact"] = to_json(contact, *run.results);
+  }
+  const BodyPart body = frames.pack_body(most_bytes - std::min(arrays_.page_bytes() - before, most_bytes), arrays_);
+  say_frames("the body", body.frames.size());
+  if (body.is_coarse) {
+    note(run, json,
+         fmt::format("displacements stand in the page in {} steps from the least to the largest, fields in {}",
+                     (1 << body.displacement_bits) - 2, (1 << body.field_bits) - 2));
+  }
+  if (body.is_thinned) {
+    note(
+        run, json,
+        fmt::format("the body is drawn in {} triangles, for which nodes near one another were merged", body.triangles));
+  }
+  if (!body.left_out.empty()) {
+    note(run, json,
+         fmt::format("fields that are not in this page, but in results.h5: {}", fmt::join(body.left_out, ", ")));
+  }
+  json["body"] = to_json(body, *run.results);
+}
+
+std::string PageBuilder::data() {
+  Json page{{"format", 1}, {"version", version}, {"runs", Json::array()}};
+  for (const RunData& run : runs_) page["runs"].push_back(start(run));
+  // What summaries take is in the file, too, and is not binary.
+  std::size_t text = 65536;
+  for (const RunData& run : runs_) text += run.summary_json.size();
+  most_bytes_ -= std::min(most_bytes_, text);
+  for (std::size_t i = 0; i < runs_.size(); ++i) add_frames(runs_[i], page["runs"][i], left() / (runs_.size() - i));
+  std::string html = "<script type=\"application/json\" id=\"ricochet-runs\">";
+  for (const char c : page.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<') {
+      html += "\\u003c";  // "</script>" in a title ends nothing
+    } else {
+      html += c;
+    }
+  }
+  html += "</script>\n";
+  for (std::size_t i = 0; i < arrays_.blobs().size(); ++i) {
+    html += fmt::format("<script type=\"text/plain\" id=\"ricochet-blob-{}\">", i);
+    append_base64(arrays_.blobs()[i], html);
+    html += "</script>\n";
+  }
+  return html;
+}
+
+}  // namespace
+
+Report make_report(const std::vector<std::string>& directories, const ReportOptions& options) {
+  errno = 0;
+  std::ifstream file(options.viewer, std::ios::binary);
+  if (!file) throw_file_error(options.viewer, "read", errno);
+  const std::string viewer{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t place = viewer.find(data_place);
+  if (place == std::string::npos || viewer.find(report_mark) == std::string::npos) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: is not a viewer of this version: build it with ./dev viewer", options.viewer));
+  }
+  PageBuilder builder(read_runs(directories), options.most_bytes - std::min(options.most_bytes, viewer.size()));
+  Report report;
+  report.html = viewer.substr(0, place) + builder.data() + viewer.substr(place + data_place.size());
+  report.thinned = builder.thinned();
+  return report;
+}
+
+bool is_report(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(1024, '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(file.gcount()));
+  return begin.find(report_mark) != std::string::npos;
+}
+
+}  // namespace ricochet

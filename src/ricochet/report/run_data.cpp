@@ -1,0 +1,124 @@
+#include "ricochet/report/run_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const std::string& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw_file_error(path, "read", errno);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+RunData read_run(const std::string& directory) {
+  if (!fs::is_directory(directory)) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: no such directory: name the output directories of runs", directory));
+  }
+  const auto path = [&](const char* file) { return (fs::path(directory) / file).string(); };
+  if (!fs::exists(path("summary.json"))) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: no run is in this directory: it holds no summary.json", directory));
+  }
+  RunData run;
+  run.directory = directory;
+  run.summary_json = read_text(path("summary.json"));
+  run.summary = read_summary(path("summary.json"));
+  run.history = read_history(path("history.csv"), run.summary.status != "done");
+  if (fs::exists(path("results.xdmf"))) {
+    run.results = std::make_unique<ResultsReader>(directory, run.summary.dimension, run.summary.degree);
+    if (fs::exists(path("obstacles.xdmf"))) run.obstacles = read_obstacle_frames(path("obstacles.xdmf"));
+    if (run.results->times().empty()) run.results.reset();
+  }
+  return run;
+}
+
+fs::path whole_path(const std::string& directory) {
+  fs::path path = fs::absolute(directory).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // a trailing slash
+  return path;
+}
+
+std::vector<std::string> parts_of(const fs::path& path) {
+  std::vector<std::string> parts;
+  for (const fs::path& part : path) parts.push_back(part.string());
+  return parts;
+}
+
+/// How many parts all paths begin with.
+std::size_t common_parts(const std::vector<std::vector<std::string>>& paths) {
+  std::size_t count = paths.front().size();
+  for (const auto& path : paths) {
+    const auto ends = std::mismatch(path.begin(), path.end(), paths.front().begin(), paths.front().end());
+    count = std::min(count, static_cast<std::size_t>(ends.first - path.begin()));
+  }
+  return count;
+}
+
+/// The names of runs: what remains of their paths without what all have in common.
+void name_runs(std::vector<RunData>& runs) {
+  std::vector<std::vector<std::string>> paths;
+  for (const RunData& run : runs) paths.push_back(parts_of(whole_path(run.directory)));
+  const std::size_t common = runs.size() == 1 ? paths.front().size() - 1 : common_parts(paths);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    // A directory that holds the others has only its own name.
+    for (std::size_t k = std::min(common, paths[i].size() - 1); k < paths[i].size(); ++k)
+      runs[i].name += (runs[i].name.empty() ? "" : "/") + paths[i][k];
+  }
+}
+
+}  // namespace
+
+const std::vector<double>& RunData::column(const std::string& column_name) const {
+  const auto found = history.columns.find(column_name);
+  if (found == history.columns.end()) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}/history.csv: there is no column \"{}\"", directory, column_name));
+  }
+  return found->second;
+}
+
+const Probe* RunData::contact_probe() const {
+  const auto found = std::find_if(summary.probes.begin(), summary.probes.end(), [this](const Probe& probe) {
+    return probe.contact_node >= 0 && has_column(probe.name + ".reaction_normal");
+  });
+  return found == summary.probes.end() ? nullptr : &*found;
+}
+
+std::vector<RunData> read_runs(const std::vector<std::string>& directories) {
+  std::vector<RunData> runs;
+  std::set<fs::path> seen;
+  for (const std::string& directory : directories) {
+    if (!seen.insert(whole_path(directory)).second)
+      throw Error(ErrorKind::usage, fmt::format("{}: this directory is named twice", directory));
+    runs.push_back(read_run(directory));
+  }
+  name_runs(runs);
+  return runs;
+}
+
+std::string common_folder(const std::vector<std::string>& directories) {
+  if (directories.size() == 1) return directories.front();
+  std::vector<std::vector<std::string>> paths;
+  for (const std::string& directory : directories) paths.push_back(parts_of(whole_path(directory)));
+  fs::path folder;
+  for (std::size_t k = 0; k < common_parts(paths); ++k) folder /= paths.front()[k];
+  return folder.lexically_proximate(fs::current_path()).string();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/io/history_file.hpp"
+#include "ricochet/io/results_reader.hpp"
+#include "ricochet/io/summary.hpp"
+
+/// @file What a run has left in its directory, read back to be looked at.
+namespace ricochet {
+
+struct RunData {
+  std::string directory;
+  std::string name;  ///< what tells it from the other runs: the part of the path that is its own
+  std::string summary_json;
+  RunSummary summary;
+  HistoryTable history;
+  std::unique_ptr<ResultsReader> results;  ///< nullptr: the run wrote no fields
+  std::vector<ObstacleFrame> obstacles;    ///< of each frame; empty: none
+
+  /// Values of a column that every history has. Throws Error(invalid_input) where it is missing.
+  [[nodiscard]] const std::vector<double>& column(const std::string& name) const;
+  [[nodiscard]] bool has_column(const std::string& name) const { return history.columns.contains(name); }
+  /// The first of the probes that is a node on the contact boundary; nullptr: there is none.
+  [[nodiscard]] const Probe* contact_probe() const;
+};
+
+/// Runs that go on, were interrupted or have failed are read as far as they are. Throws Error(file_access) where there
+/// is no run, Error(invalid_input) where its files are damaged, Error(usage) where a directory is named twice.
+[[nodiscard]] std::vector<RunData> read_runs(const std::vector<std::string>& directories);
+
+/// The folder that all of these are in: of one directory, itself.
+[[nodiscard]] std::string common_folder(const std::vector<std::string>& directories);
+
+}  // namespace ricochet

@@ -1,0 +1,289 @@
+"""`ricochet report`: the data in the page are those of history.csv and results.h5, unpacked here by other means; what is
+thinned is said; wrong use is explained. The page itself is tested in a browser by viewer/test."""
+
+import base64
+import json
+import os
+import re
+import shutil
+import subprocess
+import unittest
+import zlib
+
+import h5py
+import numpy
+
+from harness import DISC, PROGRAM, History, TestCase, block_case, run
+
+VIEWER = ("<!doctype html><!-- ricochet report --><html><body><p>a viewer</p><!--RICOCHET-DATA--><script>$&\\1</script>"
+          "</body></html>\n")
+SHORT = {"time.end": 0.02, "output.fields_every": 10}
+
+
+class Page:
+    """The data of a report, read as the description of the format says."""
+
+    def __init__(self, path):
+        self.text = path.read_text(encoding="utf-8")
+        scripts = dict(re.findall(r'<script type="[^"]*" id="([^"]*)">(.*?)</script>', self.text, re.DOTALL))
+        self.runs = json.loads(scripts["ricochet-runs"])["runs"]
+        self.blobs = [zlib.decompress(base64.b64decode(scripts[f"ricochet-blob-{i}"], validate=True))
+                      for i in range(len(scripts) - 1)]
+
+    def reals(self, array):
+        raw = numpy.frombuffer(self.blobs[array["blob"]], dtype=numpy.uint8).reshape(8, -1).T
+        words = numpy.bitwise_xor.accumulate(numpy.ascontiguousarray(raw).view("<u8").ravel())
+        return words.view(numpy.float64).reshape(array["rows"], array["columns"])
+
+    def indices(self, array):
+        raw = numpy.frombuffer(self.blobs[array["blob"]], dtype=numpy.uint8).reshape(4, -1).T
+        code = numpy.ascontiguousarray(raw).view("<u4").ravel().astype(numpy.int64)
+        return numpy.cumsum(numpy.where(code & 1, -(code >> 1) - 1, code >> 1))
+
+    def levels(self, array):
+        rows, columns, bits = array["rows"], array["columns"], array["bits"]
+        planes = 2 if bits > 8 else 1
+        raw = numpy.frombuffer(self.blobs[array["blob"]], dtype=numpy.uint8).reshape(rows, planes, columns)
+        code = raw[:, 0].astype(numpy.int64) + (raw[:, 1].astype(numpy.int64) << 8 if planes == 2 else 0)
+        change = numpy.where(code & 1, -(code >> 1) - 1, code >> 1)
+        levels = numpy.zeros((rows, columns), dtype=numpy.int64)
+        for r in range(rows):
+            own = numpy.cumsum(change[r]) if r == 0 or array["prediction"] == 2 else change[r]
+            levels[r] = ((levels[r - 1] if r > 0 else 0) + own) % (1 << bits)
+        values = array["low"] + array["step"] * levels
+        values[levels == (1 << bits) - 1] = numpy.nan
+        return values
+
+
+class Report(TestCase):
+    def setUp(self):
+        super().setUp()
+        # A program with a viewer of its own, as an installation has it.
+        (self.folder / "bin").mkdir()
+        (self.folder / "share" / "ricochet").mkdir(parents=True)
+        self.program = shutil.copy2(PROGRAM, self.folder / "bin" / "ricochet")
+        self.viewer = self.write("share/ricochet/viewer.html", VIEWER)
+
+    def simulate(self, case, name, values):
+        settings = [part for key, value in values.items() for part in ("--set", f"{key}={value}")]
+        process = run("run", case, "-o", self.folder / name, "--quiet", "--log-level", "error", *settings)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        return self.folder / name
+
+    def report(self, *arguments, status=0):
+        process = subprocess.run([self.program, "report", *map(str, arguments)], cwd=self.folder, text=True,
+                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=500)
+        self.assertEqual(process.returncode, status, process.stderr)
+        return process
+
+    def check_history(self, page, data, results):
+        history = History(results / "history.csv")
+        self.assertEqual(data["columns"], history.names)
+        table = page.reals(data["history"])
+        for name, column in zip(history.names, table):
+            self.assertEqual(list(column), history[name], name)
+
+    def check_frames(self, page, data, results):
+        body, contact = data["body"], data["contact"]
+        with h5py.File(results / "results.h5") as file:
+            frames = [file["frames"][name] for name in sorted(file["frames"])]
+            read = {name: numpy.array([frame[name][()] for frame in frames]) for name in frames[0]}
+            nodes, cells = file["mesh/nodes"][()], file["mesh/cells"][()]
+        self.assertEqual(len(body["times"]), len(frames))
+        dimension = data["summary"]["dimension"]
+        positions = page.levels(body["positions"])
+        # The nodes are those of the file in another order: found by where they are.
+        order = [int(numpy.argmin(numpy.sum((nodes[:, :dimension] - place) ** 2, axis=1))) for place in positions.T]
+        self.assertEqual(len(set(order)), body["nodes"])
+        moved = numpy.stack([page.levels(array) for array in body["deviations"]], axis=2)
+        moved += page.reals(body["mean"])[:, None, :dimension]
+        wanted = read["displacement"][:, order, :dimension]
+        self.assertLess(numpy.abs(moved - wanted).max(), 0.51 * max(a["step"] for a in body["deviations"]) + 1e-7)
+        # Triangles are made of nodes of the cell that they are said to be of; there every cell is a triangle.
+        corners = page.indices(body["corners"]).reshape(-1, 3)
+        for field in body["fields"]:
+            values = page.levels(field["values"])
+            if field["on_nodes"]:
+                wanted = read[field["name"]][:, order]
+                if wanted.ndim == 3:
+                    wanted = numpy.linalg.norm(wanted, axis=2)
+            elif cells.shape[1] == 3:
+                numbers = {tuple(sorted(cell)): i for i, cell in enumerate(cells)}
+                own = page.indices(body["triangle_cells"])
+                triangles = [numbers[tuple(sorted(order[c] for c in triangle))] for triangle in corners]
+                values, wanted = values[:, own], read[field["name"]][:, triangles]
+            else:
+                continue
+            scale = numpy.abs(wanted).max()
+            self.assertLess(numpy.abs(values - wanted).max(), 0.51 * field["values"]["step"] + 1e-6 * scale, field["name"])
+        line = [order[i] for i in page.indices(contact["nodes"])]
+        on_boundary = numpy.flatnonzero(read["contact_status"][0] >= 0)
+        self.assertEqual(sorted(line), list(on_boundary))
+        for quantity in contact["quantities"]:
+            values, wanted = page.levels(quantity["values"]), read[quantity["name"]][:, line]
+            if wanted.ndim == 3:
+                wanted = numpy.linalg.norm(wanted, axis=2)
+            scale = numpy.abs(wanted).max()
+            self.assertLess(numpy.abs(values - wanted).max(), 0.51 * quantity["values"]["step"] + 1e-6 * scale + 1e-30,
+                            quantity["name"])
+            if quantity["name"] == "contact_status":
+                self.assertTrue((values == wanted).all())
+        if dimension == 2:
+            position = page.reals(contact["position"])[0]
+            steps = numpy.linalg.norm(numpy.diff(nodes[line], axis=0), axis=1)
+            numpy.testing.assert_allclose(numpy.diff(position), steps, rtol=1e-12)
+
+    def test_one_run_in_the_plane(self):
+        results = self.simulate(DISC, "disc", SHORT)
+        process = self.report(results)
+        path = results / "report.html"
+        self.assertIn(str(path), process.stdout)
+        page = Page(path)
+        before, after = VIEWER.split("<!--RICOCHET-DATA-->")
+        self.assertTrue(page.text.startswith(before) and page.text.endswith(after), "the viewer is there, to the letter")
+        self.assertNotRegex(page.text, r"(src|href)\s*=\s*[\"']?http")
+        (data,) = page.runs
+        self.assertEqual(data["name"], "disc")
+        self.assertEqual(data["thinned"], [])
+        self.assertEqual(data["summary"], json.loads((results / "summary.json").read_text()))
+        self.check_history(page, data, results)
+        self.check_frames(page, data, results)
+        # The obstacle does not move: its surface is there once, on the line y = 0.
+        self.assertEqual(len(data["obstacles"]["times"]), 1)
+        self.assertEqual(page.reals(data["obstacles"]["positions"])[0][1::3].tolist(), [0.0, 0.0])
+
+    def test_friction_and_degree_2(self):
+        values = SHORT | {"contact.0.friction": 0.4, "initial.velocity": "[0.2, -0.1]", "mesh.degree": 2}
+        results = self.simulate(DISC, "disc", values)
+        self.report(results, "-o", self.folder / "page.html")
+        (data,) = (page := Page(self.folder / "page.html")).runs
+        self.assertIn("friction_traction", [q["name"] for q in data["contact"]["quantities"]])
+        self.assertEqual(data["body"]["triangles"], 4 * data["summary"]["cells"])
+        self.check_history(page, data, results)
+        self.check_frames(page, data, results)
+
+    def test_a_ball_is_its_boundary(self):
+        case = DISC.parents[1] / "ball" / "ball.toml"
+        results = self.simulate(case, "ball", {"time.end": 0.034, "output.fields": '["all"]'})
+        self.report(results)
+        (data,) = (page := Page(results / "report.html")).runs
+        self.assertLess(data["body"]["nodes"], 0.7 * data["summary"]["nodes"])
+        self.assertNotIn("position", data["contact"])
+        self.assertTrue(any("stress" in sentence for sentence in data["thinned"]), data["thinned"])
+        self.check_history(page, data, results)
+        self.check_frames(page, data, results)
+
+    def test_several_runs_are_told_apart(self):
+        for scheme, mass in (("midpoint", "consistent"), ("newmark", "equivalent")):
+            values = {"time.end": 0.08, "output.fields_every": 50, "time.scheme": scheme, "mass.type": mass}
+            self.simulate(DISC, f"runs/{scheme}", values)
+        self.report("runs/midpoint/", "runs/newmark")
+        page = Page(self.folder / "runs" / "report.html")
+        self.assertEqual([data["name"] for data in page.runs], ["midpoint", "newmark"])
+        for data in page.runs:
+            self.check_history(page, data, self.folder / "runs" / data["name"])
+            self.check_frames(page, data, self.folder / "runs" / data["name"])
+        judgements = [data["judgement"] for data in page.runs]
+        self.assertGreater(judgements[0]["energy_gain"], 0.1 * judgements[0]["energy_scale"])
+        self.assertLess(judgements[1]["energy_gain"], 1e-6 * judgements[1]["energy_scale"])
+        self.assertGreater(judgements[0]["roughness"], 6)
+        self.assertLess(judgements[1]["roughness"], 2)
+        # One mesh: its nodes, triangles and edges are in the page once.
+        for part in ("positions", "corners", "edges"):
+            self.assertEqual(page.runs[0]["body"][part]["blob"], page.runs[1]["body"][part]["blob"])
+        self.assertEqual(self.report("runs/midpoint", "runs/../runs/midpoint", status=1).stderr.count("named twice"), 1)
+
+    def test_a_moving_obstacle(self):
+        case = self.write("case.toml", block_case().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nvelocity = [0.0, 0.5]"))
+        results = self.simulate(case, "out", {"time.end": 0.1, "output.fields_every": 2})
+        self.report(results)
+        (data,) = (page := Page(results / "report.html")).runs
+        heights = page.reals(data["obstacles"]["positions"])[:, 1]
+        numpy.testing.assert_allclose(heights, 0.5 * numpy.array(data["obstacles"]["times"]), atol=1e-12)
+
+    def test_large_runs_are_thinned_and_it_is_said(self):
+        results = self.simulate(DISC, "disc", {"output.fields_every": 1})
+        self.report(results)
+        whole = Page(results / "report.html")
+        self.assertEqual(whole.runs[0]["thinned"], [])
+        process = self.report(results, "--size-limit", 1, "-o", self.folder / "small.html")
+        self.assertLess((self.folder / "small.html").stat().st_size, 1_000_000)
+        (data,) = (small := Page(self.folder / "small.html")).runs
+        frames = len(data["body"]["times"])
+        self.assertLess(frames, 1501)
+        self.assertTrue(any(f"{frames} of the 1501 frames" in sentence for sentence in data["thinned"]), data["thinned"])
+        for sentence in data["thinned"]:
+            self.assertIn(sentence, process.stderr)
+        self.assertEqual(data["body"]["times"][-1], whole.runs[0]["body"]["times"][-1], "the last one stays")
+        self.assertTrue(any(f"in {2 ** 11 - 2} steps" in sentence for sentence in data["thinned"]), data["thinned"])
+        if data["rows_per_pair"] == 0:
+            self.check_history(small, data, results)
+
+    def test_a_long_history_keeps_its_extrema(self):
+        case = self.write("case.toml", block_case())
+        results = self.simulate(case, "out", {"time.step": 2e-5, "output.fields_every": 0})
+        self.report(results, "--size-limit", 2)
+        (data,) = (page := Page(results / "report.html")).runs
+        history = History(results / "history.csv")
+        self.assertGreater(len(history.rows), 15000)
+        self.assertIsNone(data["body"])
+        self.assertGreater(data["rows_per_pair"], 0)
+        self.assertTrue(any(f"history.csv has all {len(history.rows)}" in sentence for sentence in data["thinned"]))
+        table = page.reals(data["history"])
+        for name, column in zip(history.names, table):
+            whole = history[name]
+            self.assertEqual((min(column), max(column)), (min(whole), max(whole)), name)
+            self.assertEqual(set(column) - set(whole), set(), "no number that was not there")
+        times = table[history.names.index("time")]
+        self.assertTrue((numpy.diff(times) >= 0).all())
+
+    def test_runs_that_are_not_complete(self):
+        results = self.simulate(DISC, "disc", SHORT)
+        history = results / "history.csv"
+        text = history.read_text()
+        summary = json.loads((results / "summary.json").read_text())
+        summary["status"] = "interrupted"
+        (results / "summary.json").write_text(json.dumps(summary))
+        history.write_text(text[:-9])  # the last row is being written
+        self.report(results)
+        (data,) = Page(results / "report.html").runs
+        self.assertEqual(data["history"]["columns"], text.count("\n") - 2)
+        summary["status"] = "done"
+        (results / "summary.json").write_text(json.dumps(summary))
+        self.assertIn("history.csv:", self.report(results, status=2).stderr)
+
+    def test_titles_end_nothing(self):
+        case = self.write("case.toml", block_case().replace('"A block falls"', '"</script><b>bold & \\"quoted\\""'))
+        results = self.simulate(case, "out", {"time.end": 0.02})
+        self.report(results)
+        self.assertEqual(Page(results / "report.html").runs[0]["summary"]["title"], '</script><b>bold & "quoted"')
+
+    def test_wrong_use(self):
+        results = self.simulate(DISC, "disc", SHORT)
+        self.assertIn("summary.json", self.report(self.folder / "bin", status=4).stderr)
+        self.assertIn("no such directory", self.report(self.folder / "nowhere", status=4).stderr)
+        self.report(status=1)
+        self.assertIn("--size-limit", self.report(results, "--size-limit", "0.5", status=1).stderr)
+        other = self.write("notes.html", "<p>my notes</p>")
+        self.assertIn("no report", self.report(results, "-o", other, status=4).stderr)
+        self.assertEqual(other.read_text(), "<p>my notes</p>")
+        self.report(results, "-o", self.folder / "page.html")
+        self.report(results, "-o", self.folder / "page.html")  # one's own is written over
+        self.assertIn("missing/page.html", self.report(results, "-o", self.folder / "missing" / "page.html", status=4).stderr)
+        os.truncate(results / "results.h5", 3000)
+        self.assertIn("results.h5", self.report(results, status=2).stderr)
+        self.viewer.unlink()
+        process = self.report(results, status=4)
+        self.assertIn("./dev viewer", process.stderr)
+
+    def test_damaged_frames_are_named(self):
+        results = self.simulate(DISC, "disc", SHORT)
+        with h5py.File(results / "results.h5", "r+") as file:
+            del file["frames/000003/displacement"]
+        self.assertIn("/frames/000003/displacement", self.report(results, status=2).stderr)
+        (results / "obstacles.xdmf").write_text('<Grid Name="obstacles" GridType="Uniform"><Time Value="x"/>')
+        self.assertIn("obstacles.xdmf:1: 'x' is not a number", self.report(results, status=2).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

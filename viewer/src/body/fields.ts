@@ -1,0 +1,100 @@
+import { valueAt, type Levels } from "../data/decode";
+import { indexAt, type Body, type Run } from "../data/run";
+import { colourRange, type ColourRange } from "../maps/colour_range";
+
+/** Fields that bodies can be coloured by. */
+
+const axes = ["x", "y", "z"];
+const contactOrder = ["contact_pressure", "contact_status", "friction_traction", "gap"];
+
+/** Names of the fields of some run, the body's own first. */
+export function fieldNames(runs: Run[]): string[] {
+  const names = new Set<string>();
+  for (const run of runs) {
+    if (!run.body) continue;
+    for (const field of run.body.fields) names.add(field.name);
+    names.add("displacement");
+    for (let k = 0; k < run.body.dimension; ++k) names.add(`displacement_${axes[k]}`);
+  }
+  for (const name of contactOrder)
+    if (runs.some((run) => run.contact?.quantities.some((quantity) => quantity.name === name))) names.add(name);
+  return [...names];
+}
+
+/** Values of a field at nodes or at cells. NaN: there is none (off the contact boundary). */
+export interface FieldValues {
+  onNodes: boolean;
+  values: Float32Array;
+  /** Whole numbers with names, not to be interpolated. */
+  isStatus: boolean;
+}
+
+export function contactQuantity(run: Run, name: string): Levels | undefined {
+  return run.contact?.quantities.find((quantity) => quantity.name === name)?.values;
+}
+
+/** `out` is written over where it has the right size. */
+export function fieldAt(run: Run, name: string, frame: number, out?: Float32Array): FieldValues | null {
+  const body = run.body;
+  if (!body || name === "") return null;
+  const room = (size: number) => (out?.length === size ? out : new Float32Array(size));
+  if (name.startsWith("displacement")) {
+    const values = room(body.nodes);
+    fillDisplacement(body, name === "displacement" ? -1 : axes.indexOf(name.slice(-1)), frame, values);
+    return { onNodes: true, values, isStatus: false };
+  }
+  const own = body.fields.find((field) => field.name === name);
+  if (own) {
+    const values = room(own.values.columns);
+    const { levels, columns, low, step, none } = own.values;
+    for (let i = 0; i < columns; ++i) {
+      const level = levels[frame * columns + i];
+      values[i] = level === none ? NaN : low + step * level;
+    }
+    return { onNodes: own.onNodes, values, isStatus: false };
+  }
+  const quantity = contactQuantity(run, name);
+  const contact = run.contact;
+  if (!quantity || !contact) return null;
+  const values = room(body.nodes);
+  values.fill(NaN);
+  const row = indexAt(contact.times, body.times[frame]);
+  contact.nodes.forEach((node, i) => {
+    if (node >= 0) values[node] = valueAt(quantity, row, i);
+  });
+  return { onNodes: true, values, isStatus: name === "contact_status" };
+}
+
+function fillDisplacement(body: Body, axis: number, frame: number, values: Float32Array): void {
+  const components = axis >= 0 ? [axis] : body.deviations.map((_, k) => k);
+  for (let i = 0; i < body.nodes; ++i) {
+    let sum = 0;
+    for (const k of components) {
+      const u = body.mean[3 * frame + k] + valueAt(body.deviations[k], frame, i);
+      if (axis >= 0) sum = u;
+      else sum += u * u;
+    }
+    values[i] = axis >= 0 ? sum : Math.sqrt(sum);
+  }
+}
+
+/** What colours cover, over all frames. null: the field has names instead of numbers, or is not there. */
+export function fieldRange(run: Run, name: string): ColourRange | null {
+  const body = run.body;
+  if (!body || name === "" || name === "contact_status") return null;
+  const levels = body.fields.find((field) => field.name === name)?.values ?? contactQuantity(run, name);
+  if (levels) return colourRange([levels]);
+  let low = Infinity;
+  let high = -Infinity;
+  const step = Math.max(1, Math.floor(body.times.length / 40));
+  for (let frame = 0; frame < body.times.length; frame += step) {
+    const found = fieldAt(run, name, frame);
+    if (!found) return null;
+    for (const value of found.values) {
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }
+  }
+  if (!(low < high)) return { low: Math.min(low, 0), high: low + 1, clipped: false };
+  return { low: name === "displacement" ? 0 : low, high, clipped: false };
+}

@@ -1,0 +1,77 @@
+import * as three from "three";
+import { fieldColours } from "../colours";
+
+/** Colours triangles by a field, shades them in space, and draws the edges of cells. */
+export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
+  const colours = new three.DataTexture(fieldColours, 256, 1, three.RGBAFormat);
+  colours.minFilter = colours.magFilter = three.LinearFilter;
+  colours.needsUpdate = true;
+  return new three.ShaderMaterial({
+    glslVersion: three.GLSL3,
+    side: three.DoubleSide,
+    // Outlines and edges lie in front of the faces they belong to.
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+    uniforms: {
+      colours: { value: colours },
+      low: { value: 0 },
+      high: { value: 1 },
+      kind: { value: 0 }, // 0 plain, 1 numbers, 2 statuses
+      plain: { value: new three.Color() },
+      line: { value: new three.Color() },
+      lines: { value: 0 }, // how dark the edges of cells are
+      statuses: { value: Array.from({ length: 5 }, () => new three.Color()) },
+      shaded: { value: shaded },
+    },
+    vertexShader: `
+      in vec3 values;   // of the three corners
+      in float edges;   // bit k: the side from corner k is an edge of a cell
+      out vec3 place;   // barycentric
+      out vec3 corners;
+      out vec3 view;
+      flat out vec3 hidden;
+      void main() {
+        int corner = gl_VertexID % 3;
+        place = vec3(corner == 0, corner == 1, corner == 2);
+        corners = values;
+        int bits = int(edges + 0.5);
+        // Opposite to corner k is the side from corner k + 1.
+        hidden = vec3((bits & 2) == 0, (bits & 4) == 0, (bits & 1) == 0);
+        vec4 at = modelViewMatrix * vec4(position, 1.0);
+        view = at.xyz;
+        gl_Position = projectionMatrix * at;
+      }`,
+    fragmentShader: `
+      precision highp float;
+      uniform sampler2D colours;
+      uniform float low, high, lines;
+      uniform int kind;
+      uniform vec3 plain, line, statuses[5];
+      uniform bool shaded;
+      in vec3 place, corners, view;
+      flat in vec3 hidden;
+      out vec4 colour;
+      void main() {
+        vec3 c = plain;
+        if (kind == 1) {
+          float value = dot(place, corners);
+          if (value == value) c = texture(colours, vec2((value - low) / (high - low) * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
+        } else if (kind == 2) {
+          float value = place.x > place.y ? (place.x > place.z ? corners.x : corners.z)
+                                          : (place.y > place.z ? corners.y : corners.z);
+          if (value == value) c = statuses[int(clamp(value + 1.5, 0.0, 4.0))];
+        }
+        if (shaded) {
+          vec3 normal = normalize(cross(dFdx(view), dFdy(view)));
+          c *= 0.5 + 0.5 * abs(dot(normal, normalize(vec3(0.25, 0.35, 1.0))));
+        }
+        if (lines > 0.0) {
+          vec3 distance = place / max(fwidth(place), 1e-9) + 100.0 * hidden;
+          float nearest = min(distance.x, min(distance.y, distance.z));
+          c = mix(c, line, lines * (1.0 - smoothstep(0.4, 1.2, nearest)));
+        }
+        colour = vec4(c, 1.0);
+      }`,
+  });
+}

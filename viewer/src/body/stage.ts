@@ -1,0 +1,202 @@
+import * as three from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { themeColour } from "../colours";
+import type { Run } from "../data/run";
+import { el } from "../elements";
+import { fieldName, number, statusNames } from "../format";
+import { colourBar } from "../maps/colour_bar";
+import { fileName, saveCanvas, withCaption } from "../save";
+import type { Store } from "../store";
+import { diagonal, emptyBox, join } from "./geometry";
+import { BodyView } from "./view";
+
+/** The panel in which one run's body is seen. */
+export interface BodyPanel {
+  element: HTMLElement;
+  view: BodyView;
+  canvas: HTMLCanvasElement;
+}
+
+/** Draws all bodies with one WebGL context and one camera: the panels show the same part of space. */
+export class Stage {
+  readonly panels: BodyPanel[] = [];
+  /** Pictures drawn so far. */
+  pictures = 0;
+  private renderer: three.WebGLRenderer | null = null;
+  private readonly camera: three.OrthographicCamera | three.PerspectiveCamera;
+  private readonly target = new three.Vector3();
+  private readonly controls: OrbitControls[] = [];
+  private readonly plane: boolean;
+  private waiting = false;
+  private stale = true;
+  private centre = new three.Vector3();
+  private size = 1;
+
+  constructor(private readonly store: Store) {
+    this.plane = store.runs.every((run) => run.summary.dimension === 2);
+    this.camera = this.plane ? new three.OrthographicCamera(-1, 1, 1, -1, 0.1, 10) : new three.PerspectiveCamera(32, 1, 0.1, 10);
+    for (const topic of ["time", "runs", "body", "theme", "contact"] as const) store.on(topic, () => this.redraw(true));
+    try {
+      const triangles = store.runs.reduce((sum, run) => sum + (run.body?.triangles ?? 0), 0);
+      // Without a graphics card smooth edges take two thirds of the time.
+      this.renderer = new three.WebGLRenderer({ antialias: triangles < 20_000 || !drawsInSoftware() });
+    } catch {
+      this.renderer = null;
+    }
+  }
+
+  get works(): boolean {
+    return this.renderer !== null;
+  }
+
+  add(run: Run): BodyPanel {
+    const view = new BodyView(run, this.store);
+    const canvas = el("canvas", { tabIndex: 0, role: "img", "aria-label": `The body of ${run.name}` });
+    const tip = el("div.tip", { hidden: true });
+    const time = el("span.muted");
+    const colours = el("div");
+    const area = el("div.body-area", {}, canvas, tip);
+    const element = el("div.body", {}, area, el("div.body-foot", {}, time,
+      el("button.small", { type: "button", title: "Save the picture", onclick: () => {
+        this.draw();
+        saveCanvas(withCaption(canvas, `${run.name}, t = ${number(this.store.time, 4)}`, [], themeColour("panel"), themeColour("text")), `${fileName(run.name)}-body.png`);
+      } }, "PNG")), colours);
+    const panel = { element, view, canvas };
+    this.panels.push(panel);
+    const controls = new OrbitControls(this.camera, canvas);
+    controls.target = this.target;
+    controls.enableZoom = false; // the wheel scrolls the page until the panel has the focus
+    controls.screenSpacePanning = true;
+    if (this.plane) {
+      controls.enableRotate = false;
+      controls.mouseButtons.LEFT = three.MOUSE.PAN;
+    }
+    controls.touches = { ONE: this.plane ? three.TOUCH.PAN : three.TOUCH.ROTATE, TWO: this.plane ? three.TOUCH.DOLLY_PAN : three.TOUCH.DOLLY_ROTATE };
+    controls.addEventListener("change", () => this.redraw(false));
+    canvas.addEventListener("focus", () => (controls.enableZoom = true));
+    canvas.addEventListener("blur", () => (controls.enableZoom = false));
+    canvas.addEventListener("pointerdown", () => canvas.focus({ preventScroll: true }));
+    canvas.addEventListener("dblclick", () => this.look("front"));
+    canvas.style.touchAction = "pan-y";
+    this.controls.push(controls);
+    this.fit();
+    canvas.addEventListener("pointermove", (event) => this.showValue(panel, event, tip));
+    canvas.addEventListener("pointerleave", () => (tip.hidden = true));
+    const caption = () => {
+      time.textContent = `t = ${number(run.body!.times[view.frame] ?? 0, 5)}`;
+      const name = fieldName(this.store.field);
+      if (!view.values) colours.replaceChildren();
+      else colours.replaceChildren(colourBar(name, view.values.isStatus ? null : view.range));
+    };
+    this.captions.push(caption);
+    new ResizeObserver(() => this.redraw(false)).observe(area);
+    return panel;
+  }
+  private readonly captions: (() => void)[] = [];
+
+  /** The part of space that all bodies need; one that flies far away does not make the others small. */
+  private fit(): void {
+    const boxes = this.panels.map(({ view }) => view.box);
+    const smallest = Math.min(...boxes.map(diagonal));
+    const box = boxes.filter((each) => diagonal(each) <= 1.5 * smallest).reduce(join, emptyBox());
+    this.centre.set(...(box.low.map((low, k) => (low + box.high[k]) / 2) as [number, number, number]));
+    this.size = diagonal(box);
+    this.look("front");
+  }
+
+  look(from: "front" | "side" | "top" | "below"): void {
+    const directions = {
+      front: this.plane ? [0, 0, 1] : [0.5, -1, 0.28],
+      side: this.plane ? [0, 0, 1] : [1, 0, 0.05],
+      top: this.plane ? [0, 0, 1] : [0.001, -0.01, 1],
+      below: this.plane ? [0, 0, 1] : [0.25, -0.5, -1],
+    };
+    const direction = new three.Vector3(...(directions[from] as [number, number, number])).normalize();
+    const distance = this.plane ? 2 * this.size : 1.5 * this.size;
+    this.camera.up.set(0, this.plane ? 1 : 0, this.plane ? 0 : 1);
+    this.target.copy(this.centre);
+    this.camera.position.copy(this.centre).addScaledVector(direction, distance);
+    this.camera.near = 0.02 * this.size;
+    this.camera.far = 20 * this.size;
+    this.camera.zoom = 1;
+    this.camera.lookAt(this.target);
+    for (const controls of this.controls) controls.update();
+    this.redraw(false);
+  }
+
+  redraw(stale: boolean): void {
+    this.stale ||= stale;
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.draw();
+    });
+  }
+
+  private draw(): void {
+    const renderer = this.renderer;
+    const scale = devicePixelRatio;
+    let drew = false;
+    this.panels.forEach(({ view, canvas }, i) => {
+      const width = canvas.clientWidth;
+      const height = canvas.clientHeight;
+      if (width === 0 || height === 0) return; // hidden
+      if (this.stale || view.frame < 0) view.update();
+      this.captions[i]();
+      if (!renderer) return;
+      const pixels = [Math.round(width * scale), Math.round(height * scale)];
+      if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) [canvas.width, canvas.height] = pixels;
+      const drawn = renderer.getSize(new three.Vector2());
+      if (drawn.x !== pixels[0] || drawn.y !== pixels[1]) renderer.setSize(pixels[0], pixels[1], false);
+      this.frameCamera(width / height);
+      renderer.setClearColor(new three.Color().setStyle(themeColour("panel")));
+      renderer.render(view.scene, this.camera);
+      canvas.getContext("2d")!.drawImage(renderer.domElement, 0, 0);
+      drew = true;
+    });
+    this.stale = false;
+    if (drew) ++this.pictures;
+  }
+
+  private frameCamera(aspect: number): void {
+    if (this.camera instanceof three.OrthographicCamera) {
+      const half = 0.58 * this.size * Math.max(1 / Math.max(aspect, 0.2), 0.75);
+      this.camera.top = half;
+      this.camera.bottom = -half;
+      this.camera.left = -half * aspect;
+      this.camera.right = half * aspect;
+    } else {
+      this.camera.aspect = aspect;
+    }
+    this.camera.updateProjectionMatrix();
+  }
+
+  private showValue({ view, canvas }: BodyPanel, event: PointerEvent, tip: HTMLElement): void {
+    if (event.buttons !== 0 || this.store.playing) {
+      tip.hidden = true;
+      return;
+    }
+    const box = canvas.getBoundingClientRect();
+    this.frameCamera(box.width / box.height);
+    const ray = new three.Raycaster();
+    ray.setFromCamera(new three.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height), this.camera);
+    const hit = view.pick(ray);
+    tip.hidden = !hit;
+    if (!hit) return;
+    const place = hit.place.toArray().slice(0, this.plane ? 2 : 3).map((x) => number(x, 3)).join(", ");
+    const value = !view.values ? "" : view.values.isStatus ? `${statusNames[Math.round(hit.value) + 1] ?? "off the boundary"} · ` : `${fieldName(this.store.field)} ${number(hit.value, 4)} · `;
+    tip.textContent = `${value}at (${place})`;
+    tip.style.left = `${Math.min(event.clientX - box.left + 12, box.width - 180)}px`;
+    tip.style.top = `${event.clientY - box.top + 14}px`;
+  }
+}
+
+function drawsInSoftware(): boolean {
+  const context = document.createElement("canvas").getContext("webgl2");
+  const extension = context?.getExtension("WEBGL_debug_renderer_info");
+  if (!context || !extension) return false;
+  const name = String(context.getParameter(extension.UNMASKED_RENDERER_WEBGL));
+  context.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}

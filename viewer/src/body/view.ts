@@ -1,0 +1,214 @@
+import * as three from "three";
+import { isDark, statusColour, themeColour } from "../colours";
+import { valueAt } from "../data/decode";
+import { indexAt, type Body, type Run } from "../data/run";
+import type { ColourRange } from "../maps/colour_range";
+import { colourRange } from "../maps/colour_range";
+import type { Store } from "../store";
+import { contactQuantity, fieldAt, fieldRange, type FieldValues } from "./fields";
+import { boxOf, boxOverTime, diagonal, outlineOf, OutwardNormals, placeNodes, referencePositions, type Box } from "./geometry";
+import { bodyMaterial } from "./material";
+import { ObstacleView } from "./obstacles";
+
+/** One run's body with its obstacles and contact forces, as three.js draws it. */
+export class BodyView {
+  readonly scene = new three.Scene();
+  readonly box: Box;
+  frame = -1;
+  range: ColourRange | null = null;
+  values: FieldValues | null = null;
+  private readonly body: Body;
+  private readonly reference: Float32Array;
+  private readonly positions: Float32Array;
+  private readonly outlineSides: Int32Array;
+  private readonly normals: OutwardNormals;
+  private readonly mesh: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
+  private readonly outline: three.LineSegments<three.BufferGeometry, three.LineBasicMaterial>;
+  private readonly bars: three.Mesh<three.BufferGeometry, three.MeshBasicMaterial>;
+  private readonly obstacles: ObstacleView | null;
+  private readonly size: number;
+  private drawnField = "";
+  private rangeKey = "";
+  private values_: Float32Array | undefined;
+
+  constructor(
+    readonly run: Run,
+    private readonly store: Store,
+  ) {
+    const body = (this.body = run.body!);
+    this.reference = referencePositions(body);
+    this.positions = new Float32Array(this.reference.length);
+    this.box = boxOverTime(body, this.reference);
+    this.size = diagonal(boxOf(this.reference));
+    const plane = body.dimension === 2;
+    this.outlineSides = plane ? outlineOf(body) : new Int32Array(0);
+    this.normals = new OutwardNormals(body, this.outlineSides);
+    this.normals.update(this.reference);
+
+    const geometry = new three.BufferGeometry();
+    const corners = 3 * body.triangles;
+    const dynamic = (size: number, items: number) =>
+      new three.BufferAttribute(new Float32Array(size * items), items).setUsage(three.DynamicDrawUsage);
+    geometry.setAttribute("position", dynamic(corners, 3));
+    geometry.setAttribute("values", dynamic(corners, 3));
+    const edges = Float32Array.from({ length: corners }, (_, i) => body.edges[Math.floor(i / 3)]);
+    geometry.setAttribute("edges", new three.BufferAttribute(edges, 1));
+    this.mesh = new three.Mesh(geometry, bodyMaterial(!plane));
+    const lines = new three.BufferGeometry();
+    lines.setAttribute("position", dynamic(this.outlineSides.length, 3));
+    this.outline = new three.LineSegments(lines, new three.LineBasicMaterial());
+    const bars = new three.BufferGeometry();
+    const count = run.contact ? run.contact.nodes.length : 0;
+    bars.setAttribute("position", dynamic(6 * count, 3));
+    bars.setAttribute("color", dynamic(6 * count, 3));
+    this.bars = new three.Mesh(bars, new three.MeshBasicMaterial({ vertexColors: true, side: three.DoubleSide }));
+    for (const object of [this.mesh, this.outline, this.bars]) {
+      object.frustumCulled = false; // what is drawn moves
+      this.scene.add(object);
+    }
+    const centre = boxOf(this.reference);
+    const middle = centre.low.map((low, k) => (low + centre.high[k]) / 2);
+    this.obstacles = run.obstacles ? new ObstacleView(run.obstacles, middle, this.size, this.scene) : null;
+  }
+
+  /** Everything that depends on time and choices. Returns whether anything has to be drawn again. */
+  update(): void {
+    const { store, body } = this;
+    this.frame = indexAt(body.times, store.time);
+    placeNodes(body, this.reference, this.frame, store.deformation, this.positions);
+    const target = this.mesh.geometry.attributes.position as three.BufferAttribute;
+    expand(this.positions, body.corners, target.array as Float32Array);
+    target.needsUpdate = true;
+    if (this.outlineSides.length > 0) {
+      const sides = this.outline.geometry.attributes.position as three.BufferAttribute;
+      expand(this.positions, this.outlineSides, sides.array as Float32Array);
+      sides.needsUpdate = true;
+    }
+    this.updateField();
+    this.updateBars();
+    this.obstacles?.update(store.time);
+    this.updateColours();
+  }
+
+  private updateField(): void {
+    const { store, body } = this;
+    this.values = fieldAt(this.run, store.field, this.frame, this.values_);
+    const uniforms = this.mesh.material.uniforms;
+    uniforms.kind.value = !this.values ? 0 : this.values.isStatus ? 2 : 1;
+    if (!this.values) return;
+    this.values_ = this.values.values;
+    const target = this.mesh.geometry.attributes.values as three.BufferAttribute;
+    const array = target.array as Float32Array;
+    const { onNodes, values } = this.values;
+    for (let t = 0; t < body.triangles; ++t) {
+      const cell = body.triangleCells[t];
+      const a = values[onNodes ? body.corners[3 * t] : cell];
+      const b = values[onNodes ? body.corners[3 * t + 1] : cell];
+      const c = values[onNodes ? body.corners[3 * t + 2] : cell];
+      for (let at = 9 * t; at < 9 * t + 9; at += 3) {
+        array[at] = a;
+        array[at + 1] = b;
+        array[at + 2] = c;
+      }
+    }
+    target.needsUpdate = true;
+    this.chooseRange();
+    uniforms.low.value = this.range?.low ?? 0;
+    uniforms.high.value = this.range?.high ?? 1;
+  }
+
+  private chooseRange(): void {
+    const { store } = this;
+    const runs = store.sharedColours ? store.visibleRuns : [this.run];
+    const key = `${store.field} ${runs.map((run) => run.number).join()}`;
+    if (key === this.rangeKey) return;
+    this.rangeKey = key;
+    const ranges = runs.map((run) => fieldRange(run, store.field)).filter((range) => range !== null);
+    this.range = ranges.length === 0 ? null : {
+      low: Math.min(...ranges.map((range) => range.low)),
+      high: Math.max(...ranges.map((range) => range.high)),
+      clipped: ranges.some((range) => range.clipped),
+    };
+  }
+
+  /** Contact pressures as bars out of the body at the contact nodes, in the colour of what the node does. */
+  private updateBars(): void {
+    const contact = this.run.contact;
+    const pressure = contactQuantity(this.run, "contact_pressure");
+    this.bars.visible = this.store.showForces && pressure !== undefined;
+    if (!contact || !pressure || !this.bars.visible) return;
+    this.barScale ??= (0.22 * this.size) / Math.max(colourRange([pressure]).high, Number.MIN_VALUE);
+    const status = contactQuantity(this.run, "contact_status");
+    const row = indexAt(contact.times, this.body.times[this.frame]);
+    const places = this.bars.geometry.attributes.position as three.BufferAttribute;
+    const colours = this.bars.geometry.attributes.color as three.BufferAttribute;
+    if (this.body.dimension === 2) this.normals.update(this.positions); // in space those of the start do
+    const half = Math.min(0.006 * this.size, (0.3 * this.size) / Math.max(contact.nodes.length, 1));
+    const ofStatus = [-1, 0, 1, 2, 3].map((each) => new three.Color(statusColour(each)).toArray());
+    contact.nodes.forEach((node, i) => {
+      const value = Math.min(valueAt(pressure, row, i) * this.barScale!, 0.5 * this.size);
+      const [red, green, blue] = ofStatus[status ? valueAt(status, row, i) + 1 : 2];
+      for (let corner = 0; corner < 6; ++corner) {
+        const out = [0, 0, 1, 1, 0, 1][corner];
+        const side = [-1, 1, 1, 1, -1, -1][corner];
+        colours.setXYZ(6 * i + corner, red, green, blue);
+        if (node < 0 || !(value > 1e-4 * this.size)) {
+          places.setXYZ(6 * i + corner, 0, 0, 0);
+          continue;
+        }
+        const [nx, ny, nz] = this.normals.values.subarray(3 * node, 3 * node + 3);
+        // Across the bar: in the plane along the boundary, in space some direction that is across it.
+        const [tx, ty, tz] = this.body.dimension === 2 ? [-ny, nx, 0] : Math.abs(nz) > 0.7 ? [1, 0, 0] : [-ny, nx, 0];
+        places.setXYZ(6 * i + corner,
+          this.positions[3 * node] + out * value * nx + side * half * tx,
+          this.positions[3 * node + 1] + out * value * ny + side * half * ty,
+          this.positions[3 * node + 2] + out * value * nz + side * half * tz);
+      }
+    });
+    places.needsUpdate = true;
+    colours.needsUpdate = true;
+  }
+  private barScale: number | undefined;
+
+  private updateColours(): void {
+    const key = `${isDark()} ${this.store.field} ${this.store.showMesh}`;
+    if (key === this.drawnField) return;
+    this.drawnField = key;
+    const uniforms = this.mesh.material.uniforms;
+    // The shader writes what the screen shows.
+    const colour = (css: string) => new three.Color().setStyle(css, three.LinearSRGBColorSpace);
+    uniforms.plain.value = colour(themeColour("body"));
+    uniforms.line.value = colour(themeColour("text"));
+    uniforms.lines.value = this.store.showMesh ? 0.55 : 0;
+    uniforms.statuses.value = [-1, 0, 1, 2, 3].map((status) => colour(statusColour(status)));
+    this.outline.material.color.setStyle(themeColour("text"));
+    this.obstacles?.recolour();
+  }
+
+  /** What is under a ray: the value of the field and where it is. */
+  pick(ray: three.Raycaster): { value: number; place: three.Vector3 } | null {
+    this.mesh.geometry.boundingSphere = null;
+    const hit = ray.intersectObject(this.mesh, false)[0];
+    if (!hit || hit.faceIndex === null || hit.faceIndex === undefined) return null;
+    if (!this.values) return { value: NaN, place: hit.point };
+    const t = hit.faceIndex;
+    let value: number;
+    if (!this.values.onNodes) {
+      value = this.values.values[this.body.triangleCells[t]];
+    } else {
+      const nodes = [0, 1, 2].map((k) => this.body.corners[3 * t + k]);
+      const distances = nodes.map((n) => hit.point.distanceTo(new three.Vector3().fromArray(this.positions, 3 * n)));
+      value = this.values.values[nodes[distances.indexOf(Math.min(...distances))]];
+    }
+    return { value, place: hit.point };
+  }
+}
+
+function expand(positions: Float32Array, corners: Int32Array, out: Float32Array): void {
+  for (let i = 0, to = 0; i < corners.length; ++i) {
+    const from = 3 * corners[i];
+    out[to++] = positions[from];
+    out[to++] = positions[from + 1];
+    out[to++] = positions[from + 2];
+  }
+}

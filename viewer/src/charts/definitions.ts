@@ -1,0 +1,114 @@
+import type { Run } from "../data/run";
+import { extentOf } from "./scale";
+
+/** Which columns of the history make up which chart. */
+export interface ChartDefinition {
+  id: string;
+  title: string;
+  note: string;
+  /** Columns that can be shown, in this order. */
+  columns: string[];
+  /** Columns shown at first. */
+  shown: string[];
+  /** Zero belongs into the picture. */
+  fromZero?: boolean;
+  /** Curves of runs may lie upon one another: those below are drawn wider. */
+  nested?: boolean;
+  /** Offers the change since the start, as a part of the start. */
+  relative?: boolean;
+}
+
+const energies = ["total_energy", "kinetic_energy", "elastic_energy", "load_potential", "algorithmic_energy"];
+const works = ["load_work", "contact_work", "friction_work", "support_work", "obstacle_work", "damping_work",
+  "numerical_dissipation", "energy_residual"];
+const counts = ["active_contacts", "sticking", "slipping"];
+const others = ["max_penetration", "max_rotation", "iterations"];
+
+export function chartDefinitions(runs: Run[]): ChartDefinition[] {
+  const all = [...new Set(runs.flatMap((run) => run.data.columns))];
+  const present = (names: string[]) => names.filter((name) => all.includes(name));
+  const matching = (pattern: RegExp) => all.filter((name) => pattern.test(name));
+  const moves = (name: string) =>
+    runs.some((run) => {
+      const column = run.column(name);
+      return column.some((value) => value !== column[0]);
+    });
+  const active = (names: string[]) => names.filter(moves);
+  /** The one that changes most: of components the others may be rounding. */
+  const largest = (names: string[]) => {
+    const change = (name: string) =>
+      Math.min(...runs.filter((run) => run.has(name)).map((run) => {
+        const { low, high } = extentOf(name, run.column(name));
+        return high - low;
+      }));
+    return names.reduce<string | undefined>((best, name) => (best === undefined || change(name) > change(best) ? name : best), undefined);
+  };
+  const some = (names: string[], otherwise: string[]) => (names.length > 0 ? names : otherwise.slice(0, 1));
+
+  const force = runs[0].data.judgement.force;
+  const forces = present([force, ...matching(/^contact_force_/), ...matching(/\.(reaction_|pressure$|force_)/)]);
+  const momenta = matching(/^(angular_)?momentum_/);
+  const probes = all.filter((name) => name.includes("."));
+  const list: ChartDefinition[] = [
+    {
+      id: "energy",
+      title: "Energy",
+      note: "Where nothing adds energy it must not rise.",
+      columns: present(energies),
+      shown: runs.length > 1 ? ["total_energy"] : some(active(energies.slice(0, 4)), energies),
+      fromZero: true,
+      nested: true,
+      relative: true,
+    },
+    {
+      id: "force",
+      title: "Contact force",
+      note: "A force that jumps from step to step is the scheme's, not the body's.",
+      columns: [...new Set(forces)],
+      shown: [force],
+      fromZero: true,
+    },
+    {
+      id: "works",
+      title: "Energy account",
+      note: "Work done on the body since the start; the residual is what is missing in the balance: rounding.",
+      columns: present(works),
+      shown: runs.length > 1 ? ["contact_work"] : some(active(works.slice(0, 7)), works.slice(1)),
+    },
+    {
+      id: "residual",
+      title: "Energy residual",
+      note: "What is missing in the balance of all energies and works.",
+      columns: present(["energy_residual"]),
+      shown: ["energy_residual"],
+    },
+    { id: "momentum", title: "Momentum", note: "", columns: momenta, shown: [largest(momenta.filter((name) => name.startsWith("momentum"))) ?? momenta[0]] },
+    {
+      id: "counts",
+      title: "Contact points",
+      note: "How many carry a force, and of those with friction how many stick and slip.",
+      columns: present(counts),
+      shown: some(active(counts), counts),
+      fromZero: true,
+    },
+    {
+      id: "others",
+      title: "Interpenetration, rotation, iterations",
+      note: "",
+      columns: present(others),
+      shown: ["max_penetration"],
+      fromZero: true,
+    },
+  ];
+  if (probes.length > 0) {
+    const displacement = largest(probes.filter((name) => /displacement/.test(name)));
+    list.push({
+      id: "probes",
+      title: "Probes",
+      note: "",
+      columns: probes,
+      shown: [displacement ?? active(probes)[0] ?? probes[0]],
+    });
+  }
+  return list.filter((definition) => definition.columns.length > 0);
+}

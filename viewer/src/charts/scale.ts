@@ -1,0 +1,63 @@
+/** The range of values that a chart shows. */
+
+export type ScaleMode = "most" | "all" | "logarithmic";
+
+export interface Extent {
+  name: string;
+  low: number;
+  high: number;
+}
+
+export interface Range {
+  low: number;
+  high: number;
+  /** What leaves the chart. */
+  outside: Extent[];
+}
+
+/** So many times the range of the others is too much. */
+const outlying = 8;
+
+/**
+ * With "most", runs whose values reach many times as far as those of the others do not hide them: the chart shows the
+ * others, zero and as much again.
+ */
+export function chooseRange(extents: Extent[], mode: ScaleMode): Range {
+  const finite = extents.filter((e) => e.low <= e.high);
+  if (finite.length === 0) return { low: 0, high: 1, outside: [] };
+  const reach = (e: Extent) => Math.max(Math.abs(e.low), Math.abs(e.high));
+  const reaches = finite.map(reach).sort((a, b) => a - b);
+  let inside = finite;
+  if (mode === "most") {
+    const middle = reaches[Math.floor((reaches.length - 1) / 2)];
+    if (middle > 0) inside = finite.filter((e) => reach(e) <= outlying * middle);
+  }
+  let low = Math.min(...inside.map((e) => e.low));
+  let high = Math.max(...inside.map((e) => e.high));
+  const outside = finite.filter((e) => !inside.includes(e));
+  if (outside.length > 0) {
+    const all = Math.max(high, 0) - Math.min(low, 0);
+    const room = all > 0 ? all : 1;
+    if (outside.some((e) => e.high > high)) high = Math.max(high, 0) + room;
+    if (outside.some((e) => e.low < low)) low = Math.min(low, 0) - room;
+    low = Math.min(low, 0);
+    high = Math.max(high, 0);
+  }
+  if (low === high) {
+    const margin = low === 0 ? 1 : 0.1 * Math.abs(low);
+    return { low: low - margin, high: high + margin, outside };
+  }
+  const margin = 0.05 * (high - low);
+  return { low: low - margin, high: high + margin, outside };
+}
+
+export function extentOf(name: string, values: ArrayLike<number>): Extent {
+  let low = Infinity;
+  let high = -Infinity;
+  for (let i = 0; i < values.length; ++i) {
+    const value = values[i];
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return { name, low, high };
+}

@@ -1,0 +1,177 @@
+import { indices, inflated, levels, reals, type Levels } from "./decode";
+import type { PackedArray, PageData, RunData, Summary } from "./types";
+
+/** Bytes of the page's blobs, each unpacked once for all who ask. */
+class Blobs {
+  private readonly unpacked = new Map<number, Promise<Uint8Array>>();
+
+  get(number: number): Promise<Uint8Array> {
+    let bytes = this.unpacked.get(number);
+    if (!bytes) {
+      const element = document.getElementById(`ricochet-blob-${number}`);
+      if (!element) throw new Error(`this file is cut off: block ${number} is missing`);
+      bytes = inflated(element.textContent ?? "");
+      this.unpacked.set(number, bytes);
+    }
+    return bytes;
+  }
+}
+
+export interface Quantity {
+  name: string;
+  values: Levels;
+}
+
+/** The contact boundary over time. */
+export interface Contact {
+  times: number[];
+  nodes: Int32Array;
+  /** In the plane: arc length of each node and where each piece begins; empty in space. */
+  position: Float64Array;
+  pieces: number[];
+  quantities: Quantity[];
+}
+
+/** The body over time: X + ū(t) + (u(t) − ū(t)) with the mean displacement ū. */
+export interface Body {
+  dimension: number;
+  nodes: number;
+  triangles: number;
+  times: number[];
+  positions: Levels;
+  corners: Int32Array;
+  triangleCells: Int32Array;
+  /** Of each triangle: bit k where the side from its corner k is an edge of a cell. */
+  edges: Uint8Array;
+  mean: Float64Array;
+  deviations: Levels[];
+  fields: (Quantity & { onNodes: boolean })[];
+}
+
+export interface Obstacles {
+  corners: number;
+  cells: number[];
+  times: number[];
+  positions: Float64Array;
+}
+
+export class Run {
+  readonly name: string;
+  readonly summary: Summary;
+  history: Map<string, Float64Array> = new Map();
+  contact: Contact | null = null;
+  body: Body | null = null;
+  obstacles: Obstacles | null = null;
+
+  constructor(
+    readonly number: number,
+    readonly data: RunData,
+    private readonly blobs: Blobs,
+  ) {
+    this.name = data.name;
+    this.summary = data.summary;
+  }
+
+  /** Times of the rows at which a column's numbers hold: energies and forces have their own instants. */
+  timesOf(column: string): Float64Array {
+    const times = this.column("time");
+    const shift = this.shiftOf(column) * this.summary.time_step;
+    return shift === 0 ? times : times.map((time) => time + shift);
+  }
+
+  column(name: string): Float64Array {
+    return this.history.get(name) ?? new Float64Array(0);
+  }
+
+  has(name: string): boolean {
+    return this.history.has(name);
+  }
+
+  private shiftOf(column: string): number {
+    const energy = /_energy$|^load_potential$|^momentum_|^angular_momentum_/.test(column);
+    const force = /(^|\.)(contact_force|reaction|pressure)/.test(column);
+    const instant = energy ? this.summary.instants.energy : force ? this.summary.instants.force : "";
+    return Number(/t ([+-][\d.]+) time_step/.exec(instant)?.[1] ?? 0);
+  }
+
+  async loadHistory(): Promise<void> {
+    const table = await this.reals(this.data.history);
+    const rows = this.data.history.columns;
+    this.data.columns.forEach((name, k) => this.history.set(name, table.subarray(k * rows, (k + 1) * rows)));
+    if (this.data.obstacles) {
+      const { corners, cells, times, positions } = this.data.obstacles;
+      this.obstacles = { corners, cells, times, positions: await this.reals(positions) };
+    }
+  }
+
+  async loadContact(): Promise<void> {
+    const data = this.data.contact;
+    if (!data) return;
+    this.contact = {
+      times: data.times,
+      nodes: await this.indices(data.nodes),
+      position: data.position ? await this.reals(data.position) : new Float64Array(0),
+      pieces: data.pieces ?? [],
+      quantities: await Promise.all(
+        data.quantities.map(async ({ name, values }) => ({ name, values: await this.levels(values) })),
+      ),
+    };
+  }
+
+  async loadBody(): Promise<void> {
+    const data = this.data.body;
+    if (!data) return;
+    const edges = await this.levels(data.edges);
+    this.body = {
+      dimension: this.summary.dimension,
+      nodes: data.nodes,
+      triangles: data.triangles,
+      times: data.times,
+      positions: await this.levels(data.positions),
+      corners: await this.indices(data.corners),
+      triangleCells: await this.indices(data.triangle_cells),
+      edges: Uint8Array.from(edges.levels, (level) => level + edges.low),
+      mean: await this.reals(data.mean),
+      deviations: await Promise.all(data.deviations.map((each) => this.levels(each))),
+      fields: await Promise.all(
+        data.fields.map(async ({ name, on_nodes, values }) => ({
+          name,
+          onNodes: on_nodes,
+          values: await this.levels(values),
+        })),
+      ),
+    };
+  }
+
+  private async reals(array: PackedArray): Promise<Float64Array> {
+    return reals(await this.blobs.get(array.blob));
+  }
+  private async indices(array: PackedArray): Promise<Int32Array> {
+    return indices(await this.blobs.get(array.blob));
+  }
+  private async levels(array: PackedArray): Promise<Levels> {
+    return levels(await this.blobs.get(array.blob), array);
+  }
+}
+
+export function readPage(): Run[] {
+  const text = document.getElementById("ricochet-runs")?.textContent;
+  if (!text) throw new Error("this is the empty viewer: `ricochet report` puts runs into it");
+  const page = JSON.parse(text) as PageData;
+  if (page.format !== 1) throw new Error(`this viewer does not read format ${page.format}`);
+  const blobs = new Blobs();
+  return page.runs.map((run, number) => new Run(number, run, blobs));
+}
+
+/** The largest index whose entry is at most `value` plus a rounding; the nearest one when `nearest`. */
+export function indexAt(sorted: ArrayLike<number>, value: number, nearest = true): number {
+  let low = 0;
+  let high = sorted.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (sorted[middle] <= value) low = middle;
+    else high = middle - 1;
+  }
+  if (nearest && low + 1 < sorted.length && sorted[low + 1] - value < value - sorted[low]) return low + 1;
+  return low;
+}

@@ -1,0 +1,130 @@
+/** The data of a report as src/ricochet/report/page.cpp writes them. */
+
+export interface PackedArray {
+  blob: number;
+  rows: number;
+  columns: number;
+  coding: "reals" | "indices" | "levels";
+  /** Of levels: value = low + level · step; the largest level of so many bits stands for "no number". */
+  bits?: number;
+  prediction?: 1 | 2;
+  low?: number;
+  step?: number;
+}
+
+export interface Judgement {
+  energy_scale: number;
+  is_isolated: boolean;
+  energy_gain: number;
+  energy_loss: number;
+  energy_change: number;
+  energy_residual: number;
+  force: string;
+  force_largest: number;
+  force_variation: number;
+  trend_variation: number;
+  roughness: number;
+  penetration: number;
+  relative_penetration: number;
+}
+
+export interface ContactData {
+  times: number[];
+  /** Numbers of the contact nodes in the body's surface; −1 where it does not show the node. */
+  nodes: PackedArray;
+  /** In the plane: arc length, and where each piece of the boundary begins. */
+  position?: PackedArray;
+  pieces?: number[];
+  quantities: { name: string; values: PackedArray }[];
+}
+
+export interface BodyData {
+  nodes: number;
+  triangles: number;
+  times: number[];
+  positions: PackedArray;
+  corners: PackedArray;
+  triangle_cells: PackedArray;
+  edges: PackedArray;
+  mean: PackedArray;
+  deviations: PackedArray[];
+  fields: { name: string; on_nodes: boolean; values: PackedArray }[];
+}
+
+export interface ObstacleData {
+  corners: number;
+  cells: number[];
+  obstacle: number[];
+  times: number[];
+  positions: PackedArray;
+}
+
+export interface CheckOutcome {
+  limit: number;
+  largest: number;
+}
+
+export interface Expectation {
+  quantity: string;
+  value: number;
+  wanted: string;
+  checked: boolean;
+  holds: boolean;
+  note: string;
+}
+
+/** summary.json of a run; see the README of Ricochet. */
+export interface Summary {
+  status: string;
+  message: string;
+  title: string;
+  case: string;
+  ricochet_version: string;
+  libraries: string;
+  scheme: string;
+  mass: string;
+  dimension: number;
+  degree: number;
+  nodes: number;
+  cells: number;
+  dofs: number;
+  contact_points: number;
+  supported_dofs: number;
+  solver: string;
+  factor_entries: number;
+  time_step: number;
+  end_time: number;
+  steps: number;
+  steps_asked_for: number;
+  frames: number;
+  instants: { energy: string; force: string };
+  timings_seconds: Record<string, number>;
+  seconds_per_step: number;
+  contacts: { group: string; obstacle: string; multipliers: string; friction: number; friction_bound: number }[];
+  probes: { name: string; position: number[]; distance: number; in_contact_boundary: boolean }[];
+  checks: Record<string, CheckOutcome>;
+  warnings: string[];
+  expectations: Expectation[];
+  parameters: Record<string, string>;
+}
+
+export interface RunData {
+  name: string;
+  directory: string;
+  thinned: string[];
+  summary: Summary;
+  judgement: Judgement;
+  columns: string[];
+  history: PackedArray;
+  /** 0: all rows; else of how many rows each pair stands for the least and the largest value. */
+  rows_per_pair: number;
+  obstacles: ObstacleData | null;
+  body: BodyData | null;
+  contact: ContactData | null;
+}
+
+export interface PageData {
+  format: 1;
+  version: string;
+  runs: RunData[];
+}

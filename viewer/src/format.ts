@@ -1,0 +1,58 @@
+/** Numbers and names as people read them. */
+
+export function number(value: number, digits = 4): string {
+  if (!Number.isFinite(value)) return Number.isNaN(value) ? "–" : value > 0 ? "∞" : "−∞";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  const text = size >= 1e5 || size < 1e-3 ? value.toExponential(digits - 1) : value.toPrecision(digits);
+  const [mantissa, exponent] = text.split("e");
+  const short = mantissa.includes(".") ? mantissa.replace(/\.?0+$/, "") : mantissa;
+  if (exponent === undefined) return short.replace("-", "−");
+  return `${short}·10${superscript(Number(exponent))}`.replace("-", "−");
+}
+
+function superscript(exponent: number): string {
+  const digits = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+  return (exponent < 0 ? "⁻" : "") + [...String(Math.abs(exponent))].map((digit) => digits[Number(digit)]).join("");
+}
+
+/** "total_energy" → "total energy", "lowest.reaction_normal" → "lowest: normal reaction". */
+export function columnName(column: string): string {
+  const known: Record<string, string> = {
+    reaction_normal: "normal reaction",
+    active_contacts: "active",
+    max_penetration: "deepest interpenetration",
+    max_rotation: "largest rotation",
+    load_potential: "load potential",
+  };
+  const at = column.indexOf(".");
+  const probe = at < 0 ? "" : column.slice(0, at);
+  const rest = at < 0 ? column : column.slice(at + 1);
+  const words = known[rest] ?? rest.replace(/_([xyz])$/, " $1").replaceAll("_", " ");
+  return probe ? `${probe}: ${words}` : words;
+}
+
+export function fieldName(field: string): string {
+  const known: Record<string, string> = {
+    von_mises: "von Mises stress",
+    velocity: "speed",
+    displacement: "displacement, size",
+    displacement_x: "displacement x",
+    displacement_y: "displacement y",
+    displacement_z: "displacement z",
+    contact_status: "contact status",
+    "": "none",
+  };
+  return known[field] ?? field.replaceAll("_", " ");
+}
+
+export const statusNames = ["off the boundary", "open", "closed", "sticks", "slips"];
+
+export function seconds(value: number): string {
+  if (value >= 120) return `${Math.floor(value / 60)} min ${Math.round(value % 60)} s`;
+  return value >= 1 ? `${value.toFixed(1)} s` : value >= 1e-3 ? `${(1e3 * value).toFixed(1)} ms` : `${number(1e6 * value, 3)} µs`;
+}
+
+export function count(value: number): string {
+  return value.toLocaleString("en").replaceAll(",", "\u202f");
+}

@@ -1,0 +1,86 @@
+import type { Run } from "./data/run";
+import type { Judgement } from "./data/types";
+import { el } from "./elements";
+import { columnName, number } from "./format";
+
+/** What came out of each run, in words: the first thing that a reader sees. */
+
+export type Grade = "good" | "fair" | "poor" | "none";
+
+export interface Finding {
+  what: string;
+  grade: Grade;
+  words: string;
+  detail: string;
+}
+
+const percent = (value: number) => `${number(100 * value, 2)} %`;
+
+export function energyFinding(j: Judgement): Finding {
+  const what = "Energy";
+  const scale = j.energy_scale;
+  const source = j.is_isolated ? "total energy against that of the start" : "work of the contact forces against the energy of the start";
+  if (!(scale > 0)) return { what, grade: "none", words: "there is none", detail: "" };
+  const gain = j.energy_gain / scale;
+  const loss = j.energy_loss / scale;
+  const detail = `${source}: rises by ${number(gain, 3)}, falls by ${number(loss, 3)} of it; the account closes to ${number(j.energy_residual / scale, 2)}`;
+  if (gain > 0.02) {
+    const words = gain > 1 ? `created: ${number(1 + gain, 3)} times what there was` : `created: +${percent(gain)}`;
+    return { what, grade: "poor", words, detail };
+  }
+  if (Math.max(gain, loss) < 1e-8) return { what, grade: "good", words: "kept to rounding", detail };
+  if (gain > loss) return { what, grade: gain > 0.005 ? "fair" : "good", words: `kept to +${percent(gain)}`, detail };
+  const words = loss < 0.01 ? `kept to −${percent(loss)}` : `contact takes ${percent(loss)}`;
+  return { what, grade: loss < 0.01 ? "good" : "fair", words, detail };
+}
+
+export function forceFinding(j: Judgement): Finding {
+  const what = "Contact force";
+  if (!(j.roughness > 0)) return { what, grade: "none", words: "none", detail: "nothing touched" };
+  const detail = `${columnName(j.force)}: its total variation is ${number(j.force_variation, 3)}, that of its mean over a hundredth of the run ${number(j.trend_variation, 3)}`;
+  if (j.roughness < 2) return { what, grade: "good", words: "smooth", detail };
+  if (j.roughness < 6) return { what, grade: "fair", words: `ripples: varies ${number(j.roughness, 2)} times as much as its trend`, detail };
+  return { what, grade: "poor", words: `rattles: varies ${number(j.roughness, 2)} times as much as its trend`, detail };
+}
+
+export function penetrationFinding(j: Judgement): Finding {
+  const what = "Interpenetration";
+  const relative = j.relative_penetration;
+  const detail = `deepest ${number(j.penetration, 3)}, ${number(relative, 2)} of the body's size`;
+  if (relative < 1e-9) return { what, grade: "good", words: "none", detail };
+  const words = `${percent(relative)} of the body's size`;
+  return { what, grade: relative < 1e-5 ? "good" : relative < 0.01 ? "fair" : "poor", words, detail };
+}
+
+export const findings = (run: Run): Finding[] => [
+  energyFinding(run.data.judgement),
+  forceFinding(run.data.judgement),
+  penetrationFinding(run.data.judgement),
+];
+
+const marks: Record<Grade, [string, string]> = {
+  good: ["✓", "good"],
+  fair: ["~", "fair"],
+  poor: ["✗", "poor"],
+  none: ["·", "nothing to judge"],
+};
+
+export function findingsElement(run: Run): HTMLElement {
+  return el("dl.findings", {}, ...findings(run).flatMap(({ what, grade, words, detail }) => [
+    el("dt", {}, what),
+    el("dd", { className: grade, title: detail }, el("span.mark", { role: "img", "aria-label": marks[grade][1] }, marks[grade][0]), words),
+  ]));
+}
+
+/** The sentence that says which of several runs to trust. */
+export function conclusion(runs: Run[]): string {
+  if (runs.length < 2) return "";
+  const points = { good: 0, none: 0, fair: 1, poor: 3 };
+  const scores = runs.map((run) => findings(run).reduce((sum, { grade }) => sum + points[grade], 0));
+  const best = Math.min(...scores);
+  const winners = runs.filter((_, i) => scores[i] === best);
+  if (winners.length === runs.length) return best === 0 ? "All runs keep their energy, with a smooth contact force and no interpenetration." : "";
+  const names = winners.map((run) => `${run.name} (${run.summary.mass} mass)`).join(" and ");
+  if (best === 0) return `Use ${names}: energy kept, a smooth contact force, no interpenetration.`;
+  return `The best of these: ${names}.`;
+}

@@ -1,0 +1,201 @@
+import { Stage } from "./body/stage";
+import { fieldNames } from "./body/fields";
+import { TimeChart } from "./charts/chart";
+import { chartDefinitions } from "./charts/definitions";
+import { runColour } from "./colours";
+import { readPage, type Run } from "./data/run";
+import { details } from "./details";
+import { el, select } from "./elements";
+import { fieldName } from "./format";
+import { conclusion, findingsElement } from "./glance";
+import { connectKeys, helpDialog } from "./keys";
+import { ContactMap } from "./maps/contact_map";
+import { ProfileChart } from "./maps/profile";
+import { Player } from "./player";
+import { Store } from "./store";
+
+/** What tests reach the page by. */
+export interface Handle {
+  store: Store;
+  charts: TimeChart[];
+  maps: ContactMap[];
+  profile: ProfileChart;
+  stage: Stage | null;
+  ready: boolean;
+}
+
+declare global {
+  interface Window {
+    ricochet?: Handle;
+  }
+}
+
+const title = (runs: Run[]) => [...new Set(runs.map((run) => run.summary.title || run.summary.case))].join(" · ");
+
+function toggleTheme(store: Store): void {
+  const root = document.documentElement;
+  const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  root.dataset.theme = dark ? "light" : "dark";
+  store.changed("theme");
+}
+
+/** The card of a run: its name switches it, in all plots. */
+function card(store: Store, run: Run): HTMLElement {
+  const swatch = el("i");
+  const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name} (key ${run.number + 1})`, onclick: () => store.toggle(run.number) }, swatch, run.name);
+  const status = run.summary.status === "done" ? null : el("span.status", {}, run.summary.status);
+  const element = el("article.card", {}, el("h2", {}, button, status),
+    el("p.muted", {}, `${run.summary.scheme}, ${run.summary.mass} mass`), findingsElement(run));
+  const show = () => {
+    swatch.style.background = runColour(run.number);
+    element.style.setProperty("--run", runColour(run.number));
+    element.classList.toggle("off", !store.visible[run.number]);
+    button.setAttribute("aria-pressed", String(store.visible[run.number]));
+  };
+  store.on("runs", show);
+  store.on("theme", show);
+  show();
+  return element;
+}
+
+/** Panels of the visible runs side by side. */
+function perRun(store: Store, runs: Run[], make: (run: Run) => HTMLElement, name: string): HTMLElement {
+  const places = runs.map((run) => {
+    const heading = el("h4", {}, run.name);
+    return { run, heading, element: el("div.run-panel", {}, heading, make(run)) };
+  });
+  const element = el(`div.${name}`, {}, ...places.map((place) => place.element));
+  element.classList.add("side-by-side");
+  const show = () => {
+    for (const place of places) {
+      place.element.hidden = !store.visible[place.run.number];
+      place.heading.style.color = runColour(place.run.number);
+    }
+    element.style.setProperty("--columns", String(Math.min(places.filter((p) => !p.element.hidden).length, 4) || 1));
+  };
+  store.on("runs", show);
+  store.on("theme", show);
+  show();
+  return element;
+}
+
+function toggleButton(store: Store, key: "showMesh" | "showForces" | "sharedColours", text: string, hint: string): HTMLElement {
+  const button = el("button.small", { type: "button", title: hint, onclick: () => {
+    store.set(key, !store[key], "body");
+    if (key === "sharedColours") store.changed("contact");
+  } }, text);
+  const show = () => button.setAttribute("aria-pressed", String(store[key]));
+  store.on("body", show);
+  show();
+  return button;
+}
+
+function bodySection(store: Store, stage: Stage, runs: Run[]): HTMLElement {
+  const names = fieldNames(runs);
+  store.field = names.includes("von_mises") ? "von_mises" : (names[0] ?? "");
+  const field = select("colour", [["", "none"], ...names.map((name): [string, string] => [name, fieldName(name)])], store.field,
+    (value) => store.set("field", value, "body"));
+  field.control.id = "field";
+  store.on("body", () => (field.control.value = store.field));
+  const scale = el("input", { type: "range", min: "0", max: "4", step: "0.01", value: "0", "aria-label": "Deformation scale" });
+  const scaleText = el("output", {}, "1 ×");
+  scale.addEventListener("input", () => store.set("deformation", Number((10 ** Number(scale.value)).toPrecision(2)), "body"));
+  store.on("body", () => {
+    scaleText.textContent = `${store.deformation} ×`;
+    scale.value = String(Math.log10(store.deformation));
+  });
+  const space = runs.some((run) => run.summary.dimension === 3);
+  store.showForces = !space; // there they hide the pressures that the surface shows
+  const view = (name: "front" | "side" | "top" | "below") =>
+    el("button.small", { type: "button", onclick: () => stage.look(name) }, name);
+  return el("section.panel", { id: "bodies" },
+    el("header", {}, el("h3", {}, "The body"),
+      el("div.tools", {}, field.element,
+        el("label.control", { title: "Deformation relative to the mean displacement, which is never scaled" }, el("span", {}, "deformation"), scale, scaleText),
+        toggleButton(store, "showForces", "pressures", "Contact pressures as bars (key p)"),
+        toggleButton(store, "showMesh", "mesh", "Edges of the cells (key m)"),
+        runs.length > 1 && toggleButton(store, "sharedColours", "same colours", "The same range of colours for all runs, in bodies and maps (key c)"),
+        ...(space ? (["front", "side", "top", "below"] as const).map(view) : [el("button.small", { type: "button", onclick: () => stage.look("front") }, "fit")]))),
+    stage.works ? "" : el("p.warning", {}, "This browser shows no WebGL, which the animation needs."),
+    perRun(store, runs, (run) => stage.add(run).element, "bodies"));
+}
+
+function contactSection(store: Store, runs: Run[], maps: ContactMap[]): HTMLElement {
+  const names = [...new Set(runs.flatMap((run) => run.contact!.quantities.map(({ name }) => name)))];
+  const quantity = select("shows", names.map((name): [string, string] => [name, fieldName(name)]), store.quantity,
+    (value) => store.set("quantity", value, "contact"));
+  quantity.control.id = "quantity";
+  store.on("contact", () => (quantity.control.value = store.quantity));
+  return el("section.panel", { id: "maps" },
+    el("header", {}, el("h3", {}, "The contact boundary over time"), el("div.tools", {}, quantity.element)),
+    perRun(store, runs, (run) => {
+      const map = new ContactMap(store, run);
+      maps.push(map);
+      return map.element;
+    }, "maps"));
+}
+
+async function start(): Promise<void> {
+  const page = document.getElementById("page")!;
+  const runs = readPage();
+  await Promise.all(runs.map((run) => run.loadHistory()));
+  const store = new Store(runs);
+  document.title = `${title(runs)} – Ricochet report`;
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => store.changed("theme"));
+
+  const charts = chartDefinitions(runs).map((definition) => new TimeChart(store, definition));
+  const chart = (id: string) => charts.find((each) => each.id === id)?.element ?? "";
+  const frames = [...new Set(runs.flatMap((run) => run.data.body?.times ?? run.data.contact?.times ?? []))].sort((a, b) => a - b);
+  const player = new Player(store, frames.length > 0 ? frames : Array.from(runs[0].column("time")));
+  const help = helpDialog();
+  const sentence = conclusion(runs);
+  const moving = el("div", { id: "moving" }, el("p.note", {}, "Unpacking the frames…"));
+  const rest = charts.filter((each) => !["energy", "force"].includes(each.id)).map((each) => each.element);
+  const profile = new ProfileChart(store);
+  page.replaceChildren(
+    el("header.top", {},
+      el("div", {}, el("h1", {}, title(runs)), sentence !== "" && el("p.conclusion", {}, sentence)),
+      el("div.tools", {},
+        el("button.small", { type: "button", title: "Keys (?)", onclick: () => help.showModal() }, "keys"),
+        el("button.small", { type: "button", title: "Dark or light (t)", onclick: () => toggleTheme(store) }, "dark / light"))),
+    el("div.cards", {}, ...runs.map((run) => card(store, run))),
+    el("div.charts", {}, chart("energy"), chart("force")),
+    moving,
+    el("div.charts", {}, profile.element, ...rest),
+    details(store),
+    el("footer.made", {}, `Written by Ricochet ${runs[0].summary.ricochet_version}. Runs: ${runs.map((run) => run.data.directory).join(", ")}`),
+    player.element,
+    help,
+  );
+  for (const each of charts) each.rebuild();
+  const handle: Handle = { store, charts, maps: [], profile, stage: null, ready: false };
+  window.ricochet = handle;
+  connectKeys(store, player, help, () => handle.stage, () => toggleTheme(store));
+
+  await Promise.all(runs.map((run) => run.loadContact()));
+  await Promise.all(runs.map((run) => run.loadBody()));
+  moving.replaceChildren();
+  const touching = runs.filter((run) => run.contact !== null && run.contact.quantities.length > 0);
+  const plane = touching.filter((run) => run.contact!.position.length > 0);
+  if (plane.length > 0 && !plane.some((run) => run.contact!.quantities.some(({ name }) => name === store.quantity)))
+    store.quantity = plane[0].contact!.quantities[0].name;
+  const bodies = runs.filter((run) => run.body !== null && run.body.times.length > 0);
+  if (bodies.length > 0) {
+    handle.stage = new Stage(store);
+    moving.append(bodySection(store, handle.stage, bodies));
+  } else {
+    moving.append(el("p.note", {}, "The runs wrote no fields: there is nothing to animate."));
+  }
+  if (plane.length > 0) moving.append(contactSection(store, plane, handle.maps));
+  profile.rebuild();
+  store.changed("contact");
+  store.changed("body");
+  store.changed("time");
+  handle.ready = true;
+}
+
+start().catch((problem: unknown) => {
+  document.getElementById("page")!.replaceChildren(
+    el("p.warning", {}, `This report cannot be shown: ${problem instanceof Error ? problem.message : String(problem)}`));
+  throw problem;
+});

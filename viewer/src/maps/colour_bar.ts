@@ -1,0 +1,18 @@
+import { fieldCss, statusColour } from "../colours";
+import { el } from "../elements";
+import { number, statusNames } from "../format";
+import type { ColourRange } from "./colour_range";
+
+/** What colours mean: a bar with its range, or the names of what contact points do. */
+export function colourBar(name: string, range: ColourRange | null, statuses: number[] = [0, 1, 2, 3]): HTMLElement {
+  if (!range) {
+    return el("div.colour-names", {}, ...statuses.map((status) =>
+      el("span.item", {}, el("i", { style: `background:${statusColour(status)}` }), statusNames[status + 1])));
+  }
+  const stops = Array.from({ length: 9 }, (_, i) => fieldCss(i / 8)).join(",");
+  return el("div.colour-bar", {},
+    el("span", {}, number(range.low, 3)),
+    el("i", { style: `background:linear-gradient(90deg,${stops})` }),
+    el("span", {}, `${range.clipped ? "≥ " : ""}${number(range.high, 3)}`),
+    el("span.muted", {}, name));
+}

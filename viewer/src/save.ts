@@ -1,0 +1,58 @@
+/** Files that the page hands out. */
+
+export function saveBlob(blob: Blob, name: string): void {
+  const url = URL.createObjectURL(blob);
+  const link = document.createElement("a");
+  link.href = url;
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}
+
+/** Columns of numbers, written so that they are read back exactly; NaN is an empty field. */
+export function saveCsv(names: string[], columns: ArrayLike<number | null | undefined>[], name: string): void {
+  const quoted = (text: string) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const lines = [names.map(quoted).join(",")];
+  for (let i = 0; i < (columns[0]?.length ?? 0); ++i) {
+    lines.push(
+      columns
+        .map((column) => column[i])
+        .map((value) => (value === null || value === undefined || Number.isNaN(value) ? "" : String(value)))
+        .join(","),
+    );
+  }
+  saveBlob(new Blob([lines.join("\n") + "\n"], { type: "text/csv" }), name);
+}
+
+export function saveCanvas(canvas: HTMLCanvasElement, name: string): void {
+  canvas.toBlob((blob) => blob && saveBlob(blob, name), "image/png");
+}
+
+/** A picture under a title and a line of coloured names. */
+export function withCaption(picture: HTMLCanvasElement, title: string, names: { text: string; colour: string }[],
+                            background: string, foreground: string): HTMLCanvasElement {
+  const scale = devicePixelRatio;
+  const head = Math.round((names.length > 0 ? 48 : 30) * scale);
+  const canvas = document.createElement("canvas");
+  canvas.width = picture.width;
+  canvas.height = picture.height + head;
+  const context = canvas.getContext("2d")!;
+  context.fillStyle = background;
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.fillStyle = foreground;
+  context.font = `600 ${14 * scale}px system-ui, sans-serif`;
+  context.fillText(title, 10 * scale, 20 * scale);
+  context.font = `${12 * scale}px system-ui, sans-serif`;
+  let x = 10 * scale;
+  for (const { text, colour } of names) {
+    context.fillStyle = colour;
+    context.fillRect(x, 32 * scale, 14 * scale, 4 * scale);
+    context.fillStyle = foreground;
+    context.fillText(text, x + 18 * scale, 39 * scale);
+    x += 18 * scale + context.measureText(text).width + 16 * scale;
+  }
+  context.drawImage(picture, 0, head);
+  return canvas;
+}
+
+export const fileName = (title: string) => title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");

@@ -1,0 +1,92 @@
+import type { Run } from "./data/run";
+
+/** What all parts of the page have in common, and who wants to know when it changes. */
+export type Topic = "time" | "runs" | "zoom" | "body" | "contact" | "theme" | "player";
+
+export type MapQuantity = string;
+
+export class Store {
+  time = 0;
+  /** Who moves the time; its own cursor need not follow. */
+  timeSource: unknown = null;
+  playing = false;
+  /** Seconds that the whole run takes when it is played. */
+  duration = 10;
+  visible: boolean[];
+  zoom: [number, number] | null = null;
+  deformation = 1;
+  field = "";
+  showMesh = false;
+  showForces = true;
+  sharedColours = false;
+  quantity: MapQuantity = "contact_pressure";
+  readonly start: number;
+  readonly end: number;
+  private readonly listeners = new Map<Topic, Set<() => void>>();
+  private readonly waiting = new Set<Topic>();
+
+  constructor(readonly runs: Run[]) {
+    this.visible = runs.map(() => true);
+    let start = Infinity;
+    let end = -Infinity;
+    for (const run of runs) {
+      const times = run.column("time");
+      start = Math.min(start, times[0] ?? 0);
+      end = Math.max(end, times[times.length - 1] ?? 0);
+    }
+    this.start = start;
+    this.end = end;
+    this.time = start;
+  }
+
+  get visibleRuns(): Run[] {
+    return this.runs.filter((_, i) => this.visible[i]);
+  }
+
+  on(topic: Topic, listener: () => void): void {
+    let set = this.listeners.get(topic);
+    if (!set) this.listeners.set(topic, (set = new Set()));
+    set.add(listener);
+  }
+
+  /** Listeners are called once before the next picture is drawn, however often something changed. */
+  changed(topic: Topic): void {
+    if (this.waiting.size === 0) requestAnimationFrame(() => this.tell());
+    this.waiting.add(topic);
+  }
+
+  private tell(): void {
+    const topics = [...this.waiting];
+    this.waiting.clear();
+    for (const topic of topics) for (const listener of this.listeners.get(topic) ?? []) listener();
+  }
+
+  setTime(time: number, source: unknown = null): void {
+    const bounded = Math.min(Math.max(time, this.start), this.end);
+    if (!(bounded === bounded) || bounded === this.time) return;
+    this.time = bounded;
+    this.timeSource = source;
+    this.changed("time");
+  }
+
+  toggle(run: number): void {
+    this.visible[run] = !this.visible[run];
+    if (!this.visible.includes(true)) this.visible[run] = true; // one stays
+    this.changed("runs");
+  }
+
+  setZoom(zoom: [number, number] | null): void {
+    this.zoom = zoom;
+    this.changed("zoom");
+  }
+
+  set<Key extends "deformation" | "field" | "showMesh" | "showForces" | "duration" | "playing" | "quantity" | "sharedColours">(
+    key: Key,
+    value: this[Key],
+    topic: Topic,
+  ): void {
+    if (this[key] === value) return;
+    this[key] = value;
+    this.changed(topic);
+  }
+}
