@@ -116,7 +116,6 @@ function bodySection(store: Store, stage: Stage, runs: Run[]): HTMLElement {
         toggleButton(store, "showMesh", "mesh", "Edges of the cells (key m)"),
         runs.length > 1 && toggleButton(store, "sharedColours", "same colours", "The same range of colours for all runs, in bodies and maps (key c)"),
         ...(space ? (["front", "side", "top", "below"] as const).map(view) : [el("button.small", { type: "button", onclick: () => stage.look("front") }, "fit")]))),
-    stage.works ? "" : el("p.warning", {}, "This browser shows no WebGL, which the animation needs."),
     perRun(store, runs, (run) => stage.add(run).element, "bodies"));
 }
 

@@ -15,14 +15,21 @@ export interface BodyPanel {
   element: HTMLElement;
   view: BodyView;
   canvas: HTMLCanvasElement;
+  renderer: three.WebGLRenderer | null;
+  message: HTMLElement;
+  tip: HTMLElement;
+  caption: () => void;
 }
 
-/** Draws all bodies with one WebGL context and one camera: the panels show the same part of space. */
+/** Browsers have no more than 16 drawings with WebGL in a page. */
+const mostRenderers = 12;
+
+/** Draws all bodies with one camera: the panels show the same part of space. */
 export class Stage {
   readonly panels: BodyPanel[] = [];
   /** Pictures drawn so far. */
   pictures = 0;
-  private renderer: three.WebGLRenderer | null = null;
+  private readonly antialias: boolean;
   private readonly camera: three.OrthographicCamera | three.PerspectiveCamera;
   private readonly target = new three.Vector3();
   private readonly controls: OrbitControls[] = [];
@@ -35,34 +42,42 @@ export class Stage {
   constructor(private readonly store: Store) {
     this.plane = store.runs.every((run) => run.summary.dimension === 2);
     this.camera = this.plane ? new three.OrthographicCamera(-1, 1, 1, -1, 0.1, 10) : new three.PerspectiveCamera(32, 1, 0.1, 10);
+    this.camera.up.set(0, this.plane ? 1 : 0, this.plane ? 0 : 1);
     for (const topic of ["time", "runs", "body", "theme", "contact"] as const) store.on(topic, () => this.redraw(true));
-    try {
-      const triangles = store.runs.reduce((sum, run) => sum + (run.body?.triangles ?? 0), 0);
-      // Without a graphics card smooth edges take two thirds of the time.
-      this.renderer = new three.WebGLRenderer({ antialias: triangles < 20_000 || !drawsInSoftware() });
-    } catch {
-      this.renderer = null;
-    }
-  }
-
-  get works(): boolean {
-    return this.renderer !== null;
+    const triangles = store.runs.reduce((sum, run) => sum + (run.body?.triangles ?? 0), 0);
+    // Without a graphics card smooth edges take two thirds of the time.
+    this.antialias = triangles < 20_000 || !drawsInSoftware();
   }
 
   add(run: Run): BodyPanel {
     const view = new BodyView(run, this.store);
     const canvas = el("canvas", { tabIndex: 0, role: "img", "aria-label": `The body of ${run.name}` });
     const tip = el("div.tip", { hidden: true });
+    const message = el("p.note", { hidden: true });
     const time = el("span.muted");
     const colours = el("div");
-    const area = el("div.body-area", {}, canvas, tip);
+    const area = el("div.body-area", {}, canvas, tip, message);
     const element = el("div.body", {}, area, el("div.body-foot", {}, time,
       el("button.small", { type: "button", title: "Save the picture", onclick: () => {
         this.draw();
-        saveCanvas(withCaption(canvas, `${run.name}, t = ${number(this.store.time, 4)}`, [], themeColour("panel"), themeColour("text")), `${fileName(run.name)}-body.png`);
+        saveCanvas(withCaption(panel.canvas, `${run.name}, t = ${number(this.store.time, 4)}`, [], themeColour("panel"), themeColour("text")), `${fileName(run.name)}-body.png`);
       } }, "PNG")), colours);
-    const panel = { element, view, canvas };
+    const caption = () => {
+      time.textContent = `t = ${number(run.body!.times[view.frame] ?? 0, 5)}`;
+      const name = fieldName(this.store.field);
+      if (!view.values) colours.replaceChildren();
+      else colours.replaceChildren(colourBar(name, view.values.isStatus ? null : view.range));
+    };
+    const panel: BodyPanel = { element, view, canvas, renderer: null, message, tip, caption };
     this.panels.push(panel);
+    this.connect(panel);
+    this.fit();
+    new ResizeObserver(() => this.redraw(false)).observe(area);
+    return panel;
+  }
+
+  private connect(panel: BodyPanel): void {
+    const { canvas } = panel;
     const controls = new OrbitControls(this.camera, canvas);
     controls.target = this.target;
     controls.enableZoom = false; // the wheel scrolls the page until the panel has the focus
@@ -79,20 +94,9 @@ export class Stage {
     canvas.addEventListener("dblclick", () => this.look("front"));
     canvas.style.touchAction = "pan-y";
     this.controls.push(controls);
-    this.fit();
-    canvas.addEventListener("pointermove", (event) => this.showValue(panel, event, tip));
-    canvas.addEventListener("pointerleave", () => (tip.hidden = true));
-    const caption = () => {
-      time.textContent = `t = ${number(run.body!.times[view.frame] ?? 0, 5)}`;
-      const name = fieldName(this.store.field);
-      if (!view.values) colours.replaceChildren();
-      else colours.replaceChildren(colourBar(name, view.values.isStatus ? null : view.range));
-    };
-    this.captions.push(caption);
-    new ResizeObserver(() => this.redraw(false)).observe(area);
-    return panel;
+    canvas.addEventListener("pointermove", (event) => this.showValue(panel, event));
+    canvas.addEventListener("pointerleave", () => (panel.tip.hidden = true));
   }
-  private readonly captions: (() => void)[] = [];
 
   /** The part of space that all bodies need; one that flies far away does not make the others small. */
   private fit(): void {
@@ -113,7 +117,6 @@ export class Stage {
     };
     const direction = new three.Vector3(...(directions[from] as [number, number, number])).normalize();
     const distance = this.plane ? 2 * this.size : 1.5 * this.size;
-    this.camera.up.set(0, this.plane ? 1 : 0, this.plane ? 0 : 1);
     this.target.copy(this.centre);
     this.camera.position.copy(this.centre).addScaledVector(direction, distance);
     this.camera.near = 0.02 * this.size;
@@ -134,29 +137,59 @@ export class Stage {
     });
   }
 
-  private draw(): void {
-    const renderer = this.renderer;
+  draw(): void {
     const scale = devicePixelRatio;
     let drew = false;
-    this.panels.forEach(({ view, canvas }, i) => {
+    for (const panel of this.panels) {
+      const { view, canvas } = panel;
       const width = canvas.clientWidth;
       const height = canvas.clientHeight;
-      if (width === 0 || height === 0) return; // hidden
+      if (width === 0 || height === 0) {
+        this.release(panel); // hidden
+        continue;
+      }
       if (this.stale || view.frame < 0) view.update();
-      this.captions[i]();
-      if (!renderer) return;
-      const pixels = [Math.round(width * scale), Math.round(height * scale)];
-      if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) [canvas.width, canvas.height] = pixels;
-      const drawn = renderer.getSize(new three.Vector2());
-      if (drawn.x !== pixels[0] || drawn.y !== pixels[1]) renderer.setSize(pixels[0], pixels[1], false);
+      panel.caption();
+      panel.renderer ??= this.makeRenderer(panel);
+      const { renderer } = panel;
+      if (!renderer) continue;
+      const size = renderer.getSize(new three.Vector2());
+      const [wide, high] = [Math.round(width * scale), Math.round(height * scale)];
+      if (size.x !== wide || size.y !== high) renderer.setSize(wide, high, false);
       this.frameCamera(width / height);
       renderer.setClearColor(new three.Color().setStyle(themeColour("panel")));
       renderer.render(view.scene, this.camera);
-      canvas.getContext("2d")!.drawImage(renderer.domElement, 0, 0);
       drew = true;
-    });
+    }
     this.stale = false;
     if (drew) ++this.pictures;
+  }
+
+  private makeRenderer(panel: BodyPanel): three.WebGLRenderer | null {
+    const there = this.panels.filter(({ renderer }) => renderer !== null).length;
+    let problem = there < mostRenderers ? "" : "Too many bodies at once: hide some runs.";
+    let renderer: three.WebGLRenderer | null = null;
+    try {
+      if (problem === "") renderer = new three.WebGLRenderer({ canvas: panel.canvas, antialias: this.antialias });
+    } catch {
+      problem = "This browser shows no WebGL, which the animation needs.";
+    }
+    panel.message.textContent = problem;
+    panel.message.hidden = problem === "";
+    return renderer;
+  }
+
+  /** What a hidden panel holds of the graphics card. */
+  private release(panel: BodyPanel): void {
+    if (!panel.renderer || this.panels.length <= mostRenderers) return;
+    panel.renderer.dispose();
+    panel.renderer.forceContextLoss();
+    panel.renderer = null;
+    // A canvas keeps its first context for good.
+    const fresh = panel.canvas.cloneNode() as HTMLCanvasElement;
+    panel.canvas.replaceWith(fresh);
+    panel.canvas = fresh;
+    this.connect(panel);
   }
 
   private frameCamera(aspect: number): void {
@@ -172,7 +205,7 @@ export class Stage {
     this.camera.updateProjectionMatrix();
   }
 
-  private showValue({ view, canvas }: BodyPanel, event: PointerEvent, tip: HTMLElement): void {
+  private showValue({ view, canvas, tip }: BodyPanel, event: PointerEvent): void {
     if (event.buttons !== 0 || this.store.playing) {
       tip.hidden = true;
       return;

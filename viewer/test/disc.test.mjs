@@ -1,0 +1,292 @@
+// The demo's report: three runs compared.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { assertNear, closeBrowser, discRuns, download, fingerprint, open, painted, readHistory, report, settle } from "./support.mjs";
+
+let runs, file, view;
+before(async () => {
+  runs = discRuns();
+  file = report("disc", ...runs);
+  view = await open(file);
+});
+after(closeBrowser);
+
+const curves = (page, id) => page.evaluate((chart) => window.ricochet.charts.find((each) => each.id === chart).curves
+  .map((curve) => ({ ...curve, times: Array.from(curve.times), values: Array.from(curve.values) })), id);
+const time = (page) => page.evaluate(() => window.ricochet.store.time);
+const setTime = async (page, to) => {
+  await page.evaluate((t) => window.ricochet.store.setTime(t), to);
+  await settle(page);
+};
+
+test("every column of every run is in the page as history.csv has it", async () => {
+  for (const directory of runs) {
+    const history = readHistory(directory);
+    const name = directory.split("/").at(-1);
+    const found = await view.page.evaluate((run) => {
+      const { history } = window.ricochet.store.runs.find((each) => each.name === run);
+      return Object.fromEntries([...history].map(([column, values]) => [column, Array.from(values)]));
+    }, name);
+    assert.deepEqual(found, history);
+  }
+});
+
+test("curves have the values and the instants of the history", async () => {
+  const step = 1e-4;
+  for (const [chart, column] of [["energy", "total_energy"], ["force", "lowest.reaction_normal"], ["works", "contact_work"], ["counts", "active_contacts"]]) {
+    const drawn = await curves(view.page, chart);
+    assert.deepEqual(drawn.map((curve) => curve.run).sort(), ["klr-conserving", "midpoint", "newmark"]);
+    for (const curve of drawn) {
+      assert.equal(curve.column, column);
+      const history = readHistory(runs.find((run) => run.endsWith(curve.run)));
+      assert.deepEqual(curve.values, history[column]);
+      // The source's instants: klr-conserving has energies half a step later, midpoint forces half a step earlier.
+      const shift = column === "total_energy" && curve.run === "klr-conserving" ? 0.5 * step
+        : column === "lowest.reaction_normal" && curve.run === "midpoint" ? -0.5 * step : 0;
+      curve.times.forEach((t, i) => assertNear(t, history.time[i] + shift, 1e-15));
+    }
+  }
+});
+
+test("the numbers under a plot are those at the cursor", async () => {
+  await setTime(view.page, 0.05);
+  const text = await view.page.textContent("#chart-force .legend");
+  for (const directory of runs) {
+    const history = readHistory(directory);
+    const name = directory.split("/").at(-1);
+    const shown = Number(new RegExp(`${name} ([\\d.]+)`).exec(text)[1]);
+    const row = history.time.findIndex((t) => Math.abs(t - 0.05) < 1e-9);
+    const candidates = name === "midpoint" ? [row, row + 1] : [row];
+    assert.ok(candidates.some((i) => Math.abs(shown - history["lowest.reaction_normal"][i]) <= 1e-5 * Math.abs(shown)), `${name}: ${shown}`);
+  }
+});
+
+test("a reader sees at once which scheme to use", async () => {
+  assert.match(await view.page.textContent(".conclusion"), /^Use newmark \(equivalent mass\)/);
+  const cards = await view.page.$$eval(".card", (all) => all.map((card) => card.textContent));
+  assert.match(cards[0], /midpoint.*created: \d+ times.*rattles/s);
+  assert.match(cards[1], /klr-conserving.*kept to rounding.*rattles/s);
+  assert.match(cards[2], /newmark.*kept to −0\.03.*smooth.*none/s);
+  // The midpoint scheme's growth does not hide the others.
+  const range = await view.page.evaluate(() => window.ricochet.charts.find((chart) => chart.id === "energy").range);
+  assert.ok(range.high < 0.2 && range.high > 0.0377 && range.low <= 0, JSON.stringify(range));
+  assert.match(await view.page.textContent("#chart-energy .outside"), /midpoint leaves this scale: it reaches/);
+  await view.page.click("#chart-energy .outside button");
+  const all = await view.page.evaluate(() => window.ricochet.charts.find((chart) => chart.id === "energy").range);
+  assert.ok(all.high > 5);
+  await view.page.selectOption("#chart-energy select", "most");
+});
+
+test("hovering over a plot moves body, maps and the other plots to that time", async () => {
+  const { page } = view;
+  await page.evaluate(() => window.scrollTo(0, 0));
+  const box = await (await page.$("#chart-energy .u-over")).boundingBox();
+  await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.5 * box.height);
+  await settle(page);
+  assertNear(await time(page), 0.4 * 0.15, 0.15 / box.width + 1e-9, "time");
+  const now = await time(page);
+  const state = await page.evaluate(() => ({
+    cursor: window.ricochet.charts.map((chart) => chart.plot.posToVal(chart.plot.cursor.left, "x")),
+    frames: window.ricochet.stage.panels.map(({ view }) => view.run.body.times[view.frame]),
+    captions: [...document.querySelectorAll(".body-foot .muted")].map((each) => each.textContent),
+    map: [...document.querySelectorAll(".map .cursor")].map((each) => parseFloat(each.style.left)),
+    areas: [...document.querySelectorAll(".map-area")].map((each) => each.clientWidth),
+    profile: window.ricochet.profile.profiles.map((profile) => profile.time),
+  }));
+  for (const at of state.cursor) assertNear(at, now, 0.15 / 400, "cursor of a plot");
+  for (const at of [...state.frames, ...state.profile]) assertNear(at, now, 2.6e-4, "frame");
+  for (const text of state.captions) assertNear(Number(text.replace("t = ", "")), now, 3e-4, "caption");
+  state.map.forEach((left, i) => assertNear((left - 66) / (state.areas[i] - 74), now / 0.15, 0.005, "cursor of a map"));
+});
+
+test("hovering over a map moves the plots, and shows the value that the map has there", async () => {
+  const { page } = view;
+  const canvas = (await page.$$(".map-area canvas"))[2];
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox();
+  await page.mouse.move(box.x + 66 + (1 / 3) * (box.width - 74), box.y + 75);
+  await settle(page);
+  assertNear(await time(page), 0.05, 0.15 / 300, "time");
+  const text = await page.textContent(".run-panel:nth-child(3) .map .tip");
+  assert.match(text, /^contact pressure [\d.·⁰-⁹]+ at 0\.03/);
+  assert.match(await page.textContent("#chart-energy .legend"), /newmark 0\.0376/);
+});
+
+test("the equivalent mass's pressure is smooth where the conserving scheme's is a checkerboard", async () => {
+  // Jumps from node to node and from frame to frame against the pressures themselves: of one hill they are small, of a
+  // checkerboard twice as large.
+  const roughness = await view.page.evaluate(() => window.ricochet.store.runs.map((run) => {
+    const { values } = run.contact.quantities.find(({ name }) => name === "contact_pressure");
+    const at = (row, column) => values.low + values.step * values.levels[row * values.columns + column];
+    let jumps = 0, sum = 0;
+    for (let row = 1; row < values.rows; ++row)
+      for (let column = 1; column < values.columns; ++column) {
+        jumps += Math.abs(at(row, column) - at(row, column - 1)) + Math.abs(at(row, column) - at(row - 1, column));
+        sum += 2 * at(row, column);
+      }
+    return jumps / sum;
+  }));
+  assert.ok(roughness[2] < 0.3, `newmark ${roughness[2]}`);
+  assert.ok(roughness[1] > 1.2, `klr-conserving ${roughness[1]}`);
+  for (const i of [1, 2]) assert.ok((await painted(view.page, `.maps .run-panel:nth-child(${i + 1}) canvas`)) > 0.1);
+});
+
+test("the animation advances, and stops", async () => {
+  const { page } = view;
+  await setTime(page, 0);
+  await page.$eval("#bodies", (element) => element.scrollIntoView());
+  const picture = ".bodies .run-panel:nth-child(3) canvas";
+  const first = await fingerprint(page, picture);
+  const pictures = await page.evaluate(() => window.ricochet.stage.pictures);
+  await page.click(".play");
+  await page.waitForFunction(() => window.ricochet.store.time > 0.02, null, { timeout: 20_000 });
+  assert.equal(await page.getAttribute(".play", "aria-label"), "Pause");
+  await page.click(".play");
+  await settle(page);
+  const stopped = await time(page);
+  assert.notEqual(await fingerprint(page, picture), first);
+  assert.ok((await page.evaluate(() => window.ricochet.stage.pictures)) > pictures + 5);
+  await page.waitForTimeout(200);
+  assert.equal(await time(page), stopped);
+});
+
+test("names and keys switch runs in all plots", async () => {
+  const { page } = view;
+  await page.click(".card:nth-child(1) .toggle");
+  await settle(page);
+  for (const chart of ["energy", "force", "momentum"])
+    assert.deepEqual((await curves(page, chart)).map((curve) => curve.run).sort(), ["klr-conserving", "newmark"]);
+  assert.equal(await page.isVisible(".bodies .run-panel:nth-child(1)"), false);
+  assert.equal(await page.isVisible(".maps .run-panel:nth-child(1)"), false);
+  assert.equal(await page.getAttribute(".card:nth-child(1) .toggle", "aria-pressed"), "false");
+  assert.equal((await page.evaluate(() => window.ricochet.profile.profiles)).length, 2);
+  await page.keyboard.press("1");
+  await page.keyboard.press("2");
+  await settle(page);
+  assert.deepEqual((await curves(page, "energy")).map((curve) => curve.run).sort(), ["midpoint", "newmark"]);
+  await page.keyboard.press("2");
+  await settle(page);
+});
+
+test("keys step, play, magnify, colour", async () => {
+  const { page } = view;
+  await page.evaluate(() => document.activeElement?.blur());
+  await setTime(page, 0.05);
+  await page.keyboard.press("ArrowRight");
+  assertNear(await time(page), 0.0505, 1e-9);
+  await page.keyboard.press("Shift+ArrowLeft");
+  assertNear(await time(page), 0.0455, 1e-9);
+  await page.keyboard.press("Home");
+  assert.equal(await time(page), 0);
+  await page.keyboard.press("End");
+  assertNear(await time(page), 0.15, 1e-12);
+  const picture = ".bodies .run-panel:nth-child(3) canvas";
+  await setTime(page, 0.05);
+  const plain = await fingerprint(page, picture);
+  await page.keyboard.press("+");
+  await settle(page);
+  assert.notEqual(await fingerprint(page, picture), plain);
+  assert.equal(await page.evaluate(() => window.ricochet.store.deformation), 2);
+  await page.keyboard.press("-");
+  await settle(page);
+  assert.equal(await fingerprint(page, picture), plain);
+  for (const key of ["m", "p", "f"]) {
+    await page.keyboard.press(key);
+    await settle(page);
+    assert.notEqual(await fingerprint(page, picture), plain, key);
+    if (key !== "f") await page.keyboard.press(key);
+  }
+  await page.selectOption("#field", "von_mises");
+  await page.keyboard.press("?");
+  assert.ok(await page.isVisible("dialog.help"));
+  await page.keyboard.press("Escape");
+});
+
+test("the body is where the results say, and its colours have their values", async () => {
+  const { page } = view;
+  await setTime(page, 0.05);
+  const found = await page.evaluate(() => {
+    const { view } = window.ricochet.stage.panels[2];
+    const lowest = Array.from(view.positions).filter((_, i) => i % 3 === 1).reduce((a, b) => Math.min(a, b));
+    const area = view.mesh.geometry.attributes.position.count / 3;
+    return { lowest, area, most: Math.max(...view.values.values), high: view.range.high };
+  });
+  assertNear(found.lowest, 0, 2e-6, "pressed on the foundation");
+  assert.equal(found.area, 780);
+  assert.ok(found.most > 1000 && found.most < 1e4, String(found.most));
+});
+
+test("a part of the time can be seen closer", async () => {
+  const { page } = view;
+  await page.evaluate(() => window.scrollTo(0, 0));
+  const box = await (await page.$("#chart-energy .u-over")).boundingBox();
+  await page.mouse.move(box.x + 0.2 * box.width, box.y + 30);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 40, { steps: 5 });
+  await page.mouse.up();
+  await settle(page);
+  const zoom = await page.evaluate(() => ({ zoom: window.ricochet.store.zoom, force: window.ricochet.charts[1].plot.scales.x.min }));
+  assertNear(zoom.zoom[0], 0.03, 1e-3);
+  assertNear(zoom.zoom[1], 0.09, 1e-3);
+  assertNear(zoom.force, zoom.zoom[0], 1e-12, "all plots");
+  await page.mouse.dblclick(box.x + 0.5 * box.width, box.y + 30);
+  await settle(page);
+  assert.equal(await page.evaluate(() => window.ricochet.store.zoom), null);
+});
+
+test("plots, maps and bodies are saved as pictures and numbers", async () => {
+  const { page } = view;
+  const buttons = (selector, name) => page.locator(`${selector} button`, { hasText: new RegExp(`^${name}$`) }).first();
+  const csv = await download(page, () => buttons("#chart-force", "CSV").click());
+  assert.equal(csv.name, "contact-force.csv");
+  const [header, ...rows] = csv.content.toString().trimEnd().split("\n").map((line) => line.split(","));
+  const column = header.indexOf("newmark: lowest.reaction_normal");
+  assert.deepEqual(rows.map((row) => Number(row[column])), readHistory(runs[2])["lowest.reaction_normal"]);
+  for (const [selector, name] of [["#chart-energy", "energy.png"], [".bodies .run-panel:nth-child(3)", "newmark-body.png"], [".maps .run-panel:nth-child(3)", "newmark-contact-pressure.png"], ["#profile", "contact-pressure-along-the-boundary.png"]]) {
+    const png = await download(page, () => buttons(selector, "PNG").click());
+    assert.equal(png.name, name);
+    assert.equal(png.content.subarray(1, 4).toString(), "PNG");
+    assert.ok(png.content.length > 3000, `${name} has ${png.content.length} bytes`);
+  }
+  const map = await download(page, () => buttons(".maps .run-panel:nth-child(3)", "CSV").click());
+  assert.equal(map.content.toString().trimEnd().split("\n").length, 302);
+});
+
+test("inputs that differ, warnings, sizes and timings are there", async () => {
+  const text = await view.page.textContent(".details");
+  for (const part of ["time.scheme", "klr-conserving", "small strain no longer holds", "degrees of freedom", "846", "factorization", "account of momentum"])
+    assert.ok(text.includes(part), part);
+});
+
+test("dark and light", async () => {
+  const { page } = view;
+  const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const light = await background();
+  await page.keyboard.press("t");
+  await settle(page);
+  assert.notEqual(await background(), light);
+  await page.keyboard.press("t");
+  assert.equal(await background(), light);
+  const dark = await open(file, { colorScheme: "dark" });
+  assert.notEqual(await dark.page.evaluate(() => getComputedStyle(document.body).backgroundColor), light);
+  assert.deepEqual(dark.complaints, []);
+  await dark.close();
+});
+
+test("a phone shows all of it, and fingers move the time", async () => {
+  const phone = await open(file, { width: 390, height: 844, touch: true });
+  const { page } = phone;
+  const wide = await page.evaluate(() => [...document.querySelectorAll("#page *")].filter((each) => each.getBoundingClientRect().right > innerWidth + 1 && !each.closest(".table")).map((each) => each.className));
+  assert.deepEqual(wide, []);
+  assert.equal(await page.evaluate(() => document.scrollingElement.scrollWidth), 390);
+  const over = page.locator("#chart-force .u-over");
+  await over.scrollIntoViewIfNeeded();
+  const box = await over.boundingBox();
+  await page.touchscreen.tap(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+  await settle(page);
+  assertNear(await time(page), 0.075, 0.002);
+  assert.deepEqual(phone.complaints, []);
+  await phone.close();
+});
+
+test("nothing was said on the console, and nothing asked of the network", () => assert.deepEqual(view.complaints, []));
