@@ -1,20 +1,13 @@
 #include "ricochet/mesh/gmsh_process.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <deque>
 #include <fstream>
 
+#include "ricochet/base/child_process.hpp"
 #include "ricochet/base/error.hpp"
-
-extern char** environ;
 
 namespace ricochet::gmsh {
 
@@ -28,51 +21,15 @@ namespace {
                   source));
 }
 
-/// The variables of this process, but without the user's own Gmsh options, on which the mesh should not depend.
-std::vector<std::string> environment(const std::filesystem::path& workspace) {
-  std::vector<std::string> variables;
-  for (char** variable = environ; *variable != nullptr; ++variable) {
-    if (!std::string_view(*variable).starts_with("GMSH_HOME=")) variables.emplace_back(*variable);
-  }
-  variables.push_back("GMSH_HOME=" + workspace.string());
-  return variables;
-}
-
-std::vector<char*> pointers(std::vector<std::string>& strings) {
-  std::vector<char*> result;
-  for (std::string& string : strings) result.push_back(string.data());
-  result.push_back(nullptr);
-  return result;
-}
-
-struct Outcome {
-  int spawn_error = 0;
-  int status = 0;  ///< as waitpid gives it
-};
-
-/// Runs gmsh with what it says going to `log`. Arguments go to it as they are: no shell is involved.
-Outcome run(std::vector<std::string> arguments, const std::filesystem::path& workspace,
-            const std::filesystem::path& log) {
+/// Runs gmsh with what it says going to `log`, without the user's own options, on which the mesh should not depend.
+ChildOutcome run(std::vector<std::string> arguments, const std::filesystem::path& workspace,
+                 const std::filesystem::path& log) {
   arguments.insert(arguments.begin(), "gmsh");
-  std::vector<std::string> variables = environment(workspace);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  Outcome outcome;
-  pid_t child = 0;
-  outcome.spawn_error =
-      posix_spawnp(&child, "gmsh", &actions, nullptr, pointers(arguments).data(), pointers(variables).data());
-  posix_spawn_file_actions_destroy(&actions);
-  if (outcome.spawn_error != 0) return outcome;
-  while (waitpid(child, &outcome.status, 0) < 0) {
-    if (errno != EINTR) {
-      outcome.spawn_error = errno;
-      break;
-    }
-  }
-  return outcome;
+  ChildProcess gmsh;
+  gmsh.arguments = std::move(arguments);
+  gmsh.variables = {"GMSH_HOME=" + workspace.string()};
+  gmsh.output = log.string();
+  return run_child(std::move(gmsh));
 }
 
 /// The last lines of what gmsh said, errors first in mind: warnings are dropped when there are errors.
@@ -94,18 +51,11 @@ std::string last_lines(const std::filesystem::path& log) {
   return text.empty() ? " (it said nothing)" : text;
 }
 
-std::string describe(const Outcome& outcome) {
-  if (WIFSIGNALED(outcome.status)) return fmt::format("was killed by signal {}", WTERMSIG(outcome.status));
-  return fmt::format("ended with status {}", WEXITSTATUS(outcome.status));
-}
-
-void check_spawned(const Outcome& outcome, const std::string& source) {
-  const bool absent = WIFEXITED(outcome.status) && WEXITSTATUS(outcome.status) == 127;
-  if (outcome.spawn_error == ENOENT || (outcome.spawn_error == 0 && absent)) fail_absent(source);
+void check_spawned(const ChildOutcome& outcome, const std::string& source) {
+  if (outcome.is_absent()) fail_absent(source);
   if (outcome.spawn_error != 0) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: the gmsh program, needed to mesh this file, cannot be run: {}", source,
-                            std::strerror(outcome.spawn_error)));
+                fmt::format("{}: the gmsh program, needed to mesh this file, {}", source, outcome.description()));
   }
 }
 
@@ -117,7 +67,7 @@ std::string program_version(const std::string& source) {
   const int descriptor = mkstemp(log.data());
   if (descriptor < 0) throw Error(ErrorKind::file_access, fmt::format("cannot write to {}", directory.string()));
   close(descriptor);
-  const Outcome outcome = run({"-version"}, directory, log);
+  const ChildOutcome outcome = run({"-version"}, directory, log);
   std::string version;
   std::string line;
   for (std::ifstream stream(log); std::getline(stream, line);) version += line;
@@ -134,14 +84,14 @@ void run_program(const std::string& input, const std::string& options, const std
   std::ofstream(options_file) << options;
   const std::filesystem::path log = workspace / "gmsh.log";
   const std::string absolute = std::filesystem::absolute(input).string();
-  const Outcome outcome =
+  const ChildOutcome outcome =
       run({absolute, options_file.string(), "-3", "-v", "2", "-nt", "1", "-o", output.string()}, workspace, log);
   check_spawned(outcome, input);
   std::error_code ignored;
   const bool written = std::filesystem::file_size(output, ignored) > 0 && !ignored;
-  if (!WIFEXITED(outcome.status) || WEXITSTATUS(outcome.status) != 0 || !written) {
+  if (!outcome.succeeded() || !written) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: gmsh could not mesh this file: it {}{}:{}", input, describe(outcome),
+                fmt::format("{}: gmsh could not mesh this file: it {}{}:{}", input, outcome.description(),
                             written ? "" : " and wrote no mesh", last_lines(log)));
   }
 }
