@@ -32,12 +32,21 @@ struct ReportArguments {
   double most_megabytes = 20.0;
 };
 
+struct PlotArguments {
+  std::vector<std::string> directories, what, labels;
+  std::string output, title;
+  std::string time;  ///< "A:B"; empty: all
+  std::string size;  ///< "WxH" in cm; empty: what suits
+  bool logarithmic = false;
+};
+
 int run(const RunArguments& arguments);
 int validate(const std::string& case_file, const std::vector<std::string>& overrides);
 int info(const std::vector<std::string>& paths);
 int schema(bool markdown);
 int contact(const ContactArguments& arguments);
 int report(const ReportArguments& arguments);
+int plot(const PlotArguments& arguments);
 /// A contact problem in a few lines.
 void describe_contact_problem(const std::string& path);
 

@@ -18,6 +18,7 @@ struct Arguments {
   program::RunArguments run;
   program::ContactArguments contact;
   program::ReportArguments report;
+  program::PlotArguments plot;
   std::string validate_file;
   std::vector<std::string> validate_overrides;
   std::vector<std::string> info_paths;
@@ -112,6 +113,28 @@ int dispatch(int argc, char** argv) {
       ->check(CLI::Range(1.0, 2000.0));
   add_common(*report, arguments);
 
+  CLI::App* plot = app.add_subcommand("plot", "Draw a figure for a paper (by Python's matplotlib)");
+  plot->add_option("directories", arguments.plot.directories, "output directories of runs")
+      ->required()
+      ->type_name("DIR");
+  plot->add_option("--what", arguments.plot.what,
+                   "energy, force, momentum, pressure, pressure-map, probe:NAME.COLUMN or a column of history.csv; "
+                   "repeated, a panel for each")
+      ->required()
+      ->type_name("WHAT")
+      ->allow_extra_args(false);
+  plot->add_option("-o,--output", arguments.plot.output, "the figure: an .svg, .pdf or .png file")
+      ->required()
+      ->type_name("FILE");
+  plot->add_option("--label", arguments.plot.labels, "what a run is called, in the order of the runs")
+      ->type_name("TEXT")
+      ->allow_extra_args(false);
+  plot->add_option("--title", arguments.plot.title, "a line above the figure")->type_name("TEXT");
+  plot->add_option("--time", arguments.plot.time, "the part of the time to be shown")->type_name("A:B");
+  plot->add_option("--size", arguments.plot.size, "width and height in cm")->type_name("WxH");
+  plot->add_flag("--log", arguments.plot.logarithmic, "a logarithmic scale");
+  add_common(*plot, arguments);
+
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
   schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
 
@@ -128,6 +151,7 @@ int dispatch(int argc, char** argv) {
   if (validate->parsed()) return program::validate(arguments.validate_file, arguments.validate_overrides);
   if (info->parsed()) return program::info(arguments.info_paths);
   if (contact->parsed()) return program::contact(arguments.contact);
+  if (plot->parsed()) return program::plot(arguments.plot);
   if (report->parsed()) return program::report(arguments.report);
   return program::schema(arguments.markdown);
 }

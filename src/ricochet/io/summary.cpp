@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -113,6 +114,14 @@ double largest_size(const RunSummary& summary, const Columns& columns) {
   return largest;
 }
 
+/// From "t +0.5 time_step".
+double instant_from(const std::string& text, const std::string& path) {
+  double steps = 0.0;
+  if (std::sscanf(text.c_str(), "t %lf time_step", &steps) != 1)
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: instants: \"{}\" is none", path, text));
+  return steps;
+}
+
 }  // namespace
 
 double RunSummary::energy_scale() const {
@@ -212,6 +221,8 @@ RunSummary read_summary(const std::string& path) {
     if (json.contains("checkpoint_step") && json.at("checkpoint_step").is_number())
       s.checkpoint_step = json.at("checkpoint_step");
     s.frames = json.at("frames");
+    s.energy_instant = instant_from(json.at("instants").at("energy"), path);
+    s.force_instant = instant_from(json.at("instants").at("force"), path);
     s.time_per_step = json.at("seconds_per_step");
     s.warnings = json.at("warnings").get<std::vector<std::string>>();
     for (const auto& [phase, seconds] : json.at("timings_seconds").items()) s.timings.emplace_back(phase, seconds);

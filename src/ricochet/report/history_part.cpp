@@ -15,8 +15,8 @@ std::vector<double> all_rows(const HistoryTable& history) {
   return table;
 }
 
-/// Two values for each `rows` rows: the least and the largest, in the order in which they come. Step and time, which
-/// rise, keep the first and the last row of each.
+}  // namespace
+
 std::vector<double> thinned(const std::vector<double>& column, std::size_t rows) {
   std::vector<double> result;
   for (std::size_t begin = 0; begin < column.size(); begin += rows) {
@@ -29,8 +29,6 @@ std::vector<double> thinned(const std::vector<double>& column, std::size_t rows)
   }
   return result;
 }
-
-}  // namespace
 
 HistoryPart pack_history(const HistoryTable& history, std::size_t most_bytes, PackedArrays& arrays) {
   const auto columns = static_cast<Index>(history.names.size());

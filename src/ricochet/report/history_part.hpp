@@ -20,4 +20,8 @@ struct HistoryPart {
 /// The thinned columns keep every extremum: a bump that one row shows is still there.
 [[nodiscard]] HistoryPart pack_history(const HistoryTable& history, std::size_t most_bytes, PackedArrays& arrays);
 
+/// Two values for each `rows` rows of a column: the least and the largest, in the order in which they come. Of what
+/// rises, like the time, these are the first and the last.
+[[nodiscard]] std::vector<double> thinned(const std::vector<double>& column, std::size_t rows);
+
 }  // namespace ricochet

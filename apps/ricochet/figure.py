@@ -1,0 +1,129 @@
+"""Draws the figure that `ricochet plot` describes: figure.py FORMAT OUTPUT < DESCRIPTION. Needs matplotlib.
+
+Ends with status 3 where matplotlib is missing. The same description gives the same bytes.
+"""
+
+import json
+import math
+import sys
+
+try:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.ticker import FuncFormatter, MaxNLocator, ScalarFormatter
+except ImportError as problem:
+    print(problem)
+    sys.exit(3)
+
+CENTIMETRE = 1 / 2.54
+# Okabe and Ito's, which people with any kind of colour vision tell apart; the same as in reports.
+ALONE = "#1b1f24"
+COLOURS = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6b4c9a", "#5b5b5b"]
+
+plt.rcParams.update({
+    "font.size": 9, "axes.titlesize": 9, "legend.fontsize": 8, "font.family": "DejaVu Sans",
+    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3, "grid.linewidth": 0.5,
+    "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6, "svg.hashsalt": "ricochet",
+    "pdf.fonttype": 42, "savefig.dpi": 200, "agg.path.chunksize": 10000, "path.simplify": False,
+})
+
+
+def widths(panel):
+    """Of energies that lie upon one another those below are wider; of forces the smooth one, which lies on top."""
+    count = len(panel["curves"])
+    if count == 1:
+        return [0.8]
+    if "energy" in panel["y_label"]:
+        return [0.8 + 0.7 * min(count - 1 - i, 2) for i in range(count)]
+    return [0.6] * (count - 1) + [1.1]
+
+
+def in_powers(value):
+    if 1e-3 <= abs(value) < 1e4:
+        return f"{value:.3g}"
+    mantissa, exponent = f"{value:.2e}".split("e")
+    return rf"${float(mantissa):g} \cdot 10^{{{int(exponent)}}}$"
+
+
+def draw_curves(axes, panel, several):
+    count = len(panel["curves"])
+    for curve, width in zip(panel["curves"], widths(panel)):
+        colour = COLOURS[curve["run"] % len(COLOURS)] if several else ALONE
+        axes.plot(curve["x"], curve["y"], color=colour, label=curve["label"], lw=width)
+    axes.set_xlabel(panel["x_label"])
+    axes.set_ylabel(panel["y_label"])
+    if panel["logarithmic"]:
+        axes.set_yscale("log")
+    else:
+        axes.set_ylim(*panel["range"])
+        axes.yaxis.set_major_formatter(ScalarFormatter(useMathText=True))
+        axes.ticklabel_format(axis="y", scilimits=(-3, 4))
+    axes.xaxis.set_major_locator(MaxNLocator(5))
+    notes = ", ".join(f"{name} reaches {in_powers(value)}" for name, value in panel.get("notes", []))
+    axes.set_title(notes, loc="right", fontsize=7, color="0.35")
+    if several:
+        handles, labels = axes.get_legend_handles_labels()
+        order = sorted(range(count), key=lambda i: panel["curves"][i]["run"])
+        axes.legend([handles[i] for i in order], [labels[i] for i in order], frameon=False)
+
+
+def borders(places):
+    """Half way between places, and as far beyond the ends."""
+    between = [(a + b) / 2 for a, b in zip(places, places[1:])]
+    return [2 * places[0] - between[0], *between, 2 * places[-1] - between[-1]]
+
+
+def draw_map(figure, axes, panel, is_first):
+    pieces = [*panel["pieces"], len(panel["y"])]
+    x = borders(panel["x"])
+    for begin, end in zip(pieces, pieces[1:]):
+        if end - begin < 2:
+            continue
+        values = [[row[i] for row in panel["values"]] for i in range(begin, end)]
+        image = axes.pcolormesh(x, borders(panel["y"][begin:end]), values, cmap="viridis", vmin=0, vmax=panel["high"],
+                                rasterized=True)
+    axes.set_xlim(panel["x"][0], panel["x"][-1])
+    axes.set_xlabel(panel["x_label"])
+    axes.set_ylabel(panel["y_label"] if is_first else "")
+    axes.xaxis.set_major_locator(MaxNLocator(4))
+    axes.set_title(panel["title"])
+    axes.grid(False)
+    most = max(max(row) for row in panel["values"])
+    power = 0 if 1e-3 <= panel["high"] < 1e4 else math.floor(math.log10(panel["high"]))
+    label = panel["value_label"] + (rf", $\times 10^{{{power}}}$" if power else "")
+    bar = figure.colorbar(image, ax=axes, location="bottom", aspect=30, label=label,
+                          extend="max" if most > 1.02 * panel["high"] else "neither")
+    bar.ax.xaxis.set_major_locator(MaxNLocator(4))
+    bar.ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / 10 ** power:g}"))
+    bar.outline.set_linewidth(0.6)
+
+
+def main(form, output):
+    description = json.load(sys.stdin)
+    panels = description["panels"]
+    columns = len(panels) if len(panels) <= 3 else 2
+    rows = -(-len(panels) // columns)
+    width = description["width"] or (9 if columns == 1 else 17)
+    height = description["height"] or 6.2 * rows if columns < 3 else description["height"] or 5.2 * rows
+    figure, grid = plt.subplots(rows, columns, figsize=(width * CENTIMETRE, height * CENTIMETRE), squeeze=False,
+                                constrained_layout=True)
+    for i, axes in enumerate(grid.flat):
+        if i >= len(panels):
+            axes.set_axis_off()
+        elif panels[i]["kind"] == "map":
+            draw_map(figure, axes, panels[i], i % columns == 0)
+        else:
+            draw_curves(axes, panels[i], len(panels[i]["curves"]) > 1)
+            if "time" in description:
+                axes.set_xlim(*description["time"])
+    if description["title"]:
+        figure.suptitle(description["title"], fontsize=10)
+    # What a file says about itself must not change from day to day.
+    metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[form]
+    figure.savefig(output, format=form, metadata=metadata)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,255 @@
+#include "ricochet/report/figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/report/contact_line.hpp"
+#include "ricochet/report/history_part.hpp"
+#include "ricochet/report/judgement.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Points that a curve has at most: more are not seen, and make large files.
+constexpr std::size_t most_points = 20'000;
+/// A run that reaches so many times as far as the others does not hide them.
+constexpr double outlying = 8.0;
+
+struct Extent {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void add(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  [[nodiscard]] double reach() const { return std::max(std::abs(low), std::abs(high)); }
+};
+
+struct Curve {
+  std::string label;
+  std::size_t run;
+  std::vector<double> times, values;
+  Extent extent;
+};
+
+/// What a panel shows of a run, and how it is called.
+struct Quantity {
+  std::string column, name;
+  bool from_zero = false;
+};
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw Error(ErrorKind::usage, message);
+}
+
+double spread(const std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+  return *largest - *least;
+}
+
+/// The component that changes most.
+std::string largest_component(const RunData& run, const std::string& vector) {
+  std::string best;
+  for (const char* axis : {"_x", "_y", "_z"}) {
+    if (!run.has_column(vector + axis)) continue;
+    if (best.empty() || spread(run.column(vector + axis)) > spread(run.column(best))) best = vector + axis;
+  }
+  return best;
+}
+
+std::string in_words(std::string column) {
+  std::replace(column.begin(), column.end(), '_', ' ');
+  if (const std::size_t dot = column.find('.'); dot != std::string::npos) column.replace(dot, 1, ": ");
+  return column;
+}
+
+Quantity quantity_of(const std::string& what, const RunData& run) {
+  if (what == "energy") return {"total_energy", "total energy", true};
+  if (what == "force" || what == "momentum") {
+    const std::string column = largest_component(run, what == "force" ? "contact_force" : "momentum");
+    return {column, in_words(column), what == "force"};
+  }
+  if (what == "pressure") {
+    const Probe* probe = run.contact_probe();
+    if (probe == nullptr) {
+      refuse(
+          fmt::format("{}: no probe of this run is a node on the contact boundary: add a [[probe]] there, or take "
+                      "--what pressure-map",
+                      run.directory));
+    }
+    return {probe->name + ".pressure", fmt::format("contact pressure ({})", probe->name), true};
+  }
+  const std::string column = what.starts_with("probe:") ? what.substr(6) : what;
+  if (!run.has_column(column)) {
+    const std::string near = nearest_name(column, run.history.names);
+    refuse(
+        fmt::format("--what {}: {}/history.csv has no column \"{}\"{}; energy, force, momentum, pressure, "
+                    "pressure-map, probe:NAME.COLUMN and the columns of history.csv can be drawn",
+                    what, run.directory, column, near.empty() ? "" : fmt::format(" (is \"{}\" meant?)", near)));
+  }
+  return {column, in_words(column), false};
+}
+
+/// Energies and forces are those of the scheme's own instants.
+double instant_of(const std::string& column, const RunSummary& summary) {
+  if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum"))
+    return summary.energy_instant * summary.step;
+  const bool is_force = column.starts_with("contact_force") || column.find(".reaction") != std::string::npos ||
+                        column.find(".pressure") != std::string::npos;
+  return is_force ? summary.force_instant * summary.step : 0.0;
+}
+
+Curve curve_of(const RunData& run, std::size_t number, const std::string& label, const std::string& column,
+               const FigureOptions& options) {
+  Curve curve{label, number, {}, {}, {}};
+  const std::vector<double>&times = run.column("time"), &values = run.column(column);
+  const double shift = instant_of(column, run.summary);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double time = times[i] + shift;
+    if (options.time && (time < options.time->first || time > options.time->second)) continue;
+    if (!std::isfinite(values[i]) || (options.logarithmic && !(values[i] > 0.0))) continue;
+    curve.times.push_back(time);
+    curve.values.push_back(values[i]);
+    curve.extent.add(values[i]);
+  }
+  if (curve.values.empty()) {
+    refuse(fmt::format("{}: \"{}\" has nothing to be drawn{}{}", run.directory, column,
+                       options.time ? " in this part of the time" : "",
+                       options.logarithmic ? ": a logarithmic scale shows what is positive" : ""));
+  }
+  if (curve.times.size() > most_points) {
+    const std::size_t rows = (2 * curve.times.size() + most_points - 1) / most_points;
+    curve.times = thinned(curve.times, rows);
+    curve.values = thinned(curve.values, rows);
+  }
+  return curve;
+}
+
+/// The scale shows all curves but those that reach many times as far as the others; these get a note.
+void choose_range(const std::vector<Curve>& curves, bool from_zero, Json& panel) {
+  std::vector<double> reaches;
+  for (const Curve& curve : curves) reaches.push_back(curve.extent.reach());
+  std::sort(reaches.begin(), reaches.end());
+  const double middle = reaches[(reaches.size() - 1) / 2];
+  Extent inside, outside;
+  panel["notes"] = Json::array();
+  for (const Curve& curve : curves) {
+    const bool leaves = middle > 0.0 && curve.extent.reach() > outlying * middle;
+    (leaves ? outside : inside).add(curve.extent.low);
+    (leaves ? outside : inside).add(curve.extent.high);
+    if (leaves) panel["notes"].push_back({curve.label, curve.extent.reach()});
+  }
+  if (from_zero) inside.add(0.0);
+  const double height = inside.high - inside.low;
+  double low = inside.low, high = inside.high;
+  if (outside.high > high) high += 0.75 * height;
+  if (outside.low < low) low -= 0.75 * height;
+  if (low == high) {
+    const double margin = low == 0.0 ? 1.0 : 0.1 * std::abs(low);
+    low -= margin;
+    high += margin;
+  }
+  panel["range"] = {low - 0.04 * (high - low), high + 0.1 * (high - low)};
+}
+
+Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::string>& labels, const std::string& what,
+                     const FigureOptions& options) {
+  Json panel{{"kind", "curves"}, {"x_label", "time"}, {"logarithmic", options.logarithmic}};
+  std::vector<Curve> curves;
+  std::string name;
+  bool from_zero = false;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Quantity quantity = quantity_of(what, runs[i]);
+    if (i == 0) name = quantity.name;
+    from_zero = quantity.from_zero;
+    curves.push_back(curve_of(runs[i], i, labels[i], quantity.column, options));
+  }
+  panel["y_label"] = name;
+  if (!options.logarithmic) choose_range(curves, from_zero, panel);
+  // A smooth curve lies upon those that rattle.
+  std::vector<double> roughness;
+  for (const RunData& run : runs) roughness.push_back(judge(run).roughness);
+  std::stable_sort(curves.begin(), curves.end(),
+                   [&](const Curve& a, const Curve& b) { return roughness[a.run] > roughness[b.run]; });
+  panel["curves"] = Json::array();
+  for (const Curve& curve : curves)
+    panel["curves"].push_back({{"label", curve.label}, {"run", curve.run}, {"x", curve.times}, {"y", curve.values}});
+  return panel;
+}
+
+Json panel_of_map(const RunData& run, const std::string& label, const FigureOptions& options) {
+  const XdmfField* field = run.results ? run.results->find_field("contact_pressure") : nullptr;
+  if (field == nullptr) {
+    refuse(fmt::format("{}: the run wrote no contact pressures (output.fields, output.fields_every)", run.directory));
+  }
+  const ContactLine line = make_contact_line(run.results->nodes(), run.results->contact_facets());
+  if (line.position.empty()) {
+    refuse(
+        fmt::format("{}: a map of the pressure over time needs a contact boundary in the plane; `ricochet report` "
+                    "shows it on the surface of bodies in space",
+                    run.directory));
+  }
+  Json panel{{"kind", "map"},
+             {"title", label},
+             {"x_label", "time"},
+             {"y_label", "along the boundary"},
+             {"y", line.position},
+             {"pieces", line.pieces},
+             {"x", Json::array()},
+             {"values", Json::array()},
+             {"value_label", "contact pressure"}};
+  std::vector<float> values;
+  std::vector<double> pressures;
+  for (std::size_t frame = 0; frame < run.results->times().size(); ++frame) {
+    const double time = run.results->times()[frame];
+    if (options.time && (time < options.time->first || time > options.time->second)) continue;
+    run.results->read(static_cast<Index>(frame), *field, values);
+    Json row = Json::array();
+    for (const Index node : line.nodes) {
+      const auto value = static_cast<double>(values[static_cast<std::size_t>(node)]);
+      row.push_back(value);
+      if (value > 0.0) pressures.push_back(value);
+    }
+    panel["x"].push_back(time);
+    panel["values"].push_back(std::move(row));
+  }
+  if (panel["x"].size() < 2) refuse(fmt::format("{}: there are fewer than two frames to be drawn", run.directory));
+  // A few peaks hide nothing.
+  std::sort(pressures.begin(), pressures.end());
+  panel["high"] = pressures.empty() ? 1.0 : pressures[(pressures.size() - 1) * 99 / 100];
+  return panel;
+}
+
+}  // namespace
+
+std::string describe_figure(const std::vector<RunData>& runs, const FigureOptions& options) {
+  if (!options.labels.empty() && options.labels.size() != runs.size())
+    refuse(fmt::format("--label is there {} times for {} runs", options.labels.size(), runs.size()));
+  std::vector<std::string> labels = options.labels;
+  for (const RunData& run : runs) {
+    if (labels.size() < runs.size()) labels.push_back(run.name);
+  }
+  Json figure{{"title", options.title}, {"width", options.width}, {"height", options.height}};
+  if (options.time) figure["time"] = {options.time->first, options.time->second};
+  figure["panels"] = Json::array();
+  for (const std::string& what : options.what) {
+    if (what == "pressure-map") {
+      for (std::size_t i = 0; i < runs.size(); ++i)
+        figure["panels"].push_back(panel_of_map(runs[i], labels[i], options));
+    } else {
+      figure["panels"].push_back(panel_of_curves(runs, labels, what, options));
+    }
+  }
+  return figure.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace ricochet

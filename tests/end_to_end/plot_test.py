@@ -1,0 +1,160 @@
+"""`ricochet plot`: the curves of a figure are those of history.csv, read back from the SVG; wrong use is explained."""
+
+import os
+import re
+import struct
+import unittest
+import xml.etree.ElementTree
+
+import numpy
+
+from harness import DISC, History, TestCase, run, settings
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def curves(path):
+    """The long lines of an SVG: arrays of points. Grid lines and ticks have two."""
+    result = []
+    for element in xml.etree.ElementTree.parse(path).iter(f"{SVG}path"):
+        points = re.findall(r"[ML] (-?[\d.]+) (-?[\d.]+)", element.get("d", ""))
+        if len(points) > 50 and "clip-path" in element.attrib:
+            result.append(numpy.array(points, dtype=float))
+    return result
+
+
+class Plot(TestCase):
+    def simulate(self, name, case=DISC, **values):
+        process = run("run", case, "-o", self.folder / name, "--quiet", "--log-level", "error",
+                      *settings({"time.end": 0.02, "output.fields_every": 10} | values))
+        self.assertEqual(process.returncode, 0, process.stderr)
+        return self.folder / name
+
+    def plot(self, *arguments, status=0, environment=None):
+        process = run("plot", *arguments, directory=self.folder, environment=environment)
+        self.assertEqual(process.returncode, status, process.stderr)
+        return process
+
+    def check_curve(self, points, times, values):
+        """Points are an affine picture of the numbers, upside down as SVG counts."""
+        self.assertEqual(len(points), len(times))
+        for coordinate, wanted, sign in ((points[:, 0], times, 1), (points[:, 1], values, -1)):
+            wanted = numpy.array(wanted)
+            slope, offset = numpy.polyfit(wanted, coordinate, 1)
+            self.assertGreater(sign * slope, 0)
+            self.assertLess(numpy.abs(slope * wanted + offset - coordinate).max(), 2e-3, "hundredths of a point")
+
+    def test_curves_are_those_of_the_history(self):
+        results = self.simulate("run")
+        history = History(results / "history.csv")
+        for what, column in (("force", "contact_force_y"), ("momentum", "momentum_y"), ("pressure", "lowest.pressure"),
+                             ("probe:lowest.displacement_y", "lowest.displacement_y"),
+                             ("elastic_energy", "elastic_energy")):
+            with self.subTest(what):
+                process = self.plot(results, "--what", what, "-o", "figure.svg")
+                self.assertEqual(process.stdout, "figure.svg\n")
+                (points,) = curves(self.folder / "figure.svg")
+                self.check_curve(points, history["time"], history[column])
+
+    def test_instants_are_those_of_the_scheme(self):
+        """Energies of klr-conserving are those half a step later: its curve lies that much to the right of the other's."""
+        runs = [self.simulate("klr", **{"time.scheme": "klr-conserving", "mass.type": "consistent"}), self.simulate("newmark")]
+        self.plot(*runs, "--what", "kinetic_energy", "-o", "figure.svg")
+        first, second = curves(self.folder / "figure.svg")
+        step = (first[-1, 0] - first[0, 0]) / (len(first) - 1)
+        self.assertAlmostEqual(first[0, 0] - second[0, 0], 0.5 * step, delta=2e-4)
+
+    def test_panels_and_parts_of_the_time(self):
+        runs = [self.simulate("a"), self.simulate("b", **{"time.step": 2e-4})]
+        self.plot(*runs, "--what", "energy", "--what", "force", "-o", "figure.svg", "--title", "Two <runs> & more",
+                  "--label", "fine", "--label", "coarse", "--time", "0.005:0.01")
+        lengths = sorted(len(re.findall(r"[ML] ", element.get("d", "")))
+                         for element in xml.etree.ElementTree.parse(self.folder / "figure.svg").iter(f"{SVG}path")
+                         if "clip-path" in element.attrib)
+        self.assertEqual(lengths[-4:], [26, 26, 51, 51])
+
+    def test_forms_and_sizes(self):
+        results = self.simulate("run")
+        for form in ("svg", "pdf", "png"):
+            with self.subTest(form):
+                output = self.folder / f"figure.{form}"
+                self.plot(results, "--what", "energy", "--what", "pressure-map", "-o", output, "--size", "12x5")
+                first = output.read_bytes()
+                self.plot(results, "--what", "energy", "--what", "pressure-map", "-o", output, "--size", "12x5")
+                self.assertEqual(output.read_bytes(), first, "the same figure again")
+                if form == "png":
+                    self.assertEqual(first[:4], b"\x89PNG")
+                    width, height = struct.unpack(">II", first[16:24])
+                    self.assertAlmostEqual(width, 12 / 2.54 * 200, delta=1)
+                    self.assertAlmostEqual(height, 5 / 2.54 * 200, delta=1)
+                elif form == "pdf":
+                    self.assertTrue(first.startswith(b"%PDF") and first.rstrip().endswith(b"%%EOF"))
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
+                         ["figure.pdf", "figure.png", "figure.svg", "run"])
+
+    def test_a_run_that_grows_does_not_hide_the_others(self):
+        values = {"time.end": 0.06}
+        runs = [self.simulate("midpoint", **values, **{"time.scheme": "midpoint", "mass.type": "consistent"}),
+                self.simulate("newmark", **values)]
+        self.plot(*runs, "--what", "energy", "-o", "figure.svg")
+        # Matplotlib cuts curves off where they leave the picture: of the midpoint scheme's most is outside.
+        lengths = sorted(len(points) for points in curves(self.folder / "figure.svg"))
+        self.assertEqual(lengths[1], 601)
+        self.assertLess(lengths[0], 300)
+        self.plot(*runs, "--what", "energy", "-o", "logarithmic.svg", "--log")
+        self.assertEqual([len(points) for points in curves(self.folder / "logarithmic.svg")], [601, 601])
+
+    def test_long_histories_are_thinned_to_what_can_be_seen(self):
+        results = self.simulate("run", **{"time.step": 1e-6, "output.fields_every": 0, "time.end": 0.021})
+        history = History(results / "history.csv")
+        self.assertGreater(len(history.rows), 20_001)
+        self.plot(results, "--what", "force", "-o", "figure.svg")
+        (points,) = curves(self.folder / "figure.svg")
+        self.assertLessEqual(len(points), 20_000)
+        self.assertGreater(len(points), 10_000)
+
+    def test_wrong_use(self):
+        results = self.simulate("run")
+        for arguments, status, message in (
+                (["--what", "energy", "-o", "figure.eps"], 1, "an .svg, .pdf or .png file"),
+                (["--what", "enrgy", "-o", "f.svg"], 1, 'has no column "enrgy"'),
+                (["--what", "total_enrgy", "-o", "f.svg"], 1, 'is "total_energy" meant?'),
+                (["--what", "probe:lowest.speed", "-o", "f.svg"], 1, "probe:NAME.COLUMN"),
+                (["--what", "energy", "-o", "f.svg", "--time", "1:2"], 1, "nothing to be drawn in this part of the time"),
+                (["--what", "energy", "-o", "f.svg", "--time", "2:1"], 1, "like 0.02:0.05"),
+                (["--what", "energy", "-o", "f.svg", "--time", "now"], 1, "like 0.02:0.05"),
+                (["--what", "energy", "-o", "f.svg", "--size", "17xbig"], 1, "like 17x6"),
+                (["--what", "energy", "-o", "f.svg", "--size", "1x900"], 1, "from 2 to 200"),
+                (["--what", "energy", "-o", "f.svg", "--label", "a", "--label", "b"], 1, "2 times for 1 runs"),
+                (["--what", "friction_work", "-o", "f.svg", "--log"], 1, "shows what is positive"),
+                (["-o", "f.svg"], 1, "--what"),
+                (["--what", "energy", "-o", "missing/f.svg"], 4, "missing/f.svg: cannot be written")):
+            with self.subTest(arguments):
+                process = self.plot(results, *arguments, status=status)
+                self.assertIn(message, process.stderr)
+                self.assertFalse((self.folder / "f.svg").exists())
+        self.assertIn("no such directory", self.plot("nowhere", "--what", "energy", "-o", "f.svg", status=4).stderr)
+        without = self.simulate("without", **{"output.fields_every": 0})
+        self.assertIn("wrote no contact pressures",
+                      self.plot(without, "--what", "pressure-map", "-o", "f.svg", status=1).stderr)
+        ball = self.simulate("ball", DISC.parents[1] / "ball" / "ball.toml", **{"time.end": 0.001})
+        self.assertIn("in the plane", self.plot(ball, "--what", "pressure-map", "-o", "f.svg", status=1).stderr)
+        case = self.write("case.toml", DISC.read_text().split("[[probe]]")[0].replace(
+            '"disc.msh"', f'"{DISC.parent}/disc.msh"'))
+        blind = self.simulate("blind", case)
+        self.assertIn("add a [[probe]]", self.plot(blind, "--what", "pressure", "-o", "f.svg", status=1).stderr)
+
+    def test_without_matplotlib(self):
+        results = self.simulate("run")
+        self.write("matplotlib.py", "raise ImportError('not here')")
+        process = self.plot(results, "--what", "energy", "-o", "f.svg", status=4,
+                            environment=os.environ | {"PYTHONPATH": str(self.folder)})
+        self.assertIn("apt-get install python3-matplotlib", process.stderr)
+        self.write("matplotlib.py", "raise KeyError('odd')")
+        process = self.plot(results, "--what", "energy", "-o", "f.svg", status=4,
+                            environment=os.environ | {"PYTHONPATH": str(self.folder)})
+        self.assertIn("KeyError: 'odd'", process.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
