@@ -21,14 +21,14 @@ const disc = report("disc", ...discRuns());
 const friction = report("friction", frictionRun());
 const ball = report("ball", ballRun());
 
-await picture(disc, "report-disc.png", { width: 1300, height: 1330 }, () => window.ricochet.store.setTime(0.05));
+await picture(disc, "report-disc.png", { width: 1300, height: 1440 }, () => window.ricochet.store.setTime(0.05));
 await picture(friction, "report-friction-dark.png", { width: 1300, height: 1130, colorScheme: "dark" }, () => {
   const { store } = window.ricochet;
   store.setTime(0.0104);
   store.set("quantity", "contact_status", "contact");
   document.querySelector("#bodies").scrollIntoView();
 });
-await picture(ball, "report-ball.png", { width: 1300, height: 620 }, () => {
+await picture(ball, "report-ball.png", { width: 1300, height: 900 }, () => {
   const { store, stage } = window.ricochet;
   store.setTime(0.0365);
   store.set("field", "contact_pressure", "body");

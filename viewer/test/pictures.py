@@ -1,4 +1,4 @@
-"""Puts the screenshots of pictures.mjs into docs/figures: fewer colours, phones side by side, frames as a GIF."""
+"""Puts the screenshots of pictures.mjs into docs/figures: phones side by side, frames as a GIF."""
 
 import pathlib
 import sys
@@ -8,8 +8,8 @@ from PIL import Image
 taken, figures = map(pathlib.Path, sys.argv[1:])
 
 
-def save(image, name, colours=160):
-    image.convert("RGB").quantize(colours, dither=Image.Dither.NONE).save(figures / name, optimize=True)
+def save(image, name):
+    image.convert("RGB").save(figures / name, optimize=True)
     print(f"docs/figures/{name}: {(figures / name).stat().st_size / 1e3:.0f} kB")
 
 
@@ -23,10 +23,10 @@ save(both, "report-phone.png")
 
 frames = [Image.open(path).convert("RGB") for path in sorted((taken / "frames").iterdir())]
 # One palette for all frames, from some of them side by side.
-sample = Image.new("RGB", (frames[0].width, 4 * frames[0].height))
-for k in range(4):
-    sample.paste(frames[k * (len(frames) - 1) // 3], (0, k * frames[0].height))
-palette = sample.quantize(64)
+sample = Image.new("RGB", (frames[0].width, 6 * frames[0].height))
+for k in range(6):
+    sample.paste(frames[k * (len(frames) - 1) // 5], (0, k * frames[0].height))
+palette = sample.quantize(96)
 small = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
 small[0].save(figures / "disc.gif", save_all=True, append_images=small[1:], duration=70, loop=0, optimize=True)
 print(f"docs/figures/disc.gif: {(figures / 'disc.gif').stat().st_size / 1e3:.0f} kB")

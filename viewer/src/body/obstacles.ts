@@ -2,7 +2,7 @@ import * as three from "three";
 import { themeColour } from "../colours";
 import { indexAt, type Obstacles } from "../data/run";
 
-/** The surfaces of obstacles: in the plane lines with what is behind them, in space sheets one sees through. */
+/** The surfaces of obstacles: in the plane lines with what is behind them, in space sheets, from behind only their borders. */
 export class ObstacleView {
   private readonly faces: three.Mesh<three.BufferGeometry, three.MeshBasicMaterial>;
   private readonly lines: three.LineSegments<three.BufferGeometry, three.LineBasicMaterial>;
@@ -19,7 +19,7 @@ export class ObstacleView {
     const plane = obstacles.corners === 2;
     const faces = new three.BufferGeometry();
     faces.setAttribute("position", new three.BufferAttribute(new Float32Array(18 * cells), 3));
-    this.faces = new three.Mesh(faces, new three.MeshBasicMaterial({ transparent: true, opacity: plane ? 1 : 0.35, side: three.DoubleSide, depthWrite: plane }));
+    this.faces = new three.Mesh(faces, new three.MeshBasicMaterial({ transparent: true, opacity: plane ? 1 : 0.35, side: plane ? three.DoubleSide : three.FrontSide, depthWrite: plane }));
     const lines = new three.BufferGeometry();
     lines.setAttribute("position", new three.BufferAttribute(new Float32Array((plane ? 6 : 24) * cells), 3));
     this.lines = new three.LineSegments(lines, new three.LineBasicMaterial());
@@ -57,13 +57,21 @@ export class ObstacleView {
           faces.setXYZ(face++, at[corner][0] + depth * behind[0], at[corner][1] + depth * behind[1], 0);
         for (const corner of [0, 1]) lines.setXYZ(line++, at[corner][0], at[corner][1], 0);
       } else {
-        for (const corner of [0, 1, 2, 0, 2, 3]) faces.setXYZ(face++, at[corner][0], at[corner][1], at[corner][2]);
+        // Seen from the free side only: from behind one looks at what touches.
+        const order = this.facesBody(at) ? [0, 1, 2, 0, 2, 3] : [0, 2, 1, 0, 3, 2];
+        for (const corner of order) faces.setXYZ(face++, at[corner][0], at[corner][1], at[corner][2]);
         for (let k = 0; k < 4; ++k)
           for (const corner of [k, (k + 1) % 4]) lines.setXYZ(line++, at[corner][0], at[corner][1], at[corner][2]);
       }
     }
     faces.needsUpdate = true;
     lines.needsUpdate = true;
+  }
+
+  private facesBody([a, b, c]: Float64Array[]): boolean {
+    const at = (p: ArrayLike<number>) => new three.Vector3(p[0], p[1], p[2]);
+    const normal = at(b).sub(at(a)).cross(at(c).sub(at(a)));
+    return normal.dot(at(this.middle).sub(at(a))) > 0;
   }
 
   /** From an obstacle's line into the obstacle: away from the body. */

@@ -38,6 +38,7 @@ export class Stage {
   private stale = true;
   private centre = new three.Vector3();
   private size = 1;
+  private sides = [1, 1];
 
   constructor(private readonly store: Store) {
     this.plane = store.runs.every((run) => run.summary.dimension === 2);
@@ -103,6 +104,9 @@ export class Stage {
     const boxes = this.panels.map(({ view }) => view.box);
     const smallest = Math.min(...boxes.map(diagonal));
     const box = boxes.filter((each) => diagonal(each) <= 1.5 * smallest).reduce(join, emptyBox());
+    // Room for the pressures' bars below.
+    if (this.plane) box.low[1] -= 0.16 * diagonal(box);
+    this.sides = [box.high[0] - box.low[0], box.high[1] - box.low[1]];
     this.centre.set(...(box.low.map((low, k) => (low + box.high[k]) / 2) as [number, number, number]));
     this.size = diagonal(box);
     this.look("front");
@@ -194,7 +198,7 @@ export class Stage {
 
   private frameCamera(aspect: number): void {
     if (this.camera instanceof three.OrthographicCamera) {
-      const half = 0.58 * this.size * Math.max(1 / Math.max(aspect, 0.2), 0.75);
+      const half = 0.55 * Math.max(this.sides[1], this.sides[0] / aspect);
       this.camera.top = half;
       this.camera.bottom = -half;
       this.camera.left = -half * aspect;

@@ -201,7 +201,7 @@ export class TimeChart {
       ],
       axes: [
         { ...axis, label: "time", labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 34 },
-        { ...axis, size: 62, values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : number(tick, 6))) },
+        { ...axis, size: 70, values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : number(tick, 6))) },
       ],
       cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { size: 7 } },
       hooks: {

@@ -4,7 +4,7 @@ import { runColour, themeColour } from "../colours";
 import { valueAt } from "../data/decode";
 import { indexAt, type Run } from "../data/run";
 import { el } from "../elements";
-import { fieldName, number } from "../format";
+import { fieldName, number, statusNames } from "../format";
 import { fileName, saveCanvas, saveCsv, withCaption } from "../save";
 import type { Store } from "../store";
 import { colourRange } from "./colour_range";
@@ -79,7 +79,7 @@ export class ProfileChart {
       return { name: run.name, ...colourRange([values]) };
     });
     const isStatus = this.store.quantity === "contact_status";
-    const { low, high } = isStatus ? { low: -1, high: 3.2 } : chooseRange(extents, "most");
+    const { low, high } = isStatus ? { low: -0.2, high: 3.2 } : chooseRange(extents, "most");
     const axis = { stroke: themeColour("muted"), grid: { stroke: themeColour("grid"), width: 1 },
       ticks: { stroke: themeColour("grid"), width: 1 }, font: "12px system-ui, sans-serif" };
     this.plot = new uPlot({
@@ -90,7 +90,7 @@ export class ProfileChart {
       series: [{}, ...profiles.map((p) => ({ stroke: runColour(p.run.number), width: 1.4, spanGaps: true,
         points: { show: true, size: 4 } }))],
       axes: [{ ...axis, label: "along the boundary", labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 34 },
-        { ...axis, size: 62, values: (_, ticks) => ticks.map((tick) => number(tick, 6)) }],
+        { ...axis, size: 70, values: (_, ticks) => ticks.map((tick) => (isStatus ? statusNames[tick + 1] ?? "" : number(tick, 6))) }],
       cursor: { y: false, drag: { x: false, y: false } },
     }, this.data(), this.plotArea);
     this.update();
