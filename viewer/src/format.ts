@@ -1,6 +1,8 @@
 /** Numbers and names as people read them. */
 
-export function number(value: number, digits = 4): string {
+/** JSON has no infinity and no NaN: what is neither is null there. */
+export function number(value: number | null, digits = 4): string {
+  if (value === null) return "–";
   if (!Number.isFinite(value)) return Number.isNaN(value) ? "–" : value > 0 ? "∞" : "−∞";
   if (value === 0) return "0";
   const size = Math.abs(value);

@@ -72,9 +72,17 @@ export function findingsElement(run: Run): HTMLElement {
   ]));
 }
 
+/** What may differ between runs that answer one question by different methods. */
+const methods = /^(time|mass|solver|output|check|expect|probe)\b|^mesh\.degree$|multipliers$|^title$/;
+
+const sameProblem = (runs: Run[]): boolean => {
+  const keys = new Set(runs.flatMap((run) => Object.keys(run.summary.parameters)));
+  return [...keys].every((key) => methods.test(key) || new Set(runs.map((run) => run.summary.parameters[key])).size === 1);
+};
+
 /** The sentence that says which of several runs to trust. */
 export function conclusion(runs: Run[]): string {
-  if (runs.length < 2) return "";
+  if (runs.length < 2 || !sameProblem(runs) || runs.some((run) => run.summary.status !== "done")) return "";
   const points = { good: 0, none: 0, fair: 1, poor: 3 };
   const scores = runs.map((run) => findings(run).reduce((sum, { grade }) => sum + points[grade], 0));
   const best = Math.min(...scores);

@@ -25,7 +25,7 @@ const counts = ["active_contacts", "sticking", "slipping"];
 const others = ["max_penetration", "max_rotation", "iterations"];
 
 export function chartDefinitions(runs: Run[]): ChartDefinition[] {
-  const all = [...new Set(runs.flatMap((run) => run.data.columns))];
+  const all = [...new Set(runs.flatMap((run) => [...run.history.keys()]))];
   const present = (names: string[]) => names.filter((name) => all.includes(name));
   const matching = (pattern: RegExp) => all.filter((name) => pattern.test(name));
   const moves = (name: string) =>

@@ -59,6 +59,8 @@ export class Run {
   readonly name: string;
   readonly summary: Summary;
   history: Map<string, Float64Array> = new Map();
+  /** Of columns that are not in history.csv, but in a file with rows of its own. */
+  private readonly ownTimes = new Map<string, Float64Array>();
   contact: Contact | null = null;
   body: Body | null = null;
   obstacles: Obstacles | null = null;
@@ -74,7 +76,7 @@ export class Run {
 
   /** Times of the rows at which a column's numbers hold: energies and forces have their own instants. */
   timesOf(column: string): Float64Array {
-    const times = this.column("time");
+    const times = this.ownTimes.get(column) ?? this.column("time");
     const shift = this.shiftOf(column) * this.summary.time_step;
     return shift === 0 ? times : times.map((time) => time + shift);
   }
@@ -98,6 +100,15 @@ export class Run {
     const table = await this.reals(this.data.history);
     const rows = this.data.history.columns;
     this.data.columns.forEach((name, k) => this.history.set(name, table.subarray(k * rows, (k + 1) * rows)));
+    for (const { columns, values } of this.data.tables) {
+      const table = await this.reals(values);
+      const own = columns.map((_, k) => table.subarray(k * values.columns, (k + 1) * values.columns));
+      columns.forEach((name, k) => {
+        if (this.history.has(name)) return; // step and time
+        this.history.set(name, own[k]);
+        this.ownTimes.set(name, own[columns.indexOf("time")]);
+      });
+    }
     if (this.data.obstacles) {
       const { corners, cells, times, positions } = this.data.obstacles;
       this.obstacles = { corners, cells, times, positions: await this.reals(positions) };
@@ -155,6 +166,8 @@ export class Run {
 }
 
 export function readPage(): Run[] {
+  if (!("DecompressionStream" in window))
+    throw new Error("this browser is too old for it: Chrome 80, Firefox 113 or Safari 16.4 and later show it");
   const text = document.getElementById("ricochet-runs")?.textContent;
   if (!text) throw new Error("this is the empty viewer: `ricochet report` puts runs into it");
   const page = JSON.parse(text) as PageData;

@@ -116,6 +116,8 @@ export interface RunData {
   judgement: Judgement;
   columns: string[];
   history: PackedArray;
+  /** Probes that write rows of their own, each so many steps. */
+  tables: { file: string; columns: string[]; values: PackedArray }[];
   /** 0: all rows; else of how many rows each pair stands for the least and the largest value. */
   rows_per_pair: number;
   obstacles: ObstacleData | null;
