@@ -1,3 +1,4 @@
+import { runColour } from "./colours";
 import { el, select } from "./elements";
 import { number } from "./format";
 import type { Store } from "./store";
@@ -18,10 +19,34 @@ export class Player {
     const speed = select("run takes", [["4", "4 s"], ["10", "10 s"], ["20", "20 s"], ["60", "1 min"]], String(store.duration),
       (value) => store.set("duration", Number(value), "player"));
     speed.control.title = "How long the whole run takes when it is played";
-    this.element = el("footer.player", {}, this.button, this.slider, this.label, speed.element);
+    this.element = el("footer.player", {}, this.button, this.slider, this.label, this.chips(), speed.element);
     store.on("time", () => this.show());
     store.on("player", () => this.show());
     this.show();
+  }
+
+  /** The runs, to be switched from wherever one is on the page. */
+  private chips(): HTMLElement {
+    const { store } = this;
+    const place = el("div.chips", { role: "group", "aria-label": "Runs" });
+    if (store.runs.length < 2) return place;
+    const all = store.runs.map((run) => {
+      const swatch = el("i");
+      const chip = el("button.chip", { type: "button", title: `Show or hide ${run.name}`, onclick: () => store.toggle(run.number) },
+        swatch, el("span", {}, run.name));
+      place.append(chip);
+      return { run, swatch, chip };
+    });
+    const show = () => {
+      for (const { run, swatch, chip } of all) {
+        swatch.style.background = runColour(run.number);
+        chip.setAttribute("aria-pressed", String(store.visible[run.number]));
+      }
+    };
+    store.on("runs", show);
+    store.on("theme", show);
+    show();
+    return place;
   }
 
   toggle(): void {

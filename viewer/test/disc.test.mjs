@@ -168,6 +168,39 @@ test("names and keys switch runs in all plots", async () => {
   await settle(page);
 });
 
+test("runs are switched from the foot of the page, too", async () => {
+  const { page } = view;
+  await page.locator(".chip").nth(2).click();
+  await settle(page);
+  assert.deepEqual((await curves(page, "energy")).map((curve) => curve.run).sort(), ["klr-conserving", "midpoint"]);
+  assert.equal(await page.locator(".chip").nth(2).getAttribute("aria-pressed"), "false");
+  await page.locator(".chip").nth(2).click();
+  await settle(page);
+  assert.equal((await curves(page, "energy")).length, 3);
+});
+
+test("the pressure along the boundary is told under the pointer", async () => {
+  const { page } = view;
+  await setTime(page, 0.05);
+  const over = page.locator("#profile .u-over");
+  await over.evaluate((element) => element.scrollIntoView({ block: "center" }));
+  const box = await over.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await settle(page);
+  const wanted = await page.evaluate(() => window.ricochet.profile.profiles.map(({ run, position, values }) => {
+    const middle = position.at(-1) / 2;
+    const node = position.map((s) => Math.abs(s - middle)).reduce((best, d, i, all) => (d < all[best] ? i : best), 0);
+    return [run.name, values[node], position[node]];
+  }));
+  const legend = await page.textContent("#profile .legend");
+  for (const [name, value, place] of wanted) {
+    const found = new RegExp(`${name} ([\\d.]+) at ([\\d.]+), t = 0\\.05`).exec(legend);
+    assert.ok(found, `${name}: ${legend}`);
+    assertNear(Number(found[1]), value, 1e-4 * value + 1e-9);
+    assertNear(Number(found[2]), place, 1e-4);
+  }
+});
+
 test("keys step, play, magnify, colour", async () => {
   const { page } = view;
   await page.evaluate(() => document.activeElement?.blur());

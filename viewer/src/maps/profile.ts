@@ -24,6 +24,8 @@ export class ProfileChart {
   private readonly legend = el("div.legend");
   private plot: uPlot | null = null;
   private width = 0;
+  /** Where the pointer is on the boundary. */
+  private place: number | null = null;
 
   constructor(private readonly store: Store) {
     this.element = el("section.chart.panel", { id: "profile" },
@@ -92,18 +94,38 @@ export class ProfileChart {
       axes: [{ ...axis, label: "along the boundary", labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 34 },
         { ...axis, size: 70, values: (_, ticks) => ticks.map((tick) => (isStatus ? statusNames[tick + 1] ?? "" : number(tick, 6))) }],
       cursor: { y: false, drag: { x: false, y: false } },
+      hooks: {
+        setCursor: [({ cursor, posToVal }) => {
+          const { left } = cursor;
+          this.place = left !== undefined && left !== null && left >= 0 ? posToVal(left, "x") : null;
+          this.showValues();
+        }],
+      },
     }, this.data(), this.plotArea);
     this.update();
   }
 
   private update(): void {
     if (!this.plot) return;
-    const profiles = this.profiles;
     this.plot.setData(this.data());
     this.title.textContent = `${capital(fieldName(this.store.quantity))} along the boundary`;
-    this.legend.replaceChildren(...profiles.map((p) =>
-      el("span.item", {}, el("i", { style: `background:${runColour(p.run.number)}` }), `${p.run.name} at t = `,
-        el("b", {}, number(p.time, 5)))));
+    this.showValues();
+  }
+
+  /** Time of the frame; under the pointer also the value of the node nearest to it. */
+  private showValues(): void {
+    const isStatus = this.store.quantity === "contact_status";
+    this.legend.replaceChildren(...this.profiles.map((p) => {
+      const item = el("span.item", {}, el("i", { style: `background:${runColour(p.run.number)}` }), `${p.run.name} `);
+      if (this.place !== null) {
+        const distances = p.position.map((s) => Math.abs(s - this.place!));
+        const node = distances.indexOf(Math.min(...distances));
+        const value = isStatus ? statusNames[p.values[node] + 1] : number(p.values[node], 5);
+        item.append(el("b", {}, value), ` at ${number(p.position[node], 4)}, `);
+      }
+      item.append(`t = ${number(p.time, 5)}`);
+      return item;
+    }));
   }
 
   private savePicture(): void {
