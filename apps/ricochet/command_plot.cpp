@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "installed_files.hpp"
+#include "reading_runs.hpp"
 #include "ricochet/base/child_process.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/report/figure.hpp"
@@ -142,7 +143,10 @@ void draw(const std::string& description, const std::string& format, const std::
 int plot(const PlotArguments& arguments) {
   const std::string format = format_of(arguments.output);
   const FigureOptions options = options_of(arguments);
-  draw(describe_figure(read_runs(arguments.directories), options), format, arguments.output);
+  std::string description;
+  read_with_patience(arguments.directories,
+                     [&] { description = describe_figure(read_runs(arguments.directories), options); });
+  draw(description, format, arguments.output);
   fmt::print("{}\n", arguments.output);
   return 0;
 }

@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "installed_files.hpp"
+#include "reading_runs.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/io/durable_file.hpp"
@@ -39,7 +40,8 @@ int report(const ReportArguments& arguments) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: is there and is no report: name another file with -o, or move it away", output));
   }
-  const Report page = make_report(arguments.directories, options);
+  Report page;
+  read_with_patience(arguments.directories, [&] { page = make_report(arguments.directories, options); });
   write_durably(output, page.html);
   for (const std::string& sentence : page.thinned) log::info(fmt::format("thinned: {}", sentence));
   fmt::print("{}: {:.1f} MB; open it in a browser\n", output, 1e-6 * static_cast<double>(page.html.size()));

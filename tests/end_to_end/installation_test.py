@@ -25,6 +25,10 @@ class Installation(TestCase):
         program = prefix / "bin" / "ricochet"
         self.assertEqual(self.command(program, "--version"), run("--version").stdout)
         self.assertIn("results in", self.command(program, "run", case, "-o", self.folder / "by-program", "--quiet"))
+        figure = self.folder / "energy.svg"
+        self.command(program, "plot", self.folder / "by-program", "--what", "energy", "-o", figure)
+        self.assertIn("</svg>", figure.read_text(encoding="utf-8"))
+        self.assertTrue((prefix / "share" / "ricochet" / "figure.py").is_file())
         linked = re.search(r"libricochet\S* => (\S+)", self.command("ldd", program))
         self.assertTrue(pathlib.Path(linked[1]).resolve().is_relative_to(prefix), linked[0])
 

@@ -237,6 +237,40 @@ class Report(TestCase):
         times = table[history.names.index("time")]
         self.assertTrue((numpy.diff(times) >= 0).all())
 
+    def test_probes_with_rows_of_their_own(self):
+        case = self.write("case.toml", block_case() + 'every = 4\n')
+        results = self.simulate(case, "out", {"time.end": 0.1})
+        self.report(results)
+        (data,) = (page := Page(results / "report.html")).runs
+        (table,) = data["tables"]
+        self.assertEqual(table["file"], "probes-4.csv")
+        history = History(results / "probes-4.csv")
+        self.assertEqual(table["columns"], history.names)
+        for name, column in zip(history.names, page.reals(table["values"])):
+            self.assertEqual(list(column), history[name], name)
+
+    def test_a_run_that_goes_on(self):
+        """Again and again while frames are written."""
+        command = [str(PROGRAM), "run", str(DISC), "-o", str(self.folder / "disc"), "--quiet", "--log-level", "error",
+                   "--set", "time.end=3", "--set", "output.fields_every=2"]
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            frames, reports = 0, 0
+            while process.poll() is None and reports < 8:
+                results = self.folder / "disc" / "results.xdmf"
+                if not results.exists() or results.stat().st_size < 20_000:
+                    continue
+                self.report("disc")
+                (data,) = (page := Page(self.folder / "disc" / "report.html")).runs
+                self.assertGreaterEqual(len(data["body"]["times"]), frames)
+                frames = len(data["body"]["times"])
+                page.levels(data["body"]["deviations"][0])
+                reports += 1
+            self.assertGreater(reports, 2)
+        finally:
+            process.terminate()
+            process.wait()
+
     def test_runs_that_are_not_complete(self):
         results = self.simulate(DISC, "disc", SHORT)
         history = results / "history.csv"

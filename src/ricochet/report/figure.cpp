@@ -90,7 +90,7 @@ Quantity quantity_of(const std::string& what, const RunData& run) {
   }
   const std::string column = what.starts_with("probe:") ? what.substr(6) : what;
   if (!run.has_column(column)) {
-    const std::string near = nearest_name(column, run.history.names);
+    const std::string near = nearest_name(column, run.column_names());
     refuse(
         fmt::format("--what {}: {}/history.csv has no column \"{}\"{}; energy, force, momentum, pressure, "
                     "pressure-map, probe:NAME.COLUMN and the columns of history.csv can be drawn",
@@ -111,7 +111,7 @@ double instant_of(const std::string& column, const RunSummary& summary) {
 Curve curve_of(const RunData& run, std::size_t number, const std::string& label, const std::string& column,
                const FigureOptions& options) {
   Curve curve{label, number, {}, {}, {}};
-  const std::vector<double>&times = run.column("time"), &values = run.column(column);
+  const std::vector<double>&times = run.times_of(column), &values = run.column(column);
   const double shift = instant_of(column, run.summary);
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double time = times[i] + shift;

@@ -149,6 +149,12 @@ Json PageBuilder::start(const RunData& run) {
   json["columns"] = run.history.names;
   const HistoryPart history = pack_history(run.history, most_bytes_ / 4 / runs_.size(), arrays_);
   json["history"] = to_json(history.table);
+  json["tables"] = Json::array();
+  for (const auto& [file, table] : run.probe_tables) {
+    const HistoryPart part = pack_history(table, most_bytes_ / 16 / runs_.size(), arrays_);
+    json["tables"].push_back({{"file", file}, {"columns", table.names}, {"values", to_json(part.table)}});
+    if (part.rows_per_pair > 0) note(run, json, fmt::format("{}: of each {} rows two", file, part.rows_per_pair));
+  }
   json["rows_per_pair"] = history.rows_per_pair;
   if (history.rows_per_pair > 0) {
     note(run, json,

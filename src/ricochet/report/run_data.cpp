@@ -25,6 +25,23 @@ std::string read_text(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// probes-N.csv, in the order of their names.
+std::vector<std::string> probe_files(const std::string& directory) {
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("probes-") && name.ends_with(".csv")) files.push_back(name);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void check_rows(const std::string& path, const HistoryTable& table) {
+  const auto time = table.columns.find("time");
+  if (time == table.columns.end()) throw Error(ErrorKind::invalid_input, fmt::format("{}:1: there is no time", path));
+  if (time->second.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: there is no row yet", path));
+}
+
 RunData read_run(const std::string& directory) {
   if (!fs::is_directory(directory)) {
     throw Error(ErrorKind::file_access,
@@ -39,7 +56,13 @@ RunData read_run(const std::string& directory) {
   run.directory = directory;
   run.summary_json = read_text(path("summary.json"));
   run.summary = read_summary(path("summary.json"));
-  run.history = read_history(path("history.csv"), run.summary.status != "done");
+  const bool may_grow = run.summary.status != "done";
+  run.history = read_history(path("history.csv"), may_grow);
+  check_rows(path("history.csv"), run.history);
+  for (const std::string& file : probe_files(directory)) {
+    run.probe_tables.emplace_back(file, read_history(path(file.c_str()), may_grow));
+    check_rows(path(file.c_str()), run.probe_tables.back().second);
+  }
   if (fs::exists(path("results.xdmf"))) {
     run.results = std::make_unique<ResultsReader>(directory, run.summary.dimension, run.summary.degree);
     if (fs::exists(path("obstacles.xdmf"))) run.obstacles = read_obstacle_frames(path("obstacles.xdmf"));
@@ -84,13 +107,32 @@ void name_runs(std::vector<RunData>& runs) {
 
 }  // namespace
 
+const HistoryTable* RunData::table_of(const std::string& column_name) const {
+  if (history.columns.contains(column_name)) return &history;
+  for (const auto& [file, table] : probe_tables) {
+    if (table.columns.contains(column_name)) return &table;
+  }
+  return nullptr;
+}
+
 const std::vector<double>& RunData::column(const std::string& column_name) const {
-  const auto found = history.columns.find(column_name);
-  if (found == history.columns.end()) {
+  const HistoryTable* table = table_of(column_name);
+  if (table == nullptr) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}/history.csv: there is no column \"{}\"", directory, column_name));
   }
-  return found->second;
+  return table->columns.at(column_name);
+}
+
+const std::vector<double>& RunData::times_of(const std::string& column_name) const {
+  const HistoryTable* table = table_of(column_name);
+  return (table != nullptr ? *table : history).columns.at("time");
+}
+
+std::vector<std::string> RunData::column_names() const {
+  std::vector<std::string> names = history.names;
+  for (const auto& [file, table] : probe_tables) names.insert(names.end(), table.names.begin(), table.names.end());
+  return names;
 }
 
 const Probe* RunData::contact_probe() const {
@@ -116,6 +158,7 @@ std::string common_folder(const std::vector<std::string>& directories) {
   if (directories.size() == 1) return directories.front();
   std::vector<std::vector<std::string>> paths;
   for (const std::string& directory : directories) paths.push_back(parts_of(whole_path(directory)));
+  if (common_parts(paths) < 2) return ".";  // "/" at most
   fs::path folder;
   for (std::size_t k = 0; k < common_parts(paths); ++k) folder /= paths.front()[k];
   return folder.lexically_proximate(fs::current_path()).string();

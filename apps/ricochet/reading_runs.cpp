@@ -1,0 +1,30 @@
+#include "reading_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/run_directory.hpp"
+
+namespace ricochet::program {
+
+void read_with_patience(const std::vector<std::string>& directories, const std::function<void()>& read) {
+  constexpr int most_attempts = 5;
+  for (int attempt = 1;; ++attempt) {
+    try {
+      return read();
+    } catch (const Error& problem) {
+      const auto used = std::find_if(directories.begin(), directories.end(), RunDirectory::is_in_use);
+      if (problem.kind() != ErrorKind::invalid_input || used == directories.end()) throw;
+      if (attempt == most_attempts) {
+        throw Error(problem.kind(), fmt::format("{} (a run is writing into {}: try again)", problem.what(), *used));
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+}
+
+}  // namespace ricochet::program
