@@ -252,11 +252,11 @@ class Report(TestCase):
     def test_a_run_that_goes_on(self):
         """Again and again while frames are written."""
         command = [str(PROGRAM), "run", str(DISC), "-o", str(self.folder / "disc"), "--quiet", "--log-level", "error",
-                   "--set", "time.end=3", "--set", "output.fields_every=2"]
+                   "--set", "time.end=4", "--set", "output.fields_every=10"]
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             frames, reports = 0, 0
-            while process.poll() is None and reports < 8:
+            while process.poll() is None and reports < 6:
                 results = self.folder / "disc" / "results.xdmf"
                 if not results.exists() or results.stat().st_size < 20_000:
                     continue

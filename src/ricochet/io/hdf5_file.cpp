@@ -75,7 +75,22 @@ struct Hdf5Reader::Dataset {
         type(set >= 0 ? H5Dget_type(set) : -1, H5Tclose),
         space(set >= 0 ? H5Dget_space(set) : -1, H5Sclose) {
     if (!reader.has_dataset(which)) reader.fail(which, "there is no such data set");
-    if (set < 0 || type < 0 || space < 0) reader.fail(which, "this data set cannot be opened: the file is damaged");
+    check(reader);
+  }
+  /// In a group that is open.
+  Dataset(const Hdf5Reader& reader, std::int64_t group, const std::string& which, std::string full_name)
+      : name(std::move(full_name)),
+        set(H5Lexists(group, which.c_str(), H5P_DEFAULT) > 0 ? H5Dopen2(group, which.c_str(), H5P_DEFAULT) : -1,
+            H5Dclose),
+        type(set >= 0 ? H5Dget_type(set) : -1, H5Tclose),
+        space(set >= 0 ? H5Dget_space(set) : -1, H5Sclose) {
+    if (H5Lexists(group, which.c_str(), H5P_DEFAULT) == 0) reader.fail(name, "there is no such data set");
+    check(reader);
+  }
+
+ private:
+  void check(const Hdf5Reader& reader) const {
+    if (set < 0 || type < 0 || space < 0) reader.fail(name, "this data set cannot be opened: the file is damaged");
   }
 };
 
@@ -205,16 +220,19 @@ Vector Hdf5Reader::reals(const std::string& name, std::int64_t expected_size) co
 }
 
 std::pair<Index, Index> Hdf5Reader::extents(const std::string& name) const {
-  const Dataset set(*this, name);
+  return extents(Dataset(*this, name));
+}
+
+std::pair<Index, Index> Hdf5Reader::extents(const Dataset& set) const {
   const int rank = H5Sget_simple_extent_ndims(set.space);
-  if (rank != 1 && rank != 2) fail(name, fmt::format("has {} dimensions where one or two are expected", rank));
+  if (rank != 1 && rank != 2) fail(set.name, fmt::format("has {} dimensions where one or two are expected", rank));
   hsize_t sizes[2] = {0, 0};
   H5Sget_simple_extent_dims(set.space, sizes, nullptr);
   return {static_cast<Index>(sizes[0]), static_cast<Index>(sizes[1])};
 }
 
 void Hdf5Reader::check_table(const Dataset& set, Index rows, Index columns) const {
-  const auto [found_rows, found_columns] = extents(set.name);
+  const auto [found_rows, found_columns] = extents(set);
   if (found_rows != rows || found_columns != columns) {
     fail(set.name, fmt::format("has {} rows and {} columns where {} and {} are expected", found_rows, found_columns,
                                rows, columns));
@@ -223,12 +241,39 @@ void Hdf5Reader::check_table(const Dataset& set, Index rows, Index columns) cons
   check_stored(set, rows * std::max<Index>(columns, 1), H5Tget_size(set.type));
 }
 
-void Hdf5Reader::table(const std::string& name, Index rows, Index columns, std::vector<float>& values) const {
-  const Dataset set(*this, name);
+void Hdf5Reader::read_table(const Dataset& set, Index rows, Index columns, std::vector<float>& values) const {
   check_table(set, rows, columns);
   values.resize(static_cast<std::size_t>(rows * std::max<Index>(columns, 1)));
   if (!values.empty() && H5Dread(set.set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    fail(name, "cannot be read: the file is damaged");
+    fail(set.name, "cannot be read: the file is damaged");
+}
+
+void Hdf5Reader::table(const std::string& name, Index rows, Index columns, std::vector<float>& values) const {
+  read_table(Dataset(*this, name), rows, columns, values);
+}
+
+void Hdf5Reader::table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
+                       std::vector<float>& values) const {
+  const Hdf5Handle object(H5Oopen_by_addr(file_, group.address), H5Oclose);
+  if (object < 0 || H5Iget_type(object) != H5I_GROUP) fail(group.name, "cannot be opened: the file is damaged");
+  read_table(Dataset(*this, object, name, group.name + "/" + name), rows, columns, values);
+}
+
+std::vector<Hdf5Member> Hdf5Reader::members(const std::string& group) const {
+  struct Found {
+    const std::string& group;
+    std::vector<Hdf5Member> members;
+  } found{group, {}};
+  if (!has_group(group)) fail(group, "there is no such group");
+  const Hdf5Handle object(H5Gopen2(file_, group.c_str(), H5P_DEFAULT), H5Gclose);
+  const auto add = [](hid_t, const char* name, const H5L_info_t* info, void* data) -> herr_t {
+    auto* own = static_cast<Found*>(data);
+    if (info->type == H5L_TYPE_HARD) own->members.push_back({own->group + "/" + name, info->u.address});
+    return 0;
+  };
+  if (object < 0 || H5Literate(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &found) < 0)
+    fail(group, "what it holds cannot be read: the file is damaged");
+  return std::move(found.members);
 }
 
 Matrix Hdf5Reader::real_table(const std::string& name, Index rows, Index columns) const {

@@ -13,6 +13,12 @@ namespace ricochet {
 /// Is there a file that starts like HDF5?
 [[nodiscard]] bool is_hdf5_file(const std::string& path);
 
+/// What a group holds, and where it is in the file.
+struct Hdf5Member {
+  std::string name;  ///< with its group: "/frames/000012"
+  std::uint64_t address = 0;
+};
+
 /// Reads from a file that may be damaged or made by others: sizes are compared before anything is allocated, numbers of
 /// any integer or floating type are converted. Every error says what of the file is wrong.
 class Hdf5Reader {
@@ -40,6 +46,12 @@ class Hdf5Reader {
   /// Numbers row by row, of exactly so many rows and columns (0: one dimension): in single precision, where NaN and
   /// infinities are left as they are; finite ones in double precision; whole ones.
   void table(const std::string& name, Index rows, Index columns, std::vector<float>& values) const;
+  /// The same of a data set of a group that members() has found. Nothing is looked up from the root on: this also works
+  /// while another process adds to the groups above.
+  void table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
+             std::vector<float>& values) const;
+  /// What is in a group, by name.
+  [[nodiscard]] std::vector<Hdf5Member> members(const std::string& group) const;
   [[nodiscard]] Matrix real_table(const std::string& name, Index rows, Index columns) const;
   [[nodiscard]] std::vector<std::int64_t> whole_table(const std::string& name, Index rows, Index columns) const;
   [[nodiscard]] std::string text(const std::string& name) const;
@@ -52,7 +64,9 @@ class Hdf5Reader {
   void check_size(const Dataset& set, std::int64_t expected_size, std::size_t bytes_per_entry) const;
   void check_stored(const Dataset& set, std::int64_t entries, std::size_t bytes_per_entry) const;
   void check_numbers(const Dataset& set) const;
+  [[nodiscard]] std::pair<Index, Index> extents(const Dataset& set) const;
   void check_table(const Dataset& set, Index rows, Index columns) const;
+  void read_table(const Dataset& set, Index rows, Index columns, std::vector<float>& values) const;
   [[nodiscard]] Vector numbers(const Dataset& set, std::int64_t expected_size) const;
 
   std::string path_;

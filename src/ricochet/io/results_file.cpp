@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/file_lock.hpp"
 #include "ricochet/io/obstacle_surfaces.hpp"
 #include "ricochet/io/vtk_order.hpp"
 #include "ricochet/io/xdmf_file.hpp"
@@ -116,7 +117,11 @@ struct ResultsWriter::Implementation {
   std::optional<XdmfFile> side;
   ObstacleSurfaces obstacles;
   std::optional<XdmfFile> obstacle_side;
+  std::optional<FileLock> lock;  ///< of results.xdmf, which HDF5 does not lock
 };
+
+/// Who looks at the frames does that for a moment; who does not let go does not stop the run.
+constexpr double longest_wait = 2.0;
 
 ResultsWriter::Implementation::Implementation(const std::string& directory, const Body& body,
                                               const SemidiscreteProblem& problem, const ResultsOptions& options,
@@ -140,10 +145,14 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
     if (obstacles.any()) obstacle_side.emplace(obstacle_path, "obstacles");
     side.emplace(side_path, "body", obstacles.any() ? "obstacles.xdmf" : "");
   } else {
+    lock.emplace(side_path);
+    lock->acquire(FileLock::Kind::exclusive, longest_wait);
     file.emplace(path, fixed, datasets_of(fields), options.file, *snapshot, name + ".frames");
     if (obstacles.any()) obstacle_side.emplace(obstacle_path, *snapshot, name + ".obstacles");
     side.emplace(side_path, *snapshot, name + ".side");
+    lock->release();
   }
+  if (!lock) lock.emplace(side_path);
 }
 
 std::string ResultsWriter::Implementation::grid(double time, long frame) const {
@@ -162,6 +171,22 @@ std::string ResultsWriter::Implementation::grid(double time, long frame) const {
   return text + "      </Grid>\n";
 }
 
+namespace {
+
+/// Nobody opens the files while they change.
+class LockedFrames {
+ public:
+  explicit LockedFrames(FileLock& lock) : lock_(lock) { lock_.acquire(FileLock::Kind::exclusive, longest_wait); }
+  ~LockedFrames() { lock_.release(); }
+  LockedFrames(const LockedFrames&) = delete;
+  LockedFrames& operator=(const LockedFrames&) = delete;
+
+ private:
+  FileLock& lock_;
+};
+
+}  // namespace
+
 ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                              const ResultsOptions& options)
     : implementation_(std::make_unique<Implementation>(directory, body, problem, options, nullptr, "")) {}
@@ -176,6 +201,7 @@ void ResultsWriter::write(const State& state) {
   Implementation& own = *implementation_;
   for (const auto& source : own.sources) source->evaluate(state);
   const long frame = own.file->frames();
+  const LockedFrames locked(*own.lock);
   own.file->append(own.values);
   // What the side-file names is in the file by now, even if the run is killed before the next frame.
   if (own.obstacle_side) own.obstacle_side->append(own.obstacles.grid(state.time));

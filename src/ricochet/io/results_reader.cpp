@@ -6,18 +6,21 @@
 #include <array>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/io/frame_file.hpp"
+#include "ricochet/io/file_lock.hpp"
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/vtk_order.hpp"
 
 namespace ricochet {
 
 struct ResultsReader::File {
-  explicit File(const std::string& path) : reader(path) {}
+  explicit File(const std::string& path) : reader(path), frames(reader.members("/frames")) {}
   Hdf5Reader reader;
+  std::vector<Hdf5Member> frames;  ///< looked up at once: a run may go on adding to them
 };
 
 namespace {
+
+constexpr double longest_wait = 10.0;
 
 std::vector<CellShape> shapes_of(int dimension) {
   if (dimension == 1) return {CellShape::interval};
@@ -90,11 +93,17 @@ class Connectivity {
 }  // namespace
 
 ResultsReader::ResultsReader(const std::string& directory, int dimension, int degree)
-    : file_(std::make_unique<File>(directory + "/results.h5")),
-      dimension_(dimension),
-      degree_(degree),
-      frames_(read_xdmf_frames(directory + "/results.xdmf")) {
+    : dimension_(dimension), degree_(degree) {
+  // A run that goes on waits with its next frame. What is known then does not change any more.
+  FileLock lock(directory + "/results.xdmf");
+  lock.acquire(FileLock::Kind::shared, longest_wait);
+  frames_ = read_xdmf_frames(directory + "/results.xdmf");
+  file_ = std::make_unique<File>(directory + "/results.h5");
   const Hdf5Reader& file = file_->reader;
+  if (file_->frames.size() < frames_.times.size()) {
+    file.fail("/frames",
+              fmt::format("has {} frames where results.xdmf has {}", file_->frames.size(), frames_.times.size()));
+  }
   const std::string name = "/mesh/nodes";
   const auto [rows, columns] = file.extents(name);
   if (columns != 3) file.fail(name, fmt::format("has {} columns where 3 are expected", columns));
@@ -119,8 +128,9 @@ const XdmfField* ResultsReader::find_field(const std::string& name) const {
 }
 
 void ResultsReader::read(Index frame, const XdmfField& field, std::vector<float>& values) const {
-  file_->reader.table(FrameFile::frame_name(frame) + "/" + field.name, field.on_nodes ? nodes_.cols() : cell_count(),
-                      field.components > 1 ? field.components : 0, values);
+  file_->reader.table(file_->frames[static_cast<std::size_t>(frame)], field.name,
+                      field.on_nodes ? nodes_.cols() : cell_count(), field.components > 1 ? field.components : 0,
+                      values);
 }
 
 }  // namespace ricochet

@@ -32,7 +32,7 @@ class ResultsReader {
   void read(Index frame, const XdmfField& field, std::vector<float>& values) const;
 
  private:
-  struct File;
+  struct File;  ///< and the frames in it
   std::unique_ptr<File> file_;
   int dimension_, degree_;
   Points nodes_;
