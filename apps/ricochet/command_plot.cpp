@@ -13,6 +13,7 @@
 #include "reading_runs.hpp"
 #include "ricochet/base/child_process.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/temporary_folder.hpp"
 #include "ricochet/report/figure.hpp"
 
 namespace ricochet::program {
@@ -20,27 +21,6 @@ namespace ricochet::program {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder for files that live as long as this object.
-class Workspace {
- public:
-  Workspace() {
-    std::string pattern = (fs::temp_directory_path() / "ricochet-plot-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw Error(ErrorKind::file_access, fmt::format("{}: cannot be written to", fs::temp_directory_path().string()));
-    path_ = pattern;
-  }
-  ~Workspace() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-  [[nodiscard]] std::string file(const char* name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_;
-};
 
 std::string read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -109,7 +89,7 @@ void draw(const std::string& description, const std::string& format, const std::
                 "share/ricochet/figure.py, which draws figures, is missing beside the program: "
                 "install Ricochet again");
   }
-  const Workspace workspace;
+  const TemporaryFolder workspace(fs::temp_directory_path(), "ricochet-plot");
   ChildProcess child;
   child.arguments = {python(), "-B", script, format, workspace.file("figure")};
   child.variables = {"MPLCONFIGDIR=" + workspace.file("matplotlib")};  // the user's own settings change nothing

@@ -4,10 +4,26 @@
 const runsLight = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6b4c9a", "#5b5b5b"];
 const runsDark = ["#ff8a4c", "#5cb3ff", "#3fd6a5", "#e08ad0", "#e6c229", "#8fd6f5", "#b79cf0", "#bdbdbd"];
 
-export function isDark(): boolean {
-  const chosen = document.documentElement.dataset.theme;
-  if (chosen) return chosen === "dark";
-  return matchMedia("(prefers-color-scheme: dark)").matches;
+const root = document.documentElement;
+let chosen = false;
+
+export const isDark = (): boolean => root.dataset.theme === "dark";
+
+/** Dark or light as the system is, until someone chooses. */
+export function followSystem(changed: () => void): void {
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  const follow = () => {
+    if (chosen) return;
+    root.dataset.theme = system.matches ? "dark" : "light";
+    changed();
+  };
+  system.addEventListener("change", follow);
+  follow();
+}
+
+export function toggleTheme(): void {
+  chosen = true;
+  root.dataset.theme = isDark() ? "light" : "dark";
 }
 
 export function runColour(run: number): string {
@@ -17,7 +33,7 @@ export function runColour(run: number): string {
 
 /** A colour of the style sheet. */
 export function themeColour(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  return getComputedStyle(root).getPropertyValue(`--${name}`).trim();
 }
 
 type Rgb = [number, number, number];

@@ -2,7 +2,7 @@ import { Stage } from "./body/stage";
 import { fieldNames } from "./body/fields";
 import { TimeChart } from "./charts/chart";
 import { chartDefinitions } from "./charts/definitions";
-import { runColour } from "./colours";
+import { followSystem, runColour, toggleTheme } from "./colours";
 import { readPage, type Run } from "./data/run";
 import { details } from "./details";
 import { el, select } from "./elements";
@@ -31,13 +31,6 @@ declare global {
 }
 
 const title = (runs: Run[]) => [...new Set(runs.map((run) => run.summary.title || run.summary.case))].join(" · ");
-
-function toggleTheme(store: Store): void {
-  const root = document.documentElement;
-  const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-  root.dataset.theme = dark ? "light" : "dark";
-  store.changed("theme");
-}
 
 /** The card of a run: its name switches it, in all plots. */
 function card(store: Store, run: Run): HTMLElement {
@@ -140,7 +133,11 @@ async function start(): Promise<void> {
   await Promise.all(runs.map((run) => run.loadHistory()));
   const store = new Store(runs);
   document.title = `${title(runs)} – Ricochet report`;
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => store.changed("theme"));
+  followSystem(() => store.changed("theme"));
+  const switchTheme = () => {
+    toggleTheme();
+    store.changed("theme");
+  };
 
   const charts = chartDefinitions(runs).map((definition) => new TimeChart(store, definition));
   const chart = (id: string) => charts.find((each) => each.id === id)?.element ?? "";
@@ -156,7 +153,7 @@ async function start(): Promise<void> {
       el("div", {}, el("h1", {}, title(runs)), sentence !== "" && el("p.conclusion", {}, sentence)),
       el("div.tools", {},
         el("button.small", { type: "button", title: "Keys (?)", onclick: () => help.showModal() }, "keys"),
-        el("button.small", { type: "button", title: "Dark or light (t)", onclick: () => toggleTheme(store) }, "dark / light"))),
+        el("button.small", { type: "button", title: "Dark or light (t)", onclick: switchTheme }, "dark / light"))),
     el("div.cards", {}, ...runs.map((run) => card(store, run))),
     el("div.charts", {}, chart("energy"), chart("force")),
     moving,
@@ -169,7 +166,7 @@ async function start(): Promise<void> {
   for (const each of charts) each.rebuild();
   const handle: Handle = { store, charts, maps: [], profile, stage: null, ready: false };
   window.ricochet = handle;
-  connectKeys(store, player, help, () => handle.stage, () => toggleTheme(store));
+  connectKeys(store, player, help, () => handle.stage, switchTheme);
 
   await Promise.all(runs.map((run) => run.loadContact()));
   await Promise.all(runs.map((run) => run.loadBody()));

@@ -4,14 +4,13 @@
 #include <unistd.h>
 
 #include <cctype>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <set>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/temporary_folder.hpp"
 #include "ricochet/mesh/gmsh_process.hpp"
 
 namespace ricochet::gmsh {
@@ -78,29 +77,6 @@ fs::path cache_directory() {
                           candidates.front().string()));
 }
 
-/// A directory of its own for each run of gmsh, gone afterwards.
-class Workspace {
- public:
-  explicit Workspace(const fs::path& parent) {
-    std::string pattern = (parent / "meshing-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw Error(ErrorKind::file_access,
-                  fmt::format("cannot make a directory in {}: {}", parent.string(), std::strerror(errno)));
-    }
-    path_ = pattern;
-  }
-  ~Workspace() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 std::string gmsh_options(const MeshFile& file) {
   std::string options = fmt::format(
       "Mesh.MshFileVersion = 4.1;\nMesh.Binary = 1;\nMesh.ElementOrder = {};\nMesh.SecondOrderIncomplete = 0;\n"
@@ -140,7 +116,7 @@ fs::path meshed_file(const MeshFile& file) {
     return result;
   }
   log::info(fmt::format("{}: meshing with the gmsh program", file.path));
-  const Workspace workspace(directory);
+  const TemporaryFolder workspace(directory, "meshing");
   const fs::path output = workspace.path() / "mesh.msh";
   run_program(file.path, options, workspace.path(), output);
   std::error_code error;

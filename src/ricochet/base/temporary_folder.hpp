@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+/// @file A folder that lives as long as its object.
+namespace ricochet {
+
+class TemporaryFolder {
+ public:
+  /// In `parent`, with a name of its own that begins like `prefix`. Throws Error(file_access).
+  TemporaryFolder(const std::filesystem::path& parent, const std::string& prefix);
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace ricochet
