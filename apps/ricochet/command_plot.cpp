@@ -123,9 +123,10 @@ void draw(const std::string& description, const std::string& format, const std::
 int plot(const PlotArguments& arguments) {
   const std::string format = format_of(arguments.output);
   const FigureOptions options = options_of(arguments);
+  const bool needs_fields = std::count(options.what.begin(), options.what.end(), "pressure-map") > 0;
   std::string description;
   read_with_patience(arguments.directories,
-                     [&] { description = describe_figure(read_runs(arguments.directories), options); });
+                     [&] { description = describe_figure(read_runs(arguments.directories, needs_fields), options); });
   draw(description, format, arguments.output);
   fmt::print("{}\n", arguments.output);
   return 0;

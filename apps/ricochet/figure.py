@@ -22,6 +22,8 @@ CENTIMETRE = 1 / 2.54
 ALONE = "#1b1f24"
 COLOURS = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6b4c9a", "#5b5b5b"]
 
+# Settings that a user has for other figures change nothing.
+matplotlib.rcdefaults()
 plt.rcParams.update({
     "font.size": 9, "axes.titlesize": 9, "legend.fontsize": 8, "font.family": "DejaVu Sans",
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3, "grid.linewidth": 0.5,
@@ -40,9 +42,15 @@ def widths(panel):
     return [0.6] * (count - 1) + [1.1]
 
 
+def literal(text):
+    """A name or title as it is: no mathematics, and shown in a legend also where it is empty or begins with "_"."""
+    text = text.replace("$", r"\$")
+    return f" {text}" if not text or text.startswith("_") else text
+
+
 def in_powers(value):
     if 1e-3 <= abs(value) < 1e4:
-        return f"{value:.3g}"
+        return f"{value:.4g}"
     mantissa, exponent = f"{value:.2e}".split("e")
     return rf"${float(mantissa):g} \cdot 10^{{{int(exponent)}}}$"
 
@@ -51,17 +59,18 @@ def draw_curves(axes, panel, several):
     count = len(panel["curves"])
     for curve, width in zip(panel["curves"], widths(panel)):
         colour = COLOURS[curve["run"] % len(COLOURS)] if several else ALONE
-        axes.plot(curve["x"], curve["y"], color=colour, label=curve["label"], lw=width)
+        axes.plot(curve["x"], curve["y"], color=colour, label=literal(curve["label"]), lw=width)
     axes.set_xlabel(panel["x_label"])
-    axes.set_ylabel(panel["y_label"])
+    axes.set_ylabel(literal(panel["y_label"]))
     if panel["logarithmic"]:
         axes.set_yscale("log")
     else:
-        axes.set_ylim(*panel["range"])
+        if "range" in panel:
+            axes.set_ylim(*panel["range"])
         axes.yaxis.set_major_formatter(ScalarFormatter(useMathText=True))
         axes.ticklabel_format(axis="y", scilimits=(-3, 4))
     axes.xaxis.set_major_locator(MaxNLocator(5))
-    notes = ", ".join(f"{name} reaches {in_powers(value)}" for name, value in panel.get("notes", []))
+    notes = ", ".join(f"{literal(name)} reaches {in_powers(value)}" for name, value in panel.get("notes", []))
     axes.set_title(notes, loc="right", fontsize=7, color="0.35")
     if several:
         handles, labels = axes.get_legend_handles_labels()
@@ -81,16 +90,16 @@ def draw_map(figure, axes, panel, is_first):
     for begin, end in zip(pieces, pieces[1:]):
         if end - begin < 2:
             continue
-        values = [[row[i] for row in panel["values"]] for i in range(begin, end)]
+        values = [[math.nan if row[i] is None else row[i] for row in panel["values"]] for i in range(begin, end)]
         image = axes.pcolormesh(x, borders(panel["y"][begin:end]), values, cmap="viridis", vmin=0, vmax=panel["high"],
                                 rasterized=True)
     axes.set_xlim(panel["x"][0], panel["x"][-1])
     axes.set_xlabel(panel["x_label"])
     axes.set_ylabel(panel["y_label"] if is_first else "")
     axes.xaxis.set_major_locator(MaxNLocator(4))
-    axes.set_title(panel["title"])
+    axes.set_title(literal(panel["title"]))
     axes.grid(False)
-    most = max(max(row) for row in panel["values"])
+    most = max((value for row in panel["values"] for value in row if value is not None), default=0)
     power = 0 if 1e-3 <= panel["high"] < 1e4 else math.floor(math.log10(panel["high"]))
     label = panel["value_label"] + (rf", $\times 10^{{{power}}}$" if power else "")
     bar = figure.colorbar(image, ax=axes, location="bottom", aspect=30, label=label,
@@ -119,7 +128,7 @@ def main(form, output):
             if "time" in description:
                 axes.set_xlim(*description["time"])
     if description["title"]:
-        figure.suptitle(description["title"], fontsize=10)
+        figure.suptitle(literal(description["title"]), fontsize=10)
     # What a file says about itself must not change from day to day.
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[form]
     figure.savefig(output, format=form, metadata=metadata)

@@ -6,6 +6,7 @@ import struct
 import unittest
 import xml.etree.ElementTree
 
+import h5py
 import numpy
 
 from harness import DISC, History, TestCase, run, settings
@@ -143,6 +144,22 @@ class Plot(TestCase):
             '"disc.msh"', f'"{DISC.parent}/disc.msh"'))
         blind = self.simulate("blind", case)
         self.assertIn("add a [[probe]]", self.plot(blind, "--what", "pressure", "-o", "f.svg", status=1).stderr)
+
+    def test_names_are_shown_as_they_are(self):
+        runs = [self.simulate("_under"), self.simulate("cost 5$ & 7$")]
+        self.plot(*runs, "--what", "energy", "-o", "a.svg", "--title", "$\\frac{$ 1$")
+        self.plot(*runs, "--what", "energy", "-o", "b.svg", "--label", "", "--label", "$\\foo{$")
+        self.plot(runs[0], "--what", "energy", "-o", "c.svg")
+        self.write("matplotlibrc", "axes.facecolor: red\n")
+        self.plot(runs[0], "--what", "energy", "-o", "d.svg")
+        self.assertEqual((self.folder / "c.svg").read_bytes(), (self.folder / "d.svg").read_bytes())
+
+    def test_numbers_that_are_none(self):
+        results = self.simulate("run")
+        with h5py.File(results / "results.h5", "r+") as file:
+            for frame in ("000005", "000006"):
+                file[f"frames/{frame}/contact_pressure"][...] = numpy.nan
+        self.plot(results, "--what", "pressure-map", "-o", "map.svg")
 
     def test_without_matplotlib(self):
         results = self.simulate("run")

@@ -310,12 +310,82 @@ class Report(TestCase):
         process = self.report(results, status=4)
         self.assertIn("./dev viewer", process.stderr)
 
+    def test_runs_without_displacements_stand_still(self):
+        for field in ("von_mises", "contact_pressure", "stress"):
+            with self.subTest(field):
+                results = self.simulate(DISC, field, SHORT | {"output.fields": f'["{field}"]'})
+                self.report(results)
+                (data,) = (page := Page(results / "report.html")).runs
+                self.assertEqual(data["body"]["deviations"], [])
+                self.assertFalse(page.reals(data["body"]["mean"]).any())
+                self.assertTrue(any("no displacements" in sentence for sentence in data["thinned"]))
+
+    def test_what_is_missing_is_said(self):
+        results = self.simulate(DISC, "disc", SHORT)
+
+        def sentences(name, content):
+            whole = (results / name).read_bytes()
+            (results / name).write_bytes(content(whole))
+            self.report(results)
+            (results / name).write_bytes(whole)
+            return " ".join(Page(results / "report.html").runs[0]["thinned"])
+
+        self.assertIn("history.csv ends at step", sentences("history.csv", lambda text: b"".join(text.splitlines(True)[:99])))
+        self.assertIn("of the 21 frames", sentences("results.xdmf", lambda text: text[:len(text) // 2]))
+        self.assertIn("have 0 of the 21 frames", sentences("results.xdmf", lambda text: b""))
+        self.assertIn("obstacles.xdmf has 0 of 21 frames", sentences("obstacles.xdmf", lambda text: b""))
+        (results / "results.h5").unlink()
+        self.report(results)
+        self.assertIn("missing", " ".join(Page(results / "report.html").runs[0]["thinned"]))
+        text = (results / "history.csv").read_text()
+        for wrong in ("nan", "0"):
+            rows = text.splitlines()
+            fields = rows[50].split(",")
+            rows[50] = ",".join([fields[0], wrong, *fields[2:]])
+            (results / "history.csv").write_text("\n".join(rows) + "\n")
+            self.assertIn("history.csv:51: the time", self.report(results, status=2).stderr)
+
+    def test_numbers_that_are_none_are_judged(self):
+        results = self.simulate(DISC, "disc", SHORT)
+        path = results / "history.csv"
+        header, *rows = path.read_text().splitlines()
+        names = header.split(",")
+        for column, judged in (("total_energy", "energy"), ("contact_work", "energy"), ("max_penetration", "penetration"),
+                               ("lowest.reaction_normal", "force")):
+            with self.subTest(column):
+                fields = [row.split(",") for row in rows]
+                for row in fields[100:]:
+                    row[names.index(column)] = "inf"
+                path.write_text("\n".join([header, *(",".join(row) for row in fields)]) + "\n")
+                self.report(results)
+                judgement = Page(results / "report.html").runs[0]["judgement"]
+                self.assertAlmostEqual(judgement[f"{judged}_broken_at"], 0.01, delta=1e-12)
+                others = {"energy", "penetration", "force"} - {judged}
+                self.assertEqual([judgement[f"{other}_broken_at"] for other in others], [None, None])
+
+    def test_judgements(self):
+        """A rattling force is found in short and in sparsely written histories, rounding is not one, an explosion is told
+        by its size, and without fields nothing is said of the body's size."""
+        rattling = {"time.scheme": "klr-conserving", "mass.type": "consistent", "output.fields_every": 0}
+        for name, values in (("short", {"time.end": 0.03}), ("sparse", {"output.history_every": 7})):
+            self.report(self.simulate(DISC, name, rattling | values))
+            judgement = Page(self.folder / name / "report.html").runs[0]["judgement"]
+            self.assertGreater(judgement["roughness"], 6, name)
+            self.assertIsNone(judgement["relative_penetration"])
+            self.assertGreater(judgement["penetration"], 0)
+        case = DISC.parents[1] / "hertz" / "cylinder.toml"
+        self.report(self.simulate(case, "static", {}))
+        self.assertEqual(Page(self.folder / "static" / "report.html").runs[0]["judgement"]["roughness"], 1)
+        self.report(self.simulate(DISC, "explosion", {"time.beta": 0.25, "time.gamma": 0.2, "time.end": 0.2}))
+        judgement = Page(self.folder / "explosion" / "report.html").runs[0]["judgement"]
+        self.assertGreater(judgement["energy_gain"], 1e12 * judgement["energy_scale"])
+
     def test_damaged_frames_are_named(self):
         results = self.simulate(DISC, "disc", SHORT)
         with h5py.File(results / "results.h5", "r+") as file:
             del file["frames/000003/displacement"]
         self.assertIn("/frames/000003/displacement", self.report(results, status=2).stderr)
-        (results / "obstacles.xdmf").write_text('<Grid Name="obstacles" GridType="Uniform"><Time Value="x"/>')
+        (results / "obstacles.xdmf").write_text('<Grid Name="obstacles" GridType="Uniform"><Time Value="x"/></Grid>')
         self.assertIn("obstacles.xdmf:1: 'x' is not a number", self.report(results, status=2).stderr)
 
 

@@ -33,6 +33,7 @@ class Scanner {
     at_ = found + what.size();
     return true;
   }
+  [[nodiscard]] bool has_next(std::string_view what) const { return text_.find(what, at_) != std::string::npos; }
   /// Where `what` is found next; the end of the text where it is not.
   [[nodiscard]] std::size_t next(std::string_view what) const { return std::min(text_.find(what, at_), text_.size()); }
   /// What comes before the next occurrence of `end`, which must be there.
@@ -99,7 +100,7 @@ XdmfField field_of(Scanner& file) {
 XdmfFrames read_xdmf_frames(const std::string& path) {
   Scanner file(path);
   XdmfFrames result;
-  while (file.find(grid)) {
+  while (file.find(grid) && file.has_next("</Grid>")) {
     file.expect("<Time Value=\"");
     result.times.push_back(file.number(file.until("\"")));
     if (result.times.size() > 1) continue;
@@ -112,7 +113,7 @@ XdmfFrames read_xdmf_frames(const std::string& path) {
 std::vector<ObstacleFrame> read_obstacle_frames(const std::string& path) {
   Scanner file(path);
   std::vector<ObstacleFrame> result;
-  while (file.find(obstacle_grid)) {
+  while (file.find(obstacle_grid) && file.has_next("</Grid>")) {
     ObstacleFrame frame;
     file.expect("<Time Value=\"");
     frame.time = file.number(file.until("\""));

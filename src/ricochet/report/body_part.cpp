@@ -45,7 +45,7 @@ BodyFrames::BodyFrames(const ResultsReader& results, Index most_triangles)
 }
 
 void BodyFrames::choose() {
-  for (int k = 0; k < dimension_; ++k)
+  for (int k = 0; k < dimension_ && results_.find_field("displacement") != nullptr; ++k)
     deviations_.push_back({"xyz"[k] + std::string(), true, static_cast<Index>(surface_.nodes.size()), {}});
   for (const XdmfField& field : results_.fields()) {
     if (field.name == "displacement") continue;
@@ -71,6 +71,7 @@ void BodyFrames::choose() {
 
 void BodyFrames::read_frames() {
   std::vector<float> values;
+  if (deviations_.empty()) mean_.assign(3 * frames_.size(), 0.0);
   for (const int frame : frames_) {
     for (const XdmfField& field : results_.fields()) {
       if (field.components > 3 || (is_contact(field.name) && line_.nodes.empty())) continue;

@@ -30,6 +30,7 @@ struct Extent {
     low = std::min(low, value);
     high = std::max(high, value);
   }
+  [[nodiscard]] double farthest() const { return std::abs(high) >= std::abs(low) ? high : low; }
   [[nodiscard]] double reach() const { return std::max(std::abs(low), std::abs(high)); }
 };
 
@@ -146,7 +147,7 @@ void choose_range(const std::vector<Curve>& curves, bool from_zero, Json& panel)
     const bool leaves = middle > 0.0 && curve.extent.reach() > outlying * middle;
     (leaves ? outside : inside).add(curve.extent.low);
     (leaves ? outside : inside).add(curve.extent.high);
-    if (leaves) panel["notes"].push_back({curve.label, curve.extent.reach()});
+    if (leaves) panel["notes"].push_back({curve.label, curve.extent.farthest()});
   }
   if (from_zero) inside.add(0.0);
   const double height = inside.high - inside.low;
@@ -158,7 +159,7 @@ void choose_range(const std::vector<Curve>& curves, bool from_zero, Json& panel)
     low -= margin;
     high += margin;
   }
-  panel["range"] = {low - 0.04 * (high - low), high + 0.1 * (high - low)};
+  if (std::isfinite(1.2 * (high - low))) panel["range"] = {low - 0.04 * (high - low), high + 0.1 * (high - low)};
 }
 
 Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::string>& labels, const std::string& what,
@@ -170,6 +171,7 @@ Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::st
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Quantity quantity = quantity_of(what, runs[i]);
     if (i == 0) name = quantity.name;
+    if (quantity.name != name) name = what == "force" ? "contact force (largest component)" : in_words(what);
     from_zero = quantity.from_zero;
     curves.push_back(curve_of(runs[i], i, labels[i], quantity.column, options));
   }

@@ -7,6 +7,11 @@ namespace ricochet {
 
 namespace {
 
+/// Rows to either side of one whose mean is the trend, at least; rows below which there is no telling.
+constexpr std::size_t least_half = 5, least_rows = 50;
+/// A force that varies by less than this part of itself is constant: the rest is rounding.
+constexpr double constant = 1e-6;
+
 double largest_magnitude(const std::vector<double>& values) {
   double result = 0.0;
   for (const double value : values) result = std::max(result, std::abs(value));
@@ -31,6 +36,19 @@ std::vector<double> running_means(const std::vector<double>& values, std::size_t
   return result;
 }
 
+/// When one of these columns is no finite number for the first time.
+std::optional<double> broken_at(const RunData& run, const std::vector<std::string>& columns) {
+  std::optional<double> first;
+  for (const std::string& column : columns) {
+    const std::vector<double>& values = run.column(column);
+    const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
+    if (bad == values.end()) continue;
+    const double time = run.times_of(column)[static_cast<std::size_t>(bad - values.begin())];
+    if (!first || time < *first) first = time;
+  }
+  return first;
+}
+
 void judge_energy(const RunData& run, Judgement& result) {
   const std::vector<double>& total = run.column("total_energy");
   if (total.empty()) return;
@@ -38,10 +56,11 @@ void judge_energy(const RunData& run, Judgement& result) {
   double most = 0.0;
   for (std::size_t i = 0; i < total.size(); ++i) most = std::max(most, kinetic[i] + elastic[i]);
   result.energy_scale = std::max(std::abs(total.front()), kinetic.front() + elastic.front());
-  if (!(result.energy_scale > 1e-12 * most)) result.energy_scale = most;
   result.is_isolated = true;
   for (const char* work : {"load_work", "friction_work", "support_work", "obstacle_work", "damping_work"})
     result.is_isolated = result.is_isolated && largest_magnitude(run.column(work)) == 0.0;
+  // Where nothing else acts a start that is small is a start, and what grows out of it was created.
+  if (!(result.energy_scale > (result.is_isolated ? 0.0 : 1e-12 * most))) result.energy_scale = most;
   const std::vector<double>& changing = result.is_isolated ? total : run.column("contact_work");
   const auto [least, largest] = std::minmax_element(changing.begin(), changing.end());
   result.energy_gain = *largest - changing.front();
@@ -66,17 +85,25 @@ void judge_force(const RunData& run, Judgement& result) {
   if (force.empty()) return;
   result.force_largest = largest_magnitude(force);
   result.force_variation = total_variation(force);
-  const std::size_t half = std::max<std::size_t>(force.size() / 200, 1);
+  const std::size_t half = std::max<std::size_t>(force.size() / 200, least_half);
   result.trend_variation = total_variation(running_means(force, half));
-  if (result.trend_variation > 0.0) result.roughness = result.force_variation / result.trend_variation;
+  if (!(result.force_largest > 0.0)) return;
+  if (result.force_variation < constant * result.force_largest) {
+    result.roughness = 1.0;
+  } else if (force.size() >= least_rows && result.trend_variation > 0.0) {
+    result.roughness = result.force_variation / result.trend_variation;
+  }
 }
 
 }  // namespace
 
 Judgement judge(const RunData& run) {
   Judgement result;
+  result.energy_broken_at = broken_at(run, {"total_energy", "kinetic_energy", "elastic_energy", "contact_work"});
   judge_energy(run, result);
   judge_force(run, result);
+  result.force_broken_at = broken_at(run, {result.force});
+  result.penetration_broken_at = broken_at(run, {"max_penetration"});
   result.penetration = largest_magnitude(run.column("max_penetration"));
   if (run.results) {
     const Points& nodes = run.results->nodes();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "ricochet/report/run_data.hpp"
@@ -9,8 +10,11 @@
 namespace ricochet {
 
 struct Judgement {
-  /// What energy is compared with: that of the start, |total| or kinetic + elastic; where both are zero the largest
-  /// kinetic + elastic energy of the run.
+  /// The time from which on a number that is looked at is not finite: then the others say nothing.
+  std::optional<double> energy_broken_at, force_broken_at, penetration_broken_at;
+
+  /// What energy is compared with: that of the start, |total| or kinetic + elastic; where both are zero, and where
+  /// others than contact do work and it is tiny, the largest kinetic + elastic energy of the run.
   double energy_scale = 0.0;
   /// Nothing but contact acts on the energy: no loads that vary, friction, supports, moving obstacles or damping. Then
   /// changes are those of the total energy, else those that the contact forces' normal part has made (contact_work).
@@ -23,12 +27,14 @@ struct Judgement {
   std::string force;  ///< the column looked at: of the first probe in contact, or a component of the resultant
   double force_largest = 0.0;
   double force_variation = 0.0;  ///< Σ |change from row to row|
-  double trend_variation = 0.0;  ///< the same of its mean over a hundredth of the run around each row
-  /// How many times as much as its trend the force varies: near 1 it is smooth, far above it rattles. 0: no force.
+  double trend_variation = 0.0;  ///< the same of its mean over a hundredth of the run around each row, 11 rows at least
+  /// How many times as much as its trend the force varies: near 1 it is smooth, far above it rattles. 0: there is no
+  /// force, or too few rows to tell.
   double roughness = 0.0;
 
-  double penetration = 0.0;           ///< the deepest
-  double relative_penetration = 0.0;  ///< to the diagonal of the box around the body; 0 where the body is not known
+  double penetration = 0.0;  ///< the deepest
+  /// To the diagonal of the box around the body; nothing where the body is not known.
+  std::optional<double> relative_penetration;
 };
 
 [[nodiscard]] Judgement judge(const RunData& run);

@@ -200,7 +200,10 @@ PackedArray PackedArrays::add_small_numbers(const std::vector<float>& values, In
   array.low = -1.0;
   array.step = 1.0;
   std::vector<std::uint16_t> levels(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) levels[i] = static_cast<std::uint16_t>(std::lround(values[i] + 1.0F));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool known = values[i] >= -1.0F && values[i] < 254.0F;
+    levels[i] = known ? static_cast<std::uint16_t>(std::lround(values[i] + 1.0F)) : std::uint16_t{255};
+  }
   array.blob = add(coded(levels, rows, columns, 8, 1));
   return array;
 }

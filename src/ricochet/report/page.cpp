@@ -24,7 +24,8 @@ using Json = nlohmann::ordered_json;
 
 /// Where the viewer wants the data, and what every report begins with.
 constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->";
-constexpr Index most_triangles = 200'000;
+/// Of all bodies together, but for each as many as may be had at any rate.
+constexpr Index most_triangles = 200'000, always_triangles = 20'000;
 
 Json to_json(const PackedArray& array) {
   Json json{{"blob", array.blob}, {"rows", array.rows}, {"columns", array.columns}};
@@ -45,8 +46,15 @@ Json to_json(const PackedArray& array) {
   return json;
 }
 
+Json to_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json to_json(const Judgement& j) {
-  return {{"energy_scale", j.energy_scale},
+  return {{"energy_broken_at", to_json(j.energy_broken_at)},
+          {"force_broken_at", to_json(j.force_broken_at)},
+          {"penetration_broken_at", to_json(j.penetration_broken_at)},
+          {"energy_scale", j.energy_scale},
           {"is_isolated", j.is_isolated},
           {"energy_gain", j.energy_gain},
           {"energy_loss", j.energy_loss},
@@ -58,7 +66,7 @@ Json to_json(const Judgement& j) {
           {"trend_variation", j.trend_variation},
           {"roughness", j.roughness},
           {"penetration", j.penetration},
-          {"relative_penetration", j.relative_penetration}};
+          {"relative_penetration", to_json(j.relative_penetration)}};
 }
 
 Json times_of(const std::vector<int>& frames, const ResultsReader& results) {
@@ -125,7 +133,7 @@ class PageBuilder {
   [[nodiscard]] std::vector<std::string> thinned() const { return thinned_; }
 
  private:
-  Json start(const RunData& run);
+  Json start(const RunData& run, std::size_t number);
   void add_frames(const RunData& run, Json& json, std::size_t most_bytes);
   void note(const RunData& run, Json& json, const std::string& sentence) {
     json["thinned"].push_back(sentence);
@@ -142,12 +150,16 @@ class PageBuilder {
   std::vector<std::string> thinned_;
 };
 
-Json PageBuilder::start(const RunData& run) {
+Json PageBuilder::start(const RunData& run, std::size_t number) {
   Json json{{"name", run.name}, {"directory", run.directory}, {"thinned", Json::array()}};
   json["summary"] = Json::parse(run.summary_json);
   json["judgement"] = to_json(judge(run));
+  for (const std::string& sentence : run.notes) note(run, json, sentence);
   json["columns"] = run.history.names;
-  const HistoryPart history = pack_history(run.history, most_bytes_ / 4 / runs_.size(), arrays_);
+  // All histories have two fifths; what one does not need is left to those after it.
+  const std::size_t used = arrays_.page_bytes(), all = most_bytes_ / 5 * 2;
+  const std::size_t share = (all - std::min(used, all)) / (runs_.size() - number);
+  const HistoryPart history = pack_history(run.history, share, arrays_);
   json["history"] = to_json(history.table);
   json["tables"] = Json::array();
   for (const auto& [file, table] : run.probe_tables) {
@@ -169,7 +181,7 @@ Json PageBuilder::start(const RunData& run) {
 void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_bytes) {
   json["body"] = json["contact"] = nullptr;
   if (!run.results) return;
-  const BodyFrames frames(*run.results, most_triangles / static_cast<Index>(runs_.size()));
+  const BodyFrames frames(*run.results, std::max(most_triangles / static_cast<Index>(runs_.size()), always_triangles));
   const std::size_t before = arrays_.page_bytes();
   const ContactPart contact = frames.pack_contact(most_bytes / 4, arrays_);
   const auto all = static_cast<std::size_t>(frames.frame_count());
@@ -183,6 +195,8 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
   }
   const BodyPart body = frames.pack_body(most_bytes - std::min(arrays_.page_bytes() - before, most_bytes), arrays_);
   say_frames("the body", body.frames.size());
+  if (body.deviations.empty())
+    note(run, json, "the run wrote no displacements: the body stands as it was at the start");
   if (body.is_coarse) {
     note(run, json,
          fmt::format("displacements stand in the page in {} steps from the least to the largest, fields in {}",
@@ -202,7 +216,7 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
 
 std::string PageBuilder::data() {
   Json page{{"format", 1}, {"version", version}, {"runs", Json::array()}};
-  for (const RunData& run : runs_) page["runs"].push_back(start(run));
+  for (std::size_t i = 0; i < runs_.size(); ++i) page["runs"].push_back(start(runs_[i], i));
   // What summaries take is in the file, too, and is not binary.
   std::size_t text = 65536;
   for (const RunData& run : runs_) text += run.summary_json.size();
@@ -237,7 +251,7 @@ Report make_report(const std::vector<std::string>& directories, const ReportOpti
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: is not a viewer of this version: build it with ./dev viewer", options.viewer));
   }
-  PageBuilder builder(read_runs(directories), options.most_bytes - std::min(options.most_bytes, viewer.size()));
+  PageBuilder builder(read_runs(directories, true), options.most_bytes - std::min(options.most_bytes, viewer.size()));
   Report report;
   report.html = viewer.substr(0, place) + builder.data() + viewer.substr(place + data_place.size());
   report.thinned = builder.thinned();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -39,10 +40,37 @@ std::vector<std::string> probe_files(const std::string& directory) {
 void check_rows(const std::string& path, const HistoryTable& table) {
   const auto time = table.columns.find("time");
   if (time == table.columns.end()) throw Error(ErrorKind::invalid_input, fmt::format("{}:1: there is no time", path));
-  if (time->second.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: there is no row yet", path));
+  const std::vector<double>& times = time->second;
+  if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: there is no row yet", path));
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (std::isfinite(times[i]) && (i == 0 || times[i] >= times[i - 1])) continue;
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}:{}: the time {} is not later than that before", path, i + 2, times[i]));
+  }
 }
 
-RunData read_run(const std::string& directory) {
+void read_results(RunData& run) {
+  const auto path = [&run](const char* file) { return (fs::path(run.directory) / file).string(); };
+  if (fs::exists(path("results.xdmf")) && fs::exists(path("results.h5"))) {
+    run.results = std::make_unique<ResultsReader>(run.directory, run.summary.dimension, run.summary.degree);
+    if (fs::exists(path("obstacles.xdmf"))) {
+      run.obstacles = read_obstacle_frames(path("obstacles.xdmf"));
+      if (run.obstacles.size() < run.results->times().size()) {
+        run.notes.push_back(fmt::format("obstacles.xdmf has {} of {} frames: it is damaged", run.obstacles.size(),
+                                        run.results->times().size()));
+      }
+    }
+    if (run.results->times().empty()) run.results.reset();
+  }
+  const auto found = static_cast<long>(run.results ? run.results->times().size() : 0);
+  if (run.summary.status != "running" && found < run.summary.frames) {
+    run.notes.push_back(fmt::format("results.h5 and results.xdmf have {} of the {} frames that were written: {}", found,
+                                    run.summary.frames,
+                                    found > 0 ? "they are damaged" : "they are missing or damaged"));
+  }
+}
+
+RunData read_run(const std::string& directory, bool with_results) {
   if (!fs::is_directory(directory)) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: no such directory: name the output directories of runs", directory));
@@ -63,11 +91,11 @@ RunData read_run(const std::string& directory) {
     run.probe_tables.emplace_back(file, read_history(path(file.c_str()), may_grow));
     check_rows(path(file.c_str()), run.probe_tables.back().second);
   }
-  if (fs::exists(path("results.xdmf"))) {
-    run.results = std::make_unique<ResultsReader>(directory, run.summary.dimension, run.summary.degree);
-    if (fs::exists(path("obstacles.xdmf"))) run.obstacles = read_obstacle_frames(path("obstacles.xdmf"));
-    if (run.results->times().empty()) run.results.reset();
+  const double last = run.history.columns.contains("step") ? run.history.columns.at("step").back() : 0.0;
+  if (run.summary.status == "done" && last < static_cast<double>(run.summary.steps)) {
+    run.notes.push_back(fmt::format("history.csv ends at step {:g} of {}: it was cut off", last, run.summary.steps));
   }
+  if (with_results) read_results(run);
   return run;
 }
 
@@ -142,13 +170,13 @@ const Probe* RunData::contact_probe() const {
   return found == summary.probes.end() ? nullptr : &*found;
 }
 
-std::vector<RunData> read_runs(const std::vector<std::string>& directories) {
+std::vector<RunData> read_runs(const std::vector<std::string>& directories, bool with_results) {
   std::vector<RunData> runs;
   std::set<fs::path> seen;
   for (const std::string& directory : directories) {
     if (!seen.insert(whole_path(directory)).second)
       throw Error(ErrorKind::usage, fmt::format("{}: this directory is named twice", directory));
-    runs.push_back(read_run(directory));
+    runs.push_back(read_run(directory, with_results));
   }
   name_runs(runs);
   return runs;

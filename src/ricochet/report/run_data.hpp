@@ -21,6 +21,7 @@ struct RunData {
   std::vector<std::pair<std::string, HistoryTable>> probe_tables;  ///< by file: probes with rows of their own
   std::unique_ptr<ResultsReader> results;                          ///< nullptr: the run wrote no fields
   std::vector<ObstacleFrame> obstacles;                            ///< of each frame; empty: none
+  std::vector<std::string> notes;  ///< what is missing in its files, although the summary speaks of it
 
   /// Values of a column of the history, or of probes with rows of their own. Throws Error(invalid_input) where it is
   /// missing.
@@ -39,7 +40,8 @@ struct RunData {
 
 /// Runs that go on, were interrupted or have failed are read as far as they are. Throws Error(file_access) where there
 /// is no run, Error(invalid_input) where its files are damaged, Error(usage) where a directory is named twice.
-[[nodiscard]] std::vector<RunData> read_runs(const std::vector<std::string>& directories);
+/// `with_results`: also the fields, where there are some.
+[[nodiscard]] std::vector<RunData> read_runs(const std::vector<std::string>& directories, bool with_results);
 
 /// The folder that all of these are in: of one directory, itself; "." where they have nothing in common.
 [[nodiscard]] std::string common_folder(const std::vector<std::string>& directories);

@@ -190,11 +190,11 @@ Surface make_surface(const Points& nodes, const std::vector<CellBlock>& cells, I
   if (static_cast<Index>(triangles.size()) > most) {
     surface.is_thinned = true;
     const std::vector<Triangle> all = std::move(triangles);
-    // The number of triangles goes with the square of the boxes along a side.
-    double boxes = std::sqrt(static_cast<double>(most));
+    // The number of triangles goes with the square of the boxes along a side; of a slender body there are fewer.
+    double boxes = 16.0 * std::sqrt(static_cast<double>(most));
     do {
       triangles = merged(nodes, all, boxes);
-      boxes *= 0.8;
+      boxes *= 0.75;
     } while (static_cast<Index>(triangles.size()) > most);
   }
   surface.nodes = used_nodes(triangles);
