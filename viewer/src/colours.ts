@@ -60,7 +60,7 @@ export const fieldColours: Uint8Array = (() => {
 const statusHex = { light: ["#d4d4d4", "#c2c9d1", "#00785a", "#0068b0", "#e0711a"], dark: ["#4a4a4a", "#4b545e", "#3fd6a5", "#5cb3ff", "#ff9d4c"] };
 
 export function statusColour(status: number): string {
-  return statusHex[isDark() ? "dark" : "light"][Math.min(Math.max(Math.round(status) + 1, 0), 4)];
+  return statusHex[isDark() ? "dark" : "light"][Math.min(Math.max(Math.round(status) + 1, 0) || 0, 4)];
 }
 
 export const statusRgb = (status: number): Rgb => parse(statusColour(status));

@@ -87,7 +87,7 @@ function messages(runs: Run[]): HTMLElement {
       if (check.limit > 0 && check.largest > check.limit) list.push(["check failed", `${name} reaches ${number(check.largest, 2)}, more than ${number(check.limit, 2)}`]);
     for (const expected of summary.expectations)
       if (expected.checked && !expected.holds) list.push(["expectation does not hold", `${expected.quantity} is ${number(expected.value)}, wanted ${expected.wanted}`]);
-    for (const sentence of run.data.thinned) list.push(["thinned", sentence]);
+    for (const sentence of run.data.thinned) list.push(["note", sentence]);
     return list.map(([kind, text]) => el("li", {}, el("b", { style: `color:${runColour(run.number)}` }, run.name), ` ${kind}: `, text));
   });
   if (items.length === 0) return el("p.note", {}, "None.");

@@ -1,8 +1,9 @@
 /** Numbers and names as people read them. */
 
-/** JSON has no infinity and no NaN: what is neither is null there. */
-export function number(value: number | null, digits = 4): string {
+/** JSON has no infinity and no NaN: what is neither is null there, or a word. */
+export function number(value: number | string | null, digits = 4): string {
   if (value === null) return "–";
+  if (typeof value === "string") return value;
   if (!Number.isFinite(value)) return Number.isNaN(value) ? "–" : value > 0 ? "∞" : "−∞";
   if (value === 0) return "0";
   const size = Math.abs(value);
@@ -21,6 +22,7 @@ function superscript(exponent: number): string {
 /** "total_energy" → "total energy", "lowest.reaction_normal" → "lowest: normal reaction". */
 export function columnName(column: string): string {
   const known: Record<string, string> = {
+    "@force": "force that is judged",
     reaction_normal: "normal reaction",
     active_contacts: "active",
     max_penetration: "deepest interpenetration",

@@ -14,10 +14,14 @@ export interface Finding {
   detail: string;
 }
 
-const percent = (value: number) => `${number(100 * value, 2)} %`;
+const percent = (value: number) => `${number(100 * value, value >= 0.1 ? 3 : 2)} %`;
+
+const broken = (what: string, time: number): Finding => ({ what, grade: "poor", words: `no number from t = ${number(time)} on`, detail: "infinite, or not a number" });
 
 export function energyFinding(j: Judgement): Finding {
-  const what = "Energy";
+  // Where loads or friction change the energy, what contact does to it is looked at.
+  const what = j.is_isolated ? "Energy" : "Energy in contact";
+  if (j.energy_broken_at !== null) return broken(what, j.energy_broken_at);
   const scale = j.energy_scale;
   const source = j.is_isolated ? "total energy against that of the start" : "work of the contact forces against the energy of the start";
   if (!(scale > 0)) return { what, grade: "none", words: "there is none", detail: "" };
@@ -36,8 +40,10 @@ export function energyFinding(j: Judgement): Finding {
 
 export function forceFinding(j: Judgement): Finding {
   const what = "Contact force";
-  if (!(j.roughness > 0)) return { what, grade: "none", words: "none", detail: "nothing touched" };
-  const detail = `${columnName(j.force)}: its total variation is ${number(j.force_variation, 3)}, that of its mean over a hundredth of the run ${number(j.trend_variation, 3)}`;
+  if (j.force_broken_at !== null) return broken(what, j.force_broken_at);
+  if (!(j.force_largest > 0)) return { what, grade: "none", words: "none", detail: "nothing touched" };
+  if (!(j.roughness > 0)) return { what, grade: "none", words: "too few rows to tell", detail: "history.csv has fewer than 50 rows" };
+  const detail = `${columnName(j.force)}: its total variation is ${number(j.force_variation, 3)}, that of its mean over a hundredth of the run (11 rows at least) ${number(j.trend_variation, 3)}`;
   if (j.roughness < 2) return { what, grade: "good", words: "smooth", detail };
   if (j.roughness < 6) return { what, grade: "fair", words: `ripples: varies ${number(j.roughness, 2)} times as much as its trend`, detail };
   return { what, grade: "poor", words: `rattles: varies ${number(j.roughness, 2)} times as much as its trend`, detail };
@@ -45,7 +51,9 @@ export function forceFinding(j: Judgement): Finding {
 
 export function penetrationFinding(j: Judgement): Finding {
   const what = "Interpenetration";
+  if (j.penetration_broken_at !== null) return broken(what, j.penetration_broken_at);
   const relative = j.relative_penetration;
+  if (relative === null) return { what, grade: j.penetration === 0 ? "good" : "none", words: j.penetration === 0 ? "none" : number(j.penetration, 2), detail: "the run wrote no fields: the body's size is not known" };
   const detail = `deepest ${number(j.penetration, 3)}, ${number(relative, 2)} of the body's size`;
   if (relative < 1e-9) return { what, grade: "good", words: "none", detail };
   const words = `${percent(relative)} of the body's size`;
@@ -82,12 +90,18 @@ const sameProblem = (runs: Run[]): boolean => {
 
 /** The sentence that says which of several runs to trust. */
 export function conclusion(runs: Run[]): string {
-  if (runs.length < 2 || !sameProblem(runs) || runs.some((run) => run.summary.status !== "done")) return "";
+  if (runs.length < 2 || !sameProblem(runs)) return "";
+  const ends = runs.map((run) => run.summary.end_time);
+  if (runs.some((run) => run.summary.status !== "done") || Math.max(...ends) > 1.01 * Math.min(...ends)) return "";
+  const all = runs.map(findings);
+  // Nothing can be said of a run of which something is not known.
+  if (all.some((each) => each.some(({ grade }) => grade === "none"))) return "";
   const points = { good: 0, none: 0, fair: 1, poor: 3 };
-  const scores = runs.map((run) => findings(run).reduce((sum, { grade }) => sum + points[grade], 0));
+  const scores = all.map((each) => each.reduce((sum, { grade }) => sum + points[grade], 0));
   const best = Math.min(...scores);
   const winners = runs.filter((_, i) => scores[i] === best);
   if (winners.length === runs.length) return best === 0 ? "All runs keep their energy, with a smooth contact force and no interpenetration." : "";
+  if (winners.length > 3) return "";
   const names = winners.map((run) => `${run.name} (${run.summary.mass} mass)`).join(" and ");
   if (best === 0) return `Use ${names}: energy kept, a smooth contact force, no interpenetration.`;
   return `The best of these: ${names}.`;

@@ -7,7 +7,8 @@ const keys: [string, string][] = [
   ["space", "play or pause"],
   ["← →", "the frame before, the next one (with shift ten)"],
   ["home, end", "start and end of the run"],
-  ["1 … 9", "show or hide a run"],
+  ["1 … 9", "show or hide a run (a click on its name with shift: it alone)"],
+  ["a", "all runs"],
   ["f", "next field"],
   ["+ −", "more, less deformation"],
   ["p", "contact pressures"],
@@ -57,6 +58,7 @@ export function connectKeys(store: Store, player: Player, help: HTMLDialogElemen
       store.changed("contact");
     },
     r: () => stage()?.look("front"),
+    a: () => store.all(),
     z: () => store.setZoom(null),
     t: toggleTheme,
     "?": () => help.showModal(),

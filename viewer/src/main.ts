@@ -30,12 +30,15 @@ declare global {
   }
 }
 
-const title = (runs: Run[]) => [...new Set(runs.map((run) => run.summary.title || run.summary.case))].join(" · ");
+function title(runs: Run[]): string {
+  const titles = [...new Set(runs.map((run) => run.summary.title || run.summary.case))];
+  return titles.slice(0, 3).join(" · ") + (titles.length > 3 ? ` and ${titles.length - 3} more` : "");
+}
 
 /** The card of a run: its name switches it, in all plots. */
 function card(store: Store, run: Run): HTMLElement {
   const swatch = el("i");
-  const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name} (key ${run.number + 1})`, onclick: () => store.toggle(run.number) }, swatch, run.name);
+  const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name}${run.number < 9 ? ` (key ${run.number + 1})` : ""}; with shift this run alone`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) }, swatch, run.name);
   const status = run.summary.status === "done" ? null : el("span.status", {}, run.summary.status);
   const element = el("article.card", {}, el("h2", {}, button, status),
     el("p.muted", {}, `${run.summary.scheme}, ${run.summary.mass} mass`), findingsElement(run));
@@ -152,6 +155,7 @@ async function start(): Promise<void> {
     el("header.top", {},
       el("div", {}, el("h1", {}, title(runs)), sentence !== "" && el("p.conclusion", {}, sentence)),
       el("div.tools", {},
+        runs.length > 2 && el("button.small", { type: "button", onclick: () => store.all() }, "all runs"),
         el("button.small", { type: "button", title: "Keys (?)", onclick: () => help.showModal() }, "keys"),
         el("button.small", { type: "button", title: "Dark or light (t)", onclick: switchTheme }, "dark / light"))),
     el("div.cards", {}, ...runs.map((run) => card(store, run))),

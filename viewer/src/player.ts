@@ -32,7 +32,7 @@ export class Player {
     if (store.runs.length < 2) return place;
     const all = store.runs.map((run) => {
       const swatch = el("i");
-      const chip = el("button.chip", { type: "button", title: `Show or hide ${run.name}`, onclick: () => store.toggle(run.number) },
+      const chip = el("button.chip", { type: "button", title: `Show or hide ${run.name}; with shift this run alone`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) },
         swatch, el("span", {}, run.name));
       place.append(chip);
       return { run, swatch, chip };

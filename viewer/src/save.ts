@@ -13,7 +13,8 @@ export function saveBlob(blob: Blob, name: string): void {
 export function saveCsv(names: string[], columns: ArrayLike<number | null | undefined>[], name: string): void {
   const quoted = (text: string) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const lines = [names.map(quoted).join(",")];
-  for (let i = 0; i < (columns[0]?.length ?? 0); ++i) {
+  const rows = Math.max(0, ...columns.map((column) => column.length));
+  for (let i = 0; i < rows; ++i) {
     lines.push(
       columns
         .map((column) => column[i])
@@ -28,11 +29,19 @@ export function saveCanvas(canvas: HTMLCanvasElement, name: string): void {
   canvas.toBlob((blob) => blob && saveBlob(blob, name), "image/png");
 }
 
+/** What the colours of a picture mean. */
+export interface ColourKey {
+  name: string;
+  low: string;
+  high: string;
+  colours: string[];
+}
+
 /** A picture under a title and a line of coloured names. */
 export function withCaption(picture: HTMLCanvasElement, title: string, names: { text: string; colour: string }[],
-                            background: string, foreground: string): HTMLCanvasElement {
+                            background: string, foreground: string, bar?: ColourKey | null): HTMLCanvasElement {
   const scale = devicePixelRatio;
-  const head = Math.round((names.length > 0 ? 48 : 30) * scale);
+  const head = Math.round((names.length > 0 || bar ? 48 : 30) * scale);
   const canvas = document.createElement("canvas");
   canvas.width = picture.width;
   canvas.height = picture.height + head;
@@ -51,8 +60,21 @@ export function withCaption(picture: HTMLCanvasElement, title: string, names: { 
     context.fillText(text, x + 18 * scale, 39 * scale);
     x += 18 * scale + context.measureText(text).width + 16 * scale;
   }
+  if (bar) {
+    context.fillText(bar.low, x, 39 * scale);
+    x += context.measureText(bar.low).width + 6 * scale;
+    const width = (110 * scale) / bar.colours.length;
+    for (const colour of bar.colours) {
+      context.fillStyle = colour;
+      context.fillRect(x, 30 * scale, Math.ceil(width), 9 * scale);
+      x += width;
+    }
+    context.fillStyle = foreground;
+    context.fillText(`${bar.high}  ${bar.name}`, x + 6 * scale, 39 * scale);
+  }
   context.drawImage(picture, 0, head);
   return canvas;
 }
 
-export const fileName = (title: string) => title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
+/** Letters and digits of any script stay. */
+export const fileName = (title: string) => title.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "") || "run";

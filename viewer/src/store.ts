@@ -26,7 +26,8 @@ export class Store {
   private readonly waiting = new Set<Topic>();
 
   constructor(readonly runs: Run[]) {
-    this.visible = runs.map(() => true);
+    // Of very many the first ones, as many as there can be bodies in a page.
+    this.visible = runs.map((_, i) => i < 12);
     let start = Infinity;
     let end = -Infinity;
     for (const run of runs) {
@@ -72,6 +73,17 @@ export class Store {
   toggle(run: number): void {
     this.visible[run] = !this.visible[run];
     if (!this.visible.includes(true)) this.visible[run] = true; // one stays
+    this.changed("runs");
+  }
+
+  /** This run alone. */
+  only(run: number): void {
+    this.visible = this.runs.map((_, i) => i === run);
+    this.changed("runs");
+  }
+
+  all(): void {
+    this.visible = this.runs.map(() => true);
     this.changed("runs");
   }
 

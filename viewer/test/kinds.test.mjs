@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { ballRun, closeBrowser, fingerprint, folder, frictionRun, open, painted, report, settle, simulate } from "./support.mjs";
+import { ballRun, closeBrowser, fingerprint, folder, frictionRun, open, painted, report, ricochet, settle, simulate, source } from "./support.mjs";
 
 after(closeBrowser);
 
@@ -70,6 +70,86 @@ test("a run without fields has its plots", async () => {
   const view = await open(report("plain", run));
   assert.match(await view.page.textContent("#moving"), /nothing to animate/);
   assert.ok((await painted(view.page, "#chart-energy canvas")) > 0.005);
+  assert.deepEqual(view.complaints, []);
+  await view.close();
+});
+
+const shortDisc = (name, settings = {}) => simulate("cases/disc/disc.toml", name, { "time.end": 0.01, "output.fields_every": 20, ...settings });
+
+test("every plot of every kind of run can be logarithmic, relative, and of any curve", async () => {
+  for (const run of [ballRun(), shortDisc("short"), frictionRun()]) {
+    const view = await open(report("log", run));
+    const { page } = view;
+    for (const select of await page.$$("select[data-chart]")) await select.selectOption("logarithmic");
+    await settle(page);
+    for (const button of await page.$$(".choice")) await button.click();
+    await settle(page);
+    await page.click("text=change, %");
+    for (const select of await page.$$("select[data-chart]")) await select.selectOption("all");
+    await settle(page);
+    for (const field of await page.$$eval("#field option", (all) => all.map((each) => each.value))) {
+      await page.selectOption("#field", field);
+      await settle(page);
+    }
+    assert.deepEqual(view.complaints, []);
+    await view.close();
+  }
+});
+
+test("runs of the plane and of space, of other sizes and ends, stand side by side", async () => {
+  const runs = [shortDisc("small"), ballRun(), simulate("cases/rod/rod.toml", "rod")];
+  const view = await open(report("mixed", ...runs));
+  const { page } = view;
+  for (const field of await page.$$eval("#field option", (all) => all.map((each) => each.value))) {
+    await page.selectOption("#field", field);
+    await settle(page);
+  }
+  await page.selectOption("#field", "von_mises");
+  await page.evaluate(() => window.ricochet.store.setTime(0.05));
+  await settle(page);
+  // Each body is in its panel: its corners are inside of what the camera sees.
+  const extents = await page.evaluate(() => window.ricochet.stage.panels.map(({ view }) => {
+    const { low, high } = view.box;
+    return [low, high].map((corner) => corner.map((x, k) => Math.abs(x / view.content.scale.x ** -1 + view.content.position.getComponent(k))));
+  }));
+  for (const corner of extents.flat(2)) assert.ok(corner < 0.7, String(corner));
+  // Forces of all runs are drawn, though their probes have other names; what has ended has no value.
+  const drawn = await page.evaluate(() => window.ricochet.charts.find((chart) => chart.id === "force").curves.map((curve) => curve.values.length));
+  assert.equal(drawn.length, 3);
+  assert.ok(drawn.every((rows) => rows > 50));
+  assert.match(await page.textContent("#chart-energy .legend"), /small –/);
+  assert.equal(await page.locator(".conclusion").count(), 0, "they answer different questions");
+  assert.deepEqual(view.complaints, []);
+  await view.close();
+});
+
+test("more runs than a browser can draw", async () => {
+  const runs = Array.from({ length: 14 }, (_, i) => shortDisc(`many/${i}`));
+  const view = await open(report("many", ...runs));
+  const { page } = view;
+  const drawn = () => page.evaluate(() => window.ricochet.stage.panels.filter(({ renderer }) => renderer).length);
+  assert.equal(await drawn(), 12);
+  await page.locator(".top button", { hasText: "all runs" }).click();
+  await settle(page);
+  assert.equal(await drawn(), 12);
+  assert.equal(await page.locator(".body-area .note:visible").count(), 2);
+  await page.click(".card:nth-child(14) .toggle", { modifiers: ["Shift"] });
+  await settle(page);
+  assert.equal(await drawn(), 1);
+  assert.equal(await page.locator(".body-area .note:visible").count(), 0);
+  assert.deepEqual(view.complaints.filter((each) => !/context/i.test(each)), []);
+  await view.close();
+});
+
+test("a run that failed is not recommended, nor one that nothing touched", async () => {
+  const bad = join(folder, "failed");
+  try {
+    ricochet("run", join(source, "cases/disc/disc.toml"), "-o", bad, "--quiet", "--set", "time.scheme=midpoint", "--set", "mass.type=consistent",
+      "--set", "check.on_failure=stop", "--set", "check.energy_residual=1e-18", "--set", "time.end=0.01");
+  } catch { /* status 3 */ }
+  const view = await open(report("bad", shortDisc("good"), bad));
+  assert.equal(await view.page.locator(".conclusion").count(), 0);
+  assert.match(await view.page.textContent(".card:nth-child(2)"), /failed/);
   assert.deepEqual(view.complaints, []);
   await view.close();
 });

@@ -13,11 +13,12 @@ export function fieldNames(runs: Run[]): string[] {
   for (const run of runs) {
     if (!run.body) continue;
     for (const field of run.body.fields) names.add(field.name);
-    names.add("displacement");
-    for (let k = 0; k < run.body.dimension; ++k) names.add(`displacement_${axes[k]}`);
+    if (run.body.deviations.length > 0) names.add("displacement");
+    for (let k = 0; k < run.body.deviations.length; ++k) names.add(`displacement_${axes[k]}`);
   }
+  // In the plane the boundary is a line, without a colour of its own: maps and bars show these.
   for (const name of contactOrder)
-    if (runs.some((run) => run.contact?.quantities.some((quantity) => quantity.name === name))) names.add(name);
+    if (runs.some((run) => run.summary.dimension === 3 && run.contact?.quantities.some((quantity) => quantity.name === name))) names.add(name);
   return [...names];
 }
 
@@ -39,6 +40,7 @@ export function fieldAt(run: Run, name: string, frame: number, out?: Float32Arra
   if (!body || name === "") return null;
   const room = (size: number) => (out?.length === size ? out : new Float32Array(size));
   if (name.startsWith("displacement")) {
+    if (name !== "displacement" && axes.indexOf(name.slice(-1)) >= body.deviations.length) return null;
     const values = room(body.nodes);
     fillDisplacement(body, name === "displacement" ? -1 : axes.indexOf(name.slice(-1)), frame, values);
     return { onNodes: true, values, isStatus: false };

@@ -13,7 +13,7 @@ export class ObstacleView {
     private readonly obstacles: Obstacles,
     private readonly middle: number[],
     private readonly size: number,
-    scene: three.Scene,
+    scene: three.Object3D,
   ) {
     const cells = obstacles.cells.length / obstacles.corners;
     const plane = obstacles.corners === 2;

@@ -4,10 +4,10 @@ import { themeColour } from "../colours";
 import type { Run } from "../data/run";
 import { el } from "../elements";
 import { fieldName, number, statusNames } from "../format";
-import { colourBar } from "../maps/colour_bar";
+import { colourBar, colourKey } from "../maps/colour_bar";
 import { fileName, saveCanvas, withCaption } from "../save";
 import type { Store } from "../store";
-import { diagonal, emptyBox, join } from "./geometry";
+import { diagonal, emptyBox, join, type Box } from "./geometry";
 import { BodyView } from "./view";
 
 /** The panel in which one run's body is seen. */
@@ -18,7 +18,19 @@ export interface BodyPanel {
   renderer: three.WebGLRenderer | null;
   message: HTMLElement;
   tip: HTMLElement;
+  /** Width and height of the part of space that it shows. */
+  sides: [number, number];
   caption: () => void;
+}
+
+/** In degrees. */
+const fieldOfView = 32;
+
+/** Boxes of about one size at about one place. */
+function sameBody(a: Box, b: Box): boolean {
+  const sizes = [diagonal(a), diagonal(b)];
+  const apart = Math.hypot(...a.low.map((low, k) => (low + a.high[k] - b.low[k] - b.high[k]) / 2));
+  return Math.max(...sizes) <= 1.5 * Math.min(...sizes) && apart <= 0.5 * Math.min(...sizes);
 }
 
 /** Browsers have no more than 16 drawings with WebGL in a page. */
@@ -36,13 +48,10 @@ export class Stage {
   private readonly plane: boolean;
   private waiting = false;
   private stale = true;
-  private centre = new three.Vector3();
-  private size = 1;
-  private sides = [1, 1];
 
   constructor(private readonly store: Store) {
     this.plane = store.runs.every((run) => run.summary.dimension === 2);
-    this.camera = this.plane ? new three.OrthographicCamera(-1, 1, 1, -1, 0.1, 10) : new three.PerspectiveCamera(32, 1, 0.1, 10);
+    this.camera = this.plane ? new three.OrthographicCamera(-1, 1, 1, -1, 0.1, 10) : new three.PerspectiveCamera(fieldOfView, 1, 0.1, 10);
     this.camera.up.set(0, this.plane ? 1 : 0, this.plane ? 0 : 1);
     for (const topic of ["time", "runs", "body", "theme", "contact"] as const) store.on(topic, () => this.redraw(true));
     const triangles = store.runs.reduce((sum, run) => sum + (run.body?.triangles ?? 0), 0);
@@ -61,7 +70,8 @@ export class Stage {
     const element = el("div.body", {}, area, el("div.body-foot", {}, time,
       el("button.small", { type: "button", title: "Save the picture", onclick: () => {
         this.draw();
-        saveCanvas(withCaption(panel.canvas, `${run.name}, t = ${number(this.store.time, 4)}`, [], themeColour("panel"), themeColour("text")), `${fileName(run.name)}-body.png`);
+        saveCanvas(withCaption(panel.canvas, `${run.name}, t = ${number(this.store.time, 4)}`, [], themeColour("panel"), themeColour("text"),
+          view.values && colourKey(fieldName(this.store.field), view.values.isStatus ? null : view.range)), `${fileName(run.name)}-body.png`);
       } }, "PNG")), colours);
     const caption = () => {
       time.textContent = `t = ${number(run.body!.times[view.frame] ?? 0, 5)}`;
@@ -69,7 +79,7 @@ export class Stage {
       if (!view.values) colours.replaceChildren();
       else colours.replaceChildren(colourBar(name, view.values.isStatus ? null : view.range));
     };
-    const panel: BodyPanel = { element, view, canvas, renderer: null, message, tip, caption };
+    const panel: BodyPanel = { element, view, canvas, renderer: null, message, tip, sides: [1, 1], caption };
     this.panels.push(panel);
     this.connect(panel);
     this.fit();
@@ -99,16 +109,30 @@ export class Stage {
     canvas.addEventListener("pointerleave", () => (panel.tip.hidden = true));
   }
 
-  /** The part of space that all bodies need; one that flies far away does not make the others small. */
+  /**
+   * The part of space that a panel shows, made to have the size 1. Runs of one body show the same part: what all of them
+   * need but those that fly far away. Other bodies have parts of their own.
+   */
   private fit(): void {
-    const boxes = this.panels.map(({ view }) => view.box);
-    const smallest = Math.min(...boxes.map(diagonal));
-    const box = boxes.filter((each) => diagonal(each) <= 1.5 * smallest).reduce(join, emptyBox());
-    // Room for the pressures' bars below.
-    if (this.plane) box.low[1] -= 0.16 * diagonal(box);
-    this.sides = [box.high[0] - box.low[0], box.high[1] - box.low[1]];
-    this.centre.set(...(box.low.map((low, k) => (low + box.high[k]) / 2) as [number, number, number]));
-    this.size = diagonal(box);
+    const groups: BodyPanel[][] = [];
+    for (const panel of this.panels) {
+      const group = groups.find(([first]) => sameBody(first.view.start, panel.view.start));
+      if (group) group.push(panel);
+      else groups.push([panel]);
+    }
+    for (const group of groups) {
+      const boxes = group.map(({ view }) => view.box);
+      const smallest = Math.min(...boxes.map(diagonal));
+      const box = boxes.filter((each) => diagonal(each) <= 1.5 * smallest).reduce(join, emptyBox());
+      const size = diagonal(box) || 1;
+      // Room for the pressures' bars below.
+      if (this.plane) box.low[1] -= 0.16 * size;
+      const centre = new three.Vector3(...(box.low.map((low, k) => (low + box.high[k]) / 2) as [number, number, number]));
+      for (const panel of group) {
+        panel.view.place(centre, size);
+        panel.sides = [(box.high[0] - box.low[0]) / size, (box.high[1] - box.low[1]) / size];
+      }
+    }
     this.look("front");
   }
 
@@ -120,11 +144,12 @@ export class Stage {
       below: this.plane ? [0, 0, 1] : [0.25, -0.5, -1],
     };
     const direction = new three.Vector3(...(directions[from] as [number, number, number])).normalize();
-    const distance = this.plane ? 2 * this.size : 1.5 * this.size;
-    this.target.copy(this.centre);
-    this.camera.position.copy(this.centre).addScaledVector(direction, distance);
-    this.camera.near = 0.02 * this.size;
-    this.camera.far = 20 * this.size;
+    // In space the ball around what is to be seen just fits.
+    const distance = this.plane ? 2 : 0.52 / Math.sin((0.5 * fieldOfView * Math.PI) / 180);
+    this.target.set(0, 0, 0);
+    this.camera.position.copy(direction).multiplyScalar(distance);
+    this.camera.near = 0.02;
+    this.camera.far = 20;
     this.camera.zoom = 1;
     this.camera.lookAt(this.target);
     for (const controls of this.controls) controls.update();
@@ -160,7 +185,7 @@ export class Stage {
       const size = renderer.getSize(new three.Vector2());
       const [wide, high] = [Math.round(width * scale), Math.round(height * scale)];
       if (size.x !== wide || size.y !== high) renderer.setSize(wide, high, false);
-      this.frameCamera(width / height);
+      this.frameCamera(panel, width / height);
       renderer.setClearColor(new three.Color().setStyle(themeColour("panel")));
       renderer.render(view.scene, this.camera);
       drew = true;
@@ -196,9 +221,9 @@ export class Stage {
     this.connect(panel);
   }
 
-  private frameCamera(aspect: number): void {
+  private frameCamera({ sides }: BodyPanel, aspect: number): void {
     if (this.camera instanceof three.OrthographicCamera) {
-      const half = 0.55 * Math.max(this.sides[1], this.sides[0] / aspect);
+      const half = 0.55 * Math.max(sides[1], sides[0] / aspect);
       this.camera.top = half;
       this.camera.bottom = -half;
       this.camera.left = -half * aspect;
@@ -209,13 +234,14 @@ export class Stage {
     this.camera.updateProjectionMatrix();
   }
 
-  private showValue({ view, canvas, tip }: BodyPanel, event: PointerEvent): void {
+  private showValue(panel: BodyPanel, event: PointerEvent): void {
+    const { view, canvas, tip } = panel;
     if (event.buttons !== 0 || this.store.playing) {
       tip.hidden = true;
       return;
     }
     const box = canvas.getBoundingClientRect();
-    this.frameCamera(box.width / box.height);
+    this.frameCamera(panel, box.width / box.height);
     const ray = new three.Raycaster();
     ray.setFromCamera(new three.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height), this.camera);
     const hit = view.pick(ray);

@@ -13,7 +13,11 @@ import { ObstacleView } from "./obstacles";
 /** One run's body with its obstacles and contact forces, as three.js draws it. */
 export class BodyView {
   readonly scene = new three.Scene();
+  /** What is drawn; placed and scaled so that its panel shows it. */
+  private readonly content = new three.Group();
+  /** Around the body in all its frames, and at the start. */
   readonly box: Box;
+  readonly start: Box;
   frame = -1;
   range: ColourRange | null = null;
   values: FieldValues | null = null;
@@ -39,10 +43,11 @@ export class BodyView {
     this.reference = referencePositions(body);
     this.positions = new Float32Array(this.reference.length);
     this.box = boxOverTime(body, this.reference);
-    this.size = diagonal(boxOf(this.reference));
+    this.start = boxOf(this.reference);
+    this.size = diagonal(this.start);
     const plane = body.dimension === 2;
     this.outlineSides = plane ? outlineOf(body) : new Int32Array(0);
-    this.normals = new OutwardNormals(body, this.outlineSides);
+    this.normals = new OutwardNormals(body, contactSides(this.outlineSides, run));
     this.normals.update(this.reference);
 
     const geometry = new three.BufferGeometry();
@@ -64,11 +69,19 @@ export class BodyView {
     this.bars = new three.Mesh(bars, new three.MeshBasicMaterial({ vertexColors: true, side: three.DoubleSide }));
     for (const object of [this.mesh, this.outline, this.bars]) {
       object.frustumCulled = false; // what is drawn moves
-      this.scene.add(object);
+      this.content.add(object);
     }
-    const centre = boxOf(this.reference);
-    const middle = centre.low.map((low, k) => (low + centre.high[k]) / 2);
-    this.obstacles = run.obstacles ? new ObstacleView(run.obstacles, middle, this.size, this.scene) : null;
+    this.scene.add(this.content);
+    const { low, high } = this.start;
+    const middle = low.map((value, k) => (value + high[k]) / 2);
+    this.obstacles = run.obstacles ? new ObstacleView(run.obstacles, middle, this.size, this.content) : null;
+  }
+
+  /** Puts this point of space into the middle and makes this length 1. */
+  place(centre: three.Vector3, length: number): void {
+    this.content.scale.setScalar(1 / length);
+    this.content.position.copy(centre).multiplyScalar(-1 / length);
+    this.content.updateMatrixWorld(true);
   }
 
   /** Everything that depends on time and choices. Returns whether anything has to be drawn again. */
@@ -147,7 +160,7 @@ export class BodyView {
     const ofStatus = [-1, 0, 1, 2, 3].map((each) => new three.Color(statusColour(each)).toArray());
     contact.nodes.forEach((node, i) => {
       const value = Math.min(valueAt(pressure, row, i) * this.barScale!, 0.5 * this.size);
-      const [red, green, blue] = ofStatus[status ? valueAt(status, row, i) + 1 : 2];
+      const [red, green, blue] = ofStatus[status ? valueAt(status, row, i) + 1 : 2] ?? ofStatus[0];
       for (let corner = 0; corner < 6; ++corner) {
         const out = [0, 0, 1, 1, 0, 1][corner];
         const side = [-1, 1, 1, 1, -1, -1][corner];
@@ -188,20 +201,31 @@ export class BodyView {
   /** What is under a ray: the value of the field and where it is. */
   pick(ray: three.Raycaster): { value: number; place: three.Vector3 } | null {
     this.mesh.geometry.boundingSphere = null;
+    this.mesh.geometry.boundingBox = null;
     const hit = ray.intersectObject(this.mesh, false)[0];
     if (!hit || hit.faceIndex === null || hit.faceIndex === undefined) return null;
-    if (!this.values) return { value: NaN, place: hit.point };
+    const place = this.content.worldToLocal(hit.point.clone());
+    if (!this.values) return { value: NaN, place };
     const t = hit.faceIndex;
     let value: number;
     if (!this.values.onNodes) {
       value = this.values.values[this.body.triangleCells[t]];
     } else {
       const nodes = [0, 1, 2].map((k) => this.body.corners[3 * t + k]);
-      const distances = nodes.map((n) => hit.point.distanceTo(new three.Vector3().fromArray(this.positions, 3 * n)));
+      const distances = nodes.map((n) => place.distanceTo(new three.Vector3().fromArray(this.positions, 3 * n)));
       value = this.values.values[nodes[distances.indexOf(Math.min(...distances))]];
     }
-    return { value, place: hit.point };
+    return { value, place };
   }
+}
+
+/** Of an outline the sides between nodes of the contact boundary: at its ends no others take part. */
+function contactSides(outline: Int32Array, run: Run): Int32Array {
+  const nodes = new Set(run.contact?.nodes);
+  const sides: number[] = [];
+  for (let i = 0; i < outline.length; i += 2)
+    if (nodes.has(outline[i]) && nodes.has(outline[i + 1])) sides.push(outline[i], outline[i + 1]);
+  return Int32Array.from(sides);
 }
 
 function expand(positions: Float32Array, corners: Int32Array, out: Float32Array): void {

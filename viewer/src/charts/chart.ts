@@ -6,7 +6,8 @@ import { columnName, number } from "../format";
 import { fileName, saveCanvas, saveCsv, withCaption } from "../save";
 import type { Store } from "../store";
 import type { ChartDefinition } from "./definitions";
-import { chooseRange, extentOf, type ScaleMode } from "./scale";
+import { axisWidth, tickTexts } from "./axes";
+import { chooseRange, extentOf, logarithmicRange, powersOfTen, type ScaleMode } from "./scale";
 import { joined, type Curve } from "./table";
 
 interface Series extends Curve {
@@ -168,6 +169,7 @@ export class TimeChart {
       range.low = Math.min(range.low, 0);
       range.high = Math.max(range.high, 0);
     }
+    const decades = logarithmicRange(this.series.map((series) => series.values));
     this.outside.replaceChildren(
       ...range.outside.map((e) => {
         const far = Math.abs(e.high) >= Math.abs(e.low) ? e.high : e.low;
@@ -188,7 +190,7 @@ export class TimeChart {
       legend: { show: false },
       scales: {
         x: { time: false, range: (_, low, high) => this.store.zoom ?? [Math.min(low, this.store.start), Math.max(high, this.store.end)] },
-        y: logarithmic ? { distr: 3 } : { range: () => [range.low, range.high] },
+        y: logarithmic ? { distr: 3, range: () => decades } : { range: () => [range.low, range.high] },
       },
       series: [
         {},
@@ -200,8 +202,10 @@ export class TimeChart {
         })),
       ],
       axes: [
-        { ...axis, label: "time", labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 34 },
-        { ...axis, size: 70, values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : number(tick, 6))) },
+        { ...axis, label: "time", labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 34, space: 80, values: tickTexts },
+        // uPlot's own ticks do not end where numbers are very small.
+        logarithmic ? { ...axis, size: axisWidth, values: tickTexts, splits: () => powersOfTen(decades), filter: (_, splits) => splits }
+          : { ...axis, size: axisWidth, values: tickTexts },
       ],
       cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { size: 7 } },
       hooks: {
@@ -303,15 +307,15 @@ export class TimeChart {
   /** Each curve with its own times: energies and forces of a scheme may be those of different instants. */
   private saveNumbers(): void {
     const names = this.series.flatMap(({ run, column }) => [`${run.name}: time of ${column}`, `${run.name}: ${column}`]);
-    const longest = Math.max(0, ...this.series.map((s) => s.times.length));
-    const padded = (values: Float64Array) => Array.from({ length: longest }, (_, i) => values[i]);
-    const columns = this.series.flatMap(({ times, values }) => [padded(times), padded(values)]);
+    const columns = this.series.flatMap(({ times, values }) => [times, values]);
     saveCsv(names, columns, `${fileName(this.definition.title)}.csv`);
   }
 }
 
-/** The value of the row nearest in time. */
+/** The value of the row nearest in time; none after the end of the run. */
 function valueNear({ times, values }: Curve, time: number): number {
+  const last = times.length - 1;
+  if (time > times[last] + 1.5 * (times[last] - times[Math.max(last - 2, 0)])) return NaN;
   let low = 0;
   let high = times.length - 1;
   while (low < high) {

@@ -46,14 +46,15 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
   const some = (names: string[], otherwise: string[]) => (names.length > 0 ? names : otherwise.slice(0, 1));
 
   const force = runs[0].data.judgement.force;
-  const forces = present([force, ...matching(/^contact_force_/), ...matching(/\.(reaction_|pressure$|force_)/)]);
+  const oneForce = runs.every((run) => run.data.judgement.force === force);
+  const forces = [...(oneForce ? [] : ["@force"]), ...present([force, ...matching(/^contact_force_/), ...matching(/\.(reaction_|pressure$|force_)/)])];
   const momenta = matching(/^(angular_)?momentum_/);
   const probes = all.filter((name) => name.includes("."));
   const list: ChartDefinition[] = [
     {
       id: "energy",
       title: "Energy",
-      note: "Where nothing adds energy it must not rise.",
+      note: runs.every((run) => run.data.judgement.is_isolated) ? "Nothing adds energy here: it must not rise." : "",
       columns: present(energies),
       shown: runs.length > 1 ? ["total_energy"] : some(active(energies.slice(0, 4)), energies),
       fromZero: true,
@@ -65,7 +66,7 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
       title: "Contact force",
       note: "A force that jumps from step to step is the scheme's, not the body's.",
       columns: [...new Set(forces)],
-      shown: [force],
+      shown: [oneForce ? force : "@force"],
       fromZero: true,
     },
     {

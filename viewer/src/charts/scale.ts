@@ -56,8 +56,36 @@ export function extentOf(name: string, values: ArrayLike<number>): Extent {
   let high = -Infinity;
   for (let i = 0; i < values.length; ++i) {
     const value = values[i];
+    if (!Number.isFinite(value)) continue;
     if (value < low) low = value;
     if (value > high) high = value;
   }
   return { name, low, high };
+}
+
+/** Whole decades around all that is positive, sixteen at most. */
+export function logarithmicRange(columns: ArrayLike<number>[]): [number, number] {
+  let low = Infinity;
+  let high = 0;
+  for (const values of columns) {
+    for (let i = 0; i < values.length; ++i) {
+      const value = values[i];
+      if (!(value > 0) || value === Infinity) continue;
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  if (high === 0) return [1, 10];
+  const top = Math.ceil(Math.log10(high) + 1e-9);
+  const bottom = Math.max(Math.floor(Math.log10(low)), top - 16, -307);
+  return [10 ** bottom, 10 ** Math.max(top, bottom + 1)];
+}
+
+/** Six of them at most. */
+export function powersOfTen([low, high]: [number, number]): number[] {
+  const [first, last] = [Math.round(Math.log10(low)), Math.round(Math.log10(high))];
+  const step = Math.max(1, Math.ceil((last - first) / 5));
+  const result: number[] = [];
+  for (let power = first; power <= last; power += step) result.push(10 ** power);
+  return result;
 }

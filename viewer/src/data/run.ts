@@ -71,22 +71,29 @@ export class Run {
     private readonly blobs: Blobs,
   ) {
     this.name = data.name;
-    this.summary = data.summary;
+    // What older versions did not write.
+    this.summary = { ...{ checks: {}, expectations: [], parameters: {}, warnings: [], solver: "–", libraries: "–", factor_entries: 0 }, ...data.summary };
+  }
+
+  /** The run's own name of a column: "@force" is what its contact force is judged by. */
+  private own(name: string): string {
+    return name === "@force" ? this.data.judgement.force : name;
   }
 
   /** Times of the rows at which a column's numbers hold: energies and forces have their own instants. */
-  timesOf(column: string): Float64Array {
+  timesOf(name: string): Float64Array {
+    const column = this.own(name);
     const times = this.ownTimes.get(column) ?? this.column("time");
     const shift = this.shiftOf(column) * this.summary.time_step;
     return shift === 0 ? times : times.map((time) => time + shift);
   }
 
   column(name: string): Float64Array {
-    return this.history.get(name) ?? new Float64Array(0);
+    return this.history.get(this.own(name)) ?? new Float64Array(0);
   }
 
   has(name: string): boolean {
-    return this.history.has(name);
+    return this.history.has(this.own(name));
   }
 
   private shiftOf(column: string): number {

@@ -13,6 +13,10 @@ export interface PackedArray {
 }
 
 export interface Judgement {
+  /** When a number is not finite for the first time: the others say nothing then. */
+  energy_broken_at: number | null;
+  force_broken_at: number | null;
+  penetration_broken_at: number | null;
   energy_scale: number;
   is_isolated: boolean;
   energy_gain: number;
@@ -25,7 +29,8 @@ export interface Judgement {
   trend_variation: number;
   roughness: number;
   penetration: number;
-  relative_penetration: number;
+  /** null: the body's size is not known. */
+  relative_penetration: number | null;
 }
 
 export interface ContactData {

@@ -1,6 +1,7 @@
 import { fieldCss, statusColour } from "../colours";
 import { el } from "../elements";
 import { number, statusNames } from "../format";
+import type { ColourKey } from "../save";
 import type { ColourRange } from "./colour_range";
 
 /** What colours mean: a bar with its range, or the names of what contact points do. */
@@ -15,4 +16,10 @@ export function colourBar(name: string, range: ColourRange | null, statuses: num
     el("i", { style: `background:linear-gradient(90deg,${stops})` }),
     el("span", {}, `${range.clipped ? "≥ " : ""}${number(range.high, 3)}`),
     el("span.muted", {}, name));
+}
+
+/** The same for a picture that is saved. */
+export function colourKey(name: string, range: ColourRange | null): ColourKey {
+  if (!range) return { name: statusNames.slice(1).join(", "), low: "", high: "", colours: [0, 1, 2, 3].map(statusColour) };
+  return { name, low: number(range.low, 3), high: `${range.clipped ? "≥ " : ""}${number(range.high, 3)}`, colours: Array.from({ length: 64 }, (_, i) => fieldCss(i / 63)) };
 }

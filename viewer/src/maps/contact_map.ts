@@ -5,7 +5,7 @@ import { el } from "../elements";
 import { fieldName, number, statusNames } from "../format";
 import { fileName, saveCanvas, saveCsv, withCaption } from "../save";
 import type { Store } from "../store";
-import { colourBar } from "./colour_bar";
+import { colourBar, colourKey } from "./colour_bar";
 import { colourRange, type ColourRange } from "./colour_range";
 
 const margin = { left: 66, right: 8, top: 6, bottom: 24 };
@@ -55,7 +55,8 @@ export class ContactMap {
     const values = this.values;
     if (!contact || !values) return NaN;
     const [start, end] = this.times;
-    const frame = indexAt(contact.times, start + x * (end - start));
+    const frame = this.frameAt(start + x * (end - start));
+    if (frame < 0) return NaN;
     const node = this.rowNodes[Math.min(Math.floor(y * this.rowNodes.length), this.rowNodes.length - 1)];
     return node < 0 ? NaN : valueAt(values, frame, node);
   }
@@ -96,12 +97,20 @@ export class ContactMap {
     this.showTime();
   }
 
+  /** −1 after the end of the run. */
+  private frameAt(time: number): number {
+    const { times } = this.run.contact!;
+    const last = times.length - 1;
+    const frame = indexAt(times, time);
+    return frame === last && time > times[last] + (times[last] - times[Math.max(last - 1, 0)]) ? -1 : frame;
+  }
+
   private picture(values: Levels, width: number, height: number): ImageData {
-    const { times, position, pieces } = this.run.contact!;
+    const { position, pieces } = this.run.contact!;
     const [start, end] = this.times;
     const frames = Int32Array.from({ length: width }, (_, x) => {
       const time = start + ((x + 0.5) / width) * (end - start);
-      return time > times[times.length - 1] + (end - start) / 200 ? -1 : indexAt(times, time);
+      return this.frameAt(time);
     });
     const whole = position[position.length - 1];
     this.rowNodes = Int32Array.from({ length: height }, (_, y) => {
@@ -187,8 +196,8 @@ export class ContactMap {
     if (!this.store.playing || pressed) this.store.setTime(start + x * (end - start), this);
     const value = this.valueAtFraction(x, y);
     const node = this.rowNodes[Math.min(Math.floor(y * this.rowNodes.length), this.rowNodes.length - 1)];
-    this.tip.hidden = node < 0;
-    if (node < 0) return;
+    this.tip.hidden = node < 0 || Number.isNaN(value);
+    if (this.tip.hidden) return;
     const text = this.isStatus ? statusNames[Math.round(value) + 1] : number(value, 4);
     this.tip.textContent = `${fieldName(this.store.quantity)} ${text} at ${number(this.run.contact!.position[node], 4)}`;
     this.tip.style.left = `${Math.min(event.clientX - box.left + 12, box.width - 190)}px`;
@@ -196,7 +205,7 @@ export class ContactMap {
   }
 
   private savePicture(): void {
-    saveCanvas(withCaption(this.canvas, `${fieldName(this.store.quantity)}, ${this.run.name}`, [], themeColour("panel"), themeColour("text")),
+    saveCanvas(withCaption(this.canvas, `${fieldName(this.store.quantity)}, ${this.run.name}`, [], themeColour("panel"), themeColour("text"), colourKey(fieldName(this.store.quantity), this.range)),
       `${fileName(this.run.name)}-${fileName(this.store.quantity)}.png`);
   }
 

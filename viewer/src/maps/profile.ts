@@ -1,4 +1,5 @@
 import uPlot from "uplot";
+import { axisWidth, tickTexts } from "../charts/axes";
 import { chooseRange } from "../charts/scale";
 import { runColour, themeColour } from "../colours";
 import { valueAt } from "../data/decode";
@@ -91,8 +92,8 @@ export class ProfileChart {
       scales: { x: { time: false }, y: { range: () => [low, high] } },
       series: [{}, ...profiles.map((p) => ({ stroke: runColour(p.run.number), width: 1.4, spanGaps: true,
         points: { show: true, size: 4 } }))],
-      axes: [{ ...axis, label: "along the boundary", labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 34 },
-        { ...axis, size: 70, values: (_, ticks) => ticks.map((tick) => (isStatus ? statusNames[tick + 1] ?? "" : number(tick, 6))) }],
+      axes: [{ ...axis, label: "along the boundary", labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 34, space: 80, values: tickTexts },
+        { ...axis, size: isStatus ? 70 : axisWidth, values: (_, ticks) => ticks.map((tick) => (isStatus ? statusNames[tick + 1] ?? "" : number(tick, 6))) }],
       cursor: { y: false, drag: { x: false, y: false } },
       hooks: {
         setCursor: [({ cursor, posToVal }) => {
