@@ -34,7 +34,7 @@ await picture(ball, "report-ball.png", { width: 1300, height: 900 }, () => {
   store.set("field", "contact_pressure", "body");
   store.set("showMesh", true, "body");
   stage.look("below");
-  stage.camera.zoom = 2;
+  stage.lenses.space.camera.zoom = 2;
   document.querySelector("#bodies").scrollIntoView();
 });
 for (const colorScheme of ["light", "dark"])

@@ -79,7 +79,7 @@ export class ObstacleView {
     const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
     const normal: [number, number] = [(a[1] - b[1]) / length, (b[0] - a[0]) / length];
     const side = normal[0] * (this.middle[0] - a[0]) + normal[1] * (this.middle[1] - a[1]) > 0 ? -1 : 1;
-    return [side * normal[0] * 0.6 * this.size, side * normal[1] * 0.6 * this.size];
+    return [side * normal[0] * 4 * this.size, side * normal[1] * 4 * this.size];
   }
 }
 

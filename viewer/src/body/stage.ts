@@ -18,6 +18,7 @@ export interface BodyPanel {
   renderer: three.WebGLRenderer | null;
   message: HTMLElement;
   tip: HTMLElement;
+  lens: Lens;
   /** Width and height of the part of space that it shows. */
   sides: [number, number];
   caption: () => void;
@@ -36,23 +37,30 @@ function sameBody(a: Box, b: Box): boolean {
 /** Browsers have no more than 16 drawings with WebGL in a page. */
 const mostRenderers = 12;
 
-/** Draws all bodies with one camera: the panels show the same part of space. */
+/** What plane bodies are seen by, and what those in space are: panels of one kind show the same part of space. */
+interface Lens {
+  camera: three.OrthographicCamera | three.PerspectiveCamera;
+  target: three.Vector3;
+  controls: OrbitControls[];
+}
+
+function makeLens(plane: boolean): Lens {
+  const camera = plane ? new three.OrthographicCamera(-1, 1, 1, -1, 0.1, 10) : new three.PerspectiveCamera(fieldOfView, 1, 0.1, 10);
+  camera.up.set(0, plane ? 1 : 0, plane ? 0 : 1);
+  return { camera, target: new three.Vector3(), controls: [] };
+}
+
+/** Draws all bodies. */
 export class Stage {
   readonly panels: BodyPanel[] = [];
   /** Pictures drawn so far. */
   pictures = 0;
   private readonly antialias: boolean;
-  private readonly camera: three.OrthographicCamera | three.PerspectiveCamera;
-  private readonly target = new three.Vector3();
-  private readonly controls: OrbitControls[] = [];
-  private readonly plane: boolean;
+  private readonly lenses = { plane: makeLens(true), space: makeLens(false) };
   private waiting = false;
   private stale = true;
 
   constructor(private readonly store: Store) {
-    this.plane = store.runs.every((run) => run.summary.dimension === 2);
-    this.camera = this.plane ? new three.OrthographicCamera(-1, 1, 1, -1, 0.1, 10) : new three.PerspectiveCamera(fieldOfView, 1, 0.1, 10);
-    this.camera.up.set(0, this.plane ? 1 : 0, this.plane ? 0 : 1);
     for (const topic of ["time", "runs", "body", "theme", "contact"] as const) store.on(topic, () => this.redraw(true));
     const triangles = store.runs.reduce((sum, run) => sum + (run.body?.triangles ?? 0), 0);
     // Without a graphics card smooth edges take two thirds of the time.
@@ -61,6 +69,7 @@ export class Stage {
 
   add(run: Run): BodyPanel {
     const view = new BodyView(run, this.store);
+    const lens = run.summary.dimension === 2 ? this.lenses.plane : this.lenses.space;
     const canvas = el("canvas", { tabIndex: 0, role: "img", "aria-label": `The body of ${run.name}` });
     const tip = el("div.tip", { hidden: true });
     const message = el("p.note", { hidden: true });
@@ -79,7 +88,7 @@ export class Stage {
       if (!view.values) colours.replaceChildren();
       else colours.replaceChildren(colourBar(name, view.values.isStatus ? null : view.range));
     };
-    const panel: BodyPanel = { element, view, canvas, renderer: null, message, tip, sides: [1, 1], caption };
+    const panel: BodyPanel = { element, view, canvas, renderer: null, message, tip, lens, sides: [1, 1], caption };
     this.panels.push(panel);
     this.connect(panel);
     this.fit();
@@ -88,23 +97,24 @@ export class Stage {
   }
 
   private connect(panel: BodyPanel): void {
-    const { canvas } = panel;
-    const controls = new OrbitControls(this.camera, canvas);
-    controls.target = this.target;
+    const { canvas, lens } = panel;
+    const plane = lens === this.lenses.plane;
+    const controls = new OrbitControls(lens.camera, canvas);
+    controls.target = lens.target;
     controls.enableZoom = false; // the wheel scrolls the page until the panel has the focus
     controls.screenSpacePanning = true;
-    if (this.plane) {
+    if (plane) {
       controls.enableRotate = false;
       controls.mouseButtons.LEFT = three.MOUSE.PAN;
     }
-    controls.touches = { ONE: this.plane ? three.TOUCH.PAN : three.TOUCH.ROTATE, TWO: this.plane ? three.TOUCH.DOLLY_PAN : three.TOUCH.DOLLY_ROTATE };
+    controls.touches = { ONE: plane ? three.TOUCH.PAN : three.TOUCH.ROTATE, TWO: plane ? three.TOUCH.DOLLY_PAN : three.TOUCH.DOLLY_ROTATE };
     controls.addEventListener("change", () => this.redraw(false));
     canvas.addEventListener("focus", () => (controls.enableZoom = true));
     canvas.addEventListener("blur", () => (controls.enableZoom = false));
     canvas.addEventListener("pointerdown", () => canvas.focus({ preventScroll: true }));
     canvas.addEventListener("dblclick", () => this.look("front"));
     canvas.style.touchAction = "pan-y";
-    this.controls.push(controls);
+    lens.controls.push(controls);
     canvas.addEventListener("pointermove", (event) => this.showValue(panel, event));
     canvas.addEventListener("pointerleave", () => (panel.tip.hidden = true));
   }
@@ -116,7 +126,7 @@ export class Stage {
   private fit(): void {
     const groups: BodyPanel[][] = [];
     for (const panel of this.panels) {
-      const group = groups.find(([first]) => sameBody(first.view.start, panel.view.start));
+      const group = groups.find(([first]) => first.lens === panel.lens && sameBody(first.view.start, panel.view.start));
       if (group) group.push(panel);
       else groups.push([panel]);
     }
@@ -126,7 +136,7 @@ export class Stage {
       const box = boxes.filter((each) => diagonal(each) <= 1.5 * smallest).reduce(join, emptyBox());
       const size = diagonal(box) || 1;
       // Room for the pressures' bars below.
-      if (this.plane) box.low[1] -= 0.16 * size;
+      if (group[0].lens === this.lenses.plane) box.low[1] -= 0.16 * size;
       const centre = new three.Vector3(...(box.low.map((low, k) => (low + box.high[k]) / 2) as [number, number, number]));
       for (const panel of group) {
         panel.view.place(centre, size);
@@ -137,22 +147,20 @@ export class Stage {
   }
 
   look(from: "front" | "side" | "top" | "below"): void {
-    const directions = {
-      front: this.plane ? [0, 0, 1] : [0.5, -1, 0.28],
-      side: this.plane ? [0, 0, 1] : [1, 0, 0.05],
-      top: this.plane ? [0, 0, 1] : [0.001, -0.01, 1],
-      below: this.plane ? [0, 0, 1] : [0.25, -0.5, -1],
-    };
-    const direction = new three.Vector3(...(directions[from] as [number, number, number])).normalize();
-    // In space the ball around what is to be seen just fits.
-    const distance = this.plane ? 2 : 0.52 / Math.sin((0.5 * fieldOfView * Math.PI) / 180);
-    this.target.set(0, 0, 0);
-    this.camera.position.copy(direction).multiplyScalar(distance);
-    this.camera.near = 0.02;
-    this.camera.far = 20;
-    this.camera.zoom = 1;
-    this.camera.lookAt(this.target);
-    for (const controls of this.controls) controls.update();
+    const directions = { front: [0.5, -1, 0.28], side: [1, 0, 0.05], top: [0.001, -0.01, 1], below: [0.25, -0.5, -1] };
+    for (const lens of [this.lenses.plane, this.lenses.space]) {
+      const plane = lens === this.lenses.plane;
+      const direction = new three.Vector3(...((plane ? [0, 0, 1] : directions[from]) as [number, number, number])).normalize();
+      // In space the ball around what is to be seen just fits.
+      const distance = plane ? 2 : 0.52 / Math.sin((0.5 * fieldOfView * Math.PI) / 180);
+      lens.target.set(0, 0, 0);
+      lens.camera.position.copy(direction).multiplyScalar(distance);
+      lens.camera.near = 0.02;
+      lens.camera.far = 20;
+      lens.camera.zoom = 1;
+      lens.camera.lookAt(lens.target);
+      for (const controls of lens.controls) controls.update();
+    }
     this.redraw(false);
   }
 
@@ -187,7 +195,7 @@ export class Stage {
       if (size.x !== wide || size.y !== high) renderer.setSize(wide, high, false);
       this.frameCamera(panel, width / height);
       renderer.setClearColor(new three.Color().setStyle(themeColour("panel")));
-      renderer.render(view.scene, this.camera);
+      renderer.render(view.scene, panel.lens.camera);
       drew = true;
     }
     this.stale = false;
@@ -221,17 +229,17 @@ export class Stage {
     this.connect(panel);
   }
 
-  private frameCamera({ sides }: BodyPanel, aspect: number): void {
-    if (this.camera instanceof three.OrthographicCamera) {
+  private frameCamera({ sides, lens: { camera } }: BodyPanel, aspect: number): void {
+    if (camera instanceof three.OrthographicCamera) {
       const half = 0.55 * Math.max(sides[1], sides[0] / aspect);
-      this.camera.top = half;
-      this.camera.bottom = -half;
-      this.camera.left = -half * aspect;
-      this.camera.right = half * aspect;
+      camera.top = half;
+      camera.bottom = -half;
+      camera.left = -half * aspect;
+      camera.right = half * aspect;
     } else {
-      this.camera.aspect = aspect;
+      camera.aspect = aspect;
     }
-    this.camera.updateProjectionMatrix();
+    camera.updateProjectionMatrix();
   }
 
   private showValue(panel: BodyPanel, event: PointerEvent): void {
@@ -243,11 +251,11 @@ export class Stage {
     const box = canvas.getBoundingClientRect();
     this.frameCamera(panel, box.width / box.height);
     const ray = new three.Raycaster();
-    ray.setFromCamera(new three.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height), this.camera);
+    ray.setFromCamera(new three.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height), panel.lens.camera);
     const hit = view.pick(ray);
     tip.hidden = !hit;
     if (!hit) return;
-    const place = hit.place.toArray().slice(0, this.plane ? 2 : 3).map((x) => number(x, 3)).join(", ");
+    const place = hit.place.toArray().slice(0, panel.lens === this.lenses.plane ? 2 : 3).map((x) => number(x, 3)).join(", ");
     const value = !view.values ? "" : view.values.isStatus ? `${statusNames[Math.round(hit.value) + 1] ?? "off the boundary"} · ` : `${fieldName(this.store.field)} ${number(hit.value, 4)} · `;
     tip.textContent = `${value}at (${place})`;
     tip.style.left = `${Math.min(event.clientX - box.left + 12, box.width - 180)}px`;
