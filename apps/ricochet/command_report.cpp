@@ -40,6 +40,10 @@ int report(const ReportArguments& arguments) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: is there and is no report: name another file with -o, or move it away", output));
   }
+  if (arguments.output.empty() && fs::exists(output) && !is_report_of(output, arguments.directories)) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: is there and shows other runs: name another file with -o, or this one", output));
+  }
   Report page;
   read_with_patience(arguments.directories, [&] { page = make_report(arguments.directories, options); });
   write_durably(output, page.html);

@@ -33,13 +33,12 @@ plt.rcParams.update({
 
 
 def widths(panel):
-    """Of energies that lie upon one another those below are wider; of forces the smooth one, which lies on top."""
-    count = len(panel["curves"])
-    if count == 1:
-        return [0.8]
-    if "energy" in panel["y_label"]:
-        return [0.8 + 0.7 * min(count - 1 - i, 2) for i in range(count)]
-    return [0.6] * (count - 1) + [1.1]
+    """Of smooth curves that may lie upon one another those below are wider; those that rattle are thin."""
+    result, above = [], 0
+    for curve in reversed(panel["curves"]):
+        result.append(0.6 if curve["rattles"] else 0.9 + 0.9 * min(above, 2))
+        above += not curve["rattles"]
+    return result[::-1] if len(result) > 1 else [0.8]
 
 
 def literal(text):
@@ -59,7 +58,7 @@ def draw_curves(axes, panel, several):
     count = len(panel["curves"])
     for curve, width in zip(panel["curves"], widths(panel)):
         colour = COLOURS[curve["run"] % len(COLOURS)] if several else ALONE
-        axes.plot(curve["x"], curve["y"], color=colour, label=literal(curve["label"]), lw=width)
+        axes.plot(curve["x"], [math.nan if y is None else y for y in curve["y"]], color=colour, label=literal(curve["label"]), lw=width)
     axes.set_xlabel(panel["x_label"])
     axes.set_ylabel(literal(panel["y_label"]))
     if panel["logarithmic"]:
@@ -69,6 +68,9 @@ def draw_curves(axes, panel, several):
             axes.set_ylim(*panel["range"])
         axes.yaxis.set_major_formatter(ScalarFormatter(useMathText=True))
         axes.ticklabel_format(axis="y", scilimits=(-3, 4))
+    first, last = panel["times"]
+    margin = 0.02 * (last - first)
+    axes.set_xlim(first - margin, last + margin)
     axes.xaxis.set_major_locator(MaxNLocator(5))
     notes = ", ".join(f"{literal(name)} reaches {in_powers(value)}" for name, value in panel.get("notes", []))
     axes.set_title(notes, loc="right", fontsize=7, color="0.35")
@@ -122,7 +124,7 @@ def main(form, output):
         if i >= len(panels):
             axes.set_axis_off()
         elif panels[i]["kind"] == "map":
-            draw_map(figure, axes, panels[i], i % columns == 0)
+            draw_map(figure, axes, panels[i], i % columns == 0 or panels[i - 1]["kind"] != "map")
         else:
             draw_curves(axes, panels[i], len(panels[i]["curves"]) > 1)
             if "time" in description:

@@ -3,15 +3,21 @@
 # Newmark's with the equivalent mass. figures.sh [FOLDER [FORM]] draws figure-1 and figure-2 (svg, pdf or png) into a
 # folder, by default out/disc; runs that ./dev demo would make are made where they are missing.
 set -euo pipefail
+case "${1:-} ${2:-svg}" in
+  -*) sed -n '2,4s/^# //p' "$0"; exit ;;
+  *" svg" | *" pdf" | *" png") ;;
+  *) echo "figures.sh: a figure is svg, pdf or png, not $2" >&2; exit 1 ;;
+esac
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-root=$here/../..
+root=$(cd "$here/../.." && pwd)
 ricochet=${RICOCHET:-$root/build/ricochet}
 folder=${1:-$root/out/disc} form=${2:-svg} runs=$root/out/disc
 mkdir -p "$folder"
 
 run() {
   [[ -f "$runs/$1/summary.json" ]] ||
-    "$ricochet" run "$here/disc.toml" -o "$runs/$1" --quiet --log-level error --set "time.scheme=$1" --set "mass.type=$2" >/dev/null
+    "$ricochet" run "$here/disc.toml" -o "$runs/$1" --quiet --log-level error --set "time.scheme=$1" --set "mass.type=$2" \
+      --set output.fields_every=5 >/dev/null
 }
 run klr-conserving consistent
 run newmark equivalent

@@ -105,6 +105,17 @@ class Plot(TestCase):
         self.plot(*runs, "--what", "energy", "-o", "logarithmic.svg", "--log")
         self.assertEqual([len(points) for points in curves(self.folder / "logarithmic.svg")], [601, 601])
 
+    def test_a_logarithm_leaves_out_what_it_cannot_show(self):
+        """The force is zero until the disc touches at 7.35 ms: no line leads there."""
+        results = self.simulate("run")
+        self.plot(results, "--what", "force", "-o", "figure.svg", "--log")
+        (points,) = curves(self.folder / "figure.svg")
+        positive = sum(value > 0 for value in History(results / "history.csv")["contact_force_y"])
+        self.assertEqual(len(points), positive)
+        self.plot(results, "--what", "energy", "-o", "energy.svg")
+        (energy,) = curves(self.folder / "energy.svg")
+        self.assertGreater(points[0, 0] - energy[0, 0], 0.3 * (energy[-1, 0] - energy[0, 0]), "the axis is that of all times")
+
     def test_long_histories_are_thinned_to_what_can_be_seen(self):
         results = self.simulate("run", **{"time.step": 1e-6, "output.fields_every": 0, "time.end": 0.021})
         history = History(results / "history.csv")

@@ -15,7 +15,7 @@ import numpy
 
 from harness import DISC, PROGRAM, History, TestCase, block_case, run
 
-VIEWER = ("<!doctype html><!-- ricochet report --><html><body><p>a viewer</p><!--RICOCHET-DATA--><script>$&\\1</script>"
+VIEWER = ("<!doctype html><!-- ricochet report --><!-- data format 2 --><html><body><p>a viewer</p><!--RICOCHET-DATA--><script>$&\\1</script>"
           "</body></html>\n")
 SHORT = {"time.end": 0.02, "output.fields_every": 10}
 
@@ -285,6 +285,22 @@ class Report(TestCase):
         summary["status"] = "done"
         (results / "summary.json").write_text(json.dumps(summary))
         self.assertIn("history.csv:", self.report(results, status=2).stderr)
+
+    def test_a_report_of_other_runs_is_not_replaced_unasked(self):
+        for name in ("a", "a/b"):
+            self.simulate(DISC, name, SHORT)
+        self.report("a")
+        self.report("a/")  # the same run again
+        shutil.copy(self.folder / "a" / "report.html", self.folder / "a" / "b")
+        process = self.report("a/b", status=4)
+        self.assertIn("a/b/report.html: is there and shows other runs", process.stderr)
+        self.report("a/b", "-o", "a/b/report.html")
+        self.report("a/b")
+
+    def test_a_viewer_of_another_version(self):
+        results = self.simulate(DISC, "disc", SHORT)
+        self.viewer.write_text(VIEWER.replace("format 2", "format 1"))
+        self.assertIn("build it with ./dev viewer", self.report(results, status=4).stderr)
 
     def test_titles_end_nothing(self):
         case = self.write("case.toml", block_case().replace('"A block falls"', '"</script><b>bold & \\"quoted\\""'))

@@ -91,7 +91,7 @@ function messages(runs: Run[]): HTMLElement {
     return list.map(([kind, text]) => el("li", {}, el("b", { style: `color:${runColour(run.number)}` }, run.name), ` ${kind}: `, text));
   });
   if (items.length === 0) return el("p.note", {}, "None.");
-  return el("ul.messages", {}, ...items);
+  return el("ul.messages", { id: "messages" }, ...items);
 }
 
 function outcomes(runs: Run[]): HTMLElement {

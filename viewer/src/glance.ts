@@ -33,8 +33,8 @@ export function energyFinding(j: Judgement): Finding {
     return { what, grade: "poor", words, detail };
   }
   if (Math.max(gain, loss) < 1e-8) return { what, grade: "good", words: "kept to rounding", detail };
-  if (gain > loss) return { what, grade: gain > 0.005 ? "fair" : "good", words: `kept to +${percent(gain)}`, detail };
-  const words = loss < 0.01 ? `kept to −${percent(loss)}` : `contact takes ${percent(loss)}`;
+  if (gain > loss) return { what, grade: gain > 0.005 ? "fair" : "good", words: `kept, but for +${percent(gain)}`, detail };
+  const words = loss < 0.01 ? `kept, but for ${percent(loss)}` : `contact takes ${percent(loss)}`;
   return { what, grade: loss < 0.01 ? "good" : "fair", words, detail };
 }
 

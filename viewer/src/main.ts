@@ -39,9 +39,11 @@ function title(runs: Run[]): string {
 function card(store: Store, run: Run): HTMLElement {
   const swatch = el("i");
   const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name}${run.number < 9 ? ` (key ${run.number + 1})` : ""}; with shift this run alone`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) }, swatch, run.name);
+  const warnings = run.summary.warnings.length;
   const status = run.summary.status === "done" ? null : el("span.status", {}, run.summary.status);
   const element = el("article.card", {}, el("h2", {}, button, status),
-    el("p.muted", {}, `${run.summary.scheme}, ${run.summary.mass} mass`), findingsElement(run));
+    el("p.muted", {}, `${run.summary.scheme}, ${run.summary.mass} mass`), findingsElement(run),
+    warnings > 0 && el("a.warned", { href: "#messages" }, `${warnings} ${warnings === 1 ? "warning" : "warnings"}`));
   const show = () => {
     swatch.style.background = runColour(run.number);
     element.style.setProperty("--run", runColour(run.number));
@@ -130,11 +132,24 @@ function contactSection(store: Store, runs: Run[], maps: ContactMap[]): HTMLElem
     }, "maps"));
 }
 
+/** Where there is something to see: the time of the largest contact force, that of the run whose force is smoothest. */
+function interestingTime(runs: Run[]): number {
+  const smooth = runs.filter((run) => run.data.judgement.roughness > 0).sort((a, b) => a.data.judgement.roughness - b.data.judgement.roughness)[0];
+  if (!smooth) return 0;
+  const force = smooth.column("@force");
+  let best = 0;
+  force.forEach((value, i) => {
+    if (Math.abs(value) > Math.abs(force[best])) best = i;
+  });
+  return smooth.timesOf("@force")[best] ?? 0;
+}
+
 async function start(): Promise<void> {
   const page = document.getElementById("page")!;
   const runs = readPage();
   await Promise.all(runs.map((run) => run.loadHistory()));
   const store = new Store(runs);
+  store.time = Math.min(Math.max(interestingTime(runs), store.start), store.end);
   document.title = `${title(runs)} – Ricochet report`;
   followSystem(() => store.changed("theme"));
   const switchTheme = () => {

@@ -66,7 +66,7 @@ test("a reader sees at once which scheme to use", async () => {
   const cards = await view.page.$$eval(".card", (all) => all.map((card) => card.textContent));
   assert.match(cards[0], /midpoint.*created: \d+ times.*rattles/s);
   assert.match(cards[1], /klr-conserving.*kept to rounding.*rattles/s);
-  assert.match(cards[2], /newmark.*kept to −0\.03.*smooth.*none/s);
+  assert.match(cards[2], /newmark.*kept, but for 0\.03.*smooth.*none/s);
   // The midpoint scheme's growth does not hide the others.
   const range = await view.page.evaluate(() => window.ricochet.charts.find((chart) => chart.id === "energy").range);
   assert.ok(range.high < 0.2 && range.high > 0.0377 && range.low <= 0, JSON.stringify(range));
@@ -165,6 +165,26 @@ test("names and keys switch runs in all plots", async () => {
   await settle(page);
   assert.deepEqual((await curves(page, "energy")).map((curve) => curve.run).sort(), ["midpoint", "newmark"]);
   await page.keyboard.press("2");
+  await settle(page);
+});
+
+test("switching runs leaves the cursors where they are, and rounding is no scale for the others", async () => {
+  const { page } = view;
+  await page.evaluate(() => window.scrollTo(0, 0));
+  const box = await (await page.$("#chart-energy .u-over")).boundingBox();
+  await page.mouse.move(box.x + 0.3 * box.width, box.y + 30);
+  await settle(page);
+  const now = await time(page);
+  await page.keyboard.press("1");
+  await page.click("text=change, %");
+  await settle(page);
+  const cursors = await page.evaluate(() => window.ricochet.charts.map((chart) => chart.plot.posToVal(chart.plot.cursor.left, "x")));
+  for (const at of cursors) assertNear(at, now, 0.15 / 300, "cursor");
+  const range = await page.evaluate(() => window.ricochet.charts[0].range);
+  assert.ok(range.low < -0.03 && range.low > -0.1, JSON.stringify(range));
+  assert.equal(await page.locator("#chart-energy .outside span").count(), 0);
+  await page.click("text=change, %");
+  await page.keyboard.press("1");
   await settle(page);
 });
 

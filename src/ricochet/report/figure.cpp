@@ -117,12 +117,13 @@ Curve curve_of(const RunData& run, std::size_t number, const std::string& label,
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double time = times[i] + shift;
     if (options.time && (time < options.time->first || time > options.time->second)) continue;
-    if (!std::isfinite(values[i]) || (options.logarithmic && !(values[i] > 0.0))) continue;
     curve.times.push_back(time);
-    curve.values.push_back(values[i]);
-    curve.extent.add(values[i]);
+    // What cannot be shown is a gap in the curve.
+    const bool shown = std::isfinite(values[i]) && (!options.logarithmic || values[i] > 0.0);
+    curve.values.push_back(shown ? values[i] : std::numeric_limits<double>::quiet_NaN());
+    if (shown) curve.extent.add(values[i]);
   }
-  if (curve.values.empty()) {
+  if (!(curve.extent.low <= curve.extent.high)) {
     refuse(fmt::format("{}: \"{}\" has nothing to be drawn{}{}", run.directory, column,
                        options.time ? " in this part of the time" : "",
                        options.logarithmic ? ": a logarithmic scale shows what is positive" : ""));
@@ -183,8 +184,17 @@ Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::st
   std::stable_sort(curves.begin(), curves.end(),
                    [&](const Curve& a, const Curve& b) { return roughness[a.run] > roughness[b.run]; });
   panel["curves"] = Json::array();
-  for (const Curve& curve : curves)
-    panel["curves"].push_back({{"label", curve.label}, {"run", curve.run}, {"x", curve.times}, {"y", curve.values}});
+  Extent time;
+  for (const Curve& curve : curves) {
+    time.add(curve.times.front());
+    time.add(curve.times.back());
+    panel["curves"].push_back({{"label", curve.label},
+                               {"run", curve.run},
+                               {"rattles", name != "total energy" && roughness[curve.run] > 2.0},
+                               {"x", curve.times},
+                               {"y", curve.values}});
+  }
+  panel["times"] = {time.low, time.high};
   return panel;
 }
 

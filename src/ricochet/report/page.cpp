@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/durable_file.hpp"
@@ -23,7 +25,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Where the viewer wants the data, and what every report begins with.
-constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->";
+constexpr std::string_view data_begin = "<script type=\"application/json\" id=\"ricochet-runs\">";
+constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->",
+                           format_mark = "<!-- data format 2 -->";
 /// Of all bodies together, but for each as many as may be had at any rate.
 constexpr Index most_triangles = 200'000, always_triangles = 20'000;
 
@@ -215,14 +219,14 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
 }
 
 std::string PageBuilder::data() {
-  Json page{{"format", 1}, {"version", version}, {"runs", Json::array()}};
+  Json page{{"format", 2}, {"version", version}, {"runs", Json::array()}};
   for (std::size_t i = 0; i < runs_.size(); ++i) page["runs"].push_back(start(runs_[i], i));
   // What summaries take is in the file, too, and is not binary.
   std::size_t text = 65536;
   for (const RunData& run : runs_) text += run.summary_json.size();
   most_bytes_ -= std::min(most_bytes_, text);
   for (std::size_t i = 0; i < runs_.size(); ++i) add_frames(runs_[i], page["runs"][i], left() / (runs_.size() - i));
-  std::string html = "<script type=\"application/json\" id=\"ricochet-runs\">";
+  std::string html(data_begin);
   for (const char c : page.dump(-1, ' ', false, Json::error_handler_t::replace)) {
     if (c == '<') {
       html += "\\u003c";  // "</script>" in a title ends nothing
@@ -247,7 +251,7 @@ Report make_report(const std::vector<std::string>& directories, const ReportOpti
   if (!file) throw_file_error(options.viewer, "read", errno);
   const std::string viewer{std::istreambuf_iterator<char>(file), {}};
   const std::size_t place = viewer.find(data_place);
-  if (place == std::string::npos || viewer.find(report_mark) == std::string::npos) {
+  if (place == std::string::npos || viewer.find(format_mark) == std::string::npos) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: is not a viewer of this version: build it with ./dev viewer", options.viewer));
   }
@@ -256,6 +260,24 @@ Report make_report(const std::vector<std::string>& directories, const ReportOpti
   report.html = viewer.substr(0, place) + builder.data() + viewer.substr(place + data_place.size());
   report.thinned = builder.thinned();
   return report;
+}
+
+bool is_report_of(const std::string& path, const std::vector<std::string>& directories) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::size_t begin = text.find(data_begin), end = text.find("</script>", begin);
+  if (begin == std::string::npos || end == std::string::npos) return false;
+  const std::size_t first = begin + data_begin.size();
+  const Json page = Json::parse(text.substr(first, end - first), nullptr, false);
+  const auto whole = [](const std::string& directory) {
+    return (std::filesystem::absolute(directory) / "").lexically_normal();
+  };
+  std::set<std::filesystem::path> shown, wanted;
+  if (page.is_object() && page.contains("runs")) {
+    for (const Json& run : page["runs"]) shown.insert(whole(run.value("directory", "")));
+  }
+  for (const std::string& directory : directories) wanted.insert(whole(directory));
+  return shown == wanted;
 }
 
 bool is_report(const std::string& path) {

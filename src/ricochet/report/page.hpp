@@ -21,7 +21,9 @@ struct Report {
 /// Error(usage) where a directory is named twice.
 [[nodiscard]] Report make_report(const std::vector<std::string>& directories, const ReportOptions& options);
 
-/// Is this file one that make_report has made, which may be written over?
+/// Is this file one that make_report has made?
 [[nodiscard]] bool is_report(const std::string& path);
+/// Is it one of these directories, however they are spelled?
+[[nodiscard]] bool is_report_of(const std::string& path, const std::vector<std::string>& directories);
 
 }  // namespace ricochet

@@ -164,6 +164,7 @@ export class TimeChart {
         return { name: run.name, low: Math.min(...own.map((e) => e.low)), high: Math.max(...own.map((e) => e.high)) };
       }),
       this.mode,
+      this.relative ? 0.01 : 0,
     );
     if (this.definition.fromZero && !this.relative && !logarithmic && this.store.runs.length > 1) {
       range.low = Math.min(range.low, 0);
@@ -195,9 +196,8 @@ export class TimeChart {
       series: [
         {},
         ...this.series.map((series, i) => ({
-          label: series.label, stroke: series.colour, dash: series.dash, spanGaps: true,
-          width: this.definition.nested && this.store.runs.length > 1 ? 1.8 + 1.8 * Math.min(this.series.length - 1 - i, 2)
-            : i + 1 === this.series.length ? 1.8 : 1.2,
+          // What a list of times has not is undefined and no gap; what a logarithm does not show is null and one.
+          label: series.label, stroke: series.colour, dash: series.dash, spanGaps: false, width: this.widthOf(i),
           points: { show: series.times.length < 60 },
         })),
       ],
@@ -209,6 +209,7 @@ export class TimeChart {
       ],
       cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { size: 7 } },
       hooks: {
+        ready: [() => this.placeCursor()],
         setCursor: [(plot) => this.cursorMoved(plot)],
         setSelect: [(plot) => this.selected(plot)],
       },
@@ -216,7 +217,17 @@ export class TimeChart {
     this.plotArea.replaceChildren();
     this.plot = new uPlot(options, [times, ...data] as uPlot.AlignedData, this.plotArea);
     this.listen(this.plot);
-    this.showTime();
+    this.placeCursor();
+    this.showValues();
+  }
+
+  /** Of smooth curves that may lie upon one another those below are wider; those that rattle are thin. */
+  private widthOf(i: number): number {
+    if (this.store.runs.length === 1) return 1.6;
+    const rattles = (series: Series) => !this.definition.nested && series.run.data.judgement.roughness > 2;
+    if (rattles(this.series[i])) return 1.2;
+    const above = this.series.slice(i + 1).filter((series) => !rattles(series)).length;
+    return 1.8 + 1.8 * Math.min(above, 2);
   }
 
   private listen(plot: uPlot): void {
@@ -274,12 +285,16 @@ export class TimeChart {
   private showTime(): void {
     const plot = this.plot;
     if (!plot) return;
-    if (this.store.timeSource !== this) {
-      this.ownCursor = true;
-      plot.setCursor({ left: plot.valToPos(this.store.time, "x"), top: 0 });
-      this.ownCursor = false;
-    }
+    if (this.store.timeSource !== this) this.placeCursor();
     this.showValues();
+  }
+
+  private placeCursor(): void {
+    const plot = this.plot;
+    if (!plot) return;
+    this.ownCursor = true;
+    plot.setCursor({ left: plot.valToPos(this.store.time, "x"), top: 0 });
+    this.ownCursor = false;
   }
 
   private showValues(): void {
@@ -288,7 +303,7 @@ export class TimeChart {
     const items = inOrder.map((series) => {
       const value = valueNear(series, this.store.time);
       return el("span.item", {},
-        el("i", { style: `background:${series.colour}` }),
+        series.dash.length > 0 ? el("i.dashed", { style: `border-color:${series.colour}` }) : el("i", { style: `background:${series.colour}` }),
         `${series.label} `,
         el("b", {}, number(value, 6) + unit));
     });

@@ -20,16 +20,16 @@ const outlying = 8;
 
 /**
  * With "most", runs whose values reach many times as far as those of the others do not hide them: the chart shows the
- * others, zero and as much again.
+ * others, zero and as much again. What reaches less than `small` is no scale for others.
  */
-export function chooseRange(extents: Extent[], mode: ScaleMode): Range {
+export function chooseRange(extents: Extent[], mode: ScaleMode, small = 0): Range {
   const finite = extents.filter((e) => e.low <= e.high);
   if (finite.length === 0) return { low: 0, high: 1, outside: [] };
   const reach = (e: Extent) => Math.max(Math.abs(e.low), Math.abs(e.high));
   const reaches = finite.map(reach).sort((a, b) => a - b);
   let inside = finite;
   if (mode === "most") {
-    const middle = reaches[Math.floor((reaches.length - 1) / 2)];
+    const middle = Math.max(reaches[Math.floor((reaches.length - 1) / 2)], small);
     if (middle > 0) inside = finite.filter((e) => reach(e) <= outlying * middle);
   }
   let low = Math.min(...inside.map((e) => e.low));

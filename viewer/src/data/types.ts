@@ -131,7 +131,7 @@ export interface RunData {
 }
 
 export interface PageData {
-  format: 1;
+  format: 2;
   version: string;
   runs: RunData[];
 }
