@@ -56,9 +56,11 @@ def in_powers(value):
 
 def draw_curves(axes, panel, several):
     count = len(panel["curves"])
-    for curve, width in zip(panel["curves"], widths(panel)):
+    for i, (curve, width) in enumerate(zip(panel["curves"], widths(panel))):
+        # The one on top lets that below be seen, where they are the same.
+        dashed = i == count - 1 > 0 and panel["y_label"] == "total energy"
         colour = COLOURS[curve["run"] % len(COLOURS)] if several else ALONE
-        axes.plot(curve["x"], [math.nan if y is None else y for y in curve["y"]], color=colour, label=literal(curve["label"]), lw=width)
+        axes.plot(curve["x"], [math.nan if y is None else y for y in curve["y"]], color=colour, label=literal(curve["label"]), lw=width, ls=(0, (5, 4)) if dashed else "-")
     axes.set_xlabel(panel["x_label"])
     axes.set_ylabel(literal(panel["y_label"]))
     if panel["logarithmic"]:

@@ -149,6 +149,9 @@ export class TimeChart {
         });
       }
     }
+    // The one on top lets that below be seen, where they are the same.
+    if (this.definition.nested && columns.length === 1 && this.series.length > 1)
+      this.series[this.series.length - 1].dash = [12, 8];
   }
 
   rebuild(): void {
