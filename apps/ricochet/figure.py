@@ -38,6 +38,8 @@ def widths(panel):
     for curve in reversed(panel["curves"]):
         result.append(0.6 if curve["rattles"] else 0.9 + 0.9 * min(above, 2))
         above += not curve["rattles"]
+    if panel["y_label"] == "total energy":
+        return [1.4 if len(result) > 1 else 0.8] * len(result)  # and the one on top is dashed
     return result[::-1] if len(result) > 1 else [0.8]
 
 

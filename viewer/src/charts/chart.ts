@@ -149,9 +149,6 @@ export class TimeChart {
         });
       }
     }
-    // The one on top lets that below be seen, where they are the same.
-    if (this.definition.nested && columns.length === 1 && this.series.length > 1)
-      this.series[this.series.length - 1].dash = [12, 8];
   }
 
   rebuild(): void {
@@ -230,7 +227,7 @@ export class TimeChart {
     const rattles = (series: Series) => !this.definition.nested && series.run.data.judgement.roughness > 2;
     if (rattles(this.series[i])) return 1.2;
     const above = this.series.slice(i + 1).filter((series) => !rattles(series)).length;
-    return 1.8 + 1.8 * Math.min(above, 2);
+    return (this.definition.nested ? 2 : 1.8) + (this.definition.nested ? 2.4 : 1.8) * Math.min(above, 2);
   }
 
   private listen(plot: uPlot): void {
