@@ -49,7 +49,7 @@ await page.addStyleTag({ content: ".player, .body-foot, .bodies .colour-bar { di
 await page.evaluate(() => window.scrollTo(0, document.querySelector(".bodies").offsetTop - 10));
 await settle(page);
 const box = await page.locator(".bodies").boundingBox();
-const count = 60;
+const count = 46;
 for (let i = 0; i < count; ++i) {
   await page.evaluate((time) => window.ricochet.store.setTime(time), 0.004 + (0.146 * i) / count);
   await settle(page);

@@ -26,7 +26,7 @@ frames = [Image.open(path).convert("RGB") for path in sorted((taken / "frames").
 sample = Image.new("RGB", (frames[0].width, 6 * frames[0].height))
 for k in range(6):
     sample.paste(frames[k * (len(frames) - 1) // 5], (0, k * frames[0].height))
-palette = sample.quantize(96)
+palette = sample.quantize(64)
 small = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
-small[0].save(figures / "disc.gif", save_all=True, append_images=small[1:], duration=70, loop=0, optimize=True)
+small[0].save(figures / "disc.gif", save_all=True, append_images=small[1:], duration=90, loop=0, optimize=True)
 print(f"docs/figures/disc.gif: {(figures / 'disc.gif').stat().st_size / 1e3:.0f} kB")
