@@ -2,11 +2,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "commands.hpp"
 #include "installed_files.hpp"
@@ -14,6 +12,7 @@
 #include "ricochet/base/child_process.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/temporary_folder.hpp"
+#include "ricochet/io/durable_file.hpp"
 #include "ricochet/report/figure.hpp"
 
 namespace ricochet::program {
@@ -21,11 +20,6 @@ namespace ricochet::program {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string read(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 double number(std::string_view text, const std::string& option, const char* wanted) {
   double value = 0.0;
@@ -108,7 +102,7 @@ void draw(const std::string& description, const std::string& format, const std::
   }
   if (!outcome.succeeded()) {
     throw Error(ErrorKind::file_access, fmt::format("the figure could not be drawn: {} {}:\n{}", python(),
-                                                    outcome.description(), read(workspace.file("messages"))));
+                                                    outcome.description(), read_file(workspace.file("messages"))));
   }
   // Under a temporary name first: what was there stays until all of the new file is.
   const std::string part = output + ".part";

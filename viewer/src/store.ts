@@ -3,8 +3,6 @@ import type { Run } from "./data/run";
 /** What all parts of the page have in common, and who wants to know when it changes. */
 export type Topic = "time" | "runs" | "zoom" | "body" | "contact" | "theme" | "player";
 
-export type MapQuantity = string;
-
 export class Store {
   time = 0;
   /** Who moves the time; its own cursor need not follow. */
@@ -19,7 +17,7 @@ export class Store {
   showMesh = false;
   showForces = true;
   sharedColours = false;
-  quantity: MapQuantity = "contact_pressure";
+  quantity = "contact_pressure";
   readonly start: number;
   readonly end: number;
   private readonly listeners = new Map<Topic, Set<() => void>>();

@@ -5,6 +5,8 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <fstream>
+#include <iterator>
 
 #include <cerrno>
 #include <cstdio>
@@ -82,6 +84,13 @@ void write_durably(const std::string& path, const std::string& content) {
     unlink(temporary.c_str());
     throw;
   }
+}
+
+std::string read_file(const std::string& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw_file_error(path, "read", errno);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 void cut_back(const std::string& path, std::int64_t length) {

@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <string>
 
-/// @file Files that survive a power cut: what must be on the disk before something else relies on it.
+/// @file Whole files: read, and written so that they survive a power cut, what must be on the disk before something
+/// else relies on it.
 namespace ricochet {
 
 /// Waits until what has been written to a file (or a directory's list of names) is on the disk. Throws
@@ -14,6 +15,9 @@ void sync_to_disk(const std::string& path);
 /// machine that is switched on again, sees the old file or the new one. Throws Error(file_access); the old file is then
 /// still there.
 void write_durably(const std::string& path, const std::string& content);
+
+/// All of a file. Throws Error(file_access).
+[[nodiscard]] std::string read_file(const std::string& path);
 
 /// Cuts a file back to a length it had before. Throws Error(file_access) where it is missing or shorter.
 void cut_back(const std::string& path, std::int64_t length);

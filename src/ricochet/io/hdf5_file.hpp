@@ -44,10 +44,9 @@ class Hdf5Reader {
   /// Rows and columns (0: one dimension) of a data set of one or two dimensions.
   [[nodiscard]] std::pair<Index, Index> extents(const std::string& name) const;
   /// Numbers row by row, of exactly so many rows and columns (0: one dimension): in single precision, where NaN and
-  /// infinities are left as they are; finite ones in double precision; whole ones.
-  void table(const std::string& name, Index rows, Index columns, std::vector<float>& values) const;
-  /// The same of a data set of a group that members() has found. Nothing is looked up from the root on: this also works
-  /// while another process adds to the groups above.
+  /// infinities are left as they are, of a data set of a group that members() has found; finite ones in double
+  /// precision; whole ones. For the first nothing is looked up from the root on: it also works while another process
+  /// adds to the groups above.
   void table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
              std::vector<float>& values) const;
   /// What is in a group, by name.
@@ -66,7 +65,6 @@ class Hdf5Reader {
   void check_numbers(const Dataset& set) const;
   [[nodiscard]] std::pair<Index, Index> extents(const Dataset& set) const;
   void check_table(const Dataset& set, Index rows, Index columns) const;
-  void read_table(const Dataset& set, Index rows, Index columns, std::vector<float>& values) const;
   [[nodiscard]] Vector numbers(const Dataset& set, std::int64_t expected_size) const;
 
   std::string path_;

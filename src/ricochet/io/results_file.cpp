@@ -100,6 +100,21 @@ const char* xdmf_type(int components) {
   return components == 1 ? "Scalar" : components == 3 ? "Vector" : "Tensor6";
 }
 
+/// Who looks at the frames does that for a moment; who does not let go does not stop the run.
+constexpr double longest_wait = 2.0;
+
+/// Nobody opens the files while they change.
+class LockedFrames {
+ public:
+  explicit LockedFrames(FileLock& lock) : lock_(lock) { lock_.acquire(FileLock::Kind::exclusive, longest_wait); }
+  ~LockedFrames() { lock_.release(); }
+  LockedFrames(const LockedFrames&) = delete;
+  LockedFrames& operator=(const LockedFrames&) = delete;
+
+ private:
+  FileLock& lock_;
+};
+
 }  // namespace
 
 struct ResultsWriter::Implementation {
@@ -119,9 +134,6 @@ struct ResultsWriter::Implementation {
   std::optional<XdmfFile> obstacle_side;
   std::optional<FileLock> lock;  ///< of results.xdmf, which HDF5 does not lock
 };
-
-/// Who looks at the frames does that for a moment; who does not let go does not stop the run.
-constexpr double longest_wait = 2.0;
 
 ResultsWriter::Implementation::Implementation(const std::string& directory, const Body& body,
                                               const SemidiscreteProblem& problem, const ResultsOptions& options,
@@ -146,11 +158,10 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
     side.emplace(side_path, "body", obstacles.any() ? "obstacles.xdmf" : "");
   } else {
     lock.emplace(side_path);
-    lock->acquire(FileLock::Kind::exclusive, longest_wait);
+    const LockedFrames locked(*lock);
     file.emplace(path, fixed, datasets_of(fields), options.file, *snapshot, name + ".frames");
     if (obstacles.any()) obstacle_side.emplace(obstacle_path, *snapshot, name + ".obstacles");
     side.emplace(side_path, *snapshot, name + ".side");
-    lock->release();
   }
   if (!lock) lock.emplace(side_path);
 }
@@ -170,22 +181,6 @@ std::string ResultsWriter::Implementation::grid(double time, long frame) const {
   }
   return text + "      </Grid>\n";
 }
-
-namespace {
-
-/// Nobody opens the files while they change.
-class LockedFrames {
- public:
-  explicit LockedFrames(FileLock& lock) : lock_(lock) { lock_.acquire(FileLock::Kind::exclusive, longest_wait); }
-  ~LockedFrames() { lock_.release(); }
-  LockedFrames(const LockedFrames&) = delete;
-  LockedFrames& operator=(const LockedFrames&) = delete;
-
- private:
-  FileLock& lock_;
-};
-
-}  // namespace
 
 ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                              const ResultsOptions& options)

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "ricochet/base/error.hpp"
@@ -19,12 +17,7 @@ namespace {
 /// A document of ours, read from front to back.
 class Scanner {
  public:
-  explicit Scanner(const std::string& path) : path_(path) {
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw_file_error(path, "read", errno);
-    text_.assign(std::istreambuf_iterator<char>(file), {});
-  }
+  explicit Scanner(const std::string& path) : path_(path), text_(read_file(path)) {}
 
   /// Goes behind the next occurrence; false (and stays) where there is none before `end`.
   bool find(std::string_view what, std::size_t end = std::string::npos) {

@@ -163,8 +163,9 @@ void choose_range(const std::vector<Curve>& curves, bool from_zero, Json& panel)
   if (std::isfinite(1.2 * (high - low))) panel["range"] = {low - 0.04 * (high - low), high + 0.1 * (high - low)};
 }
 
-Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::string>& labels, const std::string& what,
-                     const FigureOptions& options) {
+/// `roughness` of the runs, see Judgement.
+Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::string>& labels,
+                     const std::vector<double>& roughness, const std::string& what, const FigureOptions& options) {
   Json panel{{"kind", "curves"}, {"x_label", "time"}, {"logarithmic", options.logarithmic}};
   std::vector<Curve> curves;
   std::string name;
@@ -179,8 +180,6 @@ Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::st
   panel["y_label"] = name;
   if (!options.logarithmic) choose_range(curves, from_zero, panel);
   // A smooth curve lies upon those that rattle.
-  std::vector<double> roughness;
-  for (const RunData& run : runs) roughness.push_back(judge(run).roughness);
   std::stable_sort(curves.begin(), curves.end(),
                    [&](const Curve& a, const Curve& b) { return roughness[a.run] > roughness[b.run]; });
   panel["curves"] = Json::array();
@@ -247,8 +246,10 @@ std::string describe_figure(const std::vector<RunData>& runs, const FigureOption
   if (!options.labels.empty() && options.labels.size() != runs.size())
     refuse(fmt::format("--label is there {} times for {} runs", options.labels.size(), runs.size()));
   std::vector<std::string> labels = options.labels;
+  std::vector<double> roughness;
   for (const RunData& run : runs) {
     if (labels.size() < runs.size()) labels.push_back(run.name);
+    roughness.push_back(judge(run).roughness);
   }
   Json figure{{"title", options.title}, {"width", options.width}, {"height", options.height}};
   if (options.time) figure["time"] = {options.time->first, options.time->second};
@@ -258,7 +259,7 @@ std::string describe_figure(const std::vector<RunData>& runs, const FigureOption
       for (std::size_t i = 0; i < runs.size(); ++i)
         figure["panels"].push_back(panel_of_map(runs[i], labels[i], options));
     } else {
-      figure["panels"].push_back(panel_of_curves(runs, labels, what, options));
+      figure["panels"].push_back(panel_of_curves(runs, labels, roughness, what, options));
     }
   }
   return figure.dump(-1, ' ', false, Json::error_handler_t::replace);

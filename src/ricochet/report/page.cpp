@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -246,10 +244,7 @@ std::string PageBuilder::data() {
 }  // namespace
 
 Report make_report(const std::vector<std::string>& directories, const ReportOptions& options) {
-  errno = 0;
-  std::ifstream file(options.viewer, std::ios::binary);
-  if (!file) throw_file_error(options.viewer, "read", errno);
-  const std::string viewer{std::istreambuf_iterator<char>(file), {}};
+  const std::string viewer = read_file(options.viewer);
   const std::size_t place = viewer.find(data_place);
   if (place == std::string::npos || viewer.find(format_mark) == std::string::npos) {
     throw Error(ErrorKind::file_access,
@@ -263,8 +258,7 @@ Report make_report(const std::vector<std::string>& directories, const ReportOpti
 }
 
 bool is_report_of(const std::string& path, const std::vector<std::string>& directories) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = read_file(path);
   const std::size_t begin = text.find(data_begin), end = text.find("</script>", begin);
   if (begin == std::string::npos || end == std::string::npos) return false;
   const std::size_t first = begin + data_begin.size();

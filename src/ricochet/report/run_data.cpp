@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "ricochet/base/error.hpp"
@@ -18,13 +15,6 @@ namespace ricochet {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string read_text(const std::string& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw_file_error(path, "read", errno);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// probes-N.csv, in the order of their names.
 std::vector<std::string> probe_files(const std::string& directory) {
@@ -82,7 +72,7 @@ RunData read_run(const std::string& directory, bool with_results) {
   }
   RunData run;
   run.directory = directory;
-  run.summary_json = read_text(path("summary.json"));
+  run.summary_json = read_file(path("summary.json"));
   run.summary = read_summary(path("summary.json"));
   const bool may_grow = run.summary.status != "done";
   run.history = read_history(path("history.csv"), may_grow);

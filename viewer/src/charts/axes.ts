@@ -1,4 +1,5 @@
 import type uPlot from "uplot";
+import { themeColour } from "../colours";
 import { number } from "../format";
 
 /** Numbers at the ticks of an axis, of any size. */
@@ -8,3 +9,11 @@ export const tickTexts = (_: uPlot, ticks: (number | null)[]): string[] =>
 /** Of an upright axis: wide enough for its numbers. */
 export const axisWidth = (_: uPlot, texts: string[] | null): number =>
   Math.max(50, 22 + 6.8 * Math.max(...(texts ?? []).map((text) => text?.length ?? 0)));
+
+/** What all axes have in common, in the colours of the theme. */
+export const axisStyle = (): uPlot.Axis => ({
+  stroke: themeColour("muted"),
+  grid: { stroke: themeColour("grid"), width: 1 },
+  ticks: { stroke: themeColour("grid"), width: 1 },
+  font: "12px system-ui, sans-serif",
+});

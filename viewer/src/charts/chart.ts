@@ -6,7 +6,7 @@ import { columnName, number } from "../format";
 import { fileName, saveCanvas, saveCsv, withCaption } from "../save";
 import type { Store } from "../store";
 import type { ChartDefinition } from "./definitions";
-import { axisWidth, tickTexts } from "./axes";
+import { axisStyle, axisWidth, tickTexts } from "./axes";
 import { chooseRange, extentOf, logarithmicRange, powersOfTen, type ScaleMode } from "./scale";
 import { joined, type Curve } from "./table";
 
@@ -183,8 +183,7 @@ export class TimeChart {
     this.plot = null;
     this.width = this.plotArea.clientWidth;
     if (this.width === 0) return;
-    const axis = { stroke: themeColour("muted"), grid: { stroke: themeColour("grid"), width: 1 },
-      ticks: { stroke: themeColour("grid"), width: 1 }, font: "12px system-ui, sans-serif" };
+    const axis = axisStyle();
     const options: uPlot.Options = {
       width: this.width,
       height: this.height,

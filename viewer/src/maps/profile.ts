@@ -1,5 +1,5 @@
 import uPlot from "uplot";
-import { axisWidth, tickTexts } from "../charts/axes";
+import { axisStyle, axisWidth, tickTexts } from "../charts/axes";
 import { chooseRange } from "../charts/scale";
 import { runColour, themeColour } from "../colours";
 import { valueAt } from "../data/decode";
@@ -83,8 +83,7 @@ export class ProfileChart {
     });
     const isStatus = this.store.quantity === "contact_status";
     const { low, high } = isStatus ? { low: -0.2, high: 3.2 } : chooseRange(extents, "most");
-    const axis = { stroke: themeColour("muted"), grid: { stroke: themeColour("grid"), width: 1 },
-      ticks: { stroke: themeColour("grid"), width: 1 }, font: "12px system-ui, sans-serif" };
+    const axis = axisStyle();
     this.plot = new uPlot({
       width: this.width,
       height: this.width < 420 ? 190 : 230,
