@@ -90,8 +90,8 @@ Section output_section() {
               {.name = "fields",
                .type = KeyType::names,
                .choices = field_choices(),
-               .doc = "The fields that are written, see the README; \"all\" stands for all of them. Absent: "
-                      "displacement, velocity, what there is of contact, and von_mises."},
+               .doc = "The fields that are written (docs/results.md describes them); \"all\" stands for all. Default: "
+                      "displacement, velocity, those of contact, and von_mises."},
               {.name = "fields_precision",
                .type = KeyType::choice,
                .standard = "double",

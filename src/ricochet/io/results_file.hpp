@@ -11,7 +11,7 @@
 ///
 /// results.h5:  /mesh/nodes (nodes × 3), /mesh/cells (cells × nodes in VTK's order, or XDMF's mixed list),
 ///   /mesh/contact_facets likewise where there are any, /frames/NNNNNN/… the fields (see fields/field_source.hpp and
-///   the README).
+///   docs/results.md).
 ///
 /// Beside them, where there are obstacles, obstacles.xdmf with their surfaces, which results.xdmf includes.
 namespace ricochet {
