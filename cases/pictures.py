@@ -2,7 +2,7 @@
 """Draws the pictures of the cases' READMEs: runs the cases into out/pictures and plots their history.csv beside the
 closed forms. From the repository root, with python3-matplotlib installed:
 
-    /usr/bin/python3 cases/pictures.py [disc rod bar ball hertz layer incline conveyor oblique ball-spin]
+    /usr/bin/python3 cases/pictures.py [puck disc rod bar ball hertz layer incline conveyor oblique ball-spin]
 """
 import csv
 import subprocess
@@ -36,6 +36,28 @@ def save(figure, path):
     figure.tight_layout()
     figure.savefig(path, dpi=80)
     print(path)
+
+
+def puck():
+    figure, (momentum, force, energy) = plt.subplots(1, 3, figsize=(13, 3.8), sharex=True)
+    history = run("puck/puck", "puck")
+    milliseconds, mass = 1e3 * history["time"], np.pi * 0.02**2 * 1200
+    for value in (1.5, 1.5 - 0.6 * 0.5, -0.5, 0.5):
+        momentum.axhline(mass * value, label="m (1.5, −0.5) m/s and m (1.5 − 2 F 0.5, 0.5) m/s" if value == 1.5 else None, **EXACT)
+    momentum.plot(milliseconds, history["momentum_x"], label="along the wall")
+    momentum.plot(milliseconds, history["momentum_y"], label="across it")
+    force.plot(milliseconds, history["contact_force_y"], label="normal force")
+    force.plot(milliseconds, -history["contact_force_x"] / 0.3, "--", label="friction / 0.3")
+    energy.plot(milliseconds, history["total_energy"], label="total energy")
+    energy.plot(milliseconds, history["total_energy"][0] + history["friction_work"], "--", label="that of the start + friction work")
+    energy.plot(milliseconds, history["elastic_energy"], label="elastic energy")
+    momentum.set(xlabel="time, ms", title="momentum, kg/s")
+    force.set(xlabel="time, ms", title="force, N/m")
+    energy.set(xlabel="time, ms", title="energy, J/m")
+    momentum.legend(loc=(0.02, 0.58), fontsize=8)
+    force.legend(loc="upper right")
+    energy.legend(loc="center right")
+    save(figure, "cases/puck/puck.png")
 
 
 def disc():
@@ -270,7 +292,7 @@ def hertz_pressure():
 
 
 if __name__ == "__main__":
-    known = {"disc": disc, "rod": rod, "bar": bar, "ball": ball, "hertz": hertz_pressure, "layer": layer, "incline": incline,
+    known = {"puck": puck, "disc": disc, "rod": rod, "bar": bar, "ball": ball, "hertz": hertz_pressure, "layer": layer, "incline": incline,
              "conveyor": conveyor, "oblique": oblique, "ball-spin": ball_spin}
     for wanted in sys.argv[1:] or known:
         known[wanted]()
