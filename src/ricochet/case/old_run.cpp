@@ -1,0 +1,49 @@
+#include "ricochet/case/old_run.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+std::string export_directory(const RunOptions& options) {
+  const bool elsewhere = !options.export_contact.empty() && !options.export_contact_to.empty();
+  return elsewhere ? options.export_contact_to : (std::filesystem::path(options.output_directory) / "contact").string();
+}
+
+void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
+  std::vector<std::string> results = directory.results();
+  if (results.empty()) results = directory.left_behind(-1);
+  if (!results.empty()) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: holds a run already ({}); choose another directory with -o, go on with that run with "
+                            "--resume, or overwrite it with --force",
+                            options.output_directory, std::filesystem::path(results.front()).filename().string()));
+  }
+  const std::string contact = export_directory(options);
+  if (exported_contact_problems(contact).empty()) return;
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: holds contact problems of a run already; choose another directory, or overwrite them "
+                          "with --force",
+                          contact));
+}
+
+void replace_old_run(const RunDirectory& directory, const RunOptions& options, RunSummary summary) {
+  const std::string contact = export_directory(options);
+  const std::vector<std::string> problems = exported_contact_problems(contact);
+  const std::string summary_path = directory.file("summary.json");
+  remove_files(directory.left_behind(-1));
+  summary.status = "running";
+  write_durably(summary_path, to_json(summary));
+  std::vector<std::string> results = directory.results();
+  std::erase(results, summary_path);
+  remove_files(results);
+  remove_files(problems);
+  std::error_code problem;
+  if (!problems.empty() && std::filesystem::is_empty(contact, problem)) std::filesystem::remove(contact, problem);
+}
+
+}  // namespace ricochet

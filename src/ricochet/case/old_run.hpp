@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "ricochet/case/run_case.hpp"
+#include "ricochet/io/run_directory.hpp"
+
+/// @file What an earlier run has left where a new one is to write.
+namespace ricochet {
+
+/// Where contact problems go that are asked for.
+[[nodiscard]] std::string export_directory(const RunOptions& options);
+
+/// Throws Error(file_access) where there are results of another run.
+void refuse_old_run(const RunDirectory& directory, const RunOptions& options);
+
+/// Takes away what an earlier run left (this one may write no fields) and says which run is here now. Called when the
+/// new run is ready to start, so that a case that is refused costs nothing. Whenever it is interrupted, summary.json
+/// describes a run that --resume may start from its beginning, or one that is there to its end.
+void replace_old_run(const RunDirectory& directory, const RunOptions& options, RunSummary summary);
+
+}  // namespace ricochet

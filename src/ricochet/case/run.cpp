@@ -1,0 +1,195 @@
+#include "ricochet/case/run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/case/old_run.hpp"
+#include "ricochet/case/run_description.hpp"
+#include "ricochet/case/run_identity.hpp"
+#include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/progress.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// summary.json says how far a run is this often, in seconds.
+constexpr double report_interval = 2.0;
+/// Dofs from which on the start of a run takes seconds, and says so.
+constexpr Index large_body = 20000;
+
+}  // namespace
+
+Run::Run(const Case& input, const RunOptions& options)
+    : input_(input), options_(options), directory_(options.output_directory), steps_(step_count(input.time)) {}
+
+RunSummary Run::go() {
+  if (options_.resume) {
+    if (is_complete()) return summary_;
+    find_checkpoint();
+  } else if (!options_.force) {
+    refuse_old_run(directory_, options_);
+  }
+  begin();
+  open_files();
+  take_steps();
+  finish();
+  if (failure_) throw Error(*failure_);
+  return summary_;
+}
+
+/// The run in the directory has come to its end: nothing to do.
+bool Run::is_complete() {
+  if (!std::filesystem::exists(summary_path())) return false;
+  try {
+    summary_ = read_summary(summary_path());
+  } catch (const Error&) {
+    return false;  // a summary is not waited for until it is on the disk: checkpoints are
+  }
+  if (summary_.parameters.empty()) return false;
+  knows_what_ran_ = true;
+  require_same_case(input_, summary_.version, summary_.parameters, options_.output_directory);
+  if (summary_.status != "done") return false;
+  log::info(fmt::format("{}: this run is complete, there is nothing to resume", options_.output_directory));
+  if (!options_.export_contact.empty())
+    log::warning("--export-contact: the run is complete, nothing more is exported; make it again with --force");
+  summary_.expectations = check_expectations(input_, options_.output_directory, to_json(summary_));
+  return true;
+}
+
+void Run::find_checkpoint() {
+  snapshot_ = newest_checkpoint(options_.output_directory);
+  if (snapshot_) {
+    require_same_case(input_, *snapshot_, options_.output_directory);
+  } else if (!checkpoint_files(options_.output_directory).empty()) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: cannot be resumed: no checkpoint can be read; start anew with --force",
+                            options_.output_directory));
+  } else if (const std::vector<std::string> results = directory_.results(); !knows_what_ran_ && !results.empty()) {
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format("{}: cannot be resumed: there are results ({}), but neither a checkpoint nor a summary.json "
+                    "that says what ran; choose another directory with -o, or start anew with --force",
+                    options_.output_directory, std::filesystem::path(results.front()).filename().string()));
+  } else {
+    log::info(fmt::format("{}: there is no checkpoint, the run starts from the beginning", options_.output_directory));
+  }
+}
+
+void Run::begin() {
+  const std::vector<std::string> resume_warnings = log::warnings();
+  BuildTimes build;
+  model_ = build_model(input_, &build);
+  times_.add_build(build);
+  check_expected_columns(input_, *model_);
+  if (model_->problem.dof_count() >= large_body) {
+    log::info(fmt::format("{} dofs, {} contact points; preparing the steps", model_->problem.dof_count(),
+                          model_->problem.contact.size()));
+  }
+  std::string difference;
+  if (snapshot_) difference = compare_model(input_, *model_, *snapshot_);
+  Timer timer;
+  scheme_ = make_scheme(input_.time);
+  begin_simulation();
+  times_.add_start(timer.seconds(), simulation_->methods());
+  if (std::abs(static_cast<double>(steps_) * input_.time.step - input_.time.end) > 1e-9 * input_.time.end) {
+    log::info(fmt::format("time.end is not a whole number of steps: the run ends at t = {:.9g}",
+                          static_cast<double>(steps_) * input_.time.step));
+  }
+  summary_ = describe_run(input_, *model_, *scheme_, *simulation_);
+  if (snapshot_) {
+    // Those of the model have been said and remembered already.
+    std::vector<std::string> warnings = snapshot_->texts("run.warnings");
+    warnings.insert(warnings.end(), resume_warnings.begin(), resume_warnings.end());
+    log::set_warnings(std::move(warnings));
+    if (!difference.empty()) log::warning(difference);
+    const Snapshot::Integers& resumed_at = snapshot_->integers("run.resumed_at");
+    summary_.resumed_at.assign(resumed_at.begin(), resumed_at.end());
+    summary_.resumed_at.push_back(simulation_->state().step);
+    summary_.checkpoint_step = simulation_->state().step;
+    times_.load(*snapshot_, "run.times");
+    remove_files(directory_.left_behind(simulation_->state().step));
+    log::info(fmt::format("resumed after step {} of {}", simulation_->state().step, steps_));
+  } else {
+    replace_old_run(directory_, options_, summary_);
+  }
+}
+
+/// An error here is told in the summary, as one of a step is.
+void Run::open_files() {
+  try {
+    start_recording();
+  } catch (const Error& problem) {
+    summary_.status = "failed";
+    summary_.message = problem.what();
+    summary_.steps = simulation_->state().step;
+    try {
+      write_summary(summary_path(), summary_);
+    } catch (const Error&) {  // what has failed first is what a user must hear
+    }
+    throw;
+  }
+}
+
+void Run::start_recording() {
+  const ContactProvenance provenance = describe_provenance(input_, summary_);
+  if (!options_.export_contact.empty())
+    contact_export_.emplace(options_.export_contact, export_directory(options_), provenance);
+  failure_bundle_.emplace(options_.output_directory, provenance);
+  simulation_->observe_contact([this](const ContactProblem& problem, const ContactSolution& solution) {
+    if (!solution.solved()) failure_bundle_->take_problem(problem, solution, simulation_->state().step + 1);
+    if (contact_export_) contact_export_->write(problem, solution);
+  });
+  recording_.emplace(input_, *model_, *scheme_, simulation_->state(), options_.output_directory, steps_,
+                     snapshot_ ? &*snapshot_ : nullptr);
+  if (!snapshot_) recording_->record(simulation_->state(), simulation_->account());
+  snapshot_.reset();
+  contact_before_ = simulation_->contact_seconds();
+  report_progress();
+}
+
+void Run::begin_simulation() {
+  if (snapshot_) {
+    simulation_.emplace(model_->problem, *scheme_, *snapshot_, step_solver_options(input_));
+  } else {
+    simulation_.emplace(model_->problem, *scheme_, model_->initial, step_solver_options(input_));
+  }
+}
+
+/// All steps, recorded, until the end, an error or a signal.
+void Run::take_steps() {
+  Simulation& simulation = *simulation_;
+  Progress progress(steps_, options_.quiet, simulation.state().step);
+  since_checkpoint_.restart();
+  const auto checkpoint_is_due = [&] {
+    const OutputSection& output = input_.output;
+    return (output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
+           (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds);
+  };
+  long step = simulation.state().step;
+  try {
+    while (simulation.state().step < steps_) {
+      if (const int signal = options_.stop_signal ? options_.stop_signal() : 0; signal != 0) return stop(signal);
+      const Timer timer;
+      ++step;
+      if (log::enabled(log::Level::debug))
+        log::debug(fmt::format("step {}, t = {:.9g}", step, static_cast<double>(step) * scheme_->step()));
+      if (contact_export_) contact_export_->begin_step(step);
+      simulation.advance();
+      times_.steps += timer.seconds();
+      recording_->record(simulation.state(), simulation.account());
+      progress.update(simulation.state().step, simulation.state().time);
+      if (simulation.state().step < steps_ && checkpoint_is_due()) write_checkpoint();
+      if (since_report_.seconds() >= report_interval) report_progress();
+    }
+    recording_->flush();
+  } catch (const Error& problem) {
+    failure_ = problem;
+    if (problem.kind() == ErrorKind::not_converged) write_failure_bundle(step);
+  }
+}
+
+}  // namespace ricochet
