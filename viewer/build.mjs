@@ -1,6 +1,8 @@
-// Bundles the viewer into one HTML file, dist/viewer.html, into which `ricochet report` puts the data of runs.
+// Bundles the viewer into one HTML file, dist/viewer.html, into which `ricochet report` puts the data of runs. The same
+// sources and the same package-lock.json give the same bytes on any machine: nothing of the machine is in the page.
 import { build } from "esbuild";
-import { mkdir, readFile, writeFile } from "node:fs/promises";
+import { createHash } from "node:crypto";
+import { mkdir, readdir, readFile, writeFile } from "node:fs/promises";
 
 const bundle = async (entry, loader) => {
   const result = await build({ entryPoints: [entry], bundle: true, minify: true, write: false, target: "es2022",
@@ -14,10 +16,22 @@ const licences = await Promise.all(["three", "uplot"].map(async (name) => {
   const { version } = JSON.parse(await readFile(`node_modules/${name}/package.json`, "utf8"));
   return `${name} ${version}\n${await readFile(`node_modules/${name}/LICENSE`, "utf8")}`;
 }));
+/**
+ * What the page is made from, as one number: a test without Node.js sees by it that the committed page is that of the
+ * sources (tests/end_to_end/report_test.py).
+ */
+const sources = async () => {
+  const files = (await readdir("src", { recursive: true })).filter((name) => /\.\w+$/.test(name)).map((name) => `src/${name}`);
+  const hash = createHash("sha256");
+  for (const file of [...files, "build.mjs", "package-lock.json"].sort()) hash.update(`${file}\n`).update(await readFile(file));
+  return hash.digest("hex");
+};
+
 // A replacement is given as a function: "$&" in the script must stay what it is.
 const page = (await readFile("src/index.html", "utf8"))
   .replace("/*STYLE*/", () => style)
   .replace("/*SCRIPT*/", () => script.replaceAll("</script", "<\\/script"))
+  .replace("SOURCES", await sources())
   .replace("<!--LICENCES-->", () => `<!--\n${licences.join("\n").replaceAll("--", "- -")}-->`);
 await mkdir("dist", { recursive: true });
 await writeFile("dist/viewer.html", page);

@@ -21,8 +21,8 @@ std::string viewer_file() {
   const std::string path = installed_file("viewer.html");
   if (path.empty()) {
     throw Error(ErrorKind::file_access,
-                "this build has no viewer, which reports are made of: `./dev viewer` in a clone of Ricochet builds it "
-                "(it needs Node.js 18 and npm)");
+                "share/ricochet/viewer.html, which reports are made of, is missing beside this program: build or install "
+                "Ricochet again");
   }
   return path;
 }

@@ -29,6 +29,8 @@ class Installation(TestCase):
         self.command(program, "plot", self.folder / "by-program", "--what", "energy", "-o", figure)
         self.assertIn("</svg>", figure.read_text(encoding="utf-8"))
         self.assertTrue((prefix / "share" / "ricochet" / "figure.py").is_file())
+        self.command(program, "report", self.folder / "by-program")
+        self.assertIn('id="ricochet-runs"', (self.folder / "by-program" / "report.html").read_text(encoding="utf-8"))
         linked = re.search(r"libricochet\S* => (\S+)", self.command("ldd", program))
         self.assertTrue(pathlib.Path(linked[1]).resolve().is_relative_to(prefix), linked[0])
 

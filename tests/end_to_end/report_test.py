@@ -2,6 +2,7 @@
 thinned is said; wrong use is explained. The page itself is tested in a browser by viewer/test."""
 
 import base64
+import hashlib
 import json
 import os
 import re
@@ -13,7 +14,7 @@ import zlib
 import h5py
 import numpy
 
-from harness import DISC, PROGRAM, History, TestCase, block_case, run
+from harness import DISC, PROGRAM, SOURCE, History, TestCase, block_case, run
 
 VIEWER = ("<!doctype html><!-- ricochet report --><!-- data format 2 --><html><body><p>a viewer</p><!--RICOCHET-DATA--><script>$&\\1</script>"
           "</body></html>\n")
@@ -300,7 +301,7 @@ class Report(TestCase):
     def test_a_viewer_of_another_version(self):
         results = self.simulate(DISC, "disc", SHORT)
         self.viewer.write_text(VIEWER.replace("format 2", "format 1"))
-        self.assertIn("build it with ./dev viewer", self.report(results, status=4).stderr)
+        self.assertIn("is not the viewer of this version: build or install", self.report(results, status=4).stderr)
 
     def test_titles_end_nothing(self):
         case = self.write("case.toml", block_case().replace('"A block falls"', '"</script><b>bold & \\"quoted\\""'))
@@ -324,7 +325,8 @@ class Report(TestCase):
         self.assertIn("results.h5", self.report(results, status=2).stderr)
         self.viewer.unlink()
         process = self.report(results, status=4)
-        self.assertIn("./dev viewer", process.stderr)
+        self.assertIn("share/ricochet/viewer.html", process.stderr)
+        self.assertIn("build or install Ricochet again", process.stderr)
 
     def test_runs_without_displacements_stand_still(self):
         for field in ("von_mises", "contact_pressure", "stress"):
@@ -403,6 +405,20 @@ class Report(TestCase):
         self.assertIn("/frames/000003/displacement", self.report(results, status=2).stderr)
         (results / "obstacles.xdmf").write_text('<Grid Name="obstacles" GridType="Uniform"><Time Value="x"/></Grid>')
         self.assertIn("obstacles.xdmf:1: 'x' is not a number", self.report(results, status=2).stderr)
+
+
+class BuiltViewer(TestCase):
+    def test_the_page_in_the_repository_is_made_from_these_sources(self):
+        """Users need no Node.js. Whether the bytes are those that the sources give is compared by `./dev viewer --test`."""
+        viewer = SOURCE / "viewer"
+        files = [path for path in (viewer / "src").rglob("*") if path.is_file()]
+        total = hashlib.sha256()
+        for name in sorted(str(path.relative_to(viewer)) for path in [*files, viewer / "build.mjs", viewer / "package-lock.json"]):
+            total.update(f"{name}\n".encode() + (viewer / name).read_bytes())
+        page = (viewer / "built" / "viewer.html").read_text(encoding="utf-8")
+        self.assertEqual(re.search(r"^<!-- sources (\w+) -->$", page, re.MULTILINE)[1], total.hexdigest(),
+                         "viewer/ has changed: run ./dev viewer and commit viewer/built/viewer.html")
+        self.assertEqual((PROGRAM.parent / "share" / "ricochet" / "viewer.html").read_text(encoding="utf-8"), page)
 
 
 if __name__ == "__main__":

@@ -248,7 +248,7 @@ Report make_report(const std::vector<std::string>& directories, const ReportOpti
   const std::size_t place = viewer.find(data_place);
   if (place == std::string::npos || viewer.find(format_mark) == std::string::npos) {
     throw Error(ErrorKind::file_access,
-                fmt::format("{}: is not a viewer of this version: build it with ./dev viewer", options.viewer));
+                fmt::format("{}: is not the viewer of this version: build or install Ricochet again", options.viewer));
   }
   PageBuilder builder(read_runs(directories, true), options.most_bytes - std::min(options.most_bytes, viewer.size()));
   Report report;

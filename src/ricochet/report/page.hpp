@@ -8,7 +8,7 @@
 namespace ricochet {
 
 struct ReportOptions {
-  std::string viewer;                   ///< path of the viewer, an HTML file that `./dev viewer` builds
+  std::string viewer;                   ///< path of the viewer, an HTML file built from viewer/
   std::size_t most_bytes = 20'000'000;  ///< of the file; runs that take more are thinned
 };
 
