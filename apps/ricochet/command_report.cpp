@@ -20,9 +20,10 @@ namespace fs = std::filesystem;
 std::string viewer_file() {
   const std::string path = installed_file("viewer.html");
   if (path.empty()) {
-    throw Error(ErrorKind::file_access,
-                "share/ricochet/viewer.html, which reports are made of, is missing beside this program: build or install "
-                "Ricochet again");
+    throw Error(
+        ErrorKind::file_access,
+        "share/ricochet/viewer.html, which reports are made of, is missing beside this program: build or install "
+        "Ricochet again");
   }
   return path;
 }

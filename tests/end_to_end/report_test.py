@@ -16,7 +16,7 @@ import numpy
 
 from harness import DISC, PROGRAM, SOURCE, History, TestCase, block_case, run
 
-VIEWER = ("<!doctype html><!-- ricochet report --><!-- data format 2 --><html><body><p>a viewer</p><!--RICOCHET-DATA--><script>$&\\1</script>"
+VIEWER = ("<!doctype html><!-- ricochet report --><!-- data format 3 --><html><body><p>a viewer</p><!--RICOCHET-DATA--><script>$&\\1</script>"
           "</body></html>\n")
 SHORT = {"time.end": 0.02, "output.fields_every": 10}
 
@@ -134,6 +134,30 @@ class Report(TestCase):
             steps = numpy.linalg.norm(numpy.diff(nodes[line], axis=0), axis=1)
             numpy.testing.assert_allclose(numpy.diff(position), steps, rtol=1e-12)
 
+    def check_inside(self, page, data, results):
+        """All cells of a solid of tetrahedra are there once, with their values, as far as steps go."""
+        body, volume = data["body"], data["body"]["volume"]
+        with h5py.File(results / "results.h5") as file:
+            frames = [file["frames"][name] for name in sorted(file["frames"])]
+            read = {name: numpy.array([frame[name][()] for frame in frames]) for name in frames[0]}
+            nodes, cells = file["mesh/nodes"][()], file["mesh/cells"][()]
+        places = page.levels(volume["positions"]).T
+        order = [int(numpy.argmin(numpy.sum((nodes - place) ** 2, axis=1))) for place in places]
+        self.assertEqual(sorted(order), sorted(set(cells.ravel())))
+        corners = numpy.array(order)[page.indices(volume["corners"])].reshape(-1, 4)
+        numbers = {tuple(sorted(cell)): i for i, cell in enumerate(cells)}
+        own = [numbers.pop(tuple(sorted(corner))) for corner in corners]
+        self.assertEqual(numbers, {}, "cells that are not there")
+        moved = numpy.stack([page.levels(array) for array in volume["deviations"]], axis=2)
+        moved += page.reals(body["mean"])[:, None, :]
+        error = numpy.abs(moved - read["displacement"][:, order]).max()
+        self.assertLess(error, 0.51 * max(array["step"] for array in volume["deviations"]) + 1e-7)
+        fields = {field["name"]: field for field in volume["fields"]}
+        self.assertEqual(set(fields), {field["name"] for field in body["fields"]})
+        values = page.levels(fields["von_mises"]["values"])[:, page.indices(volume["cells"])]
+        wanted = read["von_mises"][:, own]
+        self.assertLess(numpy.abs(values - wanted).max(), 0.51 * fields["von_mises"]["values"]["step"] + 1e-6 * wanted.max())
+
     def test_one_run_in_the_plane(self):
         results = self.simulate(DISC, "disc", SHORT)
         process = self.report(results)
@@ -173,6 +197,27 @@ class Report(TestCase):
         self.assertTrue(any("stress" in sentence for sentence in data["thinned"]), data["thinned"])
         self.check_history(page, data, results)
         self.check_frames(page, data, results)
+        self.check_inside(page, data, results)
+        # The resultant is what is judged, and its size is that of all components together.
+        judgement, history = data["judgement"], History(results / "history.csv")
+        self.assertEqual(judgement["force"], "contact_force_z")
+        sizes = numpy.sqrt(sum(numpy.array(history[f"contact_force_{axis}"]) ** 2 for axis in "xyz"))
+        self.assertAlmostEqual(judgement["force_largest"], sizes.max(), delta=1e-12 * sizes.max())
+        self.assertAlmostEqual(judgement["force_largest_at"], history["time"][sizes.argmax()], delta=1e-12)
+
+    def test_the_inside_of_a_solid_is_made_to_fit(self):
+        case = DISC.parents[1] / "ball" / "ball.toml"
+        results = self.simulate(case, "ball", {"time.end": 0.034, "output.fields_every": 1})
+        self.report(results, "--size-limit", 1)
+        (data,) = (page := Page(results / "report.html")).runs
+        self.assertLess((results / "report.html").stat().st_size, 1_000_000)
+        volume = data["body"]["volume"]
+        if volume is None:
+            self.assertTrue(any("there are no cuts" in sentence for sentence in data["thinned"]), data["thinned"])
+        else:
+            self.assertLess(volume["tetrahedra"], data["summary"]["cells"])
+            self.assertTrue(any(f"{volume['tetrahedra']} tetrahedra" in sentence for sentence in data["thinned"]), data["thinned"])
+            self.assertLess(page.indices(volume["corners"]).max(), volume["nodes"])
 
     def test_several_runs_are_told_apart(self):
         for scheme, mass in (("midpoint", "consistent"), ("newmark", "equivalent")):
@@ -300,7 +345,7 @@ class Report(TestCase):
 
     def test_a_viewer_of_another_version(self):
         results = self.simulate(DISC, "disc", SHORT)
-        self.viewer.write_text(VIEWER.replace("format 2", "format 1"))
+        self.viewer.write_text(VIEWER.replace("format 3", "format 1"))
         self.assertIn("is not the viewer of this version: build or install", self.report(results, status=4).stderr)
 
     def test_titles_end_nothing(self):
@@ -369,7 +414,7 @@ class Report(TestCase):
         header, *rows = path.read_text().splitlines()
         names = header.split(",")
         for column, judged in (("total_energy", "energy"), ("contact_work", "energy"), ("max_penetration", "penetration"),
-                               ("lowest.reaction_normal", "force")):
+                               ("contact_force_y", "force"), ("lowest.reaction_normal", "force")):
             with self.subTest(column):
                 fields = [row.split(",") for row in rows]
                 for row in fields[100:]:

@@ -1,4 +1,5 @@
 /** Colours of runs, of fields and of contact. */
+import { furtherColour } from "./palette";
 
 // Okabe and Ito's, which people with any kind of colour vision tell apart; the third darker to be read on white.
 const runsLight = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6b4c9a", "#5b5b5b"];
@@ -28,7 +29,7 @@ export function toggleTheme(): void {
 
 export function runColour(run: number): string {
   const colours = isDark() ? runsDark : runsLight;
-  return colours[run % colours.length];
+  return run < colours.length ? colours[run] : furtherColour(run, isDark(), colours);
 }
 
 /** A colour of the style sheet. */

@@ -22,7 +22,7 @@ function superscript(exponent: number): string {
 /** "total_energy" → "total energy", "lowest.reaction_normal" → "lowest: normal reaction". */
 export function columnName(column: string): string {
   const known: Record<string, string> = {
-    "@force": "force that is judged",
+    "@force": "largest component",
     reaction_normal: "normal reaction",
     active_contacts: "active",
     max_penetration: "deepest interpenetration",

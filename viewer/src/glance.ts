@@ -42,11 +42,15 @@ export function forceFinding(j: Judgement): Finding {
   const what = "Contact force";
   if (j.force_broken_at !== null) return broken(what, j.force_broken_at);
   if (!(j.force_largest > 0)) return { what, grade: "none", words: "none", detail: "nothing touched" };
-  if (!(j.roughness > 0)) return { what, grade: "none", words: "too few rows to tell", detail: "history.csv has fewer than 50 rows" };
-  const detail = `${columnName(j.force)}: its total variation is ${number(j.force_variation, 3)}, that of its mean over a hundredth of the run (11 rows at least) ${number(j.trend_variation, 3)}`;
-  if (j.roughness < 2) return { what, grade: "good", words: "smooth", detail };
-  if (j.roughness < 6) return { what, grade: "fair", words: `ripples: varies ${number(j.roughness, 2)} times as much as its trend`, detail };
-  return { what, grade: "poor", words: `rattles: varies ${number(j.roughness, 2)} times as much as its trend`, detail };
+  const most = `up to ${number(j.force_largest, 3)}`;
+  const detail = `all contacts together; largest at t = ${number(j.force_largest_at)}. ${columnName(j.force)}: its total variation is ${number(j.force_variation, 3)}, that of its mean over a hundredth of the run (11 rows at least) ${number(j.trend_variation, 3)}`;
+  if (!(j.roughness > 0)) return { what, grade: "none", words: `${most}; too few rows to tell whether it is smooth`, detail };
+  const ofNode = j.node_roughness >= 2 && j.node_roughness > 2 * j.roughness;
+  const roughness = ofNode ? j.node_roughness : j.roughness;
+  const place = ofNode ? `: at ${columnName(j.node_force).split(":")[0]} it` : ":";
+  if (roughness < 2) return { what, grade: "good", words: `${most}, smooth`, detail };
+  const words = `${roughness < 6 ? "ripples" : "rattles"}${place} varies ${number(roughness, 2)} times as much as its trend`;
+  return { what, grade: roughness < 6 ? "fair" : "poor", words: `${most}, ${words}`, detail };
 }
 
 export function penetrationFinding(j: Judgement): Finding {
@@ -66,7 +70,7 @@ export const findings = (run: Run): Finding[] => [
   penetrationFinding(run.data.judgement),
 ];
 
-const marks: Record<Grade, [string, string]> = {
+export const marks: Record<Grade, [string, string]> = {
   good: ["✓", "good"],
   fair: ["~", "fair"],
   poor: ["✗", "poor"],

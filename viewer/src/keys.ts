@@ -15,6 +15,8 @@ const keys: [string, string][] = [
   ["m", "edges of the cells"],
   ["c", "the same colours for all runs"],
   ["r", "the whole body, from the front"],
+  ["k", "where it touches"],
+  ["x", "cut solids across x, y, z, not at all"],
   ["z", "the whole time (also a double click on a plot)"],
   ["t", "dark or light"],
   ["?", "this list"],
@@ -58,6 +60,12 @@ export function connectKeys(store: Store, player: Player, help: HTMLDialogElemen
       store.changed("contact");
     },
     r: () => stage()?.look("front"),
+    k: () => stage()?.look("contact"),
+    x: () => {
+      const axes = ["", "x", "y", "z"] as const;
+      const solids = store.runs.some((run) => run.body?.volume);
+      if (solids) store.set("cut", axes[(axes.indexOf(store.cut) + 1) % 4], "body");
+    },
     a: () => store.all(),
     z: () => store.setZoom(null),
     t: toggleTheme,

@@ -1,4 +1,5 @@
-import { Stage } from "./body/stage";
+import { cutOf } from "./body/section_view";
+import { Stage, type View } from "./body/stage";
 import { fieldNames } from "./body/fields";
 import { TimeChart } from "./charts/chart";
 import { chartDefinitions } from "./charts/definitions";
@@ -6,13 +7,16 @@ import { followSystem, runColour, toggleTheme } from "./colours";
 import { readPage, type Run } from "./data/run";
 import { details } from "./details";
 import { el, select } from "./elements";
-import { fieldName } from "./format";
+import { fieldName, number } from "./format";
 import { conclusion, findingsElement } from "./glance";
 import { connectKeys, helpDialog } from "./keys";
 import { ContactMap } from "./maps/contact_map";
 import { ProfileChart } from "./maps/profile";
 import { Player } from "./player";
-import { Store } from "./store";
+import type { ColourScale } from "./maps/colour_range";
+import { ResultsChart } from "./results/results_chart";
+import { runTable } from "./results/run_table";
+import { Store, type Axis } from "./store";
 
 /** What tests reach the page by. */
 export interface Handle {
@@ -20,6 +24,7 @@ export interface Handle {
   charts: TimeChart[];
   maps: ContactMap[];
   profile: ProfileChart;
+  results: ResultsChart | null;
   stage: Stage | null;
   ready: boolean;
 }
@@ -29,6 +34,9 @@ declare global {
     ricochet?: Handle;
   }
 }
+
+/** More runs than these have a row each instead. */
+const mostCards = 6;
 
 function title(runs: Run[]): string {
   const titles = [...new Set(runs.map((run) => run.summary.title || run.summary.case))];
@@ -88,6 +96,34 @@ function toggleButton(store: Store, key: "showMesh" | "showForces" | "sharedColo
   return button;
 }
 
+/** Which plane cuts solids. */
+function cutTools(store: Store, stage: Stage, runs: Run[]): HTMLElement {
+  const choice = select("cut", [["", "none"], ["x", "across x"], ["y", "across y"], ["z", "across z"]], store.cut, (value) => {
+    store.set("cut", value as Axis | "", "body");
+    if (value !== "") stage.look(value as Axis);
+  });
+  choice.control.id = "cut";
+  const at = el("input", { type: "range", min: "0", max: "1", step: "0.005", value: String(store.cutAt), "aria-label": "Place of the cut" });
+  at.addEventListener("input", () => store.set("cutAt", Number(at.value), "body"));
+  const place = el("output");
+  const other = el("button.small", { type: "button", title: "Take off the other side", onclick: () => store.set("cutFlipped", !store.cutFlipped, "body") }, "other side");
+  const rest = el("span.control", {}, at, place, other);
+  const show = () => {
+    choice.control.value = store.cut;
+    at.value = String(store.cutAt);
+    rest.hidden = store.cut === "";
+    const solid = stage.panels.find(({ view }) => view.section && store.visible[view.run.number])?.view;
+    const cut = solid && cutOf(store, solid.start);
+    place.textContent = cut ? `${store.cut} = ${number(cut.at, 3)}` : "";
+    other.setAttribute("aria-pressed", String(store.cutFlipped));
+  };
+  store.on("body", show);
+  store.on("runs", show);
+  show();
+  choice.element.title = `A section through ${runs.length > 1 ? "solids" : "the solid"} at the start, which moves with it (key x)`;
+  return el("span.tools", {}, choice.element, rest);
+}
+
 function bodySection(store: Store, stage: Stage, runs: Run[]): HTMLElement {
   const names = fieldNames(runs);
   store.field = names.includes("von_mises") ? "von_mises" : (names[0] ?? "");
@@ -104,16 +140,25 @@ function bodySection(store: Store, stage: Stage, runs: Run[]): HTMLElement {
   });
   const space = runs.some((run) => run.summary.dimension === 3);
   store.showForces = !space; // there they hide the pressures that the surface shows
-  const view = (name: "front" | "side" | "top" | "below") =>
-    el("button.small", { type: "button", onclick: () => stage.look(name) }, name);
+  const view = (name: View, text: string = name, title = "") =>
+    el("button.small", { type: "button", title, onclick: () => stage.look(name) }, text);
+  const contact = runs.some((run) => run.contact !== null);
+  const colours = select("scale", [["automatic", "automatic"], ["most", "fit most"], ["all", "fit all"], ["logarithmic", "logarithmic"]], store.scale,
+    (value) => store.set("scale", value as ColourScale, "body"));
+  colours.control.id = "scale";
+  store.on("body", () => (colours.control.value = store.scale));
   return el("section.panel", { id: "bodies" },
     el("header", {}, el("h3", {}, "The body"),
-      el("div.tools", {}, field.element,
+      el("div.tools", {}, field.element, colours.element,
         el("label.control", { title: "Deformation relative to the mean displacement, which is never scaled" }, el("span", {}, "deformation"), scale, scaleText),
         toggleButton(store, "showForces", "pressures", "Contact pressures as bars (key p)"),
         toggleButton(store, "showMesh", "mesh", "Edges of the cells (key m)"),
-        runs.length > 1 && toggleButton(store, "sharedColours", "same colours", "The same range of colours for all runs, in bodies and maps (key c)"),
-        ...(space ? (["front", "side", "top", "below"] as const).map(view) : [el("button.small", { type: "button", onclick: () => stage.look("front") }, "fit")]))),
+        runs.length > 1 && toggleButton(store, "sharedColours", "same colours", "The same range of colours for all runs, in bodies and maps (key c)"))),
+    el("div.tools", {},
+      ...(space ? (["front", "side", "top", "below"] as const).map((name) => view(name)) : [view("front", "fit")]),
+      contact && view("contact", "contact zone", `Where the body touches${space ? ", from behind the obstacle" : ""} (key k)`),
+      contact && space && view("contact-side", "contact, from the side", "Where the body touches, along the obstacle"),
+      runs.some((run) => run.body!.volume !== null) && cutTools(store, stage, runs)),
     perRun(store, runs, (run) => stage.add(run).element, "bodies"));
 }
 
@@ -166,6 +211,7 @@ async function start(): Promise<void> {
   const moving = el("div", { id: "moving" }, el("p.note", {}, "Unpacking the frames…"));
   const rest = charts.filter((each) => !["energy", "force"].includes(each.id)).map((each) => each.element);
   const profile = new ProfileChart(store);
+  const results = runs.length > 1 ? new ResultsChart(store, runs) : null;
   page.replaceChildren(
     el("header.top", {},
       el("div", {}, el("h1", {}, title(runs)), sentence !== "" && el("p.conclusion", {}, sentence)),
@@ -173,17 +219,19 @@ async function start(): Promise<void> {
         runs.length > 2 && el("button.small", { type: "button", onclick: () => store.all() }, "all runs"),
         el("button.small", { type: "button", title: "Keys (?)", onclick: () => help.showModal() }, "keys"),
         el("button.small", { type: "button", title: "Dark or light (t)", onclick: switchTheme }, "dark / light"))),
-    el("div.cards", {}, ...runs.map((run) => card(store, run))),
-    el("div.charts", {}, chart("energy"), chart("force")),
+    runs.length > mostCards ? runTable(store, runs) : el("div.cards", {}, ...runs.map((run) => card(store, run))),
+    results?.isTrend ? el("div.results-first", {}, results.element) : "",
+    el("div.charts", {}, chart("force"), chart("energy")),
     moving,
-    el("div.charts", {}, profile.element, ...rest),
+    el("div.charts", {}, profile.element, ...(results && !results.isTrend ? [results.element] : []), ...rest),
     details(store),
     el("footer.made", {}, `Written by Ricochet ${runs[0].summary.ricochet_version}. Runs: ${runs.map((run) => run.data.directory).join(", ")}`),
     player.element,
     help,
   );
   for (const each of charts) each.rebuild();
-  const handle: Handle = { store, charts, maps: [], profile, stage: null, ready: false };
+  results?.rebuild();
+  const handle: Handle = { store, charts, maps: [], profile, results, stage: null, ready: false };
   window.ricochet = handle;
   connectKeys(store, player, help, () => handle.stage, switchTheme);
 

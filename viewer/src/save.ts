@@ -10,7 +10,7 @@ export function saveBlob(blob: Blob, name: string): void {
 }
 
 /** Columns of numbers, written so that they are read back exactly; NaN is an empty field. */
-export function saveCsv(names: string[], columns: ArrayLike<number | null | undefined>[], name: string): void {
+export function saveCsv(names: string[], columns: ArrayLike<number | string | null | undefined>[], name: string): void {
   const quoted = (text: string) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const lines = [names.map(quoted).join(",")];
   const rows = Math.max(0, ...columns.map((column) => column.length));
@@ -18,7 +18,7 @@ export function saveCsv(names: string[], columns: ArrayLike<number | null | unde
     lines.push(
       columns
         .map((column) => column[i])
-        .map((value) => (value === null || value === undefined || Number.isNaN(value) ? "" : String(value)))
+        .map((value) => (value === null || value === undefined || Number.isNaN(value) ? "" : quoted(String(value))))
         .join(","),
     );
   }

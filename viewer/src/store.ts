@@ -1,7 +1,10 @@
 import type { Run } from "./data/run";
+import type { ColourScale } from "./maps/colour_range";
 
 /** What all parts of the page have in common, and who wants to know when it changes. */
-export type Topic = "time" | "runs" | "zoom" | "body" | "contact" | "theme" | "player";
+export type Topic = "highlight" | "time" | "runs" | "zoom" | "body" | "contact" | "theme" | "player";
+
+export type Axis = "x" | "y" | "z";
 
 export class Store {
   time = 0;
@@ -11,12 +14,20 @@ export class Store {
   /** Seconds that the whole run takes when it is played. */
   duration = 10;
   visible: boolean[];
+  /** The run that is pointed at: the others are drawn faintly. */
+  highlight: number | null = null;
   zoom: [number, number] | null = null;
   deformation = 1;
   field = "";
   showMesh = false;
   showForces = true;
   sharedColours = false;
+  scale: ColourScale = "automatic";
+  /** Solids are cut across this axis; what is beyond so much of their extent at the start is taken off. */
+  cut: Axis | "" = "";
+  cutAt = 0.5;
+  /** The other side is taken off. */
+  cutFlipped = false;
   quantity = "contact_pressure";
   readonly start: number;
   readonly end: number;
@@ -85,12 +96,18 @@ export class Store {
     this.changed("runs");
   }
 
+  setHighlight(run: number | null): void {
+    if (this.highlight === run) return;
+    this.highlight = run;
+    this.changed("highlight");
+  }
+
   setZoom(zoom: [number, number] | null): void {
     this.zoom = zoom;
     this.changed("zoom");
   }
 
-  set<Key extends "deformation" | "field" | "showMesh" | "showForces" | "duration" | "playing" | "quantity" | "sharedColours">(
+  set<Key extends "deformation" | "field" | "showMesh" | "showForces" | "duration" | "playing" | "quantity" | "sharedColours" | "scale" | "cut" | "cutAt" | "cutFlipped">(
     key: Key,
     value: this[Key],
     topic: Topic,

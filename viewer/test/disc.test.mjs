@@ -33,7 +33,7 @@ test("every column of every run is in the page as history.csv has it", async () 
 
 test("curves have the values and the instants of the history", async () => {
   const step = 1e-4;
-  for (const [chart, column] of [["energy", "total_energy"], ["force", "lowest.reaction_normal"], ["works", "contact_work"], ["counts", "active_contacts"]]) {
+  for (const [chart, column] of [["energy", "total_energy"], ["force", "contact_force_y"], ["works", "contact_work"], ["counts", "active_contacts"]]) {
     const drawn = await curves(view.page, chart);
     assert.deepEqual(drawn.map((curve) => curve.run).sort(), ["klr-conserving", "midpoint", "newmark"]);
     for (const curve of drawn) {
@@ -42,7 +42,7 @@ test("curves have the values and the instants of the history", async () => {
       assert.deepEqual(curve.values, history[column]);
       // The source's instants: klr-conserving has energies half a step later, midpoint forces half a step earlier.
       const shift = column === "total_energy" && curve.run === "klr-conserving" ? 0.5 * step
-        : column === "lowest.reaction_normal" && curve.run === "midpoint" ? -0.5 * step : 0;
+        : column === "contact_force_y" && curve.run === "midpoint" ? -0.5 * step : 0;
       curve.times.forEach((t, i) => assertNear(t, history.time[i] + shift, 1e-15));
     }
   }
@@ -57,7 +57,7 @@ test("the numbers under a plot are those at the cursor", async () => {
     const shown = Number(new RegExp(`${name} ([\\d.]+)`).exec(text)[1]);
     const row = history.time.findIndex((t) => Math.abs(t - 0.05) < 1e-9);
     const candidates = name === "midpoint" ? [row, row + 1] : [row];
-    assert.ok(candidates.some((i) => Math.abs(shown - history["lowest.reaction_normal"][i]) <= 1e-5 * Math.abs(shown)), `${name}: ${shown}`);
+    assert.ok(candidates.some((i) => Math.abs(shown - history.contact_force_y[i]) <= 1e-5 * Math.abs(shown)), `${name}: ${shown}`);
   }
 });
 
@@ -95,7 +95,15 @@ test("hovering over a plot moves body, maps and the other plots to that time", a
   }));
   for (const at of state.cursor) assertNear(at, now, 0.15 / 400, "cursor of a plot");
   for (const at of [...state.frames, ...state.profile]) assertNear(at, now, 2.6e-4, "frame");
-  for (const text of state.captions) assertNear(Number(text.replace("t = ", "")), now, 3e-4, "caption");
+  state.captions.forEach((text, i) => {
+    const [, at, force] = /^t = ([\d.]+), contact force ([\d.]+)$/.exec(text);
+    assertNear(Number(at), now, 3e-4, "caption");
+    // The resultant at that time; its instants are half a step off in the midpoint scheme.
+    const history = readHistory(runs[i]);
+    const row = history.time.findIndex((t) => Math.abs(t - Number(at)) < 1e-9);
+    const candidates = [row, row + 1].map((k) => Math.hypot(history.contact_force_x[k], history.contact_force_y[k]));
+    assert.ok(candidates.some((value) => Math.abs(value - Number(force)) <= 1e-3 * value), `${text}: ${candidates}`);
+  });
   state.map.forEach((left, i) => assertNear((left - 66) / (state.areas[i] - 74), now / 0.15, 0.005, "cursor of a map"));
 });
 
@@ -293,8 +301,8 @@ test("plots, maps and bodies are saved as pictures and numbers", async () => {
   const csv = await download(page, () => buttons("#chart-force", "CSV").click());
   assert.equal(csv.name, "contact-force.csv");
   const [header, ...rows] = csv.content.toString().trimEnd().split("\n").map((line) => line.split(","));
-  const column = header.indexOf("newmark: lowest.reaction_normal");
-  assert.deepEqual(rows.map((row) => Number(row[column])), readHistory(runs[2])["lowest.reaction_normal"]);
+  const column = header.indexOf("newmark: contact_force_y");
+  assert.deepEqual(rows.map((row) => Number(row[column])), readHistory(runs[2]).contact_force_y);
   for (const [selector, name] of [["#chart-energy", "energy.png"], [".bodies .run-panel:nth-child(3)", "newmark-body.png"], [".maps .run-panel:nth-child(3)", "newmark-contact-pressure.png"], ["#profile", "contact-pressure-along-the-boundary.png"]]) {
     const png = await download(page, () => buttons(selector, "PNG").click());
     assert.equal(png.name, name);

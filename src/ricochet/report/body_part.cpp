@@ -20,6 +20,14 @@ bool is_contact(const std::string& name) {
   return std::find(contact_names.begin(), contact_names.end(), name) != contact_names.end();
 }
 
+/// Tensors are not in a page, and contact has a part of its own.
+bool is_shown(const XdmfField& field) {
+  return field.name != "displacement" && field.components <= 3 && !is_contact(field.name);
+}
+
+/// With fewer than the first an inside would not look like one; more than the second are not cut at once in a browser.
+constexpr Index least_tetrahedra = 1000, most_tetrahedra = 100'000;
+
 /// Value i of a scalar field, or the length of vector i.
 float magnitude(const std::vector<float>& values, int components, Index i) {
   if (components == 1) return values[static_cast<std::size_t>(i)];
@@ -29,38 +37,58 @@ float magnitude(const std::vector<float>& values, int components, Index i) {
 
 }  // namespace
 
-BodyFrames::BodyFrames(const ResultsReader& results, Index most_triangles)
+BodyFrames::Part::Part(std::vector<Index> its_nodes, const std::vector<int>& cells_of_pieces)
+    : nodes(std::move(its_nodes)) {
+  std::map<int, int> places;
+  for (const int cell : cells_of_pieces) {
+    const auto [place, is_new] = places.try_emplace(cell, static_cast<int>(cells.size()));
+    if (is_new) cells.push_back(cell);
+    numbers.push_back(place->second);
+  }
+}
+
+BodyFrames::BodyFrames(const ResultsReader& results, Index most_triangles, std::size_t volume_bytes)
     : results_(results),
       dimension_(dimension(results.cells().front().shape)),
       surface_(make_surface(results.nodes(), results.cells(), most_triangles)),
-      line_(make_contact_line(results.nodes(), results.contact_facets())) {
-  std::map<int, int> numbers;
-  for (const int cell : surface_.cells) {
-    const auto [place, is_new] = numbers.try_emplace(cell, static_cast<int>(cells_.size()));
-    if (is_new) cells_.push_back(cell);
-    triangle_cells_.push_back(place->second);
-  }
+      line_(make_contact_line(results.nodes(), results.contact_facets())),
+      outside_(surface_.nodes, surface_.cells) {
+  if (dimension_ == 3) make_inside(volume_bytes);
   choose();
   read_frames();
 }
 
-void BodyFrames::choose() {
-  for (int k = 0; k < dimension_ && results_.find_field("displacement") != nullptr; ++k)
-    deviations_.push_back({"xyz"[k] + std::string(), true, static_cast<Index>(surface_.nodes.size()), {}});
+/// A number takes somewhat more than a byte in the page, and five tetrahedra share a node.
+void BodyFrames::make_inside(std::size_t bytes) {
+  double on_nodes = 3.0, on_cells = 0.0;
   for (const XdmfField& field : results_.fields()) {
-    if (field.name == "displacement") continue;
-    if (is_contact(field.name)) {
-      if (!line_.nodes.empty()) contact_.push_back({field.name, true, static_cast<Index>(line_.nodes.size()), {}});
-    } else if (field.components > 3) {
-      left_out_.push_back(field.name);
-    } else {
-      const std::size_t columns = field.on_nodes ? surface_.nodes.size() : cells_.size();
-      fields_.push_back({field.name, field.on_nodes, static_cast<Index>(columns), {}});
-    }
+    if (is_shown(field)) (field.on_nodes ? on_nodes : on_cells) += 1.0;
+  }
+  const double of_each = 4.0 + 1.25 * static_cast<double>(frame_count()) * (on_nodes / 5.0 + on_cells);
+  const auto room = static_cast<Index>(static_cast<double>(bytes) / of_each);
+  if (room < least_tetrahedra) return;
+  volume_ = make_volume(results_.nodes(), results_.cells(), std::min(room, most_tetrahedra));
+  inside_ = Part(volume_.nodes, volume_.cells);
+}
+
+void BodyFrames::choose() {
+  for (const XdmfField& field : results_.fields()) {
+    if (is_contact(field.name) && !line_.nodes.empty())
+      contact_.push_back({field.name, true, static_cast<Index>(line_.nodes.size()), {}});
+    if (field.components > 3) left_out_.push_back(field.name);
   }
   double numbers = 0.0;
-  for (const auto* list : {&deviations_, &fields_, &contact_}) {
-    for (const Values& values : *list) numbers += static_cast<double>(values.columns);
+  for (const Values& values : contact_) numbers += static_cast<double>(values.columns);
+  for (Part* part : {&outside_, &inside_}) {
+    for (int k = 0; k < dimension_ && results_.find_field("displacement") != nullptr; ++k)
+      part->deviations.push_back({"xyz"[k] + std::string(), true, static_cast<Index>(part->nodes.size()), {}});
+    for (const XdmfField& field : results_.fields()) {
+      const std::size_t columns = field.on_nodes ? part->nodes.size() : part->cells.size();
+      if (is_shown(field)) part->fields.push_back({field.name, field.on_nodes, static_cast<Index>(columns), {}});
+    }
+    for (const auto* list : {&part->deviations, &part->fields}) {
+      for (const Values& values : *list) numbers += static_cast<double>(values.columns);
+    }
   }
   const auto stride =
       std::max<Index>(static_cast<Index>(std::ceil(numbers * static_cast<double>(frame_count()) / most_numbers)), 1);
@@ -71,7 +99,7 @@ void BodyFrames::choose() {
 
 void BodyFrames::read_frames() {
   std::vector<float> values;
-  if (deviations_.empty()) mean_.assign(3 * frames_.size(), 0.0);
+  if (outside_.deviations.empty()) mean_.assign(3 * frames_.size(), 0.0);
   for (const int frame : frames_) {
     for (const XdmfField& field : results_.fields()) {
       if (field.components > 3 || (is_contact(field.name) && line_.nodes.empty())) continue;
@@ -92,10 +120,12 @@ void BodyFrames::take_displacement(const std::vector<float>& field) {
   for (std::size_t i = 0; i < field.size(); ++i) mean[i % 3] += static_cast<double>(field[i]);
   for (double& component : mean) component /= static_cast<double>(field.size() / 3);
   mean_.insert(mean_.end(), mean.begin(), mean.end());
-  for (std::size_t k = 0; k < deviations_.size(); ++k) {
-    for (const Index node : surface_.nodes) {
-      deviations_[k].values.push_back(
-          static_cast<float>(static_cast<double>(field[3 * static_cast<std::size_t>(node) + k]) - mean[k]));
+  for (Part* part : {&outside_, &inside_}) {
+    for (std::size_t k = 0; k < part->deviations.size(); ++k) {
+      for (const Index node : part->nodes) {
+        part->deviations[k].values.push_back(
+            static_cast<float>(static_cast<double>(field[3 * static_cast<std::size_t>(node) + k]) - mean[k]));
+      }
     }
   }
 }
@@ -106,11 +136,14 @@ void BodyFrames::take_contact(const XdmfField& field, const std::vector<float>& 
 }
 
 void BodyFrames::take_field(const XdmfField& field, const std::vector<float>& values) {
-  Values& own = *std::find_if(fields_.begin(), fields_.end(), [&](const Values& v) { return v.name == field.name; });
-  if (field.on_nodes) {
-    for (const Index node : surface_.nodes) own.values.push_back(magnitude(values, field.components, node));
-  } else {
-    for (const int cell : cells_) own.values.push_back(magnitude(values, field.components, cell));
+  for (Part* part : {&outside_, &inside_}) {
+    Values& own =
+        *std::find_if(part->fields.begin(), part->fields.end(), [&](const Values& v) { return v.name == field.name; });
+    if (field.on_nodes) {
+      for (const Index node : part->nodes) own.values.push_back(magnitude(values, field.components, node));
+    } else {
+      for (const int cell : part->cells) own.values.push_back(magnitude(values, field.components, cell));
+    }
   }
 }
 
@@ -150,10 +183,43 @@ void BodyFrames::pack_frames(const Quality& quality, const std::vector<std::size
   for (const std::size_t row : rows)
     means.insert(means.end(), {mean_[3 * row], mean_[3 * row + 1], mean_[3 * row + 2]});
   part.mean = arrays.add_reals(means, static_cast<Index>(rows.size()), 3);
-  for (const Values& values : deviations_)
+  for (const Values& values : outside_.deviations)
     part.deviations.push_back(pack(values, rows, quality.displacement_bits, arrays));
-  for (const Values& values : fields_)
+  for (const Values& values : outside_.fields)
     part.fields.push_back({values.name, values.on_nodes, pack(values, rows, quality.field_bits, arrays)});
+}
+
+std::optional<VolumePart> BodyFrames::pack_volume(const std::vector<std::size_t>& rows, std::size_t most_bytes,
+                                                  PackedArrays& arrays) const {
+  if (volume_.count() == 0) return std::nullopt;
+  for (const auto& [displacement_bits, field_bits] : {std::pair(14, 12), std::pair(11, 8), std::pair(10, 6)}) {
+    PackedArrays attempt = arrays;
+    VolumePart part;
+    part.is_thinned = volume_.is_thinned;
+    part.nodes = static_cast<Index>(volume_.nodes.size());
+    part.tetrahedra = volume_.count();
+    part.positions = pack_positions(volume_.nodes, attempt);
+    part.corners = attempt.add_indices(volume_.tetrahedra);
+    part.cells = attempt.add_indices(inside_.numbers);
+    part.faces =
+        attempt.add_small_numbers(std::vector<float>(volume_.faces.begin(), volume_.faces.end()), 1, part.tetrahedra);
+    for (const Values& values : inside_.deviations)
+      part.deviations.push_back(pack(values, rows, displacement_bits, attempt));
+    for (const Values& values : inside_.fields)
+      part.fields.push_back({values.name, values.on_nodes, pack(values, rows, field_bits, attempt)});
+    if (attempt.page_bytes() - arrays.page_bytes() > most_bytes) continue;
+    arrays = std::move(attempt);
+    return part;
+  }
+  return std::nullopt;
+}
+
+PackedArray BodyFrames::pack_positions(const std::vector<Index>& nodes, PackedArrays& arrays) const {
+  std::vector<float> positions;
+  for (Index k = 0; k < dimension_; ++k) {
+    for (const Index node : nodes) positions.push_back(static_cast<float>(results_.nodes()(k, node)));
+  }
+  return arrays.add_levels(positions, dimension_, static_cast<Index>(nodes.size()), 16);
 }
 
 ContactPart BodyFrames::pack_contact(std::size_t most_bytes, PackedArrays& arrays) const {
@@ -190,17 +256,15 @@ BodyPart BodyFrames::pack_body(std::size_t most_bytes, PackedArrays& arrays) con
   part.nodes = static_cast<Index>(surface_.nodes.size());
   part.triangles = surface_.triangle_count();
   const std::size_t before = arrays.page_bytes();
-  std::vector<float> positions;
-  for (Index k = 0; k < dimension_; ++k) {
-    for (const Index node : surface_.nodes) positions.push_back(static_cast<float>(results_.nodes()(k, node)));
-  }
-  part.positions = arrays.add_levels(positions, dimension_, part.nodes, 16);
+  part.positions = pack_positions(surface_.nodes, arrays);
   part.corners = arrays.add_indices(surface_.triangles);
-  part.triangle_cells = arrays.add_indices(triangle_cells_);
+  part.triangle_cells = arrays.add_indices(outside_.numbers);
   part.edges =
       arrays.add_small_numbers(std::vector<float>(surface_.edges.begin(), surface_.edges.end()), 1, part.triangles);
   const std::size_t fixed = arrays.page_bytes() - before;
-  const std::size_t left = most_bytes > fixed ? most_bytes - fixed : 0;
+  // Of a solid two fifths are left to its inside.
+  const std::size_t share = volume_.count() > 0 ? most_bytes / 5 * 3 : most_bytes;
+  const std::size_t left = share > fixed ? share - fixed : 0;
 
   constexpr std::array<Quality, 13> qualities{{{16, 12, 1},
                                                {14, 10, 1},
@@ -232,6 +296,8 @@ BodyPart BodyFrames::pack_body(std::size_t most_bytes, PackedArrays& arrays) con
     if (attempt.page_bytes() - arrays.page_bytes() > left && !is_last) continue;
     arrays = std::move(attempt);
     result.is_coarse = quality.displacement_bits < qualities.front().displacement_bits;
+    const std::size_t used = arrays.page_bytes() - before;
+    result.volume = pack_volume(rows, most_bytes > used ? most_bytes - used : 0, arrays);
     return result;
   }
   return part;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "ricochet/report/packed_array.hpp"
 #include "ricochet/report/run_data.hpp"
 #include "ricochet/report/surface.hpp"
+#include "ricochet/report/volume.hpp"
 
 /// @file The body over time in a page, and its contact boundary.
 namespace ricochet {
@@ -32,6 +34,18 @@ struct BodyField {
   PackedArray values;
 };
 
+/// The inside of a solid at the frames of its BodyPart, with displacements less the same mean.
+struct VolumePart {
+  Index nodes = 0, tetrahedra = 0;
+  PackedArray positions;  ///< 3 × nodes, reference configuration
+  PackedArray corners;    ///< tetrahedra × 4
+  PackedArray cells;      ///< of each tetrahedron: its cell's number among those that are there
+  PackedArray faces;      ///< see Volume
+  std::vector<PackedArray> deviations;
+  std::vector<BodyField> fields;
+  bool is_thinned = false;  ///< nodes were merged
+};
+
 struct BodyPart {
   Index nodes = 0, triangles = 0;
   PackedArray positions;                ///< dimension × nodes, reference configuration
@@ -46,13 +60,15 @@ struct BodyPart {
   bool is_coarse = false;                     ///< these are fewer than they are where there is room
   std::vector<std::string> left_out;          ///< fields that are not in the page
   bool is_thinned = false;                    ///< triangles were merged
+  std::optional<VolumePart> volume;           ///< of solids, where there is room
 };
 
 /// What bodies are made from, read once: the body as it is seen, all its frames (or so many as memory allows).
 class BodyFrames {
  public:
-  /// Keeps a reference to the results.
-  BodyFrames(const ResultsReader& results, Index most_triangles);
+  /// Keeps a reference to the results. The inside of a solid is made coarse enough for so many bytes of the page,
+  /// about.
+  BodyFrames(const ResultsReader& results, Index most_triangles, std::size_t volume_bytes);
 
   /// In at most so many bytes of the page, as far as leaving out frames and coarser levels go.
   [[nodiscard]] ContactPart pack_contact(std::size_t most_bytes, PackedArrays& arrays) const;
@@ -71,7 +87,17 @@ class BodyFrames {
     int displacement_bits, field_bits;
     std::size_t stride;  ///< every so many of the frames that are here
   };
+  /// What of a body is in the page, with its displacements and fields.
+  struct Part {
+    std::vector<Index> nodes;
+    std::vector<int> cells;    ///< the body's cells that are needed
+    std::vector<int> numbers;  ///< of each triangle or tetrahedron, in `cells`
+    std::vector<Values> deviations, fields;
+    Part() = default;
+    Part(std::vector<Index> its_nodes, const std::vector<int>& cells_of_pieces);
+  };
   void choose();
+  void make_inside(std::size_t bytes);
   void read_frames();
   void take_displacement(const std::vector<float>& field);
   void take_contact(const XdmfField& field, const std::vector<float>& values);
@@ -81,6 +107,9 @@ class BodyFrames {
   [[nodiscard]] std::vector<int> frames_of(const std::vector<std::size_t>& rows) const;
   void pack_frames(const Quality& quality, const std::vector<std::size_t>& rows, PackedArrays& arrays,
                    BodyPart& part) const;
+  [[nodiscard]] std::optional<VolumePart> pack_volume(const std::vector<std::size_t>& rows, std::size_t most_bytes,
+                                                      PackedArrays& arrays) const;
+  [[nodiscard]] PackedArray pack_positions(const std::vector<Index>& nodes, PackedArrays& arrays) const;
   [[nodiscard]] static PackedArray pack(const Values& values, const std::vector<std::size_t>& rows, int bits,
                                         PackedArrays& arrays);
 
@@ -88,11 +117,11 @@ class BodyFrames {
   int dimension_;
   Surface surface_;
   ContactLine line_;
-  std::vector<int> cells_;           ///< the body's cells that can be seen
-  std::vector<int> triangle_cells_;  ///< numbers in cells_
-  std::vector<int> frames_;          ///< numbers of the frames that are here
-  std::vector<double> mean_;         ///< frames × 3
-  std::vector<Values> deviations_, fields_, contact_;
+  Volume volume_;
+  Part outside_, inside_;
+  std::vector<int> frames_;   ///< numbers of the frames that are here
+  std::vector<double> mean_;  ///< frames × 3
+  std::vector<Values> contact_;
   std::vector<std::string> left_out_;
 };
 

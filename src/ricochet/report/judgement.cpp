@@ -1,6 +1,7 @@
 #include "ricochet/report/judgement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ricochet {
@@ -69,29 +70,55 @@ void judge_energy(const RunData& run, Judgement& result) {
   result.energy_residual = largest_magnitude(run.column("energy_residual"));
 }
 
-/// The column in which a rattling force shows most.
-std::string force_column(const RunData& run) {
-  if (const Probe* probe = run.contact_probe()) return probe->name + ".reaction_normal";
-  std::string best = "contact_force_x";
-  for (const char* axis : {"contact_force_y", "contact_force_z"}) {
-    if (run.has_column(axis) && largest_magnitude(run.column(axis)) > largest_magnitude(run.column(best))) best = axis;
+constexpr std::array force_columns{"contact_force_x", "contact_force_y", "contact_force_z"};
+
+/// The component of the resultant in which most happens.
+std::string resultant_column(const RunData& run) {
+  std::string best = force_columns.front();
+  for (const char* column : force_columns) {
+    if (run.has_column(column) && largest_magnitude(run.column(column)) > largest_magnitude(run.column(best)))
+      best = column;
   }
   return best;
 }
 
-void judge_force(const RunData& run, Judgement& result) {
-  result.force = force_column(run);
-  const std::vector<double>& force = run.column(result.force);
-  if (force.empty()) return;
-  result.force_largest = largest_magnitude(force);
-  result.force_variation = total_variation(force);
+struct Variation {
+  double force = 0.0, trend = 0.0, roughness = 0.0;
+};
+
+Variation variation_of(const std::vector<double>& force) {
+  const double largest = largest_magnitude(force);
   const std::size_t half = std::max<std::size_t>(force.size() / 200, least_half);
-  result.trend_variation = total_variation(running_means(force, half));
-  if (!(result.force_largest > 0.0)) return;
-  if (result.force_variation < constant * result.force_largest) {
+  Variation result{total_variation(force), total_variation(running_means(force, half)), 0.0};
+  if (!(largest > 0.0)) return result;
+  if (result.force < constant * largest) {
     result.roughness = 1.0;
-  } else if (force.size() >= least_rows && result.trend_variation > 0.0) {
-    result.roughness = result.force_variation / result.trend_variation;
+  } else if (force.size() >= least_rows && result.trend > 0.0) {
+    result.roughness = result.force / result.trend;
+  }
+  return result;
+}
+
+void judge_force(const RunData& run, Judgement& result) {
+  result.force = resultant_column(run);
+  const std::vector<double>& force = run.column(result.force);
+  const std::vector<double>& times = run.times_of(result.force);
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    double length = 0.0;
+    for (const char* column : force_columns) {
+      if (run.has_column(column)) length = std::hypot(length, run.column(column)[i]);
+    }
+    if (!(length > result.force_largest)) continue;
+    result.force_largest = length;
+    result.force_largest_at = times[i];
+  }
+  const Variation variation = variation_of(force);
+  result.force_variation = variation.force;
+  result.trend_variation = variation.trend;
+  result.roughness = variation.roughness;
+  if (const Probe* probe = run.contact_probe()) {
+    result.node_force = probe->name + ".reaction_normal";
+    result.node_roughness = variation_of(run.column(result.node_force)).roughness;
   }
 }
 
@@ -102,7 +129,12 @@ Judgement judge(const RunData& run) {
   result.energy_broken_at = broken_at(run, {"total_energy", "kinetic_energy", "elastic_energy", "contact_work"});
   judge_energy(run, result);
   judge_force(run, result);
-  result.force_broken_at = broken_at(run, {result.force});
+  std::vector<std::string> forces{result.force};
+  for (const char* column : force_columns) {
+    if (run.has_column(column)) forces.emplace_back(column);
+  }
+  if (!result.node_force.empty()) forces.push_back(result.node_force);
+  result.force_broken_at = broken_at(run, forces);
   result.penetration_broken_at = broken_at(run, {"max_penetration"});
   result.penetration = largest_magnitude(run.column("max_penetration"));
   if (run.results) {

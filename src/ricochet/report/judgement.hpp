@@ -24,13 +24,18 @@ struct Judgement {
   double energy_change = 0.0;    ///< at the end
   double energy_residual = 0.0;  ///< the largest |energy_residual|
 
-  std::string force;  ///< the column looked at: of the first probe in contact, or a component of the resultant
-  double force_largest = 0.0;
-  double force_variation = 0.0;  ///< Σ |change from row to row|
+  std::string force;              ///< the column looked at: the largest component of the contact force on the body
+  double force_largest = 0.0;     ///< the length of the contact force on the body, all components together
+  double force_largest_at = 0.0;  ///< its time
+  double force_variation = 0.0;   ///< Σ |change from row to row|
   double trend_variation = 0.0;  ///< the same of its mean over a hundredth of the run around each row, 11 rows at least
   /// How many times as much as its trend the force varies: near 1 it is smooth, far above it rattles. 0: there is no
   /// force, or too few rows to tell.
   double roughness = 0.0;
+  /// The same of the first probe that is a node on the contact boundary: nodes may rattle against one another under a
+  /// smooth resultant. Empty and 0: there is none.
+  std::string node_force;
+  double node_roughness = 0.0;
 
   double penetration = 0.0;  ///< the deepest
   /// To the diagonal of the box around the body; nothing where the body is not known.

@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 /// Where the viewer wants the data, and what every report begins with.
 constexpr std::string_view data_begin = "<script type=\"application/json\" id=\"ricochet-runs\">";
 constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->",
-                           format_mark = "<!-- data format 2 -->";
+                           format_mark = "<!-- data format 3 -->";
 /// Of all bodies together, but for each as many as may be had at any rate.
 constexpr Index most_triangles = 200'000, always_triangles = 20'000;
 
@@ -64,9 +64,12 @@ Json to_json(const Judgement& j) {
           {"energy_residual", j.energy_residual},
           {"force", j.force},
           {"force_largest", j.force_largest},
+          {"force_largest_at", j.force_largest_at},
           {"force_variation", j.force_variation},
           {"trend_variation", j.trend_variation},
           {"roughness", j.roughness},
+          {"node_force", j.node_force},
+          {"node_roughness", j.node_roughness},
           {"penetration", j.penetration},
           {"relative_penetration", to_json(j.relative_penetration)}};
 }
@@ -89,6 +92,23 @@ Json to_json(const ContactPart& part, const ResultsReader& results) {
   return json;
 }
 
+Json to_json(const BodyField& field) {
+  return {{"name", field.name}, {"on_nodes", field.on_nodes}, {"values", to_json(field.values)}};
+}
+
+Json to_json(const VolumePart& part) {
+  Json json{{"nodes", part.nodes},
+            {"tetrahedra", part.tetrahedra},
+            {"positions", to_json(part.positions)},
+            {"corners", to_json(part.corners)},
+            {"cells", to_json(part.cells)},
+            {"faces", to_json(part.faces)}};
+  json["deviations"] = json["fields"] = Json::array();
+  for (const PackedArray& deviation : part.deviations) json["deviations"].push_back(to_json(deviation));
+  for (const BodyField& field : part.fields) json["fields"].push_back(to_json(field));
+  return json;
+}
+
 Json to_json(const BodyPart& part, const ResultsReader& results) {
   Json json{{"nodes", part.nodes},
             {"triangles", part.triangles},
@@ -101,8 +121,8 @@ Json to_json(const BodyPart& part, const ResultsReader& results) {
   json["deviations"] = Json::array();
   for (const PackedArray& deviation : part.deviations) json["deviations"].push_back(to_json(deviation));
   json["fields"] = Json::array();
-  for (const BodyField& field : part.fields)
-    json["fields"].push_back({{"name", field.name}, {"on_nodes", field.on_nodes}, {"values", to_json(field.values)}});
+  for (const BodyField& field : part.fields) json["fields"].push_back(to_json(field));
+  json["volume"] = part.volume ? to_json(*part.volume) : Json(nullptr);
   return json;
 }
 
@@ -183,7 +203,8 @@ Json PageBuilder::start(const RunData& run, std::size_t number) {
 void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_bytes) {
   json["body"] = json["contact"] = nullptr;
   if (!run.results) return;
-  const BodyFrames frames(*run.results, std::max(most_triangles / static_cast<Index>(runs_.size()), always_triangles));
+  const BodyFrames frames(*run.results, std::max(most_triangles / static_cast<Index>(runs_.size()), always_triangles),
+                          most_bytes / 4);
   const std::size_t before = arrays_.page_bytes();
   const ContactPart contact = frames.pack_contact(most_bytes / 4, arrays_);
   const auto all = static_cast<std::size_t>(frames.frame_count());
@@ -209,6 +230,14 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
         run, json,
         fmt::format("the body is drawn in {} triangles, for which nodes near one another were merged", body.triangles));
   }
+  if (body.volume && body.volume->is_thinned) {
+    note(run, json,
+         fmt::format(
+             "the inside, which cuts show, is made of {} tetrahedra, for which nodes near one another were merged",
+             body.volume->tetrahedra));
+  }
+  if (!body.volume && run.summary.dimension == 3)
+    note(run, json, "the inside is not in the page, so that the file stays small: there are no cuts");
   if (!body.left_out.empty()) {
     note(run, json,
          fmt::format("fields that are not in this page, but in results.h5: {}", fmt::join(body.left_out, ", ")));
@@ -217,7 +246,7 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
 }
 
 std::string PageBuilder::data() {
-  Json page{{"format", 2}, {"version", version}, {"runs", Json::array()}};
+  Json page{{"format", 3}, {"version", version}, {"runs", Json::array()}};
   for (std::size_t i = 0; i < runs_.size(); ++i) page["runs"].push_back(start(runs_[i], i));
   // What summaries take is in the file, too, and is not binary.
   std::size_t text = 65536;

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/report/node_grid.hpp"
 
 namespace ricochet {
 
@@ -123,47 +124,17 @@ std::vector<Triangle> boundary_triangles(const std::vector<CellBlock>& blocks) {
   return result;
 }
 
-/// A box of a grid over the body with so many boxes along its longest side.
-class Grid {
- public:
-  Grid(const Points& nodes, double boxes) : low_(nodes.rowwise().minCoeff()) {
-    const double longest = (nodes.rowwise().maxCoeff() - low_).maxCoeff();
-    scale_ = longest > 0.0 ? boxes / longest : 0.0;
-  }
-  [[nodiscard]] std::array<std::uint32_t, 3> box(const Points& nodes, Index node) const {
-    std::array<std::uint32_t, 3> result{};
-    for (Index k = 0; k < 3; ++k)
-      result[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>((nodes(k, node) - low_[k]) * scale_);
-    return result;
-  }
-
- private:
-  Vector low_;
-  double scale_ = 0.0;
-};
-
-/// The bits of x, y and z taken in turns: boxes with near numbers are near one another.
-std::uint64_t interleaved(const std::array<std::uint32_t, 3>& box) {
-  std::uint64_t result = 0;
-  for (unsigned bit = 0; bit < 20; ++bit) {
-    for (unsigned k = 0; k < 3; ++k) result |= static_cast<std::uint64_t>(box[k] >> bit & 1U) << (3 * bit + k);
-  }
-  return result;
-}
-
 std::vector<Index> used_nodes(const std::vector<Triangle>& triangles) {
-  std::vector<Index> result;
-  result.reserve(3 * triangles.size());
-  for (const Triangle& t : triangles) result.insert(result.end(), t.corners.begin(), t.corners.end());
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
+  std::vector<Index> all;
+  all.reserve(3 * triangles.size());
+  for (const Triangle& t : triangles) all.insert(all.end(), t.corners.begin(), t.corners.end());
+  return each_once(std::move(all));
 }
 
 /// One node for all of a box: the first of them. What is no triangle any more, or one that is there already, is left
 /// out.
 std::vector<Triangle> merged(const Points& nodes, const std::vector<Triangle>& triangles, double boxes) {
-  const Grid grid(nodes, boxes);
+  const NodeGrid grid(nodes, boxes);
   std::map<std::array<std::uint32_t, 3>, Index> first;
   std::vector<Index> stands_for(static_cast<std::size_t>(nodes.cols()), -1);
   for (const Index node : used_nodes(triangles))
@@ -197,16 +168,8 @@ Surface make_surface(const Points& nodes, const std::vector<CellBlock>& cells, I
       boxes *= 0.75;
     } while (static_cast<Index>(triangles.size()) > most);
   }
-  surface.nodes = used_nodes(triangles);
-  const Grid grid(nodes, 1048575.0);
-  std::vector<std::pair<std::uint64_t, Index>> order;
-  for (const Index node : surface.nodes) order.emplace_back(interleaved(grid.box(nodes, node)), node);
-  std::sort(order.begin(), order.end());
-  std::vector<int> local(static_cast<std::size_t>(nodes.cols()), -1);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    surface.nodes[i] = order[i].second;
-    local[static_cast<std::size_t>(order[i].second)] = static_cast<int>(i);
-  }
+  surface.nodes = by_place(nodes, used_nodes(triangles));
+  const std::vector<int> local = local_numbers(surface.nodes, nodes.cols());
   // Each triangle beside those with near nodes.
   const auto first_of = [&local](const Triangle& t) {
     const auto number = [&local](Index node) { return local[static_cast<std::size_t>(node)]; };

@@ -1,6 +1,7 @@
 import { valueAt, type Levels } from "../data/decode";
-import { indexAt, type Body, type Run } from "../data/run";
-import { colourRange, type ColourRange } from "../maps/colour_range";
+import { indexAt, type Field, type Run } from "../data/run";
+import type { Moving } from "./geometry";
+import { colourRange, type ColourRange, type ColourScale } from "../maps/colour_range";
 
 /** Fields that bodies can be coloured by. */
 
@@ -34,31 +35,35 @@ export function contactQuantity(run: Run, name: string): Levels | undefined {
   return run.contact?.quantities.find((quantity) => quantity.name === name)?.values;
 }
 
-/** `out` is written over where it has the right size. */
+/** A field of the body's own, on its surface or inside it. `out` is written over where it has the right size. */
+export function ownFieldAt(part: Moving & { fields: Field[] }, means: Float64Array, name: string, frame: number, out?: Float32Array): FieldValues | null {
+  const room = (size: number) => (out?.length === size ? out : new Float32Array(size));
+  if (name.startsWith("displacement")) {
+    if (name !== "displacement" && axes.indexOf(name.slice(-1)) >= part.deviations.length) return null;
+    const values = room(part.nodes);
+    fillDisplacement(part, means, name === "displacement" ? -1 : axes.indexOf(name.slice(-1)), frame, values);
+    return { onNodes: true, values, isStatus: false };
+  }
+  const own = part.fields.find((field) => field.name === name);
+  if (!own) return null;
+  const values = room(own.values.columns);
+  const { levels, columns, low, step, none } = own.values;
+  for (let i = 0; i < columns; ++i) {
+    const level = levels[frame * columns + i];
+    values[i] = level === none ? NaN : low + step * level;
+  }
+  return { onNodes: own.onNodes, values, isStatus: false };
+}
+
 export function fieldAt(run: Run, name: string, frame: number, out?: Float32Array): FieldValues | null {
   const body = run.body;
   if (!body || name === "") return null;
-  const room = (size: number) => (out?.length === size ? out : new Float32Array(size));
-  if (name.startsWith("displacement")) {
-    if (name !== "displacement" && axes.indexOf(name.slice(-1)) >= body.deviations.length) return null;
-    const values = room(body.nodes);
-    fillDisplacement(body, name === "displacement" ? -1 : axes.indexOf(name.slice(-1)), frame, values);
-    return { onNodes: true, values, isStatus: false };
-  }
-  const own = body.fields.find((field) => field.name === name);
-  if (own) {
-    const values = room(own.values.columns);
-    const { levels, columns, low, step, none } = own.values;
-    for (let i = 0; i < columns; ++i) {
-      const level = levels[frame * columns + i];
-      values[i] = level === none ? NaN : low + step * level;
-    }
-    return { onNodes: own.onNodes, values, isStatus: false };
-  }
+  const own = ownFieldAt(body, body.mean, name, frame, out);
+  if (own) return own;
   const quantity = contactQuantity(run, name);
   const contact = run.contact;
   if (!quantity || !contact) return null;
-  const values = room(body.nodes);
+  const values = out?.length === body.nodes ? out : new Float32Array(body.nodes);
   values.fill(NaN);
   const row = indexAt(contact.times, body.times[frame]);
   contact.nodes.forEach((node, i) => {
@@ -67,12 +72,12 @@ export function fieldAt(run: Run, name: string, frame: number, out?: Float32Arra
   return { onNodes: true, values, isStatus: name === "contact_status" };
 }
 
-function fillDisplacement(body: Body, axis: number, frame: number, values: Float32Array): void {
-  const components = axis >= 0 ? [axis] : body.deviations.map((_, k) => k);
-  for (let i = 0; i < body.nodes; ++i) {
+function fillDisplacement(part: Moving, means: Float64Array, axis: number, frame: number, values: Float32Array): void {
+  const components = axis >= 0 ? [axis] : part.deviations.map((_, k) => k);
+  for (let i = 0; i < part.nodes; ++i) {
     let sum = 0;
     for (const k of components) {
-      const u = body.mean[3 * frame + k] + valueAt(body.deviations[k], frame, i);
+      const u = means[3 * frame + k] + valueAt(part.deviations[k], frame, i);
       if (axis >= 0) sum = u;
       else sum += u * u;
     }
@@ -81,11 +86,13 @@ function fillDisplacement(body: Body, axis: number, frame: number, values: Float
 }
 
 /** What colours cover, over all frames. null: the field has names instead of numbers, or is not there. */
-export function fieldRange(run: Run, name: string): ColourRange | null {
+export function fieldRange(run: Run, name: string, scale: ColourScale): ColourRange | null {
   const body = run.body;
   if (!body || name === "" || name === "contact_status") return null;
-  const levels = body.fields.find((field) => field.name === name)?.values ?? contactQuantity(run, name);
-  if (levels) return colourRange([levels]);
+  const own = [body, body.volume].flatMap((part) => part?.fields.filter((field) => field.name === name).map(({ values }) => values) ?? []);
+  const contact = contactQuantity(run, name);
+  if (own.length > 0) return colourRange(own, scale);
+  if (contact) return colourRange([contact], scale);
   let low = Infinity;
   let high = -Infinity;
   const step = Math.max(1, Math.floor(body.times.length / 40));
@@ -97,6 +104,6 @@ export function fieldRange(run: Run, name: string): ColourRange | null {
       high = Math.max(high, value);
     }
   }
-  if (!(low < high)) return { low: Math.min(low, 0), high: low + 1, clipped: false };
-  return { low: name === "displacement" ? 0 : low, high, clipped: false };
+  if (!(low < high)) return { low: Math.min(low, 0), high: low + 1, clipped: false, largest: low, logarithmic: false };
+  return { low: name === "displacement" ? 0 : low, high, clipped: false, largest: high, logarithmic: false };
 }

@@ -1,22 +1,29 @@
-import { valueAt } from "../data/decode";
+import { valueAt, type Levels } from "../data/decode";
 import type { Body } from "../data/run";
 
 /** Where the nodes of a body are, and what encloses it. */
 
+/** What moves: a body, or the inside of one. */
+export interface Moving {
+  nodes: number;
+  positions: Levels;
+  deviations: Levels[];
+}
+
 /** Reference positions, 3 for each node. */
-export function referencePositions(body: Body): Float32Array {
-  const result = new Float32Array(3 * body.nodes);
-  for (let k = 0; k < body.dimension; ++k)
-    for (let i = 0; i < body.nodes; ++i) result[3 * i + k] = valueAt(body.positions, k, i);
+export function referencePositions({ nodes, positions }: Moving): Float32Array {
+  const result = new Float32Array(3 * nodes);
+  for (let k = 0; k < positions.rows; ++k)
+    for (let i = 0; i < nodes; ++i) result[3 * i + k] = valueAt(positions, k, i);
   return result;
 }
 
 /** X + ū + scale · (u − ū): the mean displacement ū is never scaled, so that the body stays where it is. */
-export function placeNodes(body: Body, reference: Float32Array, frame: number, scale: number, out: Float32Array): void {
+export function placeNodes({ deviations }: Moving, means: Float64Array, reference: Float32Array, frame: number, scale: number, out: Float32Array): void {
   out.set(reference);
-  body.deviations.forEach(({ levels, columns, low, step, none }, k) => {
-    const mean = body.mean[3 * frame + k];
-    for (let i = 0; i < body.nodes; ++i) {
+  deviations.forEach(({ levels, columns, low, step, none }, k) => {
+    const mean = means[3 * frame + k];
+    for (let i = 0; i < columns; ++i) {
       const level = levels[frame * columns + i];
       if (level !== none) out[3 * i + k] += mean + scale * (low + step * level);
     }
@@ -50,7 +57,7 @@ export function boxOverTime(body: Body, reference: Float32Array): Box {
   const box = emptyBox();
   const step = Math.max(1, Math.floor(body.times.length / 40));
   for (let frame = 0; frame < body.times.length; frame += step) {
-    placeNodes(body, reference, frame, 1, positions);
+    placeNodes(body, body.mean, reference, frame, 1, positions);
     boxOf(positions, box);
   }
   return box;

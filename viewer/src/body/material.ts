@@ -17,6 +17,9 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
       colours: { value: colours },
       low: { value: 0 },
       high: { value: 1 },
+      logarithmic: { value: false },
+      cuts: { value: false },
+      cut: { value: new three.Vector4() }, // what is above w along xyz, at the start, is cut off
       kind: { value: 0 }, // 0 plain, 1 numbers, 2 statuses
       plain: { value: new three.Color() },
       line: { value: new three.Color() },
@@ -27,6 +30,9 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
     vertexShader: `
       in vec3 values;   // of the three corners
       in float edges;   // bit k: the side from corner k is an edge of a cell
+      in vec3 origin;   // where the corner was at the start
+      uniform vec4 cut;
+      out float above;
       out vec3 place;   // barycentric
       out vec3 corners;
       out vec3 view;
@@ -35,6 +41,7 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
         int corner = gl_VertexID % 3;
         place = vec3(corner == 0, corner == 1, corner == 2);
         corners = values;
+        above = dot(cut.xyz, origin) - cut.w;
         int bits = int(edges + 0.5);
         // Opposite to corner k is the side from corner k + 1.
         hidden = vec3((bits & 2) == 0, (bits & 4) == 0, (bits & 1) == 0);
@@ -48,15 +55,18 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
       uniform float low, high, lines;
       uniform int kind;
       uniform vec3 plain, line, statuses[5];
-      uniform bool shaded;
+      uniform bool shaded, cuts, logarithmic;
+      in float above;
       in vec3 place, corners, view;
       flat in vec3 hidden;
       out vec4 colour;
       void main() {
+        if (cuts && above > 0.0) discard;
         vec3 c = plain;
         if (kind == 1) {
           float value = dot(place, corners);
-          if (value == value) c = texture(colours, vec2((value - low) / (high - low) * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
+          float part = logarithmic ? log(max(value, low) / low) / log(high / low) : (value - low) / (high - low);
+          if (value == value) c = texture(colours, vec2(part * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
         } else if (kind == 2) {
           float value = place.x > place.y ? (place.x > place.z ? corners.x : corners.z)
                                           : (place.y > place.z ? corners.y : corners.z);

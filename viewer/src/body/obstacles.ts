@@ -32,6 +32,12 @@ export class ObstacleView {
     this.faces.renderOrder = plane ? -1 : 2;
   }
 
+  /** 1: as it is drawn at first, less: so much of that. */
+  fade(part: number): void {
+    const plane = this.obstacles.corners === 2;
+    this.faces.material.opacity = part * (plane ? 1 : 0.35);
+  }
+
   recolour(): void {
     this.faces.material.color.setStyle(themeColour("obstacle"));
     this.lines.material.color.setStyle(themeColour("muted"));

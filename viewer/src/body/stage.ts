@@ -19,10 +19,18 @@ export interface BodyPanel {
   message: HTMLElement;
   tip: HTMLElement;
   lens: Lens;
-  /** Width and height of the part of space that it shows. */
-  sides: [number, number];
+  /** What it shows of space, in the middle; its size, width and height (as parts of the size). */
+  home: { centre: three.Vector3; size: number; sides: [number, number] };
   caption: () => void;
 }
+
+export type View = keyof typeof directions | "contact" | "contact-side";
+
+/** From where cameras look at solids; "x", "y" and "z" at a cut across that axis. */
+const directions = {
+  front: [0.5, -1, 0.28], side: [1, 0, 0.05], top: [0.001, -0.01, 1], below: [0.25, -0.5, -1],
+  x: [1, -0.45, 0.3], y: [0.4, -1, 0.3], z: [0.3, -0.6, 1],
+} satisfies Record<string, [number, number, number]>;
 
 /** In degrees. */
 const fieldOfView = 32;
@@ -57,6 +65,9 @@ export class Stage {
   pictures = 0;
   private readonly antialias: boolean;
   private readonly lenses = { plane: makeLens(true), space: makeLens(false) };
+  /** Bodies are seen where they touch. */
+  private onZone = false;
+  private zoneLength = 0;
   private waiting = false;
   private stale = true;
 
@@ -83,12 +94,13 @@ export class Stage {
           view.values && colourKey(fieldName(this.store.field), view.values.isStatus ? null : view.range)), `${fileName(run.name)}-body.png`);
       } }, "PNG")), colours);
     const caption = () => {
-      time.textContent = `t = ${number(run.body!.times[view.frame] ?? 0, 5)}`;
+      const at = run.body!.times[view.frame] ?? 0;
+      time.textContent = `t = ${number(at, 5)}, contact force ${number(run.resultantAt(at), 4)}`;
       const name = fieldName(this.store.field);
       if (!view.values) colours.replaceChildren();
       else colours.replaceChildren(colourBar(name, view.values.isStatus ? null : view.range));
     };
-    const panel: BodyPanel = { element, view, canvas, renderer: null, message, tip, lens, sides: [1, 1], caption };
+    const panel: BodyPanel = { element, view, canvas, renderer: null, message, tip, lens, home: { centre: new three.Vector3(), size: 1, sides: [1, 1] }, caption };
     this.panels.push(panel);
     this.connect(panel);
     this.fit();
@@ -139,18 +151,24 @@ export class Stage {
       if (group[0].lens === this.lenses.plane) box.low[1] -= 0.16 * size;
       const centre = new three.Vector3(...(box.low.map((low, k) => (low + box.high[k]) / 2) as [number, number, number]));
       for (const panel of group) {
-        panel.view.place(centre, size);
-        panel.sides = [(box.high[0] - box.low[0]) / size, (box.high[1] - box.low[1]) / size];
+        panel.home = { centre, size, sides: [(box.high[0] - box.low[0]) / size, (box.high[1] - box.low[1]) / size] };
       }
     }
     this.look("front");
   }
 
-  look(from: "front" | "side" | "top" | "below"): void {
-    const directions = { front: [0.5, -1, 0.28], side: [1, 0, 0.05], top: [0.001, -0.01, 1], below: [0.25, -0.5, -1] };
+  /** "contact": at the contact zone, from out of the obstacle; "contact-side": along the obstacle. */
+  look(from: View): void {
+    this.onZone = from.startsWith("contact");
+    // As large as the largest zone of those seen, so that they can be compared.
+    this.zoneLength = 2.6 * Math.max(0, ...this.panels.map(({ view }) => view.zone?.radius ?? 0));
+    for (const { view, home } of this.panels) {
+      view.place(home.centre, home.size);
+      view.showObstacles(this.onZone ? 0.4 : 1);
+    }
     for (const lens of [this.lenses.plane, this.lenses.space]) {
       const plane = lens === this.lenses.plane;
-      const direction = new three.Vector3(...((plane ? [0, 0, 1] : directions[from]) as [number, number, number])).normalize();
+      const direction = plane ? new three.Vector3(0, 0, 1) : this.directionOf(from).normalize();
       // In space the ball around what is to be seen just fits.
       const distance = plane ? 2 : 0.52 / Math.sin((0.5 * fieldOfView * Math.PI) / 180);
       lens.target.set(0, 0, 0);
@@ -162,6 +180,18 @@ export class Stage {
       for (const controls of lens.controls) controls.update();
     }
     this.redraw(false);
+  }
+
+  private directionOf(from: View): three.Vector3 {
+    if (from === "contact" || from === "contact-side") {
+      const first = this.panels.find(({ lens, view, element }) => lens === this.lenses.space && view.zone && element.offsetParent !== null);
+      if (first && first.view.frame < 0) first.view.update();
+      const out = first?.view.zoneNormal() ?? new three.Vector3(0, 0, -1);
+      const front = new three.Vector3(0.4, -1, 0.1);
+      const along = front.clone().addScaledVector(out, -front.dot(out) / (out.lengthSq() || 1)).normalize();
+      return from === "contact" ? out.normalize().addScaledVector(along, 0.5) : along.addScaledVector(out.normalize(), 0.12);
+    }
+    return new three.Vector3(...directions[from]);
   }
 
   redraw(stale: boolean): void {
@@ -186,6 +216,7 @@ export class Stage {
         continue;
       }
       if (this.stale || view.frame < 0) view.update();
+      if (this.onZone && this.zoneLength > 0) view.placeOnZone(this.zoneLength);
       panel.caption();
       panel.renderer ??= this.makeRenderer(panel);
       const { renderer } = panel;
@@ -229,8 +260,9 @@ export class Stage {
     this.connect(panel);
   }
 
-  private frameCamera({ sides, lens: { camera } }: BodyPanel, aspect: number): void {
+  private frameCamera({ home, view, lens: { camera } }: BodyPanel, aspect: number): void {
     if (camera instanceof three.OrthographicCamera) {
+      const sides = this.onZone && view.zone ? [1, 0.5] : home.sides;
       const half = 0.55 * Math.max(sides[1], sides[0] / aspect);
       camera.top = half;
       camera.bottom = -half;

@@ -2,13 +2,14 @@ import * as three from "three";
 import { isDark, statusColour, themeColour } from "../colours";
 import { valueAt } from "../data/decode";
 import { indexAt, type Body, type Run } from "../data/run";
-import type { ColourRange } from "../maps/colour_range";
-import { colourRange } from "../maps/colour_range";
 import type { Store } from "../store";
+import { colourRange, joinRanges, type ColourRange } from "../maps/colour_range";
 import { contactQuantity, fieldAt, fieldRange, type FieldValues } from "./fields";
 import { boxOf, boxOverTime, diagonal, outlineOf, OutwardNormals, placeNodes, referencePositions, type Box } from "./geometry";
 import { bodyMaterial } from "./material";
 import { ObstacleView } from "./obstacles";
+import { cutOf, SectionView, type Cut } from "./section_view";
+import { ContactZone } from "./zone";
 
 /** One run's body with its obstacles and contact forces, as three.js draws it. */
 export class BodyView {
@@ -21,6 +22,11 @@ export class BodyView {
   frame = -1;
   range: ColourRange | null = null;
   values: FieldValues | null = null;
+  /** null: the run has no contact boundary. */
+  readonly zone: ContactZone | null;
+  /** null: in the plane, and where the page has no room for it. */
+  readonly section: SectionView | null;
+  private cut: Cut | null = null;
   private readonly body: Body;
   private readonly reference: Float32Array;
   private readonly positions: Float32Array;
@@ -58,6 +64,9 @@ export class BodyView {
     geometry.setAttribute("values", dynamic(corners, 3));
     const edges = Float32Array.from({ length: corners }, (_, i) => body.edges[Math.floor(i / 3)]);
     geometry.setAttribute("edges", new three.BufferAttribute(edges, 1));
+    const origins = new Float32Array(3 * corners);
+    expand(this.reference, body.corners, origins);
+    geometry.setAttribute("origin", new three.BufferAttribute(origins, 3));
     this.mesh = new three.Mesh(geometry, bodyMaterial(!plane));
     const lines = new three.BufferGeometry();
     lines.setAttribute("position", dynamic(this.outlineSides.length, 3));
@@ -72,6 +81,8 @@ export class BodyView {
       this.content.add(object);
     }
     this.scene.add(this.content);
+    this.zone = run.contact ? new ContactZone(run, this.reference, this.size) : null;
+    this.section = body.volume ? new SectionView(body, body.volume, this.content) : null;
     const { low, high } = this.start;
     const middle = low.map((value, k) => (value + high[k]) / 2);
     this.obstacles = run.obstacles ? new ObstacleView(run.obstacles, middle, this.size, this.content) : null;
@@ -88,7 +99,7 @@ export class BodyView {
   update(): void {
     const { store, body } = this;
     this.frame = indexAt(body.times, store.time);
-    placeNodes(body, this.reference, this.frame, store.deformation, this.positions);
+    placeNodes(body, body.mean, this.reference, this.frame, store.deformation, this.positions);
     const target = this.mesh.geometry.attributes.position as three.BufferAttribute;
     expand(this.positions, body.corners, target.array as Float32Array);
     target.needsUpdate = true;
@@ -97,6 +108,8 @@ export class BodyView {
       expand(this.positions, this.outlineSides, sides.array as Float32Array);
       sides.needsUpdate = true;
     }
+    this.cut = this.section ? cutOf(store, this.start) : null;
+    this.section?.update(this.cut, store, this.frame);
     this.updateField();
     this.updateBars();
     this.obstacles?.update(store.time);
@@ -106,8 +119,14 @@ export class BodyView {
   private updateField(): void {
     const { store, body } = this;
     this.values = fieldAt(this.run, store.field, this.frame, this.values_);
-    const uniforms = this.mesh.material.uniforms;
+    const { uniforms } = this.mesh.material;
+    uniforms.cuts.value = this.cut !== null;
+    if (this.cut) {
+      const { axis, at, sign } = this.cut;
+      (uniforms.cut.value as three.Vector4).fromArray([0, 0, 0, sign * at]).setComponent(axis, sign);
+    }
     uniforms.kind.value = !this.values ? 0 : this.values.isStatus ? 2 : 1;
+    if (this.section) this.section.mesh.material.uniforms.kind.value = this.section.values ? 1 : 0;
     if (!this.values) return;
     this.values_ = this.values.values;
     const target = this.mesh.geometry.attributes.values as three.BufferAttribute;
@@ -126,22 +145,24 @@ export class BodyView {
     }
     target.needsUpdate = true;
     this.chooseRange();
-    uniforms.low.value = this.range?.low ?? 0;
-    uniforms.high.value = this.range?.high ?? 1;
+    for (const { uniforms: own } of this.materials) {
+      own.low.value = this.range?.low ?? 0;
+      own.high.value = this.range?.high ?? 1;
+      own.logarithmic.value = this.range?.logarithmic ?? false;
+    }
+  }
+
+  private get materials(): three.ShaderMaterial[] {
+    return [this.mesh.material, ...(this.section ? [this.section.mesh.material] : [])];
   }
 
   private chooseRange(): void {
     const { store } = this;
     const runs = store.sharedColours ? store.visibleRuns : [this.run];
-    const key = `${store.field} ${runs.map((run) => run.number).join()}`;
+    const key = `${store.field} ${store.scale} ${runs.map((run) => run.number).join()}`;
     if (key === this.rangeKey) return;
     this.rangeKey = key;
-    const ranges = runs.map((run) => fieldRange(run, store.field)).filter((range) => range !== null);
-    this.range = ranges.length === 0 ? null : {
-      low: Math.min(...ranges.map((range) => range.low)),
-      high: Math.max(...ranges.map((range) => range.high)),
-      clipped: ranges.some((range) => range.clipped),
-    };
+    this.range = joinRanges(runs.map((run) => fieldRange(run, store.field, store.scale)).filter((range) => range !== null));
   }
 
   /** Contact pressures as bars out of the body at the contact nodes, in the colour of what the node does. */
@@ -187,26 +208,55 @@ export class BodyView {
     const key = `${isDark()} ${this.store.field} ${this.store.showMesh}`;
     if (key === this.drawnField) return;
     this.drawnField = key;
-    const uniforms = this.mesh.material.uniforms;
     // The shader writes what the screen shows.
     const colour = (css: string) => new three.Color().setStyle(css, three.LinearSRGBColorSpace);
-    uniforms.plain.value = colour(themeColour("body"));
-    uniforms.line.value = colour(themeColour("text"));
-    uniforms.lines.value = this.store.showMesh ? 0.55 : 0;
-    uniforms.statuses.value = [-1, 0, 1, 2, 3].map((status) => colour(statusColour(status)));
+    for (const { uniforms } of this.materials) {
+      uniforms.plain.value = colour(themeColour("body"));
+      uniforms.line.value = colour(themeColour("text"));
+      uniforms.lines.value = this.store.showMesh ? 0.55 : 0;
+      uniforms.statuses.value = [-1, 0, 1, 2, 3].map((status) => colour(statusColour(status)));
+    }
     this.outline.material.color.setStyle(themeColour("text"));
     this.obstacles?.recolour();
   }
 
+  /** Into the middle of the contact zone, as large as it is; follows it from frame to frame. */
+  placeOnZone(length: number): void {
+    if (this.zone) this.place(new three.Vector3(...this.zone.centre(this.body.times[this.frame], this.positions)), length);
+  }
+
+  /** Out of the body where it touches. */
+  zoneNormal(): three.Vector3 {
+    this.normals.update(this.positions);
+    return this.zone ? new three.Vector3(...this.zone.normal(this.store.time, this.normals)) : new three.Vector3(0, 0, -1);
+  }
+
+  showObstacles(opacity: number): void {
+    this.obstacles?.fade(opacity);
+  }
+
   /** What is under a ray: the value of the field and where it is. */
   pick(ray: three.Raycaster): { value: number; place: three.Vector3 } | null {
-    this.mesh.geometry.boundingSphere = null;
-    this.mesh.geometry.boundingBox = null;
-    const hit = ray.intersectObject(this.mesh, false)[0];
-    if (!hit || hit.faceIndex === null || hit.faceIndex === undefined) return null;
-    const place = this.content.worldToLocal(hit.point.clone());
+    const meshes = [this.mesh, ...(this.section?.mesh.visible ? [this.section.mesh] : [])];
+    for (const { geometry } of meshes) geometry.boundingSphere = geometry.boundingBox = null;
+    for (const hit of ray.intersectObjects(meshes, false)) {
+      const t = hit.faceIndex;
+      if (t === null || t === undefined) continue;
+      const place = this.content.worldToLocal(hit.point.clone());
+      if (hit.object === this.section?.mesh) return { value: this.section.valueAt(t, weightsOf(hit, this.section.mesh)), place };
+      if (!this.isCutOff(t, weightsOf(hit, this.mesh))) return this.picked(t, place);
+    }
+    return null;
+  }
+
+  private isCutOff(t: number, weights: number[]): boolean {
+    if (!this.cut) return false;
+    const { axis, at, sign } = this.cut;
+    return sign * (weights.reduce((sum, weight, k) => sum + weight * this.reference[3 * this.body.corners[3 * t + k] + axis], 0) - at) > 0;
+  }
+
+  private picked(t: number, place: three.Vector3): { value: number; place: three.Vector3 } {
     if (!this.values) return { value: NaN, place };
-    const t = hit.faceIndex;
     let value: number;
     if (!this.values.onNodes) {
       value = this.values.values[this.body.triangleCells[t]];
@@ -217,6 +267,13 @@ export class BodyView {
     }
     return { value, place };
   }
+}
+
+/** Barycentric coordinates of a hit in its triangle. */
+function weightsOf(hit: three.Intersection, mesh: three.Mesh): number[] {
+  const corner = (k: number) => new three.Vector3().fromBufferAttribute(mesh.geometry.attributes.position as three.BufferAttribute, 3 * hit.faceIndex! + k);
+  const place = mesh.worldToLocal(hit.point.clone());
+  return three.Triangle.getBarycoord(place, corner(0), corner(1), corner(2), new three.Vector3())?.toArray() ?? [1, 0, 0];
 }
 
 /** Of an outline the sides between nodes of the contact boundary: at its ends no others take part. */

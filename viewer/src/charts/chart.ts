@@ -81,6 +81,12 @@ export class TimeChart {
     store.on("theme", () => this.rebuild());
     store.on("time", () => this.showTime());
     store.on("zoom", () => this.showZoom());
+    store.on("highlight", () => this.showHighlight());
+    this.legend.addEventListener("pointerover", (event) => {
+      const run = (event.target as HTMLElement).closest<HTMLElement>("[data-run]")?.dataset.run;
+      if (store.runs.length > 1) store.setHighlight(run === undefined ? null : Number(run));
+    });
+    this.legend.addEventListener("pointerleave", () => store.setHighlight(null));
     new ResizeObserver(() => this.resize()).observe(this.plotArea);
   }
 
@@ -281,6 +287,14 @@ export class TimeChart {
     plot.setScale("x", { min, max });
   }
 
+  private showHighlight(): void {
+    const { highlight } = this.store;
+    this.series.forEach(({ run }, i) => {
+      if (this.plot) this.plot.series[i + 1].alpha = highlight === null || highlight === run.number ? 1 : 0.15;
+    });
+    this.plot?.redraw(false);
+  }
+
   private showTime(): void {
     const plot = this.plot;
     if (!plot) return;
@@ -301,7 +315,7 @@ export class TimeChart {
     const inOrder = [...this.series].sort((a, b) => a.run.number - b.run.number);
     const items = inOrder.map((series) => {
       const value = valueNear(series, this.store.time);
-      return el("span.item", {},
+      return el("span.item", { "data-run": String(series.run.number) },
         series.dash.length > 0 ? el("i.dashed", { style: `border-color:${series.colour}` }) : el("i", { style: `background:${series.colour}` }),
         `${series.label} `,
         el("b", {}, number(value, 6) + unit));

@@ -64,7 +64,7 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
     {
       id: "force",
       title: "Contact force",
-      note: "A force that jumps from step to step is the scheme's, not the body's.",
+      note: "On the body, of all contacts together. A force that jumps from step to step is the scheme's, not the body's.",
       columns: [...new Set(forces)],
       shown: [oneForce ? force : "@force"],
       fromZero: true,

@@ -1,5 +1,5 @@
 import { indices, inflated, levels, reals, type Levels } from "./decode";
-import type { PackedArray, PageData, RunData, Summary } from "./types";
+import type { BodyData, PackedArray, PageData, RunData, Summary, VolumeData } from "./types";
 
 /** Bytes of the page's blobs, each unpacked once for all who ask. */
 class Blobs {
@@ -45,7 +45,22 @@ export interface Body {
   edges: Uint8Array;
   mean: Float64Array;
   deviations: Levels[];
-  fields: (Quantity & { onNodes: boolean })[];
+  fields: Field[];
+  volume: Volume | null;
+}
+
+export type Field = Quantity & { onNodes: boolean };
+
+/** The inside of a solid at the frames of its body. */
+export interface Volume {
+  nodes: number;
+  positions: Levels;
+  /** Of each tetrahedron its four nodes, its cell, and in bit k whether the face opposite to corner k is one of the cell's. */
+  corners: Int32Array;
+  cells: Int32Array;
+  faces: Uint8Array;
+  deviations: Levels[];
+  fields: Field[];
 }
 
 export interface Obstacles {
@@ -90,6 +105,18 @@ export class Run {
 
   column(name: string): Float64Array {
     return this.history.get(this.own(name)) ?? new Float64Array(0);
+  }
+
+  /** Length of the contact force on the body, of all contacts together, in the rows of the history. */
+  get resultant(): Float64Array {
+    this.resultant_ ??= lengths(["x", "y", "z"].map((axis) => this.history.get(`contact_force_${axis}`)).filter((column) => column !== undefined));
+    return this.resultant_;
+  }
+  private resultant_: Float64Array | undefined;
+
+  /** At the row nearest to a time. */
+  resultantAt(time: number): number {
+    return this.resultant[indexAt(this.timesOf("contact_force_x"), time)] ?? NaN;
   }
 
   has(name: string): boolean {
@@ -151,14 +178,26 @@ export class Run {
       edges: Uint8Array.from(edges.levels, (level) => level + edges.low),
       mean: await this.reals(data.mean),
       deviations: await Promise.all(data.deviations.map((each) => this.levels(each))),
-      fields: await Promise.all(
-        data.fields.map(async ({ name, on_nodes, values }) => ({
-          name,
-          onNodes: on_nodes,
-          values: await this.levels(values),
-        })),
-      ),
+      fields: await this.fields(data.fields),
+      volume: data.volume ? await this.volume(data.volume) : null,
     };
+  }
+
+  private async volume(data: VolumeData): Promise<Volume> {
+    const faces = await this.levels(data.faces);
+    return {
+      nodes: data.nodes,
+      positions: await this.levels(data.positions),
+      corners: await this.indices(data.corners),
+      cells: await this.indices(data.cells),
+      faces: Uint8Array.from(faces.levels, (level) => level + faces.low),
+      deviations: await Promise.all(data.deviations.map((each) => this.levels(each))),
+      fields: await this.fields(data.fields),
+    };
+  }
+
+  private fields(data: BodyData["fields"]): Promise<Field[]> {
+    return Promise.all(data.map(async ({ name, on_nodes, values }) => ({ name, onNodes: on_nodes, values: await this.levels(values) })));
   }
 
   private async reals(array: PackedArray): Promise<Float64Array> {
@@ -172,13 +211,17 @@ export class Run {
   }
 }
 
+function lengths(components: Float64Array[]): Float64Array {
+  return Float64Array.from({ length: components[0]?.length ?? 0 }, (_, i) => Math.hypot(...components.map((column) => column[i])));
+}
+
 export function readPage(): Run[] {
   if (!("DecompressionStream" in window))
     throw new Error("this browser is too old for it: Chrome 80, Firefox 113 or Safari 16.4 and later show it");
   const text = document.getElementById("ricochet-runs")?.textContent;
   if (!text) throw new Error("this is the empty viewer: `ricochet report` puts runs into it");
   const page = JSON.parse(text) as PageData;
-  if (page.format !== 2) throw new Error(`this viewer does not read format ${page.format}`);
+  if (page.format !== 3) throw new Error(`this viewer does not read format ${page.format}`);
   const blobs = new Blobs();
   return page.runs.map((run, number) => new Run(number, run, blobs));
 }

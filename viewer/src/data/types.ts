@@ -25,9 +25,13 @@ export interface Judgement {
   energy_residual: number;
   force: string;
   force_largest: number;
+  force_largest_at: number;
   force_variation: number;
   trend_variation: number;
   roughness: number;
+  /** Of the first probe on the contact boundary; "": there is none. */
+  node_force: string;
+  node_roughness: number;
   penetration: number;
   /** null: the body's size is not known. */
   relative_penetration: number | null;
@@ -52,6 +56,19 @@ export interface BodyData {
   triangle_cells: PackedArray;
   edges: PackedArray;
   mean: PackedArray;
+  deviations: PackedArray[];
+  fields: { name: string; on_nodes: boolean; values: PackedArray }[];
+  /** The inside of a solid, where there was room for it. */
+  volume: VolumeData | null;
+}
+
+export interface VolumeData {
+  nodes: number;
+  tetrahedra: number;
+  positions: PackedArray;
+  corners: PackedArray;
+  cells: PackedArray;
+  faces: PackedArray;
   deviations: PackedArray[];
   fields: { name: string; on_nodes: boolean; values: PackedArray }[];
 }
@@ -131,7 +148,7 @@ export interface RunData {
 }
 
 export interface PageData {
-  format: 2;
+  format: 3;
   version: string;
   runs: RunData[];
 }

@@ -1,0 +1,174 @@
+#include "ricochet/report/volume.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/report/node_grid.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// A tetrahedron inside a cell, by the element's own nodes.
+struct Pattern {
+  std::array<int, 4> corners;
+  int faces;
+};
+
+struct Tetrahedron {
+  std::array<Index, 4> corners;
+  int cell, faces;
+};
+
+int node_at(CellShape shape, std::vector<int> vertices) {
+  const auto& all = node_vertices(shape, 2);
+  std::sort(vertices.begin(), vertices.end());
+  return static_cast<int>(std::find(all.begin(), all.end(), vertices) - all.begin());
+}
+
+/// The face opposite to a corner lies in a facet of the cell where its three nodes do.
+int faces_of(CellShape shape, int degree, const std::array<int, 4>& corners) {
+  int faces = 0;
+  for (const std::vector<int>& facet : facet_nodes(shape, degree)) {
+    int inside = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (std::find(facet.begin(), facet.end(), corners[k]) != facet.end()) inside |= 1 << k;
+    }
+    for (int k = 0; k < 4; ++k) {
+      if (inside == (0b1111 & ~(1 << k))) faces |= 1 << k;
+    }
+  }
+  return faces;
+}
+
+/// Four at the corners, four in the octahedron between them around the line that joins two opposite edges' middles.
+std::vector<std::array<int, 4>> quadratic_tetrahedron() {
+  const auto middle = [](int a, int b) { return node_at(CellShape::tetrahedron, {a, b}); };
+  const int a = middle(0, 1), b = middle(0, 2), c = middle(0, 3), d = middle(1, 2), e = middle(1, 3), f = middle(2, 3);
+  return {{0, a, b, c}, {1, a, d, e}, {2, b, d, f}, {3, c, e, f},
+          {a, f, b, c}, {a, f, c, e}, {a, f, e, d}, {a, f, d, b}};
+}
+
+/// A box of the lattice of nodes with its first corner there, in six around its diagonal: boxes side by side fit.
+void add_box(const std::array<int, 3>& first, int degree, std::vector<std::array<int, 4>>& result) {
+  const auto node = [&](std::array<int, 3> at) {
+    // On this axis a node of the lattice is between the vertices with bit 0 and those with bit 1, or at one of them.
+    std::vector<int> vertices;
+    for (int v = 0; v < 8; ++v) {
+      bool takes_part = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int bit = v >> k & 1, place = first[k] + at[k];
+        takes_part = takes_part && (degree == 2 && place == 1 ? true : bit == place / degree);
+      }
+      if (takes_part) vertices.push_back(v);
+    }
+    return degree == 1 ? vertices.front() : node_at(CellShape::hexahedron, vertices);
+  };
+  std::array<std::size_t, 3> axes{0, 1, 2};
+  do {
+    std::array<int, 3> at{0, 0, 0};
+    std::array<int, 4> corners{node(at), 0, 0, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      at[axes[k]] = 1;
+      corners[k + 1] = node(at);
+    }
+    result.push_back(corners);
+  } while (std::next_permutation(axes.begin(), axes.end()));
+}
+
+std::vector<Pattern> patterns_of(CellShape shape, int degree) {
+  std::vector<std::array<int, 4>> all;
+  if (shape == CellShape::tetrahedron) {
+    if (degree == 1) all = {{0, 1, 2, 3}};
+    if (degree == 2) all = quadratic_tetrahedron();
+  } else {
+    for (int box = 0; box < (degree == 1 ? 1 : 8); ++box) add_box({box & 1, box >> 1 & 1, box >> 2 & 1}, degree, all);
+  }
+  std::vector<Pattern> result;
+  for (const std::array<int, 4>& corners : all) result.push_back({corners, faces_of(shape, degree, corners)});
+  return result;
+}
+
+int degree_of(const CellBlock& block) {
+  return block.nodes_per_cell == node_count(block.shape, 1) ? 1 : 2;
+}
+
+std::vector<Tetrahedron> tetrahedra_of(const std::vector<CellBlock>& blocks, int most_degree) {
+  std::vector<Tetrahedron> result;
+  int number = 0;
+  for (const CellBlock& block : blocks) {
+    const std::vector<Pattern> patterns = patterns_of(block.shape, std::min(degree_of(block), most_degree));
+    for (Index i = 0; i < block.size(); ++i, ++number) {
+      const Index* cell = block.cell(i);
+      for (const auto& [corners, faces] : patterns)
+        result.push_back({{cell[corners[0]], cell[corners[1]], cell[corners[2]], cell[corners[3]]}, number, faces});
+    }
+  }
+  return result;
+}
+
+std::vector<Index> used_nodes(const std::vector<Tetrahedron>& tetrahedra) {
+  std::vector<Index> all;
+  all.reserve(4 * tetrahedra.size());
+  for (const Tetrahedron& t : tetrahedra) all.insert(all.end(), t.corners.begin(), t.corners.end());
+  return each_once(std::move(all));
+}
+
+/// One node for all of a box: the first of them. What has no volume any more is left out.
+std::vector<Tetrahedron> merged(const Points& nodes, const std::vector<Tetrahedron>& tetrahedra, double boxes) {
+  const NodeGrid grid(nodes, boxes);
+  std::map<GridBox, Index> first;
+  std::vector<Index> stands_for(static_cast<std::size_t>(nodes.cols()), -1);
+  for (const Index node : used_nodes(tetrahedra))
+    stands_for[static_cast<std::size_t>(node)] = first.try_emplace(grid.box(nodes, node), node).first->second;
+  std::vector<Tetrahedron> result;
+  for (Tetrahedron t : tetrahedra) {
+    for (Index& corner : t.corners) corner = stands_for[static_cast<std::size_t>(corner)];
+    std::array<Index, 4> key = t.corners;
+    std::sort(key.begin(), key.end());
+    if (std::adjacent_find(key.begin(), key.end()) != key.end()) continue;
+    t.faces = 0b1111;
+    result.push_back(t);
+  }
+  return result;
+}
+
+}  // namespace
+
+Volume make_volume(const Points& nodes, const std::vector<CellBlock>& cells, Index most) {
+  Volume volume;
+  if (dimension(cells.front().shape) != 3) return volume;
+  std::vector<Tetrahedron> tetrahedra = tetrahedra_of(cells, 2);
+  const auto too_many = [&] { return static_cast<Index>(tetrahedra.size()) > most; };
+  if (too_many()) tetrahedra = tetrahedra_of(cells, 1);
+  if (too_many()) {
+    volume.is_thinned = true;
+    const std::vector<Tetrahedron> all = std::move(tetrahedra);
+    // The number goes with the third power of the boxes along a side; of a slender body there are fewer.
+    double boxes = 4.0 * std::cbrt(static_cast<double>(most));
+    do {
+      tetrahedra = merged(nodes, all, boxes);
+      boxes *= 0.8;
+    } while (too_many());
+  }
+  volume.nodes = by_place(nodes, used_nodes(tetrahedra));
+  const std::vector<int> local = local_numbers(volume.nodes, nodes.cols());
+  const auto first_of = [&local](const Tetrahedron& t) {
+    int least = local[static_cast<std::size_t>(t.corners[0])];
+    for (const Index corner : t.corners) least = std::min(least, local[static_cast<std::size_t>(corner)]);
+    return std::pair(least, t.cell);
+  };
+  std::stable_sort(tetrahedra.begin(), tetrahedra.end(),
+                   [&](const Tetrahedron& a, const Tetrahedron& b) { return first_of(a) < first_of(b); });
+  for (const Tetrahedron& t : tetrahedra) {
+    for (const Index corner : t.corners) volume.tetrahedra.push_back(local[static_cast<std::size_t>(corner)]);
+    volume.cells.push_back(t.cell);
+    volume.faces.push_back(t.faces);
+  }
+  return volume;
+}
+
+}  // namespace ricochet

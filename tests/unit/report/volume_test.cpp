@@ -1,0 +1,120 @@
+#include "ricochet/report/volume.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "support/box_mesh.hpp"
+
+namespace ricochet {
+namespace {
+
+using test_support::BoxMesh;
+using test_support::ElementKind;
+using test_support::make_box_mesh;
+
+double volume_of(const Points& nodes, const Volume& volume, Index t) {
+  const auto corner = [&](Index k) {
+    return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(volume.tetrahedra[4 * t + k])]));
+  };
+  return std::abs((corner(1) - corner(0)).cross(corner(2) - corner(0)).dot(corner(3) - corner(0))) / 6.0;
+}
+
+/// How many tetrahedra share each face; and how many of them call it one of the cell's.
+struct Faces {
+  std::map<std::array<int, 3>, int> times, of_cells;
+  explicit Faces(const Volume& volume) {
+    for (Index t = 0; t < volume.count(); ++t) {
+      for (int k = 0; k < 4; ++k) {
+        std::array<int, 3> face{};
+        for (std::size_t i = 0; i < 3; ++i) face[i] = volume.tetrahedra[4 * t + (k + 1 + static_cast<int>(i)) % 4];
+        std::sort(face.begin(), face.end());
+        ++times[face];
+        of_cells[face] += volume.faces[t] >> k & 1;
+      }
+    }
+  }
+};
+
+class VolumeOf : public testing::TestWithParam<ElementKind> {};
+
+/// The tetrahedra fill the unit cube without gap or overlap, also where the cells' vertices are moved about.
+TEST_P(VolumeOf, ACubeIsComplete) {
+  const ElementKind& kind = GetParam();
+  BoxMesh box;
+  box.shape = kind.shape;
+  box.counts = {2, 2, 2};
+  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const Points& nodes = body->space.nodes;
+  const Volume volume = make_volume(nodes, body->space.cells, 1000000);
+  EXPECT_FALSE(volume.is_thinned);
+  const Index cells = body->space.cells.front().size();
+  const Index parts = kind.displacement_degree == 2 ? 8 : 1;
+  EXPECT_EQ(volume.count(), cells * parts * (kind.shape == CellShape::hexahedron ? 6 : 1));
+  std::map<int, double> of_cell;
+  for (Index t = 0; t < volume.count(); ++t) of_cell[volume.cells[t]] += volume_of(nodes, volume, t);
+  EXPECT_EQ(static_cast<Index>(of_cell.size()), cells);
+  double sum = 0.0;
+  for (const auto& [cell, part] : of_cell) sum += part;
+  EXPECT_NEAR(sum, 1.0, 1e-13);
+
+  // A face belongs to two tetrahedra, on the cube's surface to one, and both agree on whether it is a cell's.
+  double surface = 0.0;
+  const Faces faces(volume);
+  for (const auto& [face, times] : faces.times) {
+    EXPECT_LE(times, 2);
+    EXPECT_TRUE(faces.of_cells.at(face) == 0 || faces.of_cells.at(face) == times);
+    const auto corner = [&](std::size_t k) {
+      return Eigen::Vector3d(nodes.col(volume.nodes[static_cast<std::size_t>(face[k])]));
+    };
+    if (times != 1) continue;
+    surface += 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+    EXPECT_EQ(faces.of_cells.at(face), 1);
+  }
+  EXPECT_NEAR(surface, 6.0, 1e-12);
+}
+
+/// Of too many there are fewer: first those of the vertices, which still fill the cube, then larger ones.
+TEST_P(VolumeOf, ManyCellsAreMadeFewer) {
+  const ElementKind& kind = GetParam();
+  BoxMesh box;
+  box.shape = kind.shape;
+  box.counts = {4, 4, 4};
+  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const Points& nodes = body->space.nodes;
+  const Index of_vertices = body->space.cells.front().size() * (kind.shape == CellShape::hexahedron ? 6 : 1);
+  const Volume plain = make_volume(nodes, body->space.cells, of_vertices);
+  EXPECT_FALSE(plain.is_thinned);
+  EXPECT_EQ(plain.count(), of_vertices);
+  double sum = 0.0;
+  for (Index t = 0; t < plain.count(); ++t) sum += volume_of(nodes, plain, t);
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+
+  const Volume coarse = make_volume(nodes, body->space.cells, of_vertices / 2);
+  EXPECT_TRUE(coarse.is_thinned);
+  EXPECT_LE(coarse.count(), of_vertices / 2);
+  EXPECT_GT(coarse.count(), of_vertices / 20);
+  for (Index t = 0; t < coarse.count(); ++t) EXPECT_LT(coarse.cells[t], body->space.cells.front().size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, VolumeOf,
+                         testing::Values(ElementKind{CellShape::tetrahedron, 1, 1},
+                                         ElementKind{CellShape::tetrahedron, 1, 2},
+                                         ElementKind{CellShape::hexahedron, 1, 1},
+                                         ElementKind{CellShape::hexahedron, 1, 2}));
+
+TEST(Volume, PlaneCellsHaveNone) {
+  BoxMesh box;
+  box.shape = CellShape::triangle;
+  box.counts = {2, 2};
+  const auto body = test_support::make_meshed_body(make_box_mesh(box), 1);
+  Points nodes = Points::Zero(3, body->space.nodes.cols());
+  nodes.topRows(2) = body->space.nodes;
+  EXPECT_EQ(make_volume(nodes, body->space.cells, 1000).count(), 0);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,49 @@
+import { extentOf } from "../charts/scale";
+import type { Run } from "../data/run";
+import { columnName } from "../format";
+
+/** What a run came to, in one number. */
+export interface Quantity {
+  id: string;
+  title: string;
+  value: (run: Run) => number;
+}
+
+const last = (values: Float64Array) => values[values.length - 1] ?? NaN;
+const largest = (values: Float64Array) => {
+  const { low, high } = extentOf("", values);
+  return Math.max(Math.abs(low), Math.abs(high));
+};
+const ratio = (values: Float64Array) => (values.length > 0 && values[0] !== 0 ? last(values) / values[0] : NaN);
+
+/** How long something touched. Unknown where the page has not all rows. */
+function timeInContact(run: Run): number {
+  if (run.data.rows_per_pair > 0) return NaN;
+  const times = run.column("time");
+  const active = run.column("active_contacts");
+  let sum = 0;
+  for (let i = 1; i < times.length; ++i) if (active[i] > 0) sum += times[i] - times[i - 1];
+  return sum;
+}
+
+/** Those that some run has, the most telling ones first. */
+export function quantities(runs: Run[]): Quantity[] {
+  const list: Quantity[] = [
+    { id: "force", title: "largest contact force", value: (run) => run.data.judgement.force_largest },
+    { id: "force-time", title: "time of the largest contact force", value: (run) => run.data.judgement.force_largest_at },
+    { id: "contact-time", title: "time in contact", value: timeInContact },
+    { id: "energy", title: "total energy, end / start", value: (run) => ratio(run.column("total_energy")) },
+    { id: "kinetic", title: "kinetic energy, end / start", value: (run) => ratio(run.column("kinetic_energy")) },
+    { id: "energy-change", title: "change of the total energy", value: (run) => last(run.column("total_energy")) - run.column("total_energy")[0] },
+    { id: "friction-work", title: "work of friction", value: (run) => last(run.column("friction_work")) },
+    { id: "penetration", title: "deepest interpenetration", value: (run) => run.data.judgement.penetration },
+    { id: "rotation", title: "largest rotation", value: (run) => largest(run.column("max_rotation")) },
+    { id: "step-seconds", title: "seconds of computing a step", value: (run) => run.summary.seconds_per_step },
+  ];
+  const columns = [...new Set(runs.flatMap((run) => [...run.history.keys()]))].filter((name) => name !== "step" && name !== "time");
+  for (const column of columns) {
+    list.push({ id: `largest ${column}`, title: `${columnName(column)}, largest size`, value: (run) => (run.has(column) ? largest(run.column(column)) : NaN) });
+    list.push({ id: `last ${column}`, title: `${columnName(column)} at the end`, value: (run) => (run.has(column) ? last(run.column(column)) : NaN) });
+  }
+  return list.filter(({ value }) => runs.some((run) => Number.isFinite(value(run))));
+}
