@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "contact_text.hpp"
+#include "outcome_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/model.hpp"
@@ -118,6 +119,8 @@ void describe_result(const std::string& directory) {
       fmt::print("  CHECK FAILED: {} reaches {:.2g}, more than {:g}\n", check.name, check.largest, check.limit);
   }
   print_friction(s);
+  print_impacts(s, 0);
+  print_peak_stress(s);
   fmt::print("  deepest interpenetration {:.3g}, largest rotation {:.3g} rad\n", s.digest("max_penetration").maximum,
              s.digest("max_rotation").maximum);
   for (std::size_t i = 0; i < s.probes.size(); ++i) {

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "contact_text.hpp"
+#include "outcome_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/read_case.hpp"
@@ -16,6 +17,8 @@
 namespace ricochet::program {
 
 namespace {
+
+constexpr std::size_t most_impacts_shown = 5;
 
 /// How many hold; those that do not, and why some were left out.
 void print_expectations(const std::vector<ExpectationResult>& expectations) {
@@ -47,6 +50,8 @@ void print_summary(const RunSummary& s, const std::string& directory) {
              energy.maximum);
   fmt::print("  {}\n", energy_account_text(s));
   print_friction(s);
+  print_impacts(s, most_impacts_shown);
+  print_peak_stress(s);
   fmt::print("  deepest interpenetration {:.3g}, largest rotation of a cell {:.3g} rad\n",
              s.digest("max_penetration").maximum, s.digest("max_rotation").maximum);
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,

@@ -6,7 +6,10 @@
 
 #include "allocation_count.hpp"
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/impacts.hpp"
+#include "ricochet/simulation/peak_stress.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
@@ -73,6 +76,9 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
       overrides.push_back("time.end=3.0");
       CaseRun run(thrown_case(bodies[body], GetParam().mass, GetParam().time, GetParam().contact), overrides);
       HistoryRecorder recorder(run.problem(), *run.model().rotation, run.model().sensors);
+      const ConnectedBodies connected = find_connected_bodies(run.model().space);
+      ImpactRecorder impacts(run.problem(), run.scheme(), run.state(), {"plane"}, connected.of_node, {0.1});
+      PeakStress peak(run.model().body, 1e30);
       std::vector<ContactStatus> status;
       long same = 0;
       Tally apart, in_contact;
@@ -80,6 +86,8 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
         const long before = allocation_count();
         run.simulation().advance();
         (void)recorder.row(run.state(), run.simulation().account());
+        impacts.enter_step(run.state());
+        peak.enter(run.state(), false);
         const long count = allocation_count() - before;
         same = run.state().contact_status == status ? same + 1 : 0;
         status = run.state().contact_status;

@@ -7,6 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/fem/connected_bodies.hpp"
 
 namespace ricochet {
 
@@ -27,6 +28,14 @@ long default_frames(long steps, Index dofs) {
 HistoryWriter open_history(const std::string& path, const std::vector<std::string>& columns, const Snapshot* snapshot,
                            const std::string& name) {
   return snapshot != nullptr ? HistoryWriter(path, *snapshot, name) : HistoryWriter(path, columns);
+}
+
+ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, const State& state) {
+  std::vector<std::string> obstacles;
+  for (const ContactPair& pair : model.contact_pairs) obstacles.push_back(pair.obstacle_name);
+  ConnectedBodies bodies = find_connected_bodies(model.space);
+  std::vector<double> separation = wave_crossing_times(model.body, bodies);
+  return {model.problem, scheme, state, std::move(obstacles), std::move(bodies.of_node), std::move(separation)};
 }
 
 std::string sampled_name(long every) {
@@ -56,10 +65,13 @@ bool FieldSchedule::includes(long step) const {
 }
 
 Recording::Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
-                     const std::string& directory, long steps, const Snapshot* snapshot)
+                     const std::string& directory, long steps, std::size_t factor_entries, const Snapshot* snapshot)
     : recorder_(model.problem, *model.rotation, model.sensors),
       history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot, "history")),
       checks_(input, model, scheme, state, recorder_.columns(), snapshot),
+      model_(model),
+      impacts_(make_impact_recorder(model, scheme, state)),
+      peak_stress_(model.body, step_work(model.body, factor_entries)),
       history_every_(input.output.history_every),
       fields_(input, steps, model.problem.dof_count()),
       steps_(steps) {
@@ -72,6 +84,8 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   }
   if (snapshot == nullptr) return;
   digest_.load(*snapshot, "digest", recorder_.columns().size());
+  impacts_.load(*snapshot, "impacts");
+  peak_stress_.load(*snapshot, "peak_stress");
   rotation_warned_ = snapshot->flag("rotation_warned");
 }
 
@@ -87,7 +101,12 @@ void Recording::open_results(const OutputSection& output, const Model& model, co
 
 void Recording::record(const State& state, EnergyAccount& account) {
   Timer timer;
-  if (state.step > 0) checks_.enter_step(state);
+  if (state.step > 0) {
+    checks_.enter_step(state);
+    impacts_.enter_step(state);
+  }
+  const bool is_frame = results_ && fields_.includes(state.step);
+  peak_stress_.enter(state, is_frame);
   if (state.step % history_every_ == 0 || state.step == steps_) {
     const std::vector<double>& row = recorder_.row(state, account);
     check_finite(row);
@@ -99,7 +118,7 @@ void Recording::record(const State& state, EnergyAccount& account) {
   for (Sampled& sampled : sampled_) {
     if (state.step % sampled.every == 0 || state.step == steps_) sampled.file.write(sampled.recorder.row(state));
   }
-  if (results_ && fields_.includes(state.step)) results_->write(state);
+  if (is_frame) results_->write(state);
   if (since_flush_.seconds() > flush_interval) {
     flush();
     since_flush_.restart();
@@ -125,6 +144,8 @@ void Recording::save(Snapshot& snapshot) {
   }
   digest_.save(snapshot, "digest");
   checks_.save(snapshot, "checks");
+  impacts_.save(snapshot, "impacts");
+  peak_stress_.save(snapshot, "peak_stress");
   snapshot.save("rotation_warned", rotation_warned_);
 }
 
@@ -133,6 +154,26 @@ void Recording::describe(RunSummary& summary) const {
   summary.columns = recorder_.columns();
   summary.digests = digest_.columns();
   summary.checks = checks_.results();
+  summary.impacts = impacts_.impacts();
+  summary.impacts_left_out = impacts_.left_out();
+  describe_bodies(summary);
+  describe_peak_stress(summary);
+}
+
+void Recording::describe_bodies(RunSummary& summary) const {
+  summary.bodies.clear();
+  for (const RigidBody& body : impacts_.bodies())
+    summary.bodies.push_back({body, impacts_.separation(static_cast<int>(summary.bodies.size()))});
+}
+
+void Recording::describe_peak_stress(RunSummary& summary) const {
+  const PeakStressResult& peak = peak_stress_.result();
+  if (peak.cell < 0) return;
+  const Body& body = model_.body;
+  const CellPlace place = place_of_cell(*body.mesh, peak.cell);
+  const auto material = static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(peak.cell)]);
+  summary.peak_stress = PeakStressDescription{
+      peak, {place.centre.data(), place.centre.data() + place.centre.size()}, place.tag, body.materials[material].name};
 }
 
 /// Energies are squares: they leave the range of numbers long before the displacement does.

@@ -8,6 +8,8 @@
 #include "ricochet/io/history_file.hpp"
 #include "ricochet/io/results_file.hpp"
 #include "ricochet/io/summary.hpp"
+#include "ricochet/simulation/impacts.hpp"
+#include "ricochet/simulation/peak_stress.hpp"
 
 /// @file Everything that is written while a run goes on: history and fields.
 namespace ricochet {
@@ -31,9 +33,9 @@ class FieldSchedule {
 class Recording {
  public:
   /// Of a run of so many steps, from this state on, into a directory: new files, or those of the run that the snapshot
-  /// belongs to. Throws Error(file_access).
+  /// belongs to. `factor_entries`: of the step solver. Throws Error(file_access).
   Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
-            const std::string& directory, long steps, const Snapshot* snapshot);
+            const std::string& directory, long steps, std::size_t factor_entries, const Snapshot* snapshot);
 
   /// Of the state after every step, the first one included. Throws Error(file_access), and Error(not_converged) when
   /// the motion has grown beyond all bounds or breaks an account that is to stop it.
@@ -50,6 +52,8 @@ class Recording {
   void open_results(const OutputSection& output, const Model& model, const std::string& directory,
                     const Snapshot* snapshot);
   void check_finite(const std::vector<double>& row) const;
+  void describe_bodies(RunSummary& summary) const;
+  void describe_peak_stress(RunSummary& summary) const;
   void watch_rotation(const std::vector<double>& row);
 
   HistoryRecorder recorder_;
@@ -64,6 +68,9 @@ class Recording {
   std::optional<ResultsWriter> results_;
   HistoryDigest digest_;
   RunChecks checks_;
+  const Model& model_;
+  ImpactRecorder impacts_;
+  PeakStress peak_stress_;
   long history_every_;
   FieldSchedule fields_;
   long steps_;

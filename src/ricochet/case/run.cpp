@@ -144,7 +144,7 @@ void Run::start_recording() {
     if (contact_export_) contact_export_->write(problem, solution);
   });
   recording_.emplace(input_, *model_, *scheme_, simulation_->state(), options_.output_directory, steps_,
-                     snapshot_ ? &*snapshot_ : nullptr);
+                     simulation_->factor_entries(), snapshot_ ? &*snapshot_ : nullptr);
   if (!snapshot_) recording_->record(simulation_->state(), simulation_->account());
   snapshot_.reset();
   contact_before_ = simulation_->contact_seconds();

@@ -102,47 +102,102 @@ bool has_straight_simplices(const Body& body, CellShape shape) {
 
 }  // namespace
 
+CellStress::CellStress(const Body& body) : body_(body) {
+  for (const CellBlock& block : body.mesh->cells) {
+    const bool simple = has_straight_simplices(body, block.shape);
+    integrations_.push_back(
+        simple ? nullptr : std::make_unique<const BlockIntegration>(stiffness_integration(body, block.shape)));
+  }
+}
+
+CellStress::~CellStress() = default;
+CellStress::CellStress(CellStress&&) noexcept = default;
+
+namespace {
+
+/// Means over a cell.
+template <int d>
+struct CellMeans {
+  Eigen::Matrix<double, d, d> strain = Eigen::Matrix<double, d, d>::Zero();
+  double energy_density = 0.0;
+};
+
+template <int d>
+CellMeans<d> integrate(const BlockIntegration& integration, const Points& positions, const Index* geometry,
+                       const Index* nodes, const StressLaw<d>& law, const Vector& displacement) {
+  CellMeans<d> result;
+  double volume = 0.0;
+  for (std::size_t q = 0; q < integration.displacement.gradients.size(); ++q) {
+    const Eigen::Matrix<double, d, d> map = jacobian<d>(positions, geometry, integration.geometry.gradients[q]);
+    const Matrix& shape = integration.displacement.gradients[q];
+    Eigen::Matrix<double, d, d> reference = Eigen::Matrix<double, d, d>::Zero();
+    for (Index i = 0; i < shape.rows(); ++i)
+      reference += displacement.segment<d>(nodes[i] * d) * shape.block<1, d>(i, 0);
+    const Eigen::Matrix<double, d, d> strain = symmetric<d>(reference * map.inverse());
+    const double weight = integration.rule.weights[static_cast<Index>(q)] * std::abs(map.determinant());
+    volume += weight;
+    result.strain += weight * strain;
+    result.energy_density += weight * law.energy_density(strain);
+  }
+  result.strain /= volume;
+  result.energy_density /= volume;
+  return result;
+}
+
+/// Calls visit(cell, law, means) for some cells of a block.
+template <int d, class Visit>
+void visit_cells(const Body& body, const BlockIntegration* integration, std::size_t block, Index first_cell,
+                 const Vector& displacement, Index first, Index last, const Visit& visit) {
+  const CellBlock& geometry = body.mesh->cells[block];
+  const CellBlock& cells = body.space->cells[block];
+  for (Index cell = first; cell < last; ++cell) {
+    const StressLaw<d> law(body, first_cell + cell);
+    CellMeans<d> means;
+    if (integration == nullptr) {
+      means.strain = simplex_strain<d>(body.space->nodes, cells.cell(cell), displacement);
+      means.energy_density = law.energy_density(means.strain);
+    } else {
+      means = integrate<d>(*integration, body.mesh->nodes, geometry.cell(cell), cells.cell(cell), law, displacement);
+    }
+    visit(cell, law, means);
+  }
+}
+
+}  // namespace
+
 template <int d>
 void CellStress::evaluate_block(std::size_t block, Index first_cell, const Vector& displacement, double* stress,
                                 double* energy_density) const {
-  const CellBlock& geometry = body_.mesh->cells[block];
-  const CellBlock& cells = body_.space->cells[block];
-  if (has_straight_simplices(body_, geometry.shape)) {
-    parallel_ranges(cells.size(), [&](Index first, Index last) {
-      for (Index cell = first; cell < last; ++cell) {
-        const StressLaw<d> law(body_, first_cell + cell);
-        const auto strain = simplex_strain<d>(body_.space->nodes, cells.cell(cell), displacement);
-        law.write_stress(strain, stress + tensor_components * cell);
-        energy_density[cell] = law.energy_density(strain);
-      }
-    });
-    return;
-  }
-  const BlockIntegration integration = stiffness_integration(body_, geometry.shape);
-  parallel_ranges(cells.size(), [&](Index first, Index last) {
-    for (Index cell = first; cell < last; ++cell) {
-      const StressLaw<d> law(body_, first_cell + cell);
-      const Index* const nodes = cells.cell(cell);
-      double volume = 0.0, energy = 0.0;
-      Eigen::Matrix<double, d, d> mean = Eigen::Matrix<double, d, d>::Zero();
-      for (std::size_t q = 0; q < integration.displacement.gradients.size(); ++q) {
-        const Eigen::Matrix<double, d, d> map =
-            jacobian<d>(body_.mesh->nodes, geometry.cell(cell), integration.geometry.gradients[q]);
-        const Matrix& shape = integration.displacement.gradients[q];
-        Eigen::Matrix<double, d, d> reference = Eigen::Matrix<double, d, d>::Zero();
-        for (Index i = 0; i < shape.rows(); ++i)
-          reference += displacement.segment<d>(nodes[i] * d) * shape.block<1, d>(i, 0);
-        const Eigen::Matrix<double, d, d> strain = symmetric<d>(reference * map.inverse());
-        const double weight = integration.rule.weights[static_cast<Index>(q)] * std::abs(map.determinant());
-        volume += weight;
-        mean += weight * strain;
-        energy += weight * law.energy_density(strain);
-      }
-      mean /= volume;
-      energy_density[cell] = energy / volume;
-      law.write_stress(mean, stress + tensor_components * cell);
-    }
+  parallel_ranges(body_.space->cells[block].size(), [&](Index first, Index last) {
+    visit_cells<d>(body_, integrations_[block].get(), block, first_cell, displacement, first, last,
+                   [&](Index cell, const StressLaw<d>& law, const CellMeans<d>& means) {
+                     law.write_stress(means.strain, stress + tensor_components * cell);
+                     energy_density[cell] = means.energy_density;
+                   });
   });
+}
+
+template <int d>
+LargestOfCells CellStress::largest_in_block(std::size_t block, Index first_cell, const Vector& displacement) const {
+  return parallel_sum<LargestOfCells>(body_.space->cells[block].size(), [&](Index first, Index last) {
+    LargestOfCells largest;
+    visit_cells<d>(body_, integrations_[block].get(), block, first_cell, displacement, first, last,
+                   [&](Index cell, const StressLaw<d>& law, const CellMeans<d>& means) {
+                     std::array<double, tensor_components> stress;
+                     law.write_stress(means.strain, stress.data());
+                     largest += LargestOfCells{von_mises_stress(stress.data()), first_cell + cell};
+                   });
+    return largest;
+  });
+}
+
+LargestOfCells CellStress::largest_von_mises(const Vector& displacement) const {
+  LargestOfCells largest;
+  for_each_block(body_, [&](std::size_t block, Index first) {
+    largest += body_.mesh->dimension == 2 ? largest_in_block<2>(block, first, displacement)
+                                          : largest_in_block<3>(block, first, displacement);
+  });
+  return largest;
 }
 
 void CellStress::evaluate(const Vector& displacement, std::vector<double>& stress,

@@ -10,28 +10,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/io/summary_outcome.hpp"
 
 namespace ricochet {
 
-using Json = nlohmann::ordered_json;
-
 namespace {
-
-/// JSON has no infinities; a summary says them in words.
-Json number(double value) {
-  if (std::isfinite(value)) return value;
-  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
-}
-
-double to_number(const Json& value) {
-  if (value.is_number()) return value.get<double>();
-  const std::string text = value.is_string() ? value.get<std::string>() : "nan";
-  return text == "inf" ? INFINITY : text == "-inf" ? -INFINITY : NAN;
-}
 
 Json extrema_to_json(const RunSummary& summary) {
   Json result = Json::object();
@@ -170,6 +156,10 @@ std::string to_json(const RunSummary& s) {
                      {"energy_scale", number(s.energy_scale())},
                      {"contacts", contacts_to_json(s)},
                      {"probes", probes_to_json(s)},
+                     {"bodies", bodies_to_json(s)},
+                     {"impacts", impacts_to_json(s)},
+                     {"impacts_left_out", s.impacts_left_out},
+                     {"peak_stress", peak_stress_to_json(s)},
                      {"extrema", extrema_to_json(s)},
                      {"checks", checks_to_json(s)},
                      {"warnings", s.warnings},
@@ -229,6 +219,7 @@ RunSummary read_summary(const std::string& path) {
     const Json checks = json.value("checks", Json::object());
     for (const auto& [name, check] : checks.items())
       s.checks.push_back({name, to_number(check.at("limit")), to_number(check.at("largest"))});
+    read_outcome(json, s);
     for (const auto& contact : json.at("contacts")) {
       s.contacts.push_back({contact.at("group"), contact.at("obstacle"), contact.at("multipliers"),
                             contact.at("friction"), contact.at("friction_bound"), contact.at("obstacle_velocity"),
@@ -250,6 +241,17 @@ RunSummary read_summary(const std::string& path) {
   return s;
 }
 
+namespace {
+
+/// An entry of this name, or of this number from 0.
+bool contains(const Json& json, const std::string& key) {
+  if (json.is_object()) return json.contains(key);
+  const bool is_number = !key.empty() && key.size() < 10 && key.find_first_not_of("0123456789") == std::string::npos;
+  return json.is_array() && is_number && std::stoul(key) < json.size();
+}
+
+}  // namespace
+
 double summary_value(const std::string& json_text, const std::string& path) {
   Json json = Json::parse(json_text);
   // Column names contain dots ("lowest.gap"), so the longest key that fits is taken at each level.
@@ -257,7 +259,7 @@ double summary_value(const std::string& json_text, const std::string& path) {
   std::string rest = path;
   while (!rest.empty()) {
     std::string key = rest;
-    while (!(at->is_object() && at->contains(key))) {
+    while (!contains(*at, key)) {
       const std::size_t dot = key.rfind('.');
       if (dot == std::string::npos) {
         throw Error(ErrorKind::invalid_input,
@@ -265,7 +267,7 @@ double summary_value(const std::string& json_text, const std::string& path) {
       }
       key.resize(dot);
     }
-    at = &at->at(key);
+    at = at->is_array() ? &at->at(std::stoul(key)) : &at->at(key);
     rest = rest.size() > key.size() ? rest.substr(key.size() + 1) : "";
   }
   if (!at->is_number()) throw Error(ErrorKind::invalid_input, fmt::format("summary.{} is not a number", path));

@@ -2,11 +2,14 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/impacts.hpp"
+#include "ricochet/simulation/peak_stress.hpp"
 
 /// @file summary.json: what ran, sizes, timings, extrema, warnings.
 namespace ricochet {
@@ -35,6 +38,20 @@ struct ContactDescription {
   double friction = 0.0, friction_bound = 0.0;
   std::vector<double> obstacle_velocity = {};  ///< empty: at rest
   double obstacle_rotation_rate = 0.0;
+};
+
+/// A body of the mesh, and how long its contact must be lost for an impact to have ended.
+struct BodyDescription {
+  RigidBody rigid;
+  double separation = 0.0;
+};
+
+/// The largest von Mises stress of a run, and where it was.
+struct PeakStressDescription {
+  PeakStressResult peak;
+  std::vector<double> place;  ///< centre of the cell, reference configuration
+  std::int64_t element = 0;   ///< the cell's number in the mesh file
+  std::string material;
 };
 
 struct RunSummary {
@@ -66,6 +83,10 @@ struct RunSummary {
   std::vector<std::string> columns;
   std::vector<ColumnDigest> digests;  ///< per column, over the rows written
   std::vector<CheckResult> checks = {};
+  std::vector<BodyDescription> bodies = {};
+  std::vector<Impact> impacts = {};
+  long impacts_left_out = 0;  ///< that were only counted
+  std::optional<PeakStressDescription> peak_stress;
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;
   std::string contact_export;  ///< what became of contact problems to be exported, in words; not in the file

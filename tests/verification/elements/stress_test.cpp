@@ -85,6 +85,11 @@ TEST_P(StressTest, EnergyDensitiesAddUpToTheStrainEnergy) {
   const double sum = volumes.dot(Eigen::Map<const Vector>(density.data(), volumes.size()));
   const double energy = 0.5 * displacement.dot(stiffness * displacement);
   EXPECT_NEAR(sum, energy, 1e-13 * energy);
+  Vector von_mises(body->mesh.cell_count());
+  for (Index i = 0; i < von_mises.size(); ++i) von_mises[i] = von_mises_stress(stress.data() + 6 * i);
+  const LargestOfCells largest = CellStress(body->body).largest_von_mises(displacement);
+  EXPECT_EQ(largest.value, von_mises.maxCoeff());
+  EXPECT_EQ(von_mises[largest.cell], largest.value);
 }
 
 /// A linear function sampled at the centres of the cells comes back at every node, corners included.

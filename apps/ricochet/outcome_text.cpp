@@ -1,0 +1,68 @@
+#include "outcome_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet::program {
+
+namespace {
+
+std::string vector_text(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += fmt::format("{}{:.5g}", text.empty() ? "" : ", ", value);
+  return "(" + text + ")";
+}
+
+/// In the plane there is one number.
+std::string spin_text(const Eigen::Vector3d& spin, int dimension) {
+  return dimension == 2 ? fmt::format("{:.4g}", spin[2]) : vector_text({spin[0], spin[1], spin[2]});
+}
+
+std::string impact_text(const Impact& impact, const RunSummary& summary) {
+  std::string text;
+  if (summary.bodies.size() > 1) text += fmt::format("body {} ", impact.body);
+  text += fmt::format("on \"{}\" from t = {:.6g}", impact.obstacle, impact.begin);
+  if (impact.from_start) text += " (the start)";
+  if (impact.ended) {
+    text += fmt::format(" to {:.6g} (duration {:.4g})", impact.end, impact.end - impact.begin);
+  } else {
+    text += ", not ended";
+  }
+  if (const auto restitution = impact.restitution()) text += fmt::format(", restitution {:.4g}", *restitution);
+  text += fmt::format(", impulse {:.4g}, largest force {:.4g} at {:.6g}", impact.impulse.norm(), impact.largest_force,
+                      impact.largest_force_time);
+  const double before = impact.before.spin.norm(), after = impact.ended ? impact.after.spin.norm() : 0.0;
+  // A body that does not spin shows rounding.
+  const double speed = std::max(impact.before.velocity.norm(), impact.after.velocity.norm());
+  const RigidBody& body = summary.bodies[static_cast<std::size_t>(impact.body)].rigid;
+  const double radius = std::sqrt(body.inertia.diagonal().maxCoeff() / body.mass);
+  if (impact.ended && std::max(before, after) * radius > 1e-6 * speed) {
+    text += fmt::format(", spin {} before and {} after", spin_text(impact.before.spin, summary.dimension),
+                        spin_text(impact.after.spin, summary.dimension));
+  }
+  return text;
+}
+
+}  // namespace
+
+void print_impacts(const RunSummary& summary, std::size_t most) {
+  const std::size_t count = summary.impacts.size();
+  const std::size_t shown = most == 0 ? count : std::min(most, count);
+  for (std::size_t i = 0; i < shown; ++i)
+    fmt::print("  impact {}: {}\n", i + 1, impact_text(summary.impacts[i], summary));
+  const auto others = static_cast<long>(count - shown) + summary.impacts_left_out;
+  if (others > 0) fmt::print("  {} more impacts{}\n", others, most == 0 ? "" : ", see summary.json");
+}
+
+void print_peak_stress(const RunSummary& summary) {
+  if (!summary.peak_stress) return;
+  const PeakStressDescription& d = *summary.peak_stress;
+  fmt::print("  largest von Mises stress {:.6g} at t = {:.6g}, in \"{}\" at {} (mean of a cell; {})\n",
+             d.peak.von_mises, d.peak.time, d.material, vector_text(d.place),
+             d.peak.looks == d.peak.states ? "looked at in every step"
+                                           : fmt::format("looked at in {} of {} steps", d.peak.looks, d.peak.states));
+}
+
+}  // namespace ricochet::program

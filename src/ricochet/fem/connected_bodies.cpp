@@ -1,0 +1,73 @@
+#include "ricochet/fem/connected_bodies.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "ricochet/fem/wave_speed.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Calls visit(number of the cell, its nodes, how many).
+template <class Visit>
+void for_each_cell(const DisplacementSpace& space, const Visit& visit) {
+  Index number = 0;
+  for (const CellBlock& block : space.cells) {
+    for (Index cell = 0; cell < block.size(); ++cell, ++number) visit(number, block.cell(cell), block.nodes_per_cell);
+  }
+}
+
+/// The representative of a node's set; paths are halved on the way.
+Index find_root(std::vector<Index>& parent, Index node) {
+  const auto at = [&](Index i) -> Index& { return parent[static_cast<std::size_t>(i)]; };
+  while (at(node) != node) node = at(node) = at(at(node));
+  return node;
+}
+
+}  // namespace
+
+ConnectedBodies find_connected_bodies(const DisplacementSpace& space) {
+  std::vector<Index> parent(static_cast<std::size_t>(space.node_count()));
+  std::iota(parent.begin(), parent.end(), Index{0});
+  for_each_cell(space, [&](Index, const Index* nodes, int count) {
+    const Index root = find_root(parent, nodes[0]);
+    for (int k = 1; k < count; ++k) parent[static_cast<std::size_t>(find_root(parent, nodes[k]))] = root;
+  });
+  ConnectedBodies result;
+  std::vector<int> of_root(parent.size(), -1);
+  for_each_cell(space, [&](Index, const Index* nodes, int) {
+    int& body = of_root[static_cast<std::size_t>(find_root(parent, nodes[0]))];
+    if (body < 0) body = result.count++;
+    result.of_cell.push_back(body);
+  });
+  result.of_node.reserve(parent.size());
+  for (Index node = 0; node < space.node_count(); ++node)
+    result.of_node.push_back(of_root[static_cast<std::size_t>(find_root(parent, node))]);
+  return result;
+}
+
+std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies& bodies) {
+  const auto count = static_cast<std::size_t>(bodies.count);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Points& nodes = body.space->nodes;
+  std::vector<Eigen::Vector3d> lowest(count, Eigen::Vector3d::Constant(infinity)), highest(count, -lowest[0]);
+  for (Index node = 0; node < nodes.cols(); ++node) {
+    const auto b = static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)]);
+    lowest[b].head(nodes.rows()) = lowest[b].head(nodes.rows()).cwiseMin(nodes.col(node));
+    highest[b].head(nodes.rows()) = highest[b].head(nodes.rows()).cwiseMax(nodes.col(node));
+  }
+  std::vector<double> speed(count, infinity), result;
+  for (std::size_t cell = 0; cell < bodies.of_cell.size(); ++cell) {
+    const Material& material = body.materials[static_cast<std::size_t>(body.cell_material[cell])];
+    double& slowest = speed[static_cast<std::size_t>(bodies.of_cell[cell])];
+    const bool plane_stress = nodes.rows() == 2 && body.plane == PlaneState::stress;
+    slowest = std::min(slowest, compression_wave_speed(material, plane_stress));
+  }
+  for (std::size_t b = 0; b < count; ++b)
+    result.push_back((highest[b] - lowest[b]).head(nodes.rows()).maxCoeff() / speed[b]);
+  return result;
+}
+
+}  // namespace ricochet

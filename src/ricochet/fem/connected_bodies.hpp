@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/fem/assembly.hpp"
+
+/// @file The bodies of a mesh: sets of cells that hang together by nodes.
+namespace ricochet {
+
+/// Bodies have the numbers 0, 1, … in the order of their first cells.
+struct ConnectedBodies {
+  int count = 0;
+  std::vector<int> of_node;  ///< per node of the space
+  std::vector<int> of_cell;  ///< per cell, numbered through all blocks
+};
+
+[[nodiscard]] ConnectedBodies find_connected_bodies(const DisplacementSpace& space);
+
+/// Per body: the time in which a compression wave runs along the longest side of the box around it, at the speed of its
+/// slowest material. Nothing that happens at one end is known at the other one sooner.
+[[nodiscard]] std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies& bodies);
+
+}  // namespace ricochet

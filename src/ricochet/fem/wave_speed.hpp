@@ -1,0 +1,13 @@
+#pragma once
+
+#include "ricochet/fem/material.hpp"
+
+/// @file Speeds of elastic waves.
+namespace ricochet {
+
+/// Of compression waves: √((λ + 2μ)/ρ), with the λ of plane stress where a body is such a section.
+[[nodiscard]] double compression_wave_speed(const Material& material, bool plane_stress);
+/// Of shear waves: √(μ/ρ).
+[[nodiscard]] double shear_wave_speed(const Material& material);
+
+}  // namespace ricochet

@@ -1,0 +1,188 @@
+#include "ricochet/io/summary_outcome.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+/// JSON has no infinities; a summary says them in words.
+Json number(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+}
+
+double to_number(const Json& value) {
+  if (value.is_number()) return value.get<double>();
+  const std::string text = value.is_string() ? value.get<std::string>() : "nan";
+  return text == "inf" ? INFINITY : text == "-inf" ? -INFINITY : NAN;
+}
+
+namespace {
+
+/// In the plane two components.
+Json components(const Eigen::Vector3d& values, int dimension) {
+  Json result = Json::array();
+  for (int k = 0; k < dimension; ++k) result.push_back(number(values[k]));
+  return result;
+}
+
+/// An angular velocity: in the plane that about z.
+Json turning(const Eigen::Vector3d& values, int dimension) {
+  return dimension == 2 ? number(values[2]) : components(values, 3);
+}
+
+}  // namespace
+
+Json bodies_to_json(const RunSummary& summary) {
+  Json result = Json::array();
+  for (const BodyDescription& body : summary.bodies) {
+    Json inertia = number(body.rigid.inertia(2, 2));
+    if (summary.dimension == 3) {
+      inertia = Json::array();
+      for (int k = 0; k < 3; ++k) inertia.push_back(components(body.rigid.inertia.row(k), 3));
+    }
+    result.push_back({{"mass", number(body.rigid.mass)},
+                      {"centre", components(body.rigid.centre, summary.dimension)},
+                      {"moment_of_inertia", inertia},
+                      {"separation_time", number(body.separation)}});
+  }
+  return result;
+}
+
+namespace {
+
+Json impact_to_json(const Impact& impact, int dimension) {
+  // What is not known yet, or does not exist, is null.
+  const auto if_ended = [&](const Json& value) { return impact.ended ? value : Json(); };
+  const std::optional<double> restitution = impact.restitution();
+  return {{"body", impact.body},
+          {"obstacle", impact.obstacle},
+          {"begin", impact.begin},
+          {"end", if_ended(impact.end)},
+          {"duration", impact.end - impact.begin},
+          {"ended", impact.ended},
+          {"from_start", impact.from_start},
+          {"intervals", impact.intervals},
+          {"contact_time", impact.contact_time},
+          {"impulse", components(impact.impulse, dimension)},
+          {"normal", components(impact.normal(), dimension)},
+          {"normal_impulse", number(impact.normal_impulse.norm())},
+          {"other_impulse", if_ended(components(impact.other_impulse(), dimension))},
+          {"largest_force", number(impact.largest_force)},
+          {"largest_force_time", impact.largest_force_time},
+          {"restitution", restitution ? number(*restitution) : Json()},
+          {"normal_velocity_before", number(impact.normal_velocity_before())},
+          {"normal_velocity_after", if_ended(number(impact.normal_velocity_after()))},
+          {"obstacle_normal_velocity", number(impact.obstacle_velocity)},
+          {"tangential_velocity_before", components(impact.tangential_velocity_before(), dimension)},
+          {"tangential_velocity_after", if_ended(components(impact.tangential_velocity_after(), dimension))},
+          {"velocity_before", components(impact.before.velocity, dimension)},
+          {"velocity_after", if_ended(components(impact.after.velocity, dimension))},
+          {"spin_before", turning(impact.before.spin, dimension)},
+          {"spin_after", if_ended(turning(impact.after.spin, dimension))},
+          {"kinetic_energy_before", number(impact.before.kinetic_energy)},
+          {"kinetic_energy_after", if_ended(number(impact.after.kinetic_energy))},
+          {"rigid_kinetic_energy_before", number(impact.before.rigid_kinetic_energy)},
+          {"rigid_kinetic_energy_after", if_ended(number(impact.after.rigid_kinetic_energy))},
+          {"kinetic_energy_ratio", impact.ended && impact.before.kinetic_energy > 0.0
+                                       ? number(impact.after.kinetic_energy / impact.before.kinetic_energy)
+                                       : Json()}};
+}
+
+}  // namespace
+
+Json impacts_to_json(const RunSummary& summary) {
+  Json result = Json::array();
+  for (const Impact& impact : summary.impacts) result.push_back(impact_to_json(impact, summary.dimension));
+  return result;
+}
+
+Json peak_stress_to_json(const RunSummary& summary) {
+  if (!summary.peak_stress) return {};
+  const PeakStressDescription& d = *summary.peak_stress;
+  return {{"von_mises", number(d.peak.von_mises)},
+          {"time", d.peak.time},
+          {"step", d.peak.step},
+          {"place", d.place},
+          {"material", d.material},
+          {"cell", d.peak.cell},
+          {"element", d.element},
+          {"states_looked_at", d.peak.looks},
+          {"states", d.peak.states}};
+}
+
+namespace {
+
+Eigen::Vector3d vector_from(const Json& values) {
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < values.size() && k < 3; ++k) result[static_cast<Index>(k)] = to_number(values.at(k));
+  return result;
+}
+
+RigidMotionState motion_from(const Json& impact, const std::string& when) {
+  const Json& spin = impact.at("spin_" + when);
+  return {vector_from(impact.at("velocity_" + when)),
+          spin.is_array() ? vector_from(spin) : Eigen::Vector3d(0.0, 0.0, to_number(spin)),
+          to_number(impact.at("kinetic_energy_" + when)), to_number(impact.at("rigid_kinetic_energy_" + when))};
+}
+
+Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies) {
+  Impact impact;
+  impact.body = json.at("body");
+  impact.obstacle = json.at("obstacle");
+  impact.begin = json.at("begin");
+  impact.end = impact.begin + json.at("duration").get<double>();
+  impact.ended = json.at("ended");
+  impact.from_start = json.at("from_start");
+  impact.intervals = json.at("intervals");
+  impact.contact_time = json.at("contact_time");
+  impact.impulse = vector_from(json.at("impulse"));
+  impact.normal_impulse = to_number(json.at("normal_impulse")) * vector_from(json.at("normal"));
+  impact.largest_force = to_number(json.at("largest_force"));
+  impact.largest_force_time = json.at("largest_force_time");
+  impact.obstacle_velocity = to_number(json.at("obstacle_normal_velocity"));
+  if (impact.body < 0 || impact.body >= static_cast<int>(bodies.size()))
+    throw Error(ErrorKind::invalid_input, fmt::format("impacts: there is no body {}", impact.body));
+  impact.mass = bodies[static_cast<std::size_t>(impact.body)].rigid.mass;
+  impact.before = motion_from(json, "before");
+  if (impact.ended) impact.after = motion_from(json, "after");
+  return impact;
+}
+
+BodyDescription body_from(const Json& json) {
+  BodyDescription body;
+  body.rigid.mass = to_number(json.at("mass"));
+  body.rigid.centre = vector_from(json.at("centre"));
+  const Json& inertia = json.at("moment_of_inertia");
+  if (!inertia.is_array()) body.rigid.inertia(2, 2) = to_number(inertia);
+  for (std::size_t k = 0; inertia.is_array() && k < 3; ++k)
+    body.rigid.inertia.row(static_cast<Index>(k)) = vector_from(inertia.at(k));
+  body.separation = to_number(json.at("separation_time"));
+  return body;
+}
+
+PeakStressDescription peak_stress_from(const Json& json) {
+  PeakStressDescription result;
+  result.peak = {to_number(json.at("von_mises")), json.at("time"),  json.at("step"), json.at("cell"),
+                 json.at("states_looked_at"),     json.at("states")};
+  result.place = json.at("place").get<std::vector<double>>();
+  result.element = json.at("element");
+  result.material = json.at("material");
+  return result;
+}
+
+}  // namespace
+
+void read_outcome(const Json& json, RunSummary& summary) {
+  for (const auto& body : json.value("bodies", Json::array())) summary.bodies.push_back(body_from(body));
+  for (const auto& impact : json.value("impacts", Json::array()))
+    summary.impacts.push_back(impact_from(impact, summary.bodies));
+  summary.impacts_left_out = json.value("impacts_left_out", 0L);
+  if (json.contains("peak_stress") && json.at("peak_stress").is_object())
+    summary.peak_stress = peak_stress_from(json.at("peak_stress"));
+}
+
+}  // namespace ricochet

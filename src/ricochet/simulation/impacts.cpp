@@ -1,0 +1,277 @@
+#include "ricochet/simulation/impacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/simulation/sensor.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// A body whose centre comes nearer by less than this, relative to what the impulse changes, does so to rounding.
+constexpr double rounding_of_velocity = 1e-9;
+
+Eigen::Vector3d vector_of(const std::array<double, 3>& numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+void add(std::array<double, 3>& sum, double weight, const Eigen::Vector3d& values) {
+  for (int k = 0; k < 3; ++k) sum[static_cast<std::size_t>(k)] += weight * values[k];
+}
+
+std::array<double, 3> numbers_of(const Eigen::Vector3d& values) {
+  return {values[0], values[1], values[2]};
+}
+
+/// Structures of numbers, one after the other.
+template <class Structure>
+Vector as_numbers(const std::vector<Structure>& values) {
+  static_assert(std::is_trivially_copyable_v<Structure> && sizeof(Structure) % sizeof(double) == 0);
+  Vector result(static_cast<Index>(values.size() * (sizeof(Structure) / sizeof(double))));
+  if (!values.empty()) std::memcpy(result.data(), values.data(), values.size() * sizeof(Structure));
+  return result;
+}
+
+template <class Structure>
+void from_numbers(const Vector& numbers, std::vector<Structure>& values) {
+  values.resize(static_cast<std::size_t>(numbers.size()) / (sizeof(Structure) / sizeof(double)));
+  if (!values.empty())
+    std::memcpy(static_cast<void*>(values.data()), numbers.data(), values.size() * sizeof(Structure));
+}
+
+}  // namespace
+
+Eigen::Vector3d Impact::normal() const {
+  const double size = normal_impulse.norm();
+  return size > 0.0 ? Eigen::Vector3d(normal_impulse / size) : Eigen::Vector3d::Zero();
+}
+
+double Impact::normal_velocity_before() const {
+  return before.velocity.dot(normal()) - obstacle_velocity;
+}
+
+double Impact::normal_velocity_after() const {
+  return after.velocity.dot(normal()) - obstacle_velocity;
+}
+
+Eigen::Vector3d Impact::tangential_velocity_before() const {
+  return before.velocity - before.velocity.dot(normal()) * normal();
+}
+
+Eigen::Vector3d Impact::tangential_velocity_after() const {
+  return after.velocity - after.velocity.dot(normal()) * normal();
+}
+
+std::optional<double> Impact::restitution() const {
+  const double approach = -normal_velocity_before();
+  if (!ended || !(approach > rounding_of_velocity * normal_impulse.norm() / mass)) return {};
+  return normal_velocity_after() / approach;
+}
+
+Eigen::Vector3d Impact::other_impulse() const {
+  return ended ? Eigen::Vector3d(mass * (after.velocity - before.velocity) - impulse) : Eigen::Vector3d::Zero();
+}
+
+ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
+                               std::vector<std::string> obstacles, std::vector<int> body_of_node,
+                               std::vector<double> separation)
+    : problem_(problem),
+      scheme_(scheme),
+      rigid_(problem, std::move(body_of_node), static_cast<int>(separation.size())),
+      separation_(std::move(separation)) {
+  for (double& time : separation_) time = std::max(time, 2.0 * scheme.step());
+  find_places(obstacles);
+  open_.assign(places_.size(), Interval{});
+  for (std::size_t place = 0; place < places_.size(); ++place) open_[place].place = static_cast<double>(place);
+  filed_.reserve(most_impacts);
+  current_.resize(places_.size());
+  find_forces(state, previous_);
+  take_velocity(state, velocity_before_);
+}
+
+void ImpactRecorder::find_places(const std::vector<std::string>& obstacles) {
+  const ContactBoundary& contact = problem_.contact;
+  for (Index point = 0; point < contact.size(); ++point) {
+    const SparseRowMatrix::InnerIterator entry(contact.trace, point);
+    const int body = rigid_.body_of_node(entry.col());
+    const std::string& obstacle = obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];
+    const auto found = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
+      return place.body == body && place.obstacle == obstacle;
+    });
+    place_of_point_.push_back(static_cast<int>(found - places_.begin()));
+    if (found == places_.end()) places_.push_back({body, obstacle});
+  }
+}
+
+/// The velocity that momenta are accounted for with.
+void ImpactRecorder::take_velocity(const State& state, Vector& velocity) {
+  if (scheme_.energy_instant() == 0.0) {
+    velocity = state.velocity;
+  } else {
+    scheme_.energy_state(state, scratch_, velocity);
+  }
+}
+
+void ImpactRecorder::find_forces(const State& state, std::vector<Force>& forces) const {
+  forces.assign(places_.size(), Force{});
+  const int d = problem_.dimension;
+  const Vector& travel = state.obstacle_increment.normal;
+  for (Index point = 0; point < problem_.contact.size(); ++point) {
+    if (!carries_force(state.forces, point)) continue;
+    Force& force = forces[static_cast<std::size_t>(place_of_point_[static_cast<std::size_t>(point)])];
+    const double pressing = state.forces.normal_reaction[point];
+    force.any = true;
+    force.all.head(d) += contact_force(problem_.contact, state.forces, point);
+    force.normal.head(d) += pressing * problem_.contact.normals.col(point);
+    force.pressing += pressing;
+    if (travel.size() > 0) force.travel += pressing * travel[point];
+  }
+}
+
+void ImpactRecorder::enter_step(const State& state) {
+  if (places_.empty()) return;
+  find_forces(state, current_);
+  motion_ = nullptr;
+  const double instant = state.time + scheme_.force_instant() * scheme_.step();
+  for (std::size_t place = 0; place < places_.size(); ++place) enter_place(place, instant);
+  std::swap(previous_, current_);
+  take_velocity(state, velocity_before_);
+}
+
+void ImpactRecorder::enter_place(std::size_t place, double instant) {
+  Interval& interval = open_[place];
+  const Force &previous = previous_[place], &current = current_[place];
+  const WorkRule rule = scheme_.work_rule();
+  const double h = scheme_.step();
+  const bool acts_before = rule.previous_weight != 0.0 && previous.any;
+  const bool touches = acts_before || current.any;
+  const bool touched = interval.phase == touching;
+  if (touches != touched && motion_ == nullptr) motion_ = &rigid_.motion(velocity_before_);
+  const auto motion = [&] { return (*motion_)[static_cast<std::size_t>(places_[place].body)]; };
+  if (!touches) {
+    if (touched) {
+      const RigidMotionState now = motion();
+      interval.after = {numbers_of(now.velocity), numbers_of(now.spin), now.kinetic_energy, now.rigid_kinetic_energy};
+      interval.phase = apart;
+    }
+    return;
+  }
+  if (!touched) {
+    // Only at the start does a force act before the first instant of the steps.
+    const double time = acts_before ? 0.0 : std::max(0.0, instant - 0.5 * h);
+    if (interval.phase == apart && time - interval.end < separation_[static_cast<std::size_t>(places_[place].body)]) {
+      interval.intervals += 1.0;
+    } else {
+      if (interval.phase == apart) file(interval);
+      begin(interval, time, motion());
+    }
+    interval.phase = touching;
+    if (acts_before) {
+      interval.contact_time += 0.5 * h;
+      take_largest(interval, previous, instant - h);
+    }
+  }
+  for (const auto& [force, weight] :
+       {std::pair(&previous, rule.previous_weight), std::pair(&current, rule.current_weight)}) {
+    add(interval.impulse, h * weight, force->all);
+    add(interval.normal_impulse, h * weight, force->normal);
+  }
+  if (!current.any) return;
+  interval.end = instant + 0.5 * h;
+  interval.contact_time += h;
+  interval.pressing += current.pressing;
+  interval.travel += current.travel;
+  take_largest(interval, current, instant);
+}
+
+void ImpactRecorder::take_largest(Interval& interval, const Force& force, double instant) {
+  const double size = force.all.norm();
+  if (!(size > interval.largest)) return;
+  interval.largest = size;
+  interval.largest_time = instant;
+}
+
+void ImpactRecorder::begin(Interval& interval, double time, const RigidMotionState& motion) const {
+  const double place = interval.place;
+  interval = {};
+  interval.place = place;
+  interval.begin = interval.end = time;
+  interval.from_start = time > 0.0 ? 0.0 : 1.0;
+  interval.intervals = 1.0;
+  interval.before = {numbers_of(motion.velocity), numbers_of(motion.spin), motion.kinetic_energy,
+                     motion.rigid_kinetic_energy};
+}
+
+void ImpactRecorder::file(const Interval& interval) {
+  if (filed_.size() < most_impacts) {
+    filed_.push_back(interval);
+  } else {
+    ++left_out_;
+  }
+}
+
+Impact ImpactRecorder::describe(const Interval& interval) const {
+  const auto motion = [](const Motion& numbers) {
+    return RigidMotionState{vector_of(numbers.velocity), vector_of(numbers.spin), numbers.kinetic,
+                            numbers.rigid_kinetic};
+  };
+  const Place& place = places_[static_cast<std::size_t>(interval.place)];
+  Impact result;
+  result.body = place.body;
+  result.obstacle = place.obstacle;
+  result.begin = interval.begin;
+  result.end = interval.end;
+  result.ended = interval.phase != touching;
+  result.from_start = interval.from_start != 0.0;
+  result.intervals = std::lround(interval.intervals);
+  result.contact_time = interval.contact_time;
+  result.impulse = vector_of(interval.impulse);
+  result.normal_impulse = vector_of(interval.normal_impulse);
+  result.largest_force = interval.largest;
+  result.largest_force_time = interval.largest_time;
+  if (interval.pressing > 0.0) result.obstacle_velocity = interval.travel / (interval.pressing * scheme_.step());
+  result.mass = rigid_.bodies()[static_cast<std::size_t>(place.body)].mass;
+  result.before = motion(interval.before);
+  if (result.ended) result.after = motion(interval.after);
+  return result;
+}
+
+std::vector<Impact> ImpactRecorder::impacts() const {
+  std::vector<Impact> result;
+  for (const Interval& interval : filed_) result.push_back(describe(interval));
+  for (const Interval& interval : open_) {
+    if (interval.phase != no_contact) result.push_back(describe(interval));
+  }
+  std::stable_sort(result.begin(), result.end(), [](const Impact& a, const Impact& b) { return a.begin < b.begin; });
+  return result;
+}
+
+void ImpactRecorder::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".open", as_numbers(open_));
+  snapshot.save(name + ".filed", as_numbers(filed_));
+  snapshot.save(name + ".left_out", std::int64_t{left_out_});
+}
+
+void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
+  constexpr Index size = sizeof(Interval) / sizeof(double);
+  const auto damaged = [&] {
+    throw Error(ErrorKind::invalid_input, "the checkpoint's record of impacts is not one of this case");
+  };
+  from_numbers(snapshot.reals(name + ".open", size * static_cast<Index>(places_.size())), open_);
+  const Vector& filed = snapshot.reals(name + ".filed");
+  if (filed.size() % size != 0 || filed.size() / size > static_cast<Index>(most_impacts)) damaged();
+  from_numbers(filed, filed_);
+  left_out_ = snapshot.integer(name + ".left_out");
+  for (const auto* list : {&open_, &filed_}) {
+    for (const Interval& interval : *list) {
+      // Also false where it is no number.
+      if (!(interval.place >= 0.0 && interval.place < static_cast<double>(places_.size()))) damaged();
+    }
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ricochet/scheme/scheme.hpp"
+#include "ricochet/simulation/rigid_bodies.hpp"
+
+/// @file Impacts: what a body's collisions with an obstacle come to, told from the forces of every step.
+///
+/// A body is in contact with an obstacle at an instant of the scheme's forces when one of its contact points there
+/// carries a force, and in a step when a force with a weight in it (WorkRule) does. An impact is a maximal run of such
+/// steps. Contact that is lost for less than wave_crossing_times (or two steps) and comes back is still the same
+/// impact: its far side has not heard yet that it left.
+///
+/// It begins half a step before the first instant with a force and ends half a step after the last one. `before` and
+/// `after` are the states (at the scheme's instant of energies) at the ends of its steps, so that
+/// m (v_after − v_before) = impulse + that of loads, supports and damping in the same steps, to rounding.
+namespace ricochet {
+
+struct Impact {
+  int body = 0;
+  std::string obstacle;
+  double begin = 0.0, end = 0.0;  ///< where it has not ended: so far
+  bool ended = true;
+  bool from_start = false;                                   ///< in contact when the run begins
+  long intervals = 1;                                        ///< of contact that were taken together
+  double contact_time = 0.0;                                 ///< of these alone
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< of all contact forces on the body
+  Eigen::Vector3d normal_impulse = Eigen::Vector3d::Zero();  ///< of their normal parts
+  double largest_force = 0.0, largest_force_time = 0.0;      ///< size of the resultant
+  double obstacle_velocity = 0.0;                            ///< along the normal, mean over the normal impulse
+  double mass = 0.0;                                         ///< of the body
+  RigidMotionState before, after;                            ///< `after`: zero where it has not ended
+
+  /// Mean direction of the normal impulse, out of the obstacle; zero without one.
+  [[nodiscard]] Eigen::Vector3d normal() const;
+  /// Of the centre of mass along the normal, relative to the obstacle; negative: it comes nearer.
+  [[nodiscard]] double normal_velocity_before() const;
+  [[nodiscard]] double normal_velocity_after() const;
+  /// Of the centre of mass, across the normal.
+  [[nodiscard]] Eigen::Vector3d tangential_velocity_before() const;
+  [[nodiscard]] Eigen::Vector3d tangential_velocity_after() const;
+  /// −(normal velocity after)/(normal velocity before); none where it has not ended or the body did not come nearer.
+  [[nodiscard]] std::optional<double> restitution() const;
+  /// Of loads, supports, damping and other obstacles, in the same steps.
+  [[nodiscard]] Eigen::Vector3d other_impulse() const;
+};
+
+class ImpactRecorder {
+ public:
+  /// Impacts that are kept; later ones are counted.
+  static constexpr std::size_t most_impacts = 1000;
+
+  /// Opens on a starting state. `obstacles`: the name of each contact pair's; `separation`: per body, how long contact
+  /// must be lost for an impact to have ended.
+  ImpactRecorder(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
+                 std::vector<std::string> obstacles, std::vector<int> body_of_node, std::vector<double> separation);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  /// Of a recorder that was saved at the state this one was opened on.
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// Enters a step with the forces at its end (in the state). Allocates nothing.
+  void enter_step(const State& state);
+  /// By their begin.
+  [[nodiscard]] std::vector<Impact> impacts() const;
+  /// Those beyond most_impacts, which only have been counted.
+  [[nodiscard]] long left_out() const { return left_out_; }
+  [[nodiscard]] const std::vector<RigidBody>& bodies() const { return rigid_.bodies(); }
+  [[nodiscard]] double separation(int body) const { return separation_[static_cast<std::size_t>(body)]; }
+
+ private:
+  using Three = std::array<double, 3>;
+  struct Motion {
+    Three velocity, spin;
+    double kinetic, rigid_kinetic;
+  };
+  /// Numbers only, so that a snapshot can take it as it is.
+  struct Interval {
+    double place;  ///< index in places_
+    double phase;  ///< no_contact, touching or apart: lost, but it may come back
+    double begin, end, from_start, intervals, contact_time;
+    Three impulse, normal_impulse;
+    double pressing, travel;  ///< Σ r_N, and Σ r_N times the obstacle's motion along the normal, over instants
+    double largest, largest_time;
+    Motion before, after;
+  };
+  /// Of an interval: numbers, too.
+  static constexpr double no_contact = 0.0, touching = 1.0, apart = 2.0;
+  /// A body and an obstacle that can touch.
+  struct Place {
+    int body;
+    std::string obstacle;
+  };
+  /// Resultants of the points of a place at an instant.
+  struct Force {
+    Eigen::Vector3d all = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
+    double pressing = 0.0, travel = 0.0;
+    bool any = false;
+  };
+  void find_places(const std::vector<std::string>& obstacles);
+  void find_forces(const State& state, std::vector<Force>& forces) const;
+  void take_velocity(const State& state, Vector& velocity);
+  void enter_place(std::size_t place, double instant);
+  void begin(Interval& interval, double time, const RigidMotionState& motion) const;
+  static void take_largest(Interval& interval, const Force& force, double instant);
+  void file(const Interval& interval);
+  [[nodiscard]] Impact describe(const Interval& interval) const;
+
+  const SemidiscreteProblem& problem_;
+  const Scheme& scheme_;
+  RigidBodies rigid_;
+  std::vector<double> separation_;
+  std::vector<Place> places_;
+  std::vector<int> place_of_point_;
+  std::vector<Force> previous_, current_;
+  std::vector<Interval> open_;   ///< per place
+  std::vector<Interval> filed_;  ///< that are over
+  long left_out_ = 0;
+  Vector velocity_before_;  ///< at the beginning of a step
+  Vector scratch_;
+  const std::vector<RigidMotionState>* motion_ = nullptr;  ///< of velocity_before_, once it was asked for
+};
+
+}  // namespace ricochet

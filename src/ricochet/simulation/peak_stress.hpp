@@ -1,0 +1,58 @@
+#pragma once
+
+#include "ricochet/base/snapshot.hpp"
+#include "ricochet/fem/stress.hpp"
+#include "ricochet/scheme/state.hpp"
+
+/// @file The largest von Mises stress of a run: means of cells, as in the field of that name.
+///
+/// A look at all cells costs a good part of a step, so where that would take more than `share` of the run only some
+/// states are looked at: every so many, and while there is contact those in which the contact forces press harder than
+/// in any state looked at before, for which what other times save is spent. How many were looked at is told. Which ones
+/// depends on the case alone, never on the clock.
+namespace ricochet {
+
+struct PeakStressResult {
+  double von_mises = 0.0, time = 0.0;
+  long step = 0;
+  Index cell = -1;             ///< numbered through all blocks; −1: no look yet
+  long looks = 0, states = 0;  ///< that were looked at, of so many
+};
+
+class PeakStress {
+ public:
+  /// Of all looks together, in the time of the steps.
+  static constexpr double share = 0.05;
+
+  /// `step_work`: how much a step does, see step_work(). Keeps a reference to the body.
+  PeakStress(const Body& body, double step_work);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// A state, one after the other. One of a frame is looked at in any case.
+  void enter(const State& state, bool is_frame);
+  [[nodiscard]] const PeakStressResult& result() const { return result_; }
+
+ private:
+  void look(const State& state);
+
+  const Body& body_;
+  CellStress stress_;
+  double looks_per_step_;       ///< that may be taken
+  double saved_ = 0.0;          ///< looks for states that press harder
+  double since_look_ = 0.0;     ///< looks that regular ones have not taken
+  double hardest_press_ = 0.0;  ///< Σ r_N of the states looked at
+  PeakStressResult result_;
+};
+
+struct CellPlace {
+  Vector centre;         ///< mean of the cell's vertices, in the reference configuration
+  std::int64_t tag = 0;  ///< the cell's number in the mesh file
+};
+/// Of a cell, numbered through all blocks.
+[[nodiscard]] CellPlace place_of_cell(const Mesh& mesh, Index cell);
+
+/// What a step reads at least, in numbers: the factor twice, or the stiffness of a scheme without one.
+[[nodiscard]] double step_work(const Body& body, std::size_t factor_entries);
+
+}  // namespace ricochet

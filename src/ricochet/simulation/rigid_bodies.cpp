@@ -1,0 +1,103 @@
+#include "ricochet/simulation/rigid_bodies.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+namespace ricochet {
+
+RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> body_of_node, int count)
+    : problem_(problem),
+      body_of_node_(std::move(body_of_node)),
+      origin_(static_cast<std::size_t>(count), Eigen::Vector3d::Zero()),
+      bodies_(static_cast<std::size_t>(count)),
+      motion_(static_cast<std::size_t>(count)) {
+  std::vector<double> nodes(static_cast<std::size_t>(count), 0.0);
+  for (Index node = 0; node < problem.nodes.cols(); ++node) {
+    const auto b = static_cast<std::size_t>(this->body_of_node(node));
+    origin_[b].head(problem.dimension) += problem.nodes.col(node);
+    nodes[b] += 1.0;
+  }
+  for (std::size_t b = 0; b < nodes.size(); ++b) origin_[b] /= nodes[b];
+  measure();
+}
+
+Eigen::Vector3d RigidBodies::arm(Index node) const {
+  Eigen::Vector3d result = -origin_[static_cast<std::size_t>(body_of_node(node))];
+  result.head(problem_.dimension) += problem_.nodes.col(node);
+  return result;
+}
+
+/// RᵀMR with the rigid velocities R about each body's origin: mass, first and second moments.
+void RigidBodies::measure() {
+  const int d = problem_.dimension, first_rotation = d == 2 ? 2 : 0;
+  Vector velocity(problem_.dof_count());
+  const auto momentum_of = [&](const auto& rigid) {
+    for (Index node = 0; node < problem_.nodes.cols(); ++node)
+      velocity.segment(node * d, d) = Eigen::Vector3d(rigid(node)).head(d);
+    problem_.mass.multiply(velocity, momentum_);
+  };
+  const auto for_each_node = [&](const auto& visit) {
+    for (Index node = 0; node < problem_.nodes.cols(); ++node) {
+      Eigen::Vector3d own = Eigen::Vector3d::Zero();
+      own.head(d) = momentum_.segment(node * d, d);
+      visit(static_cast<std::size_t>(body_of_node(node)), arm(node), own);
+    }
+  };
+  // A translation along k has the momentum m e_k and the moment m c × e_k, which gives two components of the centre c.
+  std::vector<Eigen::Vector3d> offset(bodies_.size(), Eigen::Vector3d::Zero());
+  for (int k = 0; k < 2; ++k) {
+    momentum_of([&](Index) { return Eigen::Vector3d::Unit(k); });
+    std::vector<Eigen::Vector3d> moment(bodies_.size(), Eigen::Vector3d::Zero());
+    for_each_node([&](std::size_t b, const Eigen::Vector3d& at, const Eigen::Vector3d& own) {
+      if (k == 0) bodies_[b].mass += own[0];
+      moment[b] += at.cross(own);
+    });
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (k == 0) offset[b][1] = -moment[b][2] / bodies_[b].mass;
+      if (k == 0) offset[b][2] = moment[b][1] / bodies_[b].mass;
+      if (k == 1) offset[b][0] = moment[b][2] / bodies_[b].mass;
+    }
+  }
+  for (int k = first_rotation; k < 3; ++k) {
+    momentum_of([&](Index node) { return Eigen::Vector3d::Unit(k).cross(arm(node)); });
+    for_each_node([&](std::size_t b, const Eigen::Vector3d& at, const Eigen::Vector3d& own) {
+      bodies_[b].inertia.col(k) += at.cross(own);
+    });
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    RigidBody& body = bodies_[b];
+    body.centre = origin_[b] + offset[b];
+    // Steiner: from the origin of the sums to the centre of mass.
+    body.inertia -=
+        body.mass * (offset[b].squaredNorm() * Eigen::Matrix3d::Identity() - offset[b] * offset[b].transpose());
+  }
+}
+
+const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity) {
+  const int d = problem_.dimension;
+  problem_.mass.multiply(velocity, momentum_);
+  for (RigidMotionState& state : motion_) state = {};
+  for (Index node = 0; node < problem_.nodes.cols(); ++node) {
+    const auto b = static_cast<std::size_t>(body_of_node(node));
+    Eigen::Vector3d own = Eigen::Vector3d::Zero();
+    own.head(d) = momentum_.segment(node * d, d);
+    motion_[b].velocity += own;
+    motion_[b].spin += (arm(node) + origin_[b] - bodies_[b].centre).cross(own);
+    motion_[b].kinetic_energy += 0.5 * momentum_.segment(node * d, d).dot(velocity.segment(node * d, d));
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const RigidBody& body = bodies_[b];
+    const Eigen::Vector3d angular_momentum = motion_[b].spin;
+    motion_[b].velocity /= body.mass;
+    if (d == 2) {
+      motion_[b].spin = {0.0, 0.0, angular_momentum[2] / body.inertia(2, 2)};
+    } else {
+      motion_[b].spin = body.inertia.ldlt().solve(angular_momentum);
+    }
+    motion_[b].rigid_kinetic_energy =
+        0.5 * (body.mass * motion_[b].velocity.squaredNorm() + motion_[b].spin.dot(angular_momentum));
+  }
+  return motion_;
+}
+
+}  // namespace ricochet
