@@ -18,7 +18,7 @@ CONFINED = {
     "HDF5": (r"hdf5\.h|H5", {"src/ricochet/io": 2}),
     "toml++": (r"toml\+\+/|toml\.hpp", {"src/ricochet/case": 2}),
     "CLI11": (r"CLI/", {"apps/ricochet": 1}),
-    "nlohmann": (r"nlohmann/", {"src/ricochet/io": 1, "src/ricochet/case": 1, "src/ricochet/report": 2}),
+    "nlohmann": (r"nlohmann/", {"src/ricochet/io": 2, "src/ricochet/case": 1, "src/ricochet/report": 2}),
     "CHOLMOD": (r"cholmod|suitesparse/", {"src/ricochet/linear_algebra": 1}),
     "spdlog": (r"spdlog/", {"src/ricochet/base": 1}),
     "muParser": (r"muParser", {"src/ricochet/base": 1}),

@@ -10,14 +10,26 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/io/json_number.hpp"
 #include "ricochet/io/summary_outcome.hpp"
 
 namespace ricochet {
 
+using Json = nlohmann::ordered_json;
+
 namespace {
+
+Json number(double value) {
+  return number_to_json<Json>(value);
+}
+
+double to_number(const Json& value) {
+  return number_from_json(value);
+}
 
 Json extrema_to_json(const RunSummary& summary) {
   Json result = Json::object();
@@ -121,50 +133,47 @@ double RunSummary::work_scale() const {
 std::string to_json(const RunSummary& s) {
   Json timings = Json::object();
   for (const auto& [phase, seconds] : s.timings) timings[phase] = seconds;
-  const Json json = {{"status", s.status},
-                     {"message", s.message},
-                     {"title", s.title},
-                     {"case", s.case_file},
-                     {"overrides", s.overrides},
-                     {"ricochet_version", s.version},
-                     {"libraries", s.libraries},
-                     {"scheme", s.scheme},
-                     {"mass", s.mass},
-                     {"dimension", s.dimension},
-                     {"degree", s.degree},
-                     {"nodes", s.nodes},
-                     {"cells", s.cells},
-                     {"dofs", s.dofs},
-                     {"contact_points", s.contact_points},
-                     {"supported_dofs", s.supported_dofs},
-                     {"solver", s.solver},
-                     {"factor_entries", s.factor_entries},
-                     {"time_step", s.step},
-                     {"end_time", s.end_time},
-                     {"critical_time_step", std::isfinite(s.critical_step) ? Json(s.critical_step) : Json()},
-                     {"critical_fraction", std::isfinite(s.critical_step) ? Json(s.step / s.critical_step) : Json()},
-                     {"steps", s.steps},
-                     {"steps_asked_for", s.all_steps},
-                     {"resumed_at", s.resumed_at},
-                     {"checkpoint_step", s.checkpoint_step >= 0 ? Json(s.checkpoint_step) : Json()},
-                     {"instants",
-                      {{"energy", fmt::format("t {:+g} time_step", s.energy_instant)},
-                       {"force", fmt::format("t {:+g} time_step", s.force_instant)}}},
-                     {"frames", s.frames},
-                     {"timings_seconds", timings},
-                     {"seconds_per_step", s.time_per_step},
-                     {"energy_scale", number(s.energy_scale())},
-                     {"contacts", contacts_to_json(s)},
-                     {"probes", probes_to_json(s)},
-                     {"bodies", bodies_to_json(s)},
-                     {"impacts", impacts_to_json(s)},
-                     {"impacts_left_out", s.impacts_left_out},
-                     {"peak_stress", peak_stress_to_json(s)},
-                     {"extrema", extrema_to_json(s)},
-                     {"checks", checks_to_json(s)},
-                     {"warnings", s.warnings},
-                     {"expectations", expectations_to_json(s)},
-                     {"parameters", s.parameters}};
+  Json json = {{"status", s.status},
+               {"message", s.message},
+               {"title", s.title},
+               {"case", s.case_file},
+               {"overrides", s.overrides},
+               {"ricochet_version", s.version},
+               {"libraries", s.libraries},
+               {"scheme", s.scheme},
+               {"mass", s.mass},
+               {"dimension", s.dimension},
+               {"degree", s.degree},
+               {"nodes", s.nodes},
+               {"cells", s.cells},
+               {"dofs", s.dofs},
+               {"contact_points", s.contact_points},
+               {"supported_dofs", s.supported_dofs},
+               {"solver", s.solver},
+               {"factor_entries", s.factor_entries},
+               {"time_step", s.step},
+               {"end_time", s.end_time},
+               {"critical_time_step", std::isfinite(s.critical_step) ? Json(s.critical_step) : Json()},
+               {"critical_fraction", std::isfinite(s.critical_step) ? Json(s.step / s.critical_step) : Json()},
+               {"steps", s.steps},
+               {"steps_asked_for", s.all_steps},
+               {"resumed_at", s.resumed_at},
+               {"checkpoint_step", s.checkpoint_step >= 0 ? Json(s.checkpoint_step) : Json()},
+               {"instants",
+                {{"energy", fmt::format("t {:+g} time_step", s.energy_instant)},
+                 {"force", fmt::format("t {:+g} time_step", s.force_instant)}}},
+               {"frames", s.frames},
+               {"timings_seconds", timings},
+               {"seconds_per_step", s.time_per_step},
+               {"energy_scale", number(s.energy_scale())},
+               {"contacts", contacts_to_json(s)},
+               {"probes", probes_to_json(s)},
+               {"extrema", extrema_to_json(s)},
+               {"checks", checks_to_json(s)},
+               {"warnings", s.warnings},
+               {"expectations", expectations_to_json(s)},
+               {"parameters", s.parameters}};
+  json.update(Json::parse(outcome_to_json(s)));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -219,7 +228,11 @@ RunSummary read_summary(const std::string& path) {
     const Json checks = json.value("checks", Json::object());
     for (const auto& [name, check] : checks.items())
       s.checks.push_back({name, to_number(check.at("limit")), to_number(check.at("largest"))});
-    read_outcome(json, s);
+    Json outcome = Json::object();
+    for (const char* entry : outcome_entries) {
+      if (json.contains(entry)) outcome[entry] = json.at(entry);
+    }
+    read_outcome(outcome.dump(), path, s);
     for (const auto& contact : json.at("contacts")) {
       s.contacts.push_back({contact.at("group"), contact.at("obstacle"), contact.at("multipliers"),
                             contact.at("friction"), contact.at("friction_bound"), contact.at("obstacle_velocity"),

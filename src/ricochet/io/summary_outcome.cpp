@@ -3,24 +3,24 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/io/json_number.hpp"
 
 namespace ricochet {
 
-/// JSON has no infinities; a summary says them in words.
+using Json = nlohmann::ordered_json;
+
+namespace {
+
 Json number(double value) {
-  if (std::isfinite(value)) return value;
-  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+  return number_to_json<Json>(value);
 }
 
 double to_number(const Json& value) {
-  if (value.is_number()) return value.get<double>();
-  const std::string text = value.is_string() ? value.get<std::string>() : "nan";
-  return text == "inf" ? INFINITY : text == "-inf" ? -INFINITY : NAN;
+  return number_from_json(value);
 }
-
-namespace {
 
 /// In the plane two components.
 Json components(const Eigen::Vector3d& values, int dimension) {
@@ -33,8 +33,6 @@ Json components(const Eigen::Vector3d& values, int dimension) {
 Json turning(const Eigen::Vector3d& values, int dimension) {
   return dimension == 2 ? number(values[2]) : components(values, 3);
 }
-
-}  // namespace
 
 Json bodies_to_json(const RunSummary& summary) {
   Json result = Json::array();
@@ -51,8 +49,6 @@ Json bodies_to_json(const RunSummary& summary) {
   }
   return result;
 }
-
-namespace {
 
 Json impact_to_json(const Impact& impact, int dimension) {
   // What is not known yet, or does not exist, is null.
@@ -92,8 +88,6 @@ Json impact_to_json(const Impact& impact, int dimension) {
                                        : Json()}};
 }
 
-}  // namespace
-
 Json impacts_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (const Impact& impact : summary.impacts) result.push_back(impact_to_json(impact, summary.dimension));
@@ -113,8 +107,6 @@ Json peak_stress_to_json(const RunSummary& summary) {
           {"states_looked_at", d.peak.looks},
           {"states", d.peak.states}};
 }
-
-namespace {
 
 Eigen::Vector3d vector_from(const Json& values) {
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
@@ -145,7 +137,7 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies)
   impact.largest_force_time = json.at("largest_force_time");
   impact.obstacle_velocity = to_number(json.at("obstacle_normal_velocity"));
   if (impact.body < 0 || impact.body >= static_cast<int>(bodies.size()))
-    throw Error(ErrorKind::invalid_input, fmt::format("impacts: there is no body {}", impact.body));
+    throw Error(ErrorKind::invalid_input, fmt::format("not a summary of a run: an impact is of body {}, which it does not list", impact.body));
   impact.mass = bodies[static_cast<std::size_t>(impact.body)].rigid.mass;
   impact.before = motion_from(json, "before");
   if (impact.ended) impact.after = motion_from(json, "after");
@@ -176,13 +168,26 @@ PeakStressDescription peak_stress_from(const Json& json) {
 
 }  // namespace
 
-void read_outcome(const Json& json, RunSummary& summary) {
-  for (const auto& body : json.value("bodies", Json::array())) summary.bodies.push_back(body_from(body));
-  for (const auto& impact : json.value("impacts", Json::array()))
-    summary.impacts.push_back(impact_from(impact, summary.bodies));
-  summary.impacts_left_out = json.value("impacts_left_out", 0L);
-  if (json.contains("peak_stress") && json.at("peak_stress").is_object())
-    summary.peak_stress = peak_stress_from(json.at("peak_stress"));
+std::string outcome_to_json(const RunSummary& summary) {
+  const Json json = {{"bodies", bodies_to_json(summary)},
+                     {"impacts", impacts_to_json(summary)},
+                     {"impacts_left_out", summary.impacts_left_out},
+                     {"peak_stress", peak_stress_to_json(summary)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void read_outcome(const std::string& text, const std::string& path, RunSummary& summary) {
+  try {
+    const Json json = Json::parse(text);
+    for (const auto& body : json.value("bodies", Json::array())) summary.bodies.push_back(body_from(body));
+    for (const auto& impact : json.value("impacts", Json::array()))
+      summary.impacts.push_back(impact_from(impact, summary.bodies));
+    summary.impacts_left_out = json.value("impacts_left_out", 0L);
+    if (json.contains("peak_stress") && json.at("peak_stress").is_object())
+      summary.peak_stress = peak_stress_from(json.at("peak_stress"));
+  } catch (const Json::exception& problem) {
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: not a summary of a run: {}", path, problem.what()));
+  }
 }
 
 }  // namespace ricochet

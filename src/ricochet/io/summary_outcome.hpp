@@ -1,6 +1,7 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <array>
+#include <string>
 
 #include "ricochet/io/summary.hpp"
 
@@ -8,16 +9,12 @@
 /// public interface.
 namespace ricochet {
 
-using Json = nlohmann::ordered_json;
+/// The names of these entries, in their order.
+inline constexpr std::array outcome_entries{"bodies", "impacts", "impacts_left_out", "peak_stress"};
 
-/// JSON has no infinities; a summary says them in words.
-[[nodiscard]] Json number(double value);
-[[nodiscard]] double to_number(const Json& value);
-
-[[nodiscard]] Json bodies_to_json(const RunSummary& summary);
-[[nodiscard]] Json impacts_to_json(const RunSummary& summary);
-[[nodiscard]] Json peak_stress_to_json(const RunSummary& summary);
-/// Reads the three of them, where they are. Throws Json::exception or Error(invalid_input).
-void read_outcome(const Json& json, RunSummary& summary);
+/// A JSON object with these entries.
+[[nodiscard]] std::string outcome_to_json(const RunSummary& summary);
+/// Reads those that the object has. Throws Error(invalid_input), which names the file.
+void read_outcome(const std::string& json, const std::string& path, RunSummary& summary);
 
 }  // namespace ricochet
