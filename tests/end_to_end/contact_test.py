@@ -335,6 +335,80 @@ class Contact(TestCase):
                     residual = solved.v.T @ solved.solution["r"] + solved.r @ solved.solution["l"] + solved.s
                     self.assertLessEqual(numpy.abs(residual).max(), 1e-12)
 
+    def test_entries_with_room_behind_them(self):
+        """Arrays of nzmax entries, of which the first are used: the rest is whatever was in memory."""
+        data = self.example(3, 4, 2)
+        expected = self.solve(self.write_file(data, "csc"))[0].solution
+        for form in ("triplet", "csc", "csr"):
+            for long in (("p", "i", "x"), ("x",), ("p",), ("i",)):
+                path = self.write_file(data, form)
+                with h5py.File(path, "a") as file:
+                    for matrix_name in ("W", "V", "R"):
+                        group = file["fclib_local"][matrix_name]
+                        group["nzmax"][0] += 5
+                        for name in long if form == "triplet" else set(long) - {"p"}:
+                            values = group[name][()]
+                            del group[name]
+                            group[name] = numpy.concatenate(
+                                [values, numpy.full(5, numpy.nan if name == "x" else -7, dtype=values.dtype)])
+                solved, _ = self.solve(path)
+                for name, values in expected.items():
+                    self.assertEqual(values.tobytes(), solved.solution[name].tobytes(), (form, long))
+
+    def test_data_sets_that_were_never_written(self):
+        """FCLib writes them where it is given no array, as /solution/r of the file in its own tests."""
+        data = self.example(3, 4)
+        for options in ({}, {"chunks": (5,), "compression": "gzip"}):
+            path = self.write_file(data, "csr")
+            with h5py.File(path, "a") as file:
+                file["solution/u"] = numpy.ones(12)
+                self.assertEqual(file["solution"].create_dataset("r", (12,), "f8", **options).id.get_storage_size(), 0)
+                self.assertEqual(file["fclib_local/info"].create_dataset("math_info", (), "S9").id.get_storage_size(), 0)
+            solved, process = self.solve(path)
+            self.check_law(solved, solved.solution)
+            self.assertIn(f"warning: {path}: /solution/r: was never written", process.stderr)
+            self.assertIn("a solution", self.expect_status(0, run("info", path)).stdout)
+        with h5py.File(path, "a") as file:  # q = 0: the solution is zero, and so is what is read
+            del file["fclib_local/vectors/q"]
+            file["fclib_local/vectors"].create_dataset("q", (12,), "f8", fillvalue=-0.5)
+        solved, process = self.solve(path)
+        self.assertEqual(set(solved.q), {-0.5})
+        self.assertIn("/fclib_local/vectors/q: was never written", process.stderr)
+        self.check_law(solved, solved.solution)
+
+    def test_data_sets_that_were_never_written_and_cannot_be_read(self):
+        for rows, said in ((12, "was never written and has no fill value"),
+                           (196608, "was never written, and its 196608 entries would take more room than the whole")):
+            path = self.write_file(self.example(3, 4), "csc")
+            with h5py.File(path, "a") as file:
+                local = file["fclib_local"]
+                properties = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+                if rows == 12:
+                    properties.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
+                else:  # W = 0 of so many rows takes next to no room
+                    local["W/m"][0] = local["W/n"][0] = rows
+                    del local["W/p"]
+                    local["W"].create_dataset("p", data=numpy.zeros(rows + 1, dtype="i1"), compression="gzip")
+                del local["vectors/q"]
+                h5py.h5d.create(local["vectors"].id, b"q", h5py.h5t.IEEE_F64LE, h5py.h5s.create_simple((rows,)),
+                                properties)
+            process = self.expect_status(2, run("contact", path))
+            self.assertIn(said, process.stderr)
+
+    def test_texts_of_no_and_of_several_entries(self):
+        titles = ((h5py.Empty("S1"), ""), (numpy.zeros(0, dtype="S3"), ""), (numpy.bytes_(b""), ""),
+                  (numpy.array([b"one", b"two "]), "one\ntwo"), (["one", "two"], "one\ntwo"), ([["", "two"]], "two"),
+                  (numpy.array([b"one", b""]), "one"))
+        for value, text in titles:
+            path = self.write_file(self.example(2, 3), "csc")
+            with h5py.File(path, "a") as file:
+                del file["fclib_local/info/title"]
+                file["fclib_local/info/title"] = value
+            solved, process = self.solve(path)
+            found = solved.text("title") if "title" in solved.info else ""
+            self.assertEqual(found.rstrip(), text)
+            self.assertEqual(process.stderr, "")
+
     def test_single_precision(self):
         data = self.example(3, 6)
         solved, _ = self.solve(self.write_file(data, "csr", numpy.int64, numpy.float32))

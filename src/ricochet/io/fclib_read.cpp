@@ -52,19 +52,31 @@ SparseMatrix assemble(const Triplets& entries, std::int64_t rows, std::int64_t c
   return result;
 }
 
+/// The length of one of a matrix's data sets: as many entries as count, or room for nzmax of them, of which the first
+/// count. FCLib writes triplets of nz entries and compressed forms of nzmax; its older versions wrote nzmax everywhere.
+/// It reads both.
+std::int64_t stored_length(const Hdf5Reader& file, const std::string& name, std::int64_t count, std::int64_t limit) {
+  const std::int64_t found = file.size(name);
+  if (found != count && found != limit) {
+    file.fail(name, count == limit
+                        ? fmt::format("has {} entries where {} are expected", found, count)
+                        : fmt::format("has {} entries where {}, or nzmax = {}, are expected", found, count, limit));
+  }
+  return found;
+}
+
 SparseMatrix read_triplets(const Hdf5Reader& file, const std::string& group, std::int64_t count, std::int64_t limit,
                            std::int64_t rows, std::int64_t columns) {
   if (count > limit) file.fail(group + "/nz", fmt::format("is {}, more than nzmax = {}", count, limit));
-  const Integers row = file.integers(group + "/p", count);
-  const Integers column = file.integers(group + "/i", count);
-  // FCLib itself writes nz values, older versions of it nzmax.
-  const std::int64_t values = file.size(group + "/x");
-  const Vector value = file.reals(group + "/x", values == limit ? limit : count);
+  const auto length = [&](const std::string& name) { return stored_length(file, name, count, limit); };
+  const Integers row = file.integers(group + "/p", length(group + "/p"));
+  const Integers column = file.integers(group + "/i", length(group + "/i"));
+  const Vector value = file.leading_reals(group + "/x", count, length(group + "/x"));
   check_indices(file, group + "/p", row, count, rows);
   check_indices(file, group + "/i", column, count, columns);
   Triplets entries;
-  entries.reserve(row.size());
-  for (std::size_t k = 0; k < row.size(); ++k)
+  entries.reserve(static_cast<std::size_t>(count));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
     entries.emplace_back(static_cast<int>(row[k]), static_cast<int>(column[k]), value[static_cast<Index>(k)]);
   return assemble(entries, rows, columns);
 }
@@ -83,9 +95,9 @@ SparseMatrix read_compressed(const Hdf5Reader& file, const std::string& group, b
   const std::int64_t outer = by_column ? columns : rows;
   const Integers read_starts = file.integers(group + "/p", outer + 1);
   check_starts(file, group + "/p", read_starts, limit);
-  const Integers read_indices = file.integers(group + "/i", limit);
-  const Vector value = file.reals(group + "/x", limit);
   const std::int64_t count = read_starts.back();
+  const Integers read_indices = file.integers(group + "/i", stored_length(file, group + "/i", count, limit));
+  const Vector value = file.leading_reals(group + "/x", count, stored_length(file, group + "/x", count, limit));
   check_indices(file, group + "/i", read_indices, count, by_column ? rows : columns);
   const std::vector<int> starts(read_starts.begin(), read_starts.end());
   const std::vector<int> indices(read_indices.begin(), read_indices.begin() + count);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/io/hdf5_handle.hpp"
 
 namespace ricochet {
@@ -35,10 +36,6 @@ const char* kind_name(H5T_class_t kind) {
       return "data of another kind";
   }
 }
-
-/// Data up to this size go into the header of their data set, which has a checksum; larger data into checked chunks.
-constexpr std::size_t header_limit = 32768;
-constexpr hsize_t chunk_entries = 1 << 17;
 
 }  // namespace
 
@@ -157,7 +154,30 @@ std::int64_t Hdf5Reader::size(const std::string& name) const {
 void Hdf5Reader::check_size(const Dataset& set, std::int64_t expected_size, std::size_t bytes_per_entry) const {
   const std::int64_t found = size(set.name);
   if (found != expected_size) fail(set.name, fmt::format("has {} entries where {} are expected", found, expected_size));
-  check_stored(set, found, bytes_per_entry);
+  if (found > 0 && H5Dget_storage_size(set.set) == 0)
+    accept_fill_value(set, found, bytes_per_entry);
+  else
+    check_stored(set, found, bytes_per_entry);
+}
+
+void Hdf5Reader::accept_fill_value(const Dataset& set, std::int64_t entries, std::size_t bytes_per_entry) const {
+  const Hdf5Handle properties(H5Dget_create_plist(set.set), H5Pclose);
+  H5D_fill_time_t time = H5D_FILL_TIME_NEVER;
+  H5D_fill_value_t value = H5D_FILL_VALUE_UNDEFINED;
+  if (H5Pget_fill_time(properties, &time) < 0 || H5Pfill_value_defined(properties, &value) < 0 ||
+      time == H5D_FILL_TIME_NEVER || value == H5D_FILL_VALUE_UNDEFINED)
+    fail(set.name, "was never written and has no fill value");
+  // Nothing in the file shows that it is really meant to be so large.
+  if (static_cast<std::uint64_t>(entries) * bytes_per_entry > file_size())
+    fail(set.name,
+         fmt::format("was never written, and its {} entries would take more room than the whole file", entries));
+  log::warning(fmt::format("{}: {}: was never written; what is read is its fill value", path_, set.name));
+}
+
+std::uint64_t Hdf5Reader::file_size() const {
+  std::error_code problem;
+  const std::uint64_t size = fs::file_size(path_, problem);
+  return problem ? 0 : size;
 }
 
 void Hdf5Reader::check_stored(const Dataset& set, std::int64_t entries, std::size_t bytes_per_entry) const {
@@ -165,10 +185,8 @@ void Hdf5Reader::check_stored(const Dataset& set, std::int64_t entries, std::siz
   const Hdf5Handle properties(H5Dget_create_plist(set.set), H5Pclose);
   const bool filtered = properties < 0 || H5Pget_nfilters(properties) > 0;
   const auto stored = static_cast<std::uint64_t>(H5Dget_storage_size(set.set));
-  std::error_code problem;
-  const std::uint64_t in_file = fs::file_size(path_, problem);
   const auto needed = static_cast<std::uint64_t>(entries) * bytes_per_entry;
-  if (entries > 0 && (stored == 0 || (!filtered && (stored < needed || needed > in_file))))
+  if (entries > 0 && (stored == 0 || (!filtered && (stored < needed || needed > file_size()))))
     fail(set.name, fmt::format("the file does not hold its {} entries: it is cut off or damaged", entries));
 }
 
@@ -212,8 +230,13 @@ std::vector<std::int64_t> Hdf5Reader::integers(const std::string& name, std::int
 }
 
 Vector Hdf5Reader::reals(const std::string& name, std::int64_t expected_size) const {
+  return leading_reals(name, expected_size, expected_size);
+}
+
+Vector Hdf5Reader::leading_reals(const std::string& name, std::int64_t used, std::int64_t expected_size) const {
   const Dataset set(*this, name);
   Vector values = numbers(set, expected_size);
+  values.conservativeResize(used);
   const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); });
   if (bad != values.end()) fail(name, fmt::format("entry {} is {}, which is not finite", bad - values.begin(), *bad));
   return values;
@@ -293,104 +316,42 @@ std::string Hdf5Reader::text(const std::string& name) const {
   const Dataset set(*this, name);
   const H5T_class_t kind = H5Tget_class(set.type);
   if (kind != H5T_STRING) fail(name, fmt::format("holds {} where text is expected", kind_name(kind)));
-  if (const std::int64_t found = size(name); found != 1)
-    fail(name, fmt::format("has {} entries where one text is expected", found));
-  if (H5Tis_variable_str(set.type) > 0) {
-    char* value = nullptr;
-    if (H5Dread(set.set, set.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
-      fail(name, "cannot be read: the file is damaged");
-    std::string result = value != nullptr ? value : "";
-    H5free_memory(value);
-    return result;
-  }
-  check_size(set, 1, H5Tget_size(set.type));
-  std::string result(H5Tget_size(set.type), '\0');
-  if (H5Dread(set.set, set.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data()) < 0)
-    fail(name, "cannot be read: the file is damaged");
-  result.resize(std::min(result.find('\0'), result.size()));
-  if (H5Tget_strpad(set.type) == H5T_STR_SPACEPAD) result.resize(result.find_last_not_of(' ') + 1);
+  const hssize_t count = H5Sget_simple_extent_npoints(set.space);
+  if (count < 0) fail(name, "the size of this data set cannot be read: the file is damaged");
+  std::string result;
+  for (const std::string& entry : texts(set, static_cast<std::size_t>(count)))
+    result += result.empty() || entry.empty() ? entry : "\n" + entry;
   return result;
 }
 
-Hdf5Writer::Hdf5Writer(std::string path) : path_(std::move(path)), temporary_(path_ + ".part") {
-  quiet_hdf5();
-  // The format that puts a checksum on everything but the data themselves.
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
-  const Hdf5Handle properties = timeless_hdf5_properties(H5P_FILE_CREATE);
-  errno = 0;
-  file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, properties, access);
-  if (file_ < 0) {
-    throw Error(ErrorKind::file_access, fmt::format("{}: cannot be written{}{}", path_, errno != 0 ? ": " : "",
-                                                    errno != 0 ? std::strerror(errno) : ""));
+std::vector<std::string> Hdf5Reader::texts(const Dataset& set, std::size_t count) const {
+  std::vector<std::string> result;
+  if (count == 0) return result;
+  const std::size_t length = H5Tget_size(set.type);
+  if (H5Dget_storage_size(set.set) == 0)
+    accept_fill_value(set, static_cast<std::int64_t>(count), length);
+  else
+    check_stored(set, static_cast<std::int64_t>(count), length);
+  if (H5Tis_variable_str(set.type) > 0) {
+    std::vector<char*> values(count, nullptr);
+    if (H5Dread(set.set, set.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+      fail(set.name, "cannot be read: the file is damaged");
+    for (char* value : values) {
+      result.emplace_back(value != nullptr ? value : "");
+      H5free_memory(value);
+    }
+    return result;
   }
-}
-
-Hdf5Writer::~Hdf5Writer() {
-  if (file_ < 0) return;
-  H5Fclose(file_);
-  std::error_code problem;
-  fs::remove(temporary_, problem);
-}
-
-void Hdf5Writer::check(bool good, const std::string& what) const {
-  if (!good) throw Error(ErrorKind::file_access, fmt::format("{}: cannot write {} (is the disk full?)", path_, what));
-}
-
-void Hdf5Writer::group(const std::string& name) {
-  check(make_hdf5_group(file_, name.c_str()), name);
-}
-
-void Hdf5Writer::numbers(const std::string& name, bool real, const void* values, Index size) {
-  const hid_t type = real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT;
-  const auto count = static_cast<hsize_t>(size);
-  const Hdf5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  const Hdf5Handle properties = timeless_hdf5_properties(H5P_DATASET_CREATE);
-  if (count * H5Tget_size(type) <= header_limit) {
-    H5Pset_layout(properties, H5D_COMPACT);
-  } else {
-    const hsize_t chunk = std::min(count, chunk_entries);
-    H5Pset_chunk(properties, 1, &chunk);
-    H5Pset_fletcher32(properties);
+  std::string whole(count * length, '\0');
+  if (H5Dread(set.set, set.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, whole.data()) < 0)
+    fail(set.name, "cannot be read: the file is damaged");
+  for (std::size_t k = 0; k < count; ++k) {
+    std::string value = whole.substr(k * length, length);
+    value.resize(std::min(value.find('\0'), value.size()));
+    if (H5Tget_strpad(set.type) == H5T_STR_SPACEPAD) value.resize(value.find_last_not_of(' ') + 1);
+    result.push_back(std::move(value));
   }
-  const Hdf5Handle set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
-  check(set >= 0 && (size == 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0), name);
-}
-
-void Hdf5Writer::integer(const std::string& name, int value) {
-  numbers(name, false, &value, 1);
-}
-
-void Hdf5Writer::integers(const std::string& name, const int* values, Index size) {
-  numbers(name, false, values, size);
-}
-
-void Hdf5Writer::reals(const std::string& name, const double* values, Index size) {
-  numbers(name, true, values, size);
-}
-
-void Hdf5Writer::text(const std::string& name, const std::string& value) {
-  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, value.size() + 1);
-  H5Tset_strpad(type, H5T_STR_NULLTERM);
-  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle properties = timeless_hdf5_properties(H5P_DATASET_CREATE);
-  if (value.size() < header_limit) H5Pset_layout(properties, H5D_COMPACT);
-  const Hdf5Handle set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
-  check(set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value.c_str()) >= 0, name);
-}
-
-void Hdf5Writer::close() {
-  const bool good = H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0;
-  const bool closed = H5Fclose(file_) >= 0;
-  file_ = -1;
-  std::error_code problem;
-  if (good && closed) {
-    fs::rename(temporary_, path_, problem);
-    if (!problem) return;
-  }
-  fs::remove(temporary_, problem);
-  check(false, "the file");
+  return result;
 }
 
 }  // namespace ricochet

@@ -34,13 +34,17 @@ class Hdf5Reader {
   /// Something that is there but cannot be opened is an error, here too.
   [[nodiscard]] bool has_group(const std::string& name) const;
   [[nodiscard]] bool has_dataset(const std::string& name) const;
-  /// All of these throw Error(invalid_input) where there is no such data set or it is of another kind.
+  /// All of these throw Error(invalid_input) where there is no such data set or it is of another kind. HDF5 allots no
+  /// room for a data set that was never written: vectors and texts of that sort are read as their fill value, with a
+  /// warning.
   [[nodiscard]] std::int64_t integer(const std::string& name) const;
   /// Number of entries of a data set of one dimension (or of a scalar: 1).
   [[nodiscard]] std::int64_t size(const std::string& name) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const std::string& name, std::int64_t expected_size) const;
   /// Also throws where a number is not finite.
   [[nodiscard]] Vector reals(const std::string& name, std::int64_t expected_size) const;
+  /// The first `used` of them: the others are room, and may be anything.
+  [[nodiscard]] Vector leading_reals(const std::string& name, std::int64_t used, std::int64_t expected_size) const;
   /// Rows and columns (0: one dimension) of a data set of one or two dimensions.
   [[nodiscard]] std::pair<Index, Index> extents(const std::string& name) const;
   /// Numbers row by row, of exactly so many rows and columns (0: one dimension): in single precision, where NaN and
@@ -53,6 +57,7 @@ class Hdf5Reader {
   [[nodiscard]] std::vector<Hdf5Member> members(const std::string& group) const;
   [[nodiscard]] Matrix real_table(const std::string& name, Index rows, Index columns) const;
   [[nodiscard]] std::vector<std::int64_t> whole_table(const std::string& name, Index rows, Index columns) const;
+  /// Several entries come as lines; of none, the text is empty.
   [[nodiscard]] std::string text(const std::string& name) const;
   /// Throws Error(invalid_input): "PATH: NAME: message".
   [[noreturn]] void fail(const std::string& name, const std::string& message) const;
@@ -61,6 +66,9 @@ class Hdf5Reader {
   struct Dataset;
   [[nodiscard]] bool has(const std::string& name, bool group) const;
   void check_size(const Dataset& set, std::int64_t expected_size, std::size_t bytes_per_entry) const;
+  void accept_fill_value(const Dataset& set, std::int64_t entries, std::size_t bytes_per_entry) const;
+  [[nodiscard]] std::uint64_t file_size() const;
+  [[nodiscard]] std::vector<std::string> texts(const Dataset& set, std::size_t count) const;
   void check_stored(const Dataset& set, std::int64_t entries, std::size_t bytes_per_entry) const;
   void check_numbers(const Dataset& set) const;
   [[nodiscard]] std::pair<Index, Index> extents(const Dataset& set) const;

@@ -93,7 +93,8 @@ const Malformed cases[] = {
     // triplets
     {"nz", [](Raw& r) { r.integers[w + "nz"] = {-3}; }, "W/nz: is -3; a number of triplets, -1"},
     {"nz above nzmax", [](Raw& r) { r.integers[w + "nz"] = {6}; }, "W/nz: is 6, more than nzmax = 5"},
-    {"nz below the entries", [](Raw& r) { r.integers[w + "nz"] = {4}; }, "W/p: has 5 entries where 4 are expected"},
+    {"nz below the entries", [](Raw& r) { r.integers[w + "nz"] = {4}, r.integers[w + "nzmax"] = {6}; },
+     "W/p: has 5 entries where 4, or nzmax = 6, are expected"},
     {"nzmax negative", [](Raw& r) { r.integers[w + "nzmax"] = {-1}; }, "W/nzmax: is -1, but counts something"},
     {"negative row", [](Raw& r) { r.integers[w + "p"][3] = -1; }, "W/p: entry 3 is -1, outside of 0 to 1"},
     {"large column", [](Raw& r) { r.integers[w + "i"][1] = 2; }, "W/i: entry 1 is 2, outside of 0 to 1"},
@@ -123,6 +124,8 @@ const Malformed cases[] = {
     {"index", [](Raw& r) { compress(r, -1), r.integers[w + "i"][3] = 7; }, "W/i: entry 3 is 7, outside of 0 to 1"},
     {"few indices", [](Raw& r) { compress(r, -2), r.integers[w + "i"].pop_back(); },
      "W/i: has 3 entries where 4 are expected"},
+    {"indices between", [](Raw& r) { compress(r, -2), r.integers[w + "nzmax"] = {6}, r.integers[w + "i"].push_back(0); },
+     "W/i: has 5 entries where 4, or nzmax = 6, are expected"},
     {"many values", [](Raw& r) { compress(r, -2), r.reals[w + "x"].push_back(1.0); },
      "W/x: has 5 entries where 4 are expected"},
     // symmetry
