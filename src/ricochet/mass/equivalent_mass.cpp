@@ -1,5 +1,5 @@
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/mass/mass.hpp"
+#include "ricochet/mass/mass_conditions.hpp"
 
 namespace ricochet {
 
@@ -176,6 +177,63 @@ SparseMatrix congruence(const SparseMatrix& mass, const std::vector<char>& is_co
   return result;
 }
 
+/// (1, x_j − x_c) of some nodes in its columns, in the weights t_j = m_jj. Weights w = T Aᵀ y with (A T Aᵀ) y = e₁
+/// reproduce affine functions and are least in Σ w_j²/t_j.
+class AffineFit {
+ public:
+  AffineFit(const MassInput& input, const Vector& diagonal, Index node, const std::vector<Index>& free)
+      : conditions_(input.nodes->rows() + 1, static_cast<Index>(free.size())), trust_(conditions_.cols()) {
+    const Index dimension = input.nodes->rows();
+    for (Index k = 0; k < trust_.size(); ++k) {
+      conditions_(0, k) = 1.0;
+      conditions_.col(k).tail(dimension) = input.nodes->col(free[static_cast<std::size_t>(k)]) - input.nodes->col(node);
+      trust_[k] = diagonal[free[static_cast<std::size_t>(k)]];
+    }
+    // Lengths relative to the neighbourhood's size, masses to the largest: no number here has a unit.
+    conditions_.bottomRows(dimension) /= conditions_.bottomRows(dimension).cwiseAbs().maxCoeff();
+    trust_ /= trust_.maxCoeff();
+  }
+
+  /// False where the nodes do not span space affinely, or barely so.
+  ///
+  /// The test must not depend on how flat the cells are. An affine map of the mesh changes neither w nor
+  ///   Σ t_j Σ w_j²/t_j = Σ t_j e₁ᵀ(A T Aᵀ)⁻¹e₁ = 1 + D²,
+  /// where D is the distance of the contact node from the nodes' centre of gravity, in units of their own root mean
+  /// square spread in that direction: it is this that says how far the weights extrapolate.
+  bool solve(Vector& weights) const {
+    const Index size = conditions_.rows();
+    if (conditions_.cols() < size) return false;
+    const Matrix gram = conditions_ * trust_.asDiagonal() * conditions_.transpose();
+    const Eigen::LDLT<Matrix> factor(gram);
+    if (!spans_space(gram, factor)) return false;
+    const Vector wanted = Vector::Unit(size, 0);
+    Vector solution = factor.solve(wanted);
+    weights = trust_.asDiagonal() * (conditions_.transpose() * solution);
+    // In flat cells that are askew rounding leaves something to do. What is missing is measured like D.
+    for (int round = 0; round < 3; ++round) {
+      const Vector missing = wanted - conditions_ * weights;
+      const Vector correction = factor.solve(missing);
+      if (!(missing.dot(correction) > rounding * rounding * solution[0])) break;
+      solution += correction;
+      weights = trust_.asDiagonal() * (conditions_.transpose() * solution);
+    }
+    return trust_.sum() * solution[0] <= 1.0 + largest_distance * largest_distance;
+  }
+
+ private:
+  /// A pivot is what is left of a row's square without the rows before: of a row that depends on them, rounding.
+  static bool spans_space(const Matrix& gram, const Eigen::LDLT<Matrix>& factor) {
+    const Vector whole = factor.transpositionsP() * Vector(gram.diagonal());
+    return (factor.vectorD().array() > smallest_pivot * whole.array()).all();
+  }
+
+  static constexpr double rounding = 1e-13;
+  static constexpr double smallest_pivot = 1e-12;
+  static constexpr double largest_distance = 100.0;
+  Matrix conditions_;
+  Vector trust_;
+};
+
 /// M₀ = EᵀME. E is the identity on free nodes; the row of a contact node holds the weights on nearby free nodes which
 /// reproduce affine functions and are least in the norm Σ w_j²/m_jj. So PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ exactly, M₀ is positive
 /// semi-definite with the contact dofs as its null space by construction, and wᵀ(m_cc)w measures what is added to the
@@ -196,7 +254,9 @@ class EquivalentMass final : public MassConstruction {
     for (const Index node : input.contact_nodes) {
       extension.set(node, extrapolate(input, is_contact, diagonal, node, seen_from));
     }
-    return congruence(consistent, is_contact, extension);
+    SparseMatrix result = congruence(consistent, is_contact, extension);
+    check_conditions(input, result);
+    return result;
   }
 
  private:
@@ -222,48 +282,39 @@ class EquivalentMass final : public MassConstruction {
       }
       std::swap(front, next);
       const bool enough = free.size() >= wanted_neighbours || front.empty();
-      if (enough && least_weights(input, diagonal, node, free, result)) return result;
+      if (enough && !free.empty() && AffineFit(input, diagonal, node, free).solve(result.weights)) {
+        result.nodes = std::move(free);
+        return result;
+      }
     }
-    throw Error(ErrorKind::invalid_input, refusal(input, node, free.size()));
+    refuse(input, node, free);
   }
 
-  /// Least-norm affine weights; false when the nodes do not span space affinely well enough.
-  static bool least_weights(const MassInput& input, const Vector& diagonal, Index node, const std::vector<Index>& free,
-                            Extrapolation& result) {
-    const Index dimension = input.nodes->rows();
-    const auto count = static_cast<Index>(free.size());
-    if (count <= dimension) return false;
-    Matrix conditions(dimension + 1, count);
-    Vector trust(count);
-    for (Index k = 0; k < count; ++k) {
-      conditions(0, k) = 1.0;
-      conditions.col(k).tail(dimension) = input.nodes->col(free[static_cast<std::size_t>(k)]) - input.nodes->col(node);
-      trust[k] = diagonal[free[static_cast<std::size_t>(k)]];
-    }
-    // Lengths relative to the neighbourhood's size, masses to the largest: the test below has no unit.
-    conditions.bottomRows(dimension) /= conditions.bottomRows(dimension).cwiseAbs().maxCoeff();
-    trust /= trust.maxCoeff();
-    const Matrix gram = conditions * trust.asDiagonal() * conditions.transpose();
-    // Spread of the nodes about their own centre, in the worst direction.
-    const Vector centre = conditions * trust / trust.sum();
-    const Matrix spread = gram / trust.sum() - centre * centre.transpose();
-    const Eigen::SelfAdjointEigenSolver<Matrix> axes(spread.bottomRightCorner(dimension, dimension));
-    if (axes.eigenvalues()[0] < 1e-3 * axes.eigenvalues()[dimension - 1]) return false;
-    result.nodes = free;
-    result.weights = trust.asDiagonal() * (conditions.transpose() * gram.ldlt().solve(Vector::Unit(dimension + 1, 0)));
-    return true;
+  [[noreturn]] static void refuse(const MassInput& input, Index node, std::vector<Index>& free) {
+    std::sort(free.begin(), free.end());
+    const bool flat = free.empty() || !degeneracy(*input.nodes, free).empty();
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("mass type \"equivalent\": the inertia of the contact node at {} cannot be moved to other "
+                            "nodes: its body has {}{}; refine the mesh there, so that {} nodes that are not all {} "
+                            "are off the contact boundary, or use mass type \"consistent\" or \"lumped\"",
+                            text_of_point(*input.nodes, node), describe_free_nodes(*input.nodes, free),
+                            flat ? "" : ", which are too close together for their distance from it",
+                            input.nodes->rows() == 3 ? "at least 4" : "at least 3",
+                            input.nodes->rows() == 3 ? "in one plane" : "on one line"));
   }
 
-  static std::string refusal(const MassInput& input, Index node, std::size_t found) {
-    const Vector at = input.nodes->col(node);
-    return fmt::format(
-        "mass type \"equivalent\": the free nodes around the contact node at ({}{}) do not span space affinely ({} "
-        "free nodes "
-        "in its body), so its inertia has nowhere to go; refine the mesh there so that at least {} nodes which are not "
-        "on the "
-        "contact boundary surround it and are not all in one {}, or use mass type \"consistent\" or \"lumped\"",
-        at.size() == 3 ? fmt::format("{:.6g}, {:.6g}, ", at[0], at[1]) : fmt::format("{:.6g}, ", at[0]),
-        fmt::format("{:.6g}", at[at.size() - 1]), found, at.size() + 1, at.size() == 3 ? "plane" : "line");
+  /// Total mass, centre of gravity and moments of inertia follow from the weights; rounding leaves 1e-13 of them.
+  static void check_conditions(const MassInput& input, const SparseMatrix& mass) {
+    const MassFrames frames = mass_frames(input.inertia_matrix(), *input.nodes);
+    const MassBody* worst = nullptr;
+    const double defect = moment_defect(mass, *input.consistent, frames, &worst);
+    if (defect <= 1e-10) return;
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("mass type \"equivalent\": the moments of inertia of the body with the node at {} would be "
+                            "off by {:.2g} of the largest, because its mesh is too distorted for this construction; "
+                            "improve the mesh around the contact boundary, or use mass type \"consistent\" or "
+                            "\"lumped\"",
+                            text_of_point(*input.nodes, worst->nodes.front()), defect));
   }
 };
 

@@ -1,81 +1,62 @@
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/mass/mass.hpp"
+#include "ricochet/mass/mass_conditions.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// Bodies: the connected components of the matrix's graph, nodes in the order in which they are reached.
-std::vector<std::vector<Index>> connected_bodies(const SparseMatrix& matrix) {
-  std::vector<char> seen(static_cast<std::size_t>(matrix.cols()), 0);
-  std::vector<std::vector<Index>> bodies;
-  for (Index first = 0; first < matrix.cols(); ++first) {
-    if (seen[static_cast<std::size_t>(first)] != 0) continue;
-    seen[static_cast<std::size_t>(first)] = 1;
-    std::vector<Index> body{first};
-    for (std::size_t k = 0; k < body.size(); ++k) {
-      for (SparseMatrix::InnerIterator entry(matrix, body[k]); entry; ++entry) {
-        if (seen[static_cast<std::size_t>(entry.row())] != 0) continue;
-        seen[static_cast<std::size_t>(entry.row())] = 1;
-        body.push_back(entry.row());
-      }
-    }
-    bodies.push_back(std::move(body));
-  }
-  return bodies;
+/// How a body is told from others in messages.
+std::string name_of(const MassInput& input, const MassBody& body) {
+  return "the body with the node at " + text_of_point(*input.nodes, body.nodes.front());
 }
 
-[[noreturn]] void refuse(const MassInput& input, Index node) {
-  const Vector at = input.nodes->col(node);
-  throw Error(
-      ErrorKind::invalid_input,
-      fmt::format("mass type \"equivalent-lumped\": the body of the node at ({:.6g}, {:.6g}{}) has too few nodes "
-                  "that are not on the contact boundary to carry its mass about its centre of gravity; refine the "
-                  "mesh, or use mass type \"lumped\" (with an implicit scheme)",
-                  at[0], at[1], at.size() == 3 ? fmt::format(", {:.6g}", at[2]) : ""));
+[[noreturn]] void refuse(const MassInput& input, const MassBody& body, const std::string& reason) {
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("mass type \"equivalent-lumped\": {} has {}; refine the mesh, so that nodes off the contact "
+                          "boundary surround its centre of gravity, or use mass type \"lumped\" (with an implicit "
+                          "scheme)",
+                          name_of(input, body), reason));
 }
 
-/// What the masses of one body must sum to.
+/// Of ξη in the list of second moments: its norm is then that of the symmetric matrix, and the same in all directions.
+double factor_of(Index a, Index b) {
+  return a == b ? 1.0 : std::numbers::sqrt2;
+}
+
+/// What the masses of one body must sum to, in the frame of the body.
 struct Moments {
-  Matrix functions;  ///< 1, x, y[, z] and their products at the body's nodes, nodes × (6 or 10)
+  Matrix functions;  ///< 1, ξ, η[, ζ], ξ², √2 ξη, η² and so on at the body's nodes, nodes × (6 or 10)
   Vector wanted;     ///< PᵃᵀMPᵇ in the same order
-  Index affine = 0;  ///< number of the first ones, 1, x, y[, z]
+  Index affine = 0;  ///< number of the first ones, 1, ξ, η[, ζ]
 };
 
-/// Lengths are about the centre of the body's box and relative to its size: the systems to solve have no unit.
-Moments moments_of(const MassInput& input, const std::vector<Index>& body) {
+Moments moments_of(const MassInput& input, const MassFrames& frames, const MassBody& body) {
   const Index d = input.nodes->rows();
-  const auto count = static_cast<Index>(body.size());
-  Matrix positions(d, count);
-  for (Index i = 0; i < count; ++i) positions.col(i) = input.nodes->col(body[static_cast<std::size_t>(i)]);
-  const Vector low = positions.rowwise().minCoeff();
-  const Vector high = positions.rowwise().maxCoeff();
+  const auto count = static_cast<Index>(body.nodes.size());
   Moments result;
   result.affine = d + 1;
   result.functions.resize(count, 1 + d + d * (d + 1) / 2);
-  result.functions.col(0).setOnes();
-  result.functions.middleCols(1, d) =
-      ((positions.colwise() - 0.5 * (low + high)) / (high - low).maxCoeff()).transpose();
-  Matrix monomials = Matrix::Zero(input.nodes->cols(), d + 1);
-  for (Index i = 0; i < count; ++i) {
-    monomials.row(body[static_cast<std::size_t>(i)]) = result.functions.row(i).head(d + 1);
-  }
-  const Matrix all = monomials.transpose() * (*input.consistent * monomials);
+  for (Index i = 0; i < count; ++i)
+    result.functions.row(i).head(d + 1) = frames.monomials.col(body.nodes[static_cast<std::size_t>(i)]).transpose();
+  const Matrix all = mass_moments(*input.consistent, frames, body);
   result.wanted.resize(result.functions.cols());
   result.wanted.head(d + 1) = all.col(0);
   Index column = d + 1;
   for (Index a = 1; a <= d; ++a) {
     for (Index b = a; b <= d; ++b) {
-      result.functions.col(column) = result.functions.col(a).cwiseProduct(result.functions.col(b));
-      result.wanted[column++] = all(a, b);
+      result.functions.col(column) = factor_of(a, b) * result.functions.col(a).cwiseProduct(result.functions.col(b));
+      result.wanted[column++] = factor_of(a, b) * all(a, b);
     }
   }
   return result;
@@ -111,13 +92,7 @@ double correct_inertia(const Moments& moments, Vector& mass) {
   const Vector weight = mass / mass.sum();
   const Eigen::LDLT<Matrix> gram(affine.transpose() * weight.asDiagonal() * affine);
   Matrix part = moments.functions.rightCols(moments.wanted.size() - moments.affine);
-  Vector lacking = defect(moments, mass).tail(part.cols());
-  for (Index k = 0; k < part.cols(); ++k) {
-    const double size = std::sqrt(part.col(k).cwiseAbs2().dot(weight));
-    if (!(size > 0.0)) continue;
-    part.col(k) /= size;
-    lacking[k] /= size;
-  }
+  const Vector lacking = defect(moments, mass).tail(part.cols());
   // Twice, for rounding.
   for (int round = 0; round < 2; ++round) part -= affine * gram.solve(affine.transpose() * weight.asDiagonal() * part);
   // Rank-revealing: where all nodes are at two values of x, x² is an affine function on them and cannot be corrected.
@@ -125,6 +100,40 @@ double correct_inertia(const Moments& moments, Vector& mass) {
   factor.setThreshold(1e-10);
   factor.compute(part.transpose() * weight.asDiagonal() * part);
   return apply(part * factor.solve(lacking), mass);
+}
+
+/// The tensor of inertia tr(S) I − S that belongs to second moments S; in the plane the one moment tr(S).
+Matrix inertia_tensor(const Matrix& second) {
+  const Index d = second.rows();
+  if (d == 2) return Matrix::Constant(1, 1, second.trace());
+  return second.trace() * Matrix::Identity(d, d) - second;
+}
+
+/// What the masses of a body make of its moments of inertia.
+struct InertiaCheck {
+  double least = 1.0;    ///< the least moment of inertia about an axis through the centre, relative to the true one
+  double lacking = 0.0;  ///< the largest relative error of these and, relative to the largest, of the second moments
+};
+
+InertiaCheck check_inertia(const MassBody& body, const Moments& moments, const Vector& mass) {
+  const Index d = moments.affine - 1;
+  const Vector found = moments.functions.transpose() * mass;
+  const auto second = [&](const Vector& sums) {
+    Matrix result(d, d);
+    Index column = d + 1;
+    for (Index a = 0; a < d; ++a) {
+      for (Index b = a; b < d; ++b) result(a, b) = result(b, a) = sums[column++] / factor_of(a, b);
+    }
+    return Matrix(body.axes * result * body.axes.transpose());
+  };
+  const Matrix own = second(found), wanted = second(moments.wanted);
+  // (1 + ratio) J_wanted ω = J_own ω
+  const Eigen::LLT<Matrix> factor(inertia_tensor(wanted));
+  const Matrix half = factor.matrixL().solve(inertia_tensor(own - wanted));
+  const Matrix relative = factor.matrixL().solve(half.transpose());
+  const Vector ratios = Eigen::SelfAdjointEigenSolver<Matrix>(relative, Eigen::EigenvaluesOnly).eigenvalues();
+  return {1.0 + ratios.minCoeff(),
+          std::max(ratios.cwiseAbs().maxCoeff(), (own - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().maxCoeff())};
 }
 
 /// l with the mass of each contact node shared among the free nodes nearest to it in the graph, in proportion to the
@@ -157,7 +166,13 @@ Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
       }
       std::swap(front, next);
     }
-    if (free.empty()) refuse(input, node);
+    if (free.empty()) {
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("mass type \"equivalent-lumped\": the body of the contact node at {} has no node off the "
+                              "contact boundary that could carry its mass; refine the mesh, or use mass type "
+                              "\"lumped\" (with an implicit scheme)",
+                              text_of_point(*input.nodes, node)));
+    }
     for (const Index receiver : free) result[receiver] += lumped[node] * (lumped[receiver] / sum);
   }
   return result;
@@ -179,10 +194,9 @@ class LumpedEquivalentMass final : public MassConstruction {
 
   /// Damping keeps the rate of each node: c_i = m_i (∫aρ N_i²)/(∫ρ N_i²).
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
-    double lacking = 0.0;
-    const Vector mass = build_diagonal({&input.inertia_matrix(), input.nodes, input.contact_nodes}, lacking);
+    const bool warns = input.consistent == &input.inertia_matrix();  // once, not for damping again
+    const Vector mass = build_diagonal({&input.inertia_matrix(), input.nodes, input.contact_nodes}, warns);
     if (input.consistent == &input.inertia_matrix()) {
-      if (lacking > 1e-10) warn(lacking);
       return to_matrix(mass);
     }
     const Vector rate = input.consistent->diagonal().cwiseQuotient(input.inertia->diagonal());
@@ -190,37 +204,73 @@ class LumpedEquivalentMass final : public MassConstruction {
   }
 
  private:
-  static Vector build_diagonal(const MassInput& input, double& lacking) {
+  static Vector build_diagonal(const MassInput& input, bool warns) {
     Vector diagonal = share_contact_mass(input, lumped_diagonal(*input.consistent));
-    for (const std::vector<Index>& body : connected_bodies(*input.consistent)) {
-      lacking = std::max(lacking, balance(input, body, diagonal));
+    const MassFrames frames = mass_frames(*input.consistent, *input.nodes);
+    double lacking = 0.0;
+    const MassBody* worst = nullptr;
+    for (const MassBody& body : frames.bodies) {
+      const double own = balance(input, frames, body, diagonal);
+      if (own <= lacking) continue;
+      lacking = own;
+      worst = &body;
     }
+    if (warns && lacking > 1e-10) warn(input, *worst, lacking);
     return diagonal;
   }
 
-  static void warn(double lacking) {
+  static void warn(const MassInput& input, const MassBody& body, double lacking) {
     log::warning(fmt::format(
-        "mass type \"equivalent-lumped\" keeps total mass and centre of gravity, but moments of inertia only "
-        "to {:.2g} of the largest: the nodes that are not on the contact boundary are too few, or too near to "
-        "one another, to carry them with positive masses; refine the mesh where this matters",
-        lacking));
+        "mass type \"equivalent-lumped\" keeps the mass and the centre of gravity of {}, but its moments of inertia "
+        "only within {:.2g} %: the nodes off the contact boundary are too few, or too close together, to carry them "
+        "with "
+        "positive masses; refine the mesh where rotation matters",
+        name_of(input, body), 100.0 * lacking));
   }
 
-  /// Steps 2 and 3 on one body. Returns what the moments of inertia lack, relative to the largest.
-  static double balance(const MassInput& input, const std::vector<Index>& body, Vector& diagonal) {
-    const Moments moments = moments_of(input, body);
-    Vector mass(static_cast<Index>(body.size()));
-    for (Index i = 0; i < mass.size(); ++i) mass[i] = diagonal[body[static_cast<std::size_t>(i)]];
+  /// Less than this part of a moment of inertia is no approximation of it any more.
+  static constexpr double least_inertia = 0.1;
+  /// Of the nodes that have mass in their worst direction, relative to the body's own.
+  static constexpr double least_spread = 0.01;
+
+  /// Masses at points in one plane (on one line in 2D) cannot turn like a body, whatever their sizes.
+  static void require_span(const MassInput& input, const MassBody& body, const Moments& moments, const Vector& mass) {
+    const Index d = moments.affine - 1;
+    const auto positions = moments.functions.middleCols(1, d);
+    const Vector weight = mass / mass.sum();
+    const Vector centre = positions.transpose() * weight;
+    const Matrix spread = positions.transpose() * weight.asDiagonal() * positions - centre * centre.transpose();
+    const Vector sizes = Eigen::SelfAdjointEigenSolver<Matrix>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+    if (sizes[0] > least_spread * least_spread) return;
+    std::vector<Index> free;
+    for (Index i = 0; i < mass.size(); ++i) {
+      if (mass[i] > 0.0) free.push_back(body.nodes[static_cast<std::size_t>(i)]);
+    }
+    std::sort(free.begin(), free.end());
+    refuse(input, body, describe_free_nodes(*input.nodes, free));
+  }
+
+  /// Steps 2 and 3 on one body. Returns what its moments of inertia lack, see InertiaCheck.
+  static double balance(const MassInput& input, const MassFrames& frames, const MassBody& body, Vector& diagonal) {
+    const char* const too_few = "too few nodes off the contact boundary to carry its mass about its centre of gravity";
+    const Moments moments = moments_of(input, frames, body);
+    Vector mass(static_cast<Index>(body.nodes.size()));
+    for (Index i = 0; i < mass.size(); ++i) mass[i] = diagonal[body.nodes[static_cast<std::size_t>(i)]];
+    require_span(input, body, moments, mass);
     // Second rounds take away what rounding left of the first.
-    if (correct_centre(moments, mass) < 1.0) refuse(input, body.front());
+    if (correct_centre(moments, mass) < 1.0) refuse(input, body, too_few);
     correct_centre(moments, mass);
-    // Not so where the free nodes lie in a line that misses the centre.
-    if (!(defect(moments, mass).head(moments.affine).cwiseAbs().maxCoeff() < 1e-12)) refuse(input, body.front());
     if (correct_inertia(moments, mass) == 1.0) correct_inertia(moments, mass);
-    for (Index i = 0; i < mass.size(); ++i) diagonal[body[static_cast<std::size_t>(i)]] = mass[i];
-    const Index quadratic = moments.wanted.size() - moments.affine;
-    return defect(moments, mass).tail(quadratic).cwiseAbs().maxCoeff() * mass.sum() /
-           moments.wanted.tail(quadratic).cwiseAbs().maxCoeff();
+    if (!(defect(moments, mass).head(moments.affine).cwiseAbs().maxCoeff() < 1e-12)) refuse(input, body, too_few);
+    const InertiaCheck inertia = check_inertia(body, moments, mass);
+    if (!(inertia.least >= least_inertia)) {
+      refuse(input, body,
+             fmt::format("too few nodes off the contact boundary to carry its moments of inertia: about one axis only "
+                         "{:.2g} % would be left",
+                         std::max(100.0 * inertia.least, 0.0)));
+    }
+    for (Index i = 0; i < mass.size(); ++i) diagonal[body.nodes[static_cast<std::size_t>(i)]] = mass[i];
+    return inertia.lacking;
   }
 
   /// Contact nodes have no entry.

@@ -1,9 +1,12 @@
-#include <Eigen/Cholesky>
+#include <fmt/format.h>
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <vector>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/mass/mass.hpp"
+#include "ricochet/mass/mass_conditions.hpp"
 
 namespace ricochet {
 
@@ -18,10 +21,11 @@ class NearestEquivalentMass final : public MassConstruction {
   [[nodiscard]] bool removes_contact_inertia() const override { return true; }
 
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
-    const Matrix monomials = scaled_monomials(*input.nodes);
+    const MassFrames frames = mass_frames(input.inertia_matrix(), *input.nodes);
     SparseMatrix result = free_pattern(input);
-    correct(result, monomials, *input.consistent);
-    check_conditions(result, monomials, *input.consistent);
+    // Body by body: none gives mass to another.
+    for (const MassBody& body : frames.bodies) correct(result, frames, body, *input.consistent);
+    check_conditions(input, frames, result);
     if (!is_positive_definite(result, input.contact_nodes)) {
       throw Error(
           ErrorKind::invalid_input,
@@ -33,18 +37,6 @@ class NearestEquivalentMass final : public MassConstruction {
   }
 
  private:
-  /// (1, x, y[, z]) about the centre and relative to the size of the body, so that the Gram matrix is well conditioned
-  /// whatever the units. The conditions for these imply those for the plain monomials and conversely.
-  static Matrix scaled_monomials(const Points& nodes) {
-    Matrix monomials(nodes.cols(), nodes.rows() + 1);
-    monomials.col(0).setOnes();
-    const Vector low = nodes.rowwise().minCoeff();
-    const Vector high = nodes.rowwise().maxCoeff();
-    const double size = (high - low).maxCoeff();
-    monomials.rightCols(nodes.rows()) = ((nodes.colwise() - 0.5 * (low + high)) / size).transpose();
-    return monomials;
-  }
-
   static SparseMatrix free_pattern(const MassInput& input) {
     std::vector<char> is_contact(static_cast<std::size_t>(input.consistent->cols()), 0);
     for (const Index node : input.contact_nodes) is_contact[static_cast<std::size_t>(node)] = 1;
@@ -56,31 +48,44 @@ class NearestEquivalentMass final : public MassConstruction {
   }
 
   /// Too few free nodes cannot keep mass, centre and inertia: the Gram system is then singular and has no solution.
-  static void check_conditions(const SparseMatrix& mass, const Matrix& monomials, const SparseMatrix& consistent) {
-    const Matrix wanted = monomials.transpose() * (consistent * monomials);
-    const Matrix found = monomials.transpose() * (mass * monomials);
-    // The monomials are of size one, so these are masses; rounding leaves 1e-13 of them.
-    if ((found - wanted).cwiseAbs().maxCoeff() <= 1e-10 * wanted.cwiseAbs().maxCoeff()) return;
-    throw Error(ErrorKind::invalid_input,
-                "mass type \"equivalent-nearest\": the nodes that are not on the contact boundary are too few to carry "
-                "the body's mass, centre of gravity and inertia; refine the mesh, or use mass type \"consistent\" or "
-                "\"lumped\"");
+  static void check_conditions(const MassInput& input, const MassFrames& frames, const SparseMatrix& mass) {
+    const MassBody* worst = nullptr;
+    // Rounding leaves 1e-13.
+    if (moment_defect(mass, *input.consistent, frames, &worst) <= 1e-10) return;
+    std::vector<Index> free;
+    for (const Index node : worst->nodes) {
+      if (!std::binary_search(input.contact_nodes.begin(), input.contact_nodes.end(), node)) free.push_back(node);
+    }
+    std::sort(free.begin(), free.end());
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("mass type \"equivalent-nearest\": the body with the node at {} has {}: they cannot carry its "
+                    "mass, centre of gravity and moments of inertia; refine the mesh, or use mass type "
+                    "\"consistent\" or \"lumped\"",
+                    text_of_point(*input.nodes, worst->nodes.front()), describe_free_nodes(*input.nodes, free)));
   }
 
-  static void correct(SparseMatrix& mass, const Matrix& monomials, const SparseMatrix& consistent) {
-    const Index size = monomials.cols();
-    std::vector<std::pair<Index, Index>> conditions;
-    for (Index a = 0; a < size; ++a) {
-      for (Index b = a; b < size; ++b) conditions.emplace_back(a, b);
+  /// The conditions of one body, (P^a, P^b) in pairs.
+  static std::vector<std::pair<Index, Index>> conditions(Index monomials) {
+    std::vector<std::pair<Index, Index>> result;
+    for (Index a = 0; a < monomials; ++a) {
+      for (Index b = a; b < monomials; ++b) result.emplace_back(a, b);
     }
-    const auto count = static_cast<Index>(conditions.size());
+    return result;
+  }
+
+  static void correct(SparseMatrix& mass, const MassFrames& frames, const MassBody& body,
+                      const SparseMatrix& consistent) {
+    const Matrix& monomials = frames.monomials;
+    const auto pairs = conditions(monomials.rows());
+    const auto count = static_cast<Index>(pairs.size());
     const auto value = [&](Index condition, Index i, Index j) {
-      const auto [a, b] = conditions[static_cast<std::size_t>(condition)];
-      return 0.5 * (monomials(i, a) * monomials(j, b) + monomials(i, b) * monomials(j, a));
+      const auto [a, b] = pairs[static_cast<std::size_t>(condition)];
+      return 0.5 * (monomials(a, i) * monomials(b, j) + monomials(b, i) * monomials(a, j));
     };
     Matrix gram = Matrix::Zero(count, count);
     Vector row(count);
-    for (Index j = 0; j < mass.cols(); ++j) {
+    for (const Index j : body.nodes) {
       for (SparseMatrix::InnerIterator entry(mass, j); entry; ++entry) {
         for (Index k = 0; k < count; ++k) row[k] = value(k, entry.row(), j);
         gram.noalias() += row * row.transpose();
@@ -89,14 +94,14 @@ class NearestEquivalentMass final : public MassConstruction {
     const Eigen::LDLT<Matrix> factor(gram);
     // The second round takes away what rounding left of the first.
     for (int round = 0; round < 2; ++round) {
-      const Matrix missing = monomials.transpose() * (consistent * monomials - mass * monomials);
+      const Matrix missing = mass_moments(consistent, frames, body) - mass_moments(mass, frames, body);
       Vector defect(count);
       for (Index k = 0; k < count; ++k) {
-        defect[k] =
-            missing(conditions[static_cast<std::size_t>(k)].first, conditions[static_cast<std::size_t>(k)].second);
+        const auto [a, b] = pairs[static_cast<std::size_t>(k)];
+        defect[k] = missing(a, b);
       }
       const Vector multipliers = factor.solve(defect);
-      for (Index j = 0; j < mass.cols(); ++j) {
+      for (const Index j : body.nodes) {
         for (SparseMatrix::InnerIterator entry(mass, j); entry; ++entry) {
           double correction = 0.0;
           for (Index k = 0; k < count; ++k) correction += multipliers[k] * value(k, entry.row(), j);

@@ -16,16 +16,19 @@ namespace {
 using test_support::AssembledBody;
 using test_support::BodyDescription;
 
-/// Largest difference of moments, relative to the largest: total mass and centre; moments of inertia.
+/// Largest relative difference of total mass and first moments; of second moments about the centre of gravity.
 struct Lack {
   double centre = 0.0, inertia = 0.0;
 };
 
 Lack lack(const SparseMatrix& mass, const AssembledBody& body) {
   const Index d = body.space.nodes.rows();
-  const Matrix wanted = mass_moments(body.consistent, body.space.nodes);
-  const Matrix difference = (mass_moments(mass, body.space.nodes) - wanted).cwiseAbs() / wanted.cwiseAbs().maxCoeff();
-  return {difference.row(0).maxCoeff(), difference.bottomRightCorner(d, d).maxCoeff()};
+  const Vector first = mass_moments(body.consistent, body.space.nodes).col(0);
+  const Points nodes = body.space.nodes.colwise() - Vector(first.tail(d) / first[0]);
+  const Matrix wanted = mass_moments(body.consistent, nodes);
+  const Matrix difference = (mass_moments(mass, nodes) - wanted).cwiseAbs();
+  return {difference.row(0).maxCoeff() / wanted.cwiseAbs().maxCoeff(),
+          difference.bottomRightCorner(d, d).maxCoeff() / wanted.bottomRightCorner(d, d).maxCoeff()};
 }
 
 /// Diagonal, nothing on contact nodes, positive on all others.
@@ -40,7 +43,7 @@ void expect_lumped(const SparseMatrix& mass, const AssembledBody& body, const st
 }
 
 /// Meshes whose free nodes cannot have the body's centre of gravity with positive masses (a plate of two layers on one
-/// face: they are all above the middle), or too few of them.
+/// face: they are all above the middle), or less than a tenth of a moment of inertia.
 const std::vector<std::string> refused_bodies{"strip, 2 thick", "strip, 2 thick, quads", "ball, h 0.6",
                                               "plate, 1 thick", "plate, 2 thick",        "plate, degree 2"};
 
@@ -59,8 +62,7 @@ TEST(LumpedEquivalentMass, KeepsTheConditionsOnMeshesOfEveryKind) {
     } catch (const Error& problem) {
       EXPECT_TRUE(refused) << description.name << ": " << problem.what();
       EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
-      EXPECT_NE(std::string(problem.what()).find("has too few nodes that are not on the contact boundary"),
-                std::string::npos)
+      EXPECT_NE(std::string(problem.what()).find("has too few nodes off the contact boundary"), std::string::npos)
           << problem.what();
       continue;
     }
@@ -80,7 +82,7 @@ TEST(LumpedEquivalentMass, KeepsTheConditionsOnMeshesOfEveryKind) {
     EXPECT_GT(least, 0.25) << description.name << ": half of a mass in each of two steps";
     // What is not kept is said.
     EXPECT_EQ(log::warnings().size(), found.inertia > 1e-12 ? 1u : 0u) << description.name;
-    EXPECT_LE(found.inertia, 0.11) << description.name;
+    EXPECT_LE(found.inertia, 0.9) << description.name;
     all_kept += found.inertia <= 1e-12 ? 1 : 0;
   }
   EXPECT_GE(all_kept, 10);

@@ -1,0 +1,161 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "support/mass_bodies.hpp"
+
+// Any set of a mesh's nodes may be its contact nodes. Whatever is left for the inertia: a mass that is handed out keeps
+// what it promises, or the warning says by how much it does not.
+
+namespace ricochet {
+namespace {
+
+using test_support::AssembledBody;
+
+constexpr const char* grid =
+    "Rectangle(1)={0,0,0,2,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1}; "
+    "Transfinite Curve{1,3}=9; Transfinite Curve{2,4}=5; Transfinite Surface{1}; Recombine Surface{1};";
+constexpr const char* block =
+    "Box(1)={0,0,0,1,1,2}; Physical Volume(\"body\")={1}; Physical Surface(\"contact\")={5}; Transfinite Curve{:}=5; "
+    "Transfinite Surface{:}; Recombine Surface{:}; Transfinite Volume{1};";
+
+/// Nodes without contact: a few anywhere, or all on one line or in one plane of the grid, or all of a part of the body.
+std::vector<char> random_free_nodes(const Points& nodes, std::mt19937& random) {
+  std::vector<char> free(static_cast<std::size_t>(nodes.cols()), 0);
+  const auto any = [&](Index count) { return static_cast<Index>(random() % static_cast<unsigned>(count)); };
+  const Vector through = nodes.col(any(nodes.cols()));
+  const Index fixed = 1 + any(nodes.rows());  // coordinates that are fixed: what remains is a plane, a line, a point
+  const Index kind = any(3);
+  for (Index i = 0; i < nodes.cols(); ++i) {
+    bool is_free = kind == 1 ? nodes(0, i) >= through[0] : true;
+    if (kind == 0) is_free = any(nodes.cols()) < 2 + 4 * fixed;
+    if (kind == 2) {
+      for (Index k = 0; k < fixed; ++k) {
+        const Index axis = (k + any(1)) % nodes.rows();
+        is_free = is_free && std::abs(nodes(axis, i) - through[axis]) < 1e-9;
+      }
+    }
+    free[static_cast<std::size_t>(i)] = is_free ? 1 : 0;
+  }
+  return free;
+}
+
+/// Twice the energy of the velocity ω × (x − c), or of the plane's one rotation.
+double energy_of_spin(const SparseMatrix& mass, const Points& nodes, const Vector& centre,
+                      const Eigen::Vector3d& axis) {
+  Matrix velocity(nodes.cols(), nodes.rows());
+  for (Index i = 0; i < nodes.cols(); ++i) {
+    Eigen::Vector3d relative = Eigen::Vector3d::Zero();
+    relative.head(nodes.rows()) = nodes.col(i) - centre;
+    velocity.row(i) = axis.cross(relative).head(nodes.rows()).transpose();
+  }
+  return (velocity.transpose() * (mass * velocity)).trace();
+}
+
+struct Count {
+  int refused = 0, exact = 0, warned = 0;
+};
+
+void check_promises(const std::string& type, const AssembledBody& body, const MassInput& input, std::mt19937& random,
+                    Count& count) {
+  SparseMatrix mass;
+  log::clear_warnings();
+  try {
+    mass = make_mass(type)->build(input);
+  } catch (const Error& problem) {
+    ++count.refused;
+    EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+    EXPECT_NE(std::string(problem.what()).find("refine the mesh"), std::string::npos) << problem.what();
+    return;
+  }
+  const Points& nodes = body.space.nodes;
+  const Index d = nodes.rows();
+  const Matrix wanted = mass_moments(body.consistent, nodes), found = mass_moments(mass, nodes);
+  const double size = wanted.cwiseAbs().maxCoeff();
+  EXPECT_LE((found - wanted).row(0).cwiseAbs().maxCoeff(), 1e-12 * size) << "mass and centre of gravity";
+  EXPECT_TRUE(is_positive_definite(mass, input.contact_nodes));
+  const bool warned = !log::warnings().empty();
+  ++(warned ? count.warned : count.exact);
+  EXPECT_TRUE(!warned || type == "equivalent-lumped");
+  if (!warned) {
+    EXPECT_LE((found - wanted).cwiseAbs().maxCoeff(), 1e-9 * size) << "moments of inertia";
+  }
+  const Vector centre = wanted.col(0).tail(d) / wanted(0, 0);
+  for (int k = 0; k < 10; ++k) {
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+    if (d == 3) axis = Eigen::Vector3d::NullaryExpr([&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; });
+    const double ratio =
+        energy_of_spin(mass, nodes, centre, axis) / energy_of_spin(body.consistent, nodes, centre, axis);
+    EXPECT_GE(ratio, 0.1 - 1e-9) << "spin has inertia about every axis";
+    if (!warned) {
+      EXPECT_NEAR(ratio, 1.0, 1e-9);
+    }
+  }
+}
+
+TEST(DegenerateBodies, AMassKeepsItsPromisesOrIsRefused) {
+  log::set_level(log::Level::error);
+  for (const char* geometry : {grid, block}) {
+    const AssembledBody body({"grid", 1, 1.0, geometry});
+    for (const char* type : {"equivalent", "equivalent-lumped", "equivalent-nearest"}) {
+      SCOPED_TRACE(type);
+      std::mt19937 random(3);
+      Count count;
+      for (int trial = 0; trial < 150; ++trial) {
+        SCOPED_TRACE(trial);
+        const std::vector<char> free = random_free_nodes(body.space.nodes, random);
+        MassInput input = body.input;
+        input.contact_nodes.clear();
+        for (Index i = 0; i < body.space.nodes.cols(); ++i) {
+          if (free[static_cast<std::size_t>(i)] == 0) input.contact_nodes.push_back(i);
+        }
+        check_promises(type, body, input, random, count);
+      }
+      std::printf("%d dimensions, %-20s %3d exact, %3d with a warning, %3d refused\n",
+                  static_cast<int>(body.space.nodes.rows()), type, count.exact, count.warned, count.refused);
+      EXPECT_GT(count.refused, 20);
+      EXPECT_GT(count.exact + count.warned, 2);
+    }
+  }
+}
+
+TEST(DegenerateBodies, FreeNodesOnALineHaveNoSpinAboutIt) {
+  const AssembledBody body({"block", 1, 1.0, block});
+  MassInput input = body.input;
+  input.contact_nodes.clear();
+  for (Index i = 0; i < body.space.nodes.cols(); ++i) {
+    // Not on the axis of the block, through its centre of gravity.
+    if ((body.space.nodes.col(i).head(2) - Eigen::Vector2d(0.5, 0.5)).norm() > 1e-9) input.contact_nodes.push_back(i);
+  }
+  for (const char* type : {"equivalent", "equivalent-lumped", "equivalent-nearest"}) {
+    try {
+      (void)make_mass(type)->build(input);
+      ADD_FAILURE() << type << ": no error";
+    } catch (const Error& problem) {
+      const std::string message = problem.what();
+      EXPECT_NE(message.find("5 nodes off the contact boundary, at (0.5, 0.5, 0), "), std::string::npos) << message;
+      EXPECT_NE(message.find(", all on one line"), std::string::npos) << message;
+    }
+  }
+}
+
+TEST(DegenerateBodies, NoBodyGivesMassToAnother) {
+  const AssembledBody two({"two discs", 1, 0.2,
+                           "Disk(1)={0,0,0,1}; Disk(2)={5,0,0,0.5}; Physical Surface(\"body\")={1,2}; "
+                           "Physical Curve(\"contact\")={1};"});
+  for (const char* type : {"equivalent", "equivalent-lumped", "equivalent-nearest"}) {
+    const SparseMatrix mass = make_mass(type)->build(two.input);
+    Vector left(two.space.nodes.cols());
+    for (Index i = 0; i < left.size(); ++i) left[i] = two.space.nodes(0, i) < 2.0 ? 1.0 : 0.0;
+    const double wanted = left.dot(two.consistent * left);
+    EXPECT_NEAR(left.dot(mass * left), wanted, 1e-12 * wanted) << type;
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
