@@ -171,7 +171,7 @@ Mesh make_box_mesh(const BoxMesh& box) {
 Mesh make_checked_box_mesh(const BoxMesh& box) {
   Mesh mesh = make_box_mesh(box);
   gmsh::check_facets(mesh);
-  gmsh::check_cells(mesh);
+  gmsh::orient_cells(mesh);
   gmsh::check_coincident_nodes(mesh);
   return mesh;
 }

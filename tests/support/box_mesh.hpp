@@ -24,7 +24,7 @@ struct BoxMesh {
 /// "body" (cells), and of facets "x0", "x1", "y0", … (the sides where that reference coordinate is 0 or 1), "boundary".
 [[nodiscard]] Mesh make_box_mesh(const BoxMesh& box);
 
-/// Refuses inverted cells as the reader of meshes does.
+/// Refuses tangled and degenerate cells as the reader of meshes does.
 [[nodiscard]] Mesh make_checked_box_mesh(const BoxMesh& box);
 
 /// x ↦ matrix · x + shift.

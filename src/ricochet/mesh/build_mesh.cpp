@@ -153,7 +153,7 @@ Mesh build_mesh(RawMesh raw, const BuildOptions& options) {
   mesh.facets = collect_cells(selection.facets, numbering, mesh);
   check_facets(mesh);
   keep_used_nodes(raw, options.scale, mesh);
-  check_cells(mesh);
+  orient_cells(mesh);
   if (!options.allow_coincident_nodes) check_coincident_nodes(mesh);
   return mesh;
 }

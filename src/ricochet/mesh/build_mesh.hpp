@@ -65,8 +65,9 @@ void check_facets(const Mesh& mesh);
 /// Keeps the nodes that belong to a cell, numbered in the file's order, and sets their coordinates.
 void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh);
 
-/// No cell may be inverted or degenerate.
-void check_cells(const Mesh& mesh);
+/// Turns cells round whose Jacobian is negative throughout, with a note that counts them: half of the programs that write
+/// meshes number the nodes of a cell so. No cell may be degenerate or tangled (the Jacobian changes sign).
+void orient_cells(Mesh& mesh);
 
 /// No two nodes may be at the same place.
 void check_coincident_nodes(const Mesh& mesh);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "ricochet/base/log.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
 #include "ricochet/mesh/offenders.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
@@ -111,36 +112,46 @@ Orientation orientation(const Points& points, const Index* cell, const std::vect
   return result;
 }
 
+void turn_round(Index* cell, const std::vector<int>& mirrored, std::vector<Index>& nodes) {
+  nodes.assign(cell, cell + mirrored.size());
+  for (std::size_t node = 0; node < mirrored.size(); ++node)
+    cell[node] = nodes[static_cast<std::size_t>(mirrored[node])];
+}
+
 template <int Dimension>
-void check_cells_of_dimension(const Mesh& mesh) {
-  Offenders inverted;
-  Offenders folded;
+void orient_cells_of_dimension(Mesh& mesh) {
+  Offenders reversed;
+  Offenders tangled;
   Offenders flat;
-  for (const CellBlock& block : mesh.cells) {
+  std::vector<Index> nodes;
+  for (CellBlock& block : mesh.cells) {
     const std::vector<Matrix> gradients = gradients_at_nodes(block.shape, mesh.degree);
+    const std::vector<int>& mirrored = mirrored_nodes(block.shape, mesh.degree);
     for (Index i = 0; i < block.size(); ++i) {
       const Orientation found = orientation<Dimension>(mesh.nodes, block.cell(i), gradients);
       const std::int64_t tag = block.tags[static_cast<std::size_t>(i)];
       if (found.flat) {
         flat.add(tag);
+      } else if (found.negative && found.positive) {
+        tangled.add(tag);
       } else if (found.negative) {
-        (found.positive ? folded : inverted).add(tag);
+        reversed.add(tag);
+        turn_round(block.nodes.data() + i * block.nodes_per_cell, mirrored, nodes);
       }
     }
   }
   if (flat.any())
     fail_mesh(mesh.source, fmt::format("degenerate cells, whose Jacobian vanishes: {}", flat.text("element")));
-  if (folded.any()) {
-    fail_mesh(mesh.source, fmt::format("folded cells, whose Jacobian changes sign: {}", folded.text("element")));
+  if (tangled.any()) {
+    fail_mesh(mesh.source, fmt::format("tangled cells, whose Jacobian changes sign: {}", tangled.text("element")));
   }
-  if (inverted.any() && Dimension == 2 && inverted.count() == mesh.cell_count()) {
-    fail_mesh(mesh.source,
-              fmt::format("all {} cells are inverted (clockwise): reverse the orientation of the surface in Gmsh, "
-                          "with ReverseMesh Surface{{:}}; in the .geo file, or by the sign of its curve loop",
-                          inverted.count()));
-  }
-  if (inverted.any()) {
-    fail_mesh(mesh.source, fmt::format("inverted cells, whose Jacobian is negative: {}", inverted.text("element")));
+  if (reversed.any()) {
+    const bool all = reversed.count() == mesh.cell_count();
+    log::info(fmt::format(
+        "{}: {} {} reversed (their Jacobian was negative) and were turned round; the mesh is the same", mesh.source,
+        all ? fmt::format("all {} cells", reversed.count())
+            : fmt::format("of {} cells, {}", mesh.cell_count(), reversed.text("element")),
+        reversed.count() == 1 && !all ? "was" : "were"));
   }
 }
 
@@ -208,8 +219,8 @@ class NodeGrid {
 
 }  // namespace
 
-void check_cells(const Mesh& mesh) {
-  mesh.dimension == 2 ? check_cells_of_dimension<2>(mesh) : check_cells_of_dimension<3>(mesh);
+void orient_cells(Mesh& mesh) {
+  mesh.dimension == 2 ? orient_cells_of_dimension<2>(mesh) : orient_cells_of_dimension<3>(mesh);
 }
 
 void check_coincident_nodes(const Mesh& mesh) {

@@ -75,10 +75,24 @@ VertexSets make_facet_nodes(CellShape shape, int degree) {
   return result;
 }
 
+std::vector<int> make_mirrored_nodes(CellShape shape, int degree) {
+  // The vertices at e₁ and e₂ are 1 and 2 in every shape; those above them in a hexahedron are 5 and 6.
+  constexpr std::array<int, 8> mirrored_vertex{0, 2, 1, 3, 4, 6, 5, 7};
+  const VertexSets& nodes = node_vertices(shape, degree);
+  std::vector<int> result;
+  if (shape == CellShape::interval) return result;
+  for (std::vector<int> vertices : nodes) {
+    for (int& vertex : vertices) vertex = mirrored_vertex[static_cast<std::size_t>(vertex)];
+    std::sort(vertices.begin(), vertices.end());
+    result.push_back(static_cast<int>(std::find(nodes.begin(), nodes.end(), vertices) - nodes.begin()));
+  }
+  return result;
+}
+
 /// One entry for each shape and degree, made at first use: these are looked up once per block of cells.
 template <class Make>
-std::array<VertexSets, 2 * shape_count> make_table(Make make) {
-  std::array<VertexSets, 2 * shape_count> table;
+auto make_table(Make make) {
+  std::array<decltype(make(CellShape::triangle, 1)), 2 * shape_count> table;
   for (std::size_t i = 0; i < table.size(); ++i)
     table[i] = make(static_cast<CellShape>(i / 2), static_cast<int>(i % 2) + 1);
   return table;
@@ -108,6 +122,11 @@ CellShape facet_shape(CellShape shape) {
 
 const VertexSets& facet_nodes(CellShape shape, int degree) {
   static const auto table = make_table(make_facet_nodes);
+  return table[table_index(shape, degree)];
+}
+
+const std::vector<int>& mirrored_nodes(CellShape shape, int degree) {
+  static const auto table = make_table(make_mirrored_nodes);
   return table[table_index(shape, degree)];
 }
 

@@ -19,6 +19,10 @@ namespace ricochet {
 /// nodes.
 [[nodiscard]] const std::vector<std::vector<int>>& facet_nodes(CellShape shape, int degree);
 
+/// For each node the one at its mirror image when the first two reference axes are exchanged: the order in which the
+/// nodes of a cell give it the opposite orientation. Not for intervals.
+[[nodiscard]] const std::vector<int>& mirrored_nodes(CellShape shape, int degree);
+
 /// Reference coordinates of a vertex, each 0 or 1.
 [[nodiscard]] double vertex_coordinate(CellShape shape, int vertex, int axis);
 

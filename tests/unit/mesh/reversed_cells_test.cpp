@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <map>
+#include <set>
+
+#include "ricochet/mesh/gmsh_elements.hpp"
+#include "support.hpp"
+
+/// Cells whose nodes are numbered the other way round, as many programs write them.
+namespace ricochet::test {
+namespace {
+
+/// By Gmsh's element type: its nodes in the order of its mirror image, in Gmsh's numbering (reference manual, "Node
+/// ordering"). The mirrors are others than the one the reader uses to turn cells round.
+const std::map<int, std::vector<std::size_t>>& mirror_images() {
+  static const std::map<int, std::vector<std::size_t>> images{
+      {2, {0, 2, 1}},
+      {9, {0, 2, 1, 5, 4, 3}},
+      {3, {1, 0, 3, 2}},
+      {10, {1, 0, 3, 2, 4, 7, 6, 5, 8}},
+      {4, {1, 0, 2, 3}},
+      {11, {1, 0, 2, 3, 4, 6, 5, 9, 8, 7}},
+      {5, {4, 5, 6, 7, 0, 1, 2, 3}},
+      {12, {4, 5, 6, 7, 0, 1, 2, 3, 16, 17, 10, 18, 12, 19, 14, 15, 8, 9, 11, 13, 25, 21, 22, 23, 24, 20, 26}},
+  };
+  return images;
+}
+
+/// Reverses every `stride`-th cell.
+gmsh::RawMesh with_reversed_cells(const std::string& name, std::size_t stride) {
+  gmsh::RawMesh raw = gmsh::read_msh(mesh_content(name), name);
+  const int dimension = gmsh::select_elements(raw, name).dimension;
+  for (gmsh::RawElements& elements : raw.elements) {
+    if (gmsh::find_element_type(elements.type)->dimension != dimension) continue;
+    const std::vector<std::size_t>& image = mirror_images().at(elements.type);
+    for (std::size_t cell = 0; cell < elements.tags.size(); cell += stride) {
+      const auto first = elements.nodes.begin() + static_cast<std::ptrdiff_t>(cell * image.size());
+      const std::vector<std::int64_t> nodes(first, first + static_cast<std::ptrdiff_t>(image.size()));
+      for (std::size_t k = 0; k < image.size(); ++k) first[static_cast<std::ptrdiff_t>(k)] = nodes[image[k]];
+    }
+  }
+  return raw;
+}
+
+/// Determinant of the edges of the reference axes at vertex 0.
+double corner_determinant(const Mesh& mesh, const CellBlock& block, Index cell) {
+  const int last = block.shape == CellShape::hexahedron ? 4 : 3;
+  Matrix edges(mesh.dimension, mesh.dimension);
+  for (int axis = 0; axis < mesh.dimension; ++axis) {
+    const int end = axis == 2 ? last : axis + 1;
+    edges.col(axis) = mesh.nodes.col(block.cell(cell)[end]) - mesh.nodes.col(block.cell(cell)[0]);
+  }
+  return edges.determinant();
+}
+
+std::set<std::int64_t> node_set(const Mesh& mesh, const CellBlock& block, Index cell) {
+  std::set<std::int64_t> tags;
+  for (int k = 0; k < block.nodes_per_cell; ++k)
+    tags.insert(mesh.node_tags[static_cast<std::size_t>(block.cell(cell)[k])]);
+  return tags;
+}
+
+TEST(ReversedCells, AreTurnedRound) {
+  for (const std::string shape : {"triangle", "quadrilateral", "tetrahedron", "hexahedron", "mixed"}) {
+    for (const std::string order : {"_o1_", "_o2_"}) {
+      const std::string name = shape + order + "msh41_ascii.msh";
+      const Mesh reference = read_test_mesh(name);
+      for (const std::size_t stride : {1u, 3u}) {
+        const gmsh::RawMesh raw = with_reversed_cells(name, stride);
+        // Tangled cells would be refused: so all nodes, those of the second order too, are where they belong.
+        const Mesh mesh = gmsh::build_mesh(raw, {name, 1.0, false, false});
+        ASSERT_EQ(mesh.cells.size(), reference.cells.size());
+        for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
+          ASSERT_EQ(mesh.cells[b].tags, reference.cells[b].tags);
+          for (Index cell = 0; cell < mesh.cells[b].size(); ++cell) {
+            EXPECT_GT(corner_determinant(mesh, mesh.cells[b], cell), 0.0) << name;
+            EXPECT_EQ(node_set(mesh, mesh.cells[b], cell), node_set(reference, reference.cells[b], cell)) << name;
+          }
+        }
+        for (const Group& group : reference.groups)
+          EXPECT_EQ(mesh.find_group(group.name, group.dimension)->members, group.members);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ricochet::test
