@@ -188,7 +188,7 @@ class Probes(TestCase):
                 ('contact = -1', "at least 0"),
                 ('group = "bodies"', "bodies"),
                 ('boundary = "body"', "body"),
-                ('boundary = ""', "names no group"),
+                ('boundary = ""', '"boundary" must be the name of a group'),
                 ('from = [5.0, 5.0]\nto = [6.0, 6.0]', 'give "within"'),
                 ('from = [5.0, 5.0]\nto = [5.0, 5.0]', "same point"),
                 ('from = [5.0, 5.0]', '"to"'),

@@ -7,6 +7,7 @@
 
 #include "ricochet/base/expression.hpp"
 #include "ricochet/base/types.hpp"
+#include "ricochet/mesh/place_mesh.hpp"
 
 /// @file What a case file says, after parsing and every check that needs no mesh. Field names are the keys of the file.
 /// Units are the user's own and must be consistent; nothing here has a scale.
@@ -27,6 +28,7 @@ struct MeshSection {
   double scale = 1.0;
   int degree = 1;                ///< of the displacement
   std::string plane = "strain";  ///< "strain" or "stress"
+  Placement placement;           ///< turn and move
 };
 
 struct DampingSection {
@@ -159,6 +161,8 @@ struct Case {
   OutputSection output;
   CheckSection check;
   std::vector<ExpectSection> expectations;
+  /// Names in the lists of groups, by the text that stands in the sections' `group` (and `boundary`) for them.
+  std::map<std::string, std::vector<std::string>> group_lists;
   std::vector<std::string> overridden;              ///< key paths given by --set
   std::map<std::string, SourceLocation> locations;  ///< key path ("contact.0.group") → where it stands
   std::map<std::string, std::string> values;        ///< key path → value as text, defaults included, for `when`

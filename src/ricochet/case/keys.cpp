@@ -142,6 +142,8 @@ std::string wanted(const Key& key) {
     case KeyType::components:
     case KeyType::names:
       return fmt::format("a list with one or more of {}", join_names(key.choices, " and "));
+    case KeyType::groups:
+      return "the name of a group, or a list of them";
     case KeyType::parameters:
       return "a table of numbers";
     case KeyType::conditions:
@@ -180,6 +182,11 @@ std::string unknown_section_message(std::string_view name) {
   std::vector<std::string> titles;
   for (const Section& section : case_sections()) {
     if (section.kind != SectionKind::top) titles.push_back(section_title(section));
+  }
+  if (name == "part") {
+    return "[part.NAME], parts from files of their own, is for a later version; put all bodies into one mesh file, "
+           "which "
+           "[mesh] names";
   }
   const std::string near = nearest_section(name);
   const std::string hint = near.empty() ? fmt::format("the sections are {}", join_names(titles, " and ", false))

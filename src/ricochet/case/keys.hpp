@@ -20,6 +20,7 @@ enum class KeyType {
   formulas,    ///< 2 or 3 of them, or one of `choices`
   components,  ///< a list of distinct `choices`, which name the directions of space
   names,       ///< a list of distinct `choices`
+  groups,      ///< the name of a group of the mesh, or a list of distinct ones: their union
   parameters,  ///< a table of numbers, for the expressions beside it
   conditions,  ///< a table of key paths and the values they must have
   table,       ///< a sub-table with `keys`

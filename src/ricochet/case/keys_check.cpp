@@ -41,6 +41,11 @@ bool is_misspelt(const Key& key, const std::vector<Key>& keys, const TomlNode& t
   });
 }
 
+// A table that cannot be filled in with defaults alone: it is absent where nobody gives it.
+bool needs_a_user(const Key& table) {
+  return std::any_of(table.keys.begin(), table.keys.end(), [](const Key& key) { return key.required; });
+}
+
 // Goes through the document section by section, as the table of keys says.
 class TreeChecker {
  public:
@@ -194,7 +199,7 @@ void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& ti
     } else if (key.required) {
       problems_.add(table.location,
                     fmt::format("{} has no \"{}\": {}. {}", title, key.name, wanted_with_unit(key), key.doc));
-    } else if (key.standard || key.type == KeyType::table) {
+    } else if (key.standard || (key.type == KeyType::table && !needs_a_user(key))) {
       TomlNode& added = table.children.emplace_back(default_node(key, table.location));
       if (key.type == KeyType::table) check_keys(key.keys, key.name, added);
     }

@@ -107,6 +107,24 @@ void check_directions(const Key& key, TomlNode& value, Problems& problems) {
   }
 }
 
+void check_groups(const Key& key, TomlNode& value, Problems& problems) {
+  if (value.kind == Kind::text && !value.text.empty()) return;
+  if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
+  std::vector<std::string> seen;
+  for (const TomlNode& name : value.children) {
+    std::string reason;
+    if (name.kind != Kind::text || name.text.empty()) {
+      reason = fmt::format("must be the name of a group; found {}", describe(name));
+    } else if (is_choice(name.text, seen)) {
+      reason = fmt::format("is \"{}\", which is there already", name.text);
+    }
+    seen.push_back(name.text);
+    if (reason.empty()) continue;
+    value.is_refused = true;
+    problems.add(name.location, fmt::format("an entry of \"{}\" {}", key.name, reason));
+  }
+}
+
 void check_parameters(const Key& key, TomlNode& value, Problems& problems) {
   if (!value.is_table()) return refuse_type(key, value, problems);
   for (TomlNode& parameter : value.children) {
@@ -151,6 +169,8 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
     case KeyType::components:
     case KeyType::names:
       return check_directions(key, value, problems);
+    case KeyType::groups:
+      return check_groups(key, value, problems);
     case KeyType::parameters:
       return check_parameters(key, value, problems);
     case KeyType::conditions:

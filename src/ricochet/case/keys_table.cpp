@@ -1,5 +1,7 @@
 #include "ricochet/case/keys_table.hpp"
 
+#include <fmt/format.h>
+
 #include "ricochet/case/names.hpp"
 
 // The table itself: what is simulated, and how.
@@ -14,6 +16,38 @@ Key parameters_key() {
   return {.name = "parameters",
           .type = KeyType::parameters,
           .doc = "Numbers by name, for use in the expressions of this section."};
+}
+
+Key group_key(const char* kind, const char* built_in) {
+  return {
+      .name = "group",
+      .type = KeyType::groups,
+      .required = true,
+      .doc = fmt::format("Group of {0} in the mesh, or several: [\"a\", \"b\"]. \"{1}\" stands for all {0}, unless the "
+                         "mesh has a group of that name.",
+                         kind, built_in)};
+}
+
+Key placement_key() {
+  return {
+      .name = "turn",
+      .type = KeyType::table,
+      .keys = {{.name = "angle",
+                .type = KeyType::number,
+                .unit = "degrees",
+                .required = true,
+                .doc = "Right-handed about the axis; in two dimensions counter-clockwise."},
+               {.name = "axis",
+                .type = KeyType::vector,
+                .unit = "1",
+                .doc = "Direction of the axis, of any length but zero; in three dimensions only, and required there."},
+               {.name = "about",
+                .type = KeyType::vector,
+                .unit = "length",
+                .doc = "A point of the axis, in the coordinates after `scale`; absent: the origin."}},
+      .doc =
+          "Turns the mesh, after `scale` and before `move`. Obstacles, probes and expressions see where it is "
+          "then."};
 }
 
 std::vector<std::string> preset_names() {
@@ -37,7 +71,9 @@ Section mesh_section() {
       .keys = {
           {.name = "file",
            .required = true,
-           .doc = "Mesh file (.msh), or geometry for the gmsh program (.geo, .step, …). A relative path is relative to "
+           .doc = "Mesh file (.msh, .inp, .vtu, .med, …; see docs/meshes.md), or geometry for the gmsh program (.geo, "
+                  ".step, "
+                  "…). A relative path is relative to "
                   "the "
                   "folder of the case file, also when given by --set."},
           {.name = "size",
@@ -51,6 +87,11 @@ Section mesh_section() {
            .standard = "1",
            .range = positive,
            .doc = "Multiplies all coordinates of the mesh."},
+          placement_key(),
+          {.name = "move",
+           .type = KeyType::vector,
+           .unit = "length",
+           .doc = "Added to all coordinates, after `scale` and `turn`."},
           {.name = "degree",
            .type = KeyType::integer,
            .unit = "1",
@@ -91,7 +132,7 @@ Section material_section() {
       .alternatives = {{"lambda", "mu"}, {"young", "poisson"}},
       .doc = "Isotropic linear elasticity of one physical group of cells.",
       .keys = {
-          {.name = "group", .required = true, .doc = "Name of the physical group of cells in the mesh."},
+          group_key("cells", "all"),
           {.name = "density",
            .type = KeyType::number,
            .unit = "density",
@@ -158,7 +199,7 @@ Section contact_section() {
       .kind = SectionKind::list,
       .doc = "A part of the boundary that may touch an obstacle.",
       .keys = {
-          {.name = "group", .required = true, .doc = "Name of the physical group of boundary facets in the mesh."},
+          group_key("boundary facets", "boundary"),
           {.name = "obstacle", .required = true, .doc = "Name of the obstacle, a section [obstacle.NAME]."},
           {.name = "friction",
            .type = KeyType::number,
@@ -193,7 +234,7 @@ Section support_section() {
           .kind = SectionKind::list,
           .doc = "Prescribed displacement components on a part of the boundary.",
           .keys = {
-              {.name = "group", .required = true, .doc = "Name of the physical group of boundary facets in the mesh."},
+              group_key("boundary facets", "boundary"),
               {.name = "components",
                .type = KeyType::components,
                .required = true,
@@ -214,7 +255,7 @@ Section traction_section() {
           .kind = SectionKind::list,
           .doc = "Force on a part of the boundary.",
           .keys = {
-              {.name = "group", .required = true, .doc = "Name of the physical group of boundary facets in the mesh."},
+              group_key("boundary facets", "boundary"),
               {.name = "value",
                .type = KeyType::formulas,
                .unit = "stress",

@@ -44,7 +44,8 @@ Section probe_section() {
            .range = positive,
            .doc = "Of a segment: nodes up to this distance from it belong to it; absent: 1e-6 of the body's size."},
           {.name = "boundary",
-           .doc = "Name of a physical group of boundary facets: force and moment on the body of supports and "
+           .type = KeyType::groups,
+           .doc = "Group of boundary facets, or a list of them: force and moment on the body of supports and "
                   "obstacles at its nodes (given loads are not counted). Columns NAME.force_x …, NAME.moment_z, in 3D "
                   "NAME.moment_x …"},
           {.name = "about",
@@ -53,7 +54,8 @@ Section probe_section() {
            .doc = "Point that the moment of a boundary is about, in the reference configuration; absent: the "
                   "origin."},
           {.name = "group",
-           .doc = "Name of a physical group of cells or of boundary facets: columns "
+           .type = KeyType::groups,
+           .doc = "Group of cells or of boundary facets, or a list of them: columns "
                   "NAME.displacement_average_x …, _minimum_, _maximum_, the same of the velocity, and of cells "
                   "von_mises_average, _minimum, _maximum. Averages are over volume or area."},
           {.name = "contact",

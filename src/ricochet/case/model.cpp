@@ -11,8 +11,8 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/case/model_parts.hpp"
-#include "ricochet/case/problems.hpp"
 #include "ricochet/fem/exterior_facets.hpp"
+#include "ricochet/mesh/place_mesh.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 
@@ -48,9 +48,21 @@ void check_expressions(const Case& input, const std::string& key_path, const std
   }
 }
 
+void check_placement(const Case& input, int dimension) {
+  const Placement& placement = input.mesh.placement;
+  check_length(input, "mesh.move", placement.move.size(), dimension);
+  check_length(input, "mesh.turn.about", placement.about.size(), dimension);
+  if (dimension == 2 && !placement.axis.empty())
+    refuse(input, "mesh.turn.axis", "the mesh has dimension 2, where it turns about a point: leave out the axis");
+  check_length(input, "mesh.turn.axis", placement.axis.size(), dimension);
+  if (dimension == 3 && placement.axis.empty() && placement.angle != 0.0)
+    refuse(input, "mesh.turn", "the mesh has dimension 3: give \"turn\" an axis, as in axis = [0, 0, 1]");
+}
+
 }  // namespace
 
 void check_dimensions(const Case& input, int dimension) {
+  check_placement(input, dimension);
   for (const ObstacleSection& obstacle : input.obstacles) {
     check_length(input, "obstacle." + obstacle.name + ".point", obstacle.point.size(), dimension);
     check_length(input, "obstacle." + obstacle.name + ".normal", obstacle.normal.size(), dimension);
@@ -98,32 +110,6 @@ std::vector<Index> boundary_at(const Case& input, const std::string& key_path, c
   }
   return group.members;
 }
-
-namespace {
-
-/// All wrong names of groups at once.
-void check_groups(const Case& input, const Mesh& mesh) {
-  Problems problems;
-  const auto check = [&](const std::string& key_path, const std::string& name, int dimension) {
-    try {
-      (void)mesh.group(name, dimension);
-    } catch (const Error& problem) {
-      problems.add(input.where(key_path), problem.what());
-    }
-  };
-  const auto check_boundaries = [&](const char* section, const auto& entries) {
-    for (std::size_t i = 0; i < entries.size(); ++i)
-      check(fmt::format("{}.{}.group", section, i), entries[i].group, mesh.dimension - 1);
-  };
-  for (std::size_t i = 0; i < input.materials.size(); ++i)
-    check(fmt::format("material.{}.group", i), input.materials[i].group, mesh.dimension);
-  check_boundaries("contact", input.contacts);
-  check_boundaries("support", input.supports);
-  check_boundaries("traction", input.tractions);
-  problems.raise();
-}
-
-}  // namespace
 
 void require_mesh_file(const Case& input) {
   if (std::filesystem::exists(input.mesh.file)) return;
@@ -252,7 +238,8 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   model->mesh = read_mesh({input.mesh.file, input.mesh.size, input.mesh.scale, input.mesh.degree});
   const double read_seconds = timer.restart();
   check_dimensions(input, model->mesh.dimension);
-  check_groups(input, model->mesh);
+  place_mesh(model->mesh, input.mesh.placement);
+  complete_groups(input, model->mesh);
   model->space = make_displacement_space(model->mesh, input.mesh.degree);
   model->contains_rotations = input.mesh.degree > 1 || !is_curved(model->mesh);
   if (!model->contains_rotations) {

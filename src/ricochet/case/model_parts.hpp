@@ -11,6 +11,10 @@ namespace ricochet {
 /// Checks every vector and component of the case against the dimension of the mesh.
 void check_dimensions(const Case& input, int dimension);
 
+/// Adds to the mesh what the case's groups need: "all", "boundary", and the unions of lists under their text. Throws
+/// Error(invalid_input) with all names at once that are no groups.
+void complete_groups(const Case& input, Mesh& mesh);
+
 /// Group of cells or facets named at a key; refuses there when it does not exist or is empty.
 [[nodiscard]] const Group& group_at(const Case& input, const std::string& key_path, const Mesh& mesh,
                                     const std::string& name, int dimension);

@@ -25,21 +25,14 @@ class ProbeMaker {
   void make(std::size_t number) {
     const ProbeSection& section = input_.probes[number];
     const std::string key = fmt::format("probe.{}", number);
-    const std::size_t before = count();
     if (!section.at.empty()) add_point(section);
     if (!section.from.empty()) add_segment(section, key);
     if (!section.boundary.empty()) add_boundary(section, key);
     if (!section.group.empty()) add_group(section, key);
     if (section.contact) add_contact(section, key);
-    if (count() == before) refuse(input_, key + ".name", fmt::format("probe \"{}\" names no group", section.name));
   }
 
  private:
-  [[nodiscard]] std::size_t count() const {
-    std::size_t result = model_.sensors.size();
-    for (const auto& [every, sensors] : model_.sampled_sensors) result += sensors.size();
-    return result;
-  }
   void add(const ProbeSection& section, std::shared_ptr<Sensor> sensor) {
     auto& sensors = section.every > 0 ? model_.sampled_sensors[section.every] : model_.sensors;
     sensors.push_back(std::move(sensor));

@@ -52,6 +52,14 @@ MeshSection read_mesh(const SectionReader& reader, const std::string& case_path)
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (reader.is_usable("turn")) {
+    const SectionReader turn = reader.table("turn");
+    mesh.placement = {turn.number("angle"), turn.vector("axis"), turn.vector("about"), {}};
+    const std::vector<double>& axis = mesh.placement.axis;
+    if (turn.is_usable("axis") && std::all_of(axis.begin(), axis.end(), [](double a) { return a == 0.0; }))
+      turn.add_problem("axis", "\"axis\" must not be zero: it is the direction that the mesh turns about");
+  }
+  mesh.placement.move = reader.vector("move");
   if (mesh.size && extension == ".msh") {
     reader.add_problem(
         "size",
@@ -79,9 +87,9 @@ void read_elasticity(const SectionReader& reader, MaterialSection& material) {
   }
 }
 
-MaterialSection read_material(const SectionReader& reader) {
+MaterialSection read_material(const SectionReader& reader, Case& result) {
   MaterialSection material;
-  material.group = reader.text("group");
+  material.group = reader.groups("group", result.group_lists);
   material.density = reader.number("density");
   read_elasticity(reader, material);
   const SectionReader damping = reader.table("damping");
@@ -105,9 +113,9 @@ ObstacleSection read_obstacle(const SectionReader& reader) {
   return obstacle;
 }
 
-ContactSection read_contact(const SectionReader& reader) {
+ContactSection read_contact(const SectionReader& reader, Case& result) {
   ContactSection contact;
-  contact.group = reader.text("group");
+  contact.group = reader.groups("group", result.group_lists);
   contact.obstacle = reader.text("obstacle");
   contact.friction = reader.number("friction");
   contact.friction_bound = reader.number("friction_bound");
@@ -133,21 +141,21 @@ void check_distinct(const std::vector<SectionReader>& readers, const std::string
   for (std::size_t i = 0; i < readers.size(); ++i) {
     if (!readers[i].is_usable(name)) continue;
     for (std::size_t j = 0; j < i; ++j) {
-      if (!readers[j].is_usable(name) || readers[j].text(name) != readers[i].text(name)) continue;
+      if (!readers[j].is_usable(name) || readers[j].value(name) != readers[i].value(name)) continue;
       if (!together.empty() && readers[i].is_usable(together) && readers[j].is_usable(together) &&
           readers[i].text(together) != readers[j].text(together)) {
         continue;
       }
       readers[i].add_problem(name, fmt::format("the {} \"{}\" is in another [[{}]] already, at {}", name,
-                                               readers[i].text(name), section, readers[j].where(name).text()));
+                                               readers[i].value(name), section, readers[j].where(name).text()));
       break;
     }
   }
 }
 
-SupportSection read_support(const SectionReader& reader) {
+SupportSection read_support(const SectionReader& reader, Case& result) {
   SupportSection support;
-  support.group = reader.text("group");
+  support.group = reader.groups("group", result.group_lists);
   support.components = reader.choice_numbers("components");
   support.value = reader.formula("value");
   return support;
@@ -161,16 +169,16 @@ InitialSection read_initial(const SectionReader& reader) {
   return initial;
 }
 
-ProbeSection read_probe(const SectionReader& reader) {
+ProbeSection read_probe(const SectionReader& reader, Case& result) {
   ProbeSection probe;
   probe.name = reader.text("name");
   probe.at = reader.vector("at");
   probe.from = reader.vector("from");
   probe.to = reader.vector("to");
   probe.within = reader.optional_number("within");
-  probe.boundary = reader.text("boundary");
+  probe.boundary = reader.groups("boundary", result.group_lists);
   probe.about = reader.vector("about");
-  probe.group = reader.text("group");
+  probe.group = reader.groups("group", result.group_lists);
   probe.contact = reader.optional_integer("contact");
   probe.every = reader.optional_integer("every").value_or(0);
   const auto only_with = [&](const char* key, const char* other) {
@@ -239,7 +247,7 @@ void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections,
   for (const SectionReader& reader : sections.all("obstacle")) result.obstacles.push_back(read_obstacle(reader));
   const std::vector<SectionReader> contacts = sections.all("contact");
   for (const SectionReader& reader : contacts) {
-    result.contacts.push_back(read_contact(reader));
+    result.contacts.push_back(read_contact(reader, result));
     if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, names);
   }
   check_distinct(contacts, "contact", "group", "obstacle");
@@ -251,19 +259,20 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems, Remar
   const Sections sections(root, problems);
   result.title = SectionReader(case_sections().front().keys, root, problems).text("title");
   result.mesh = read_mesh(sections.one("mesh"), result.path);
-  for (const SectionReader& reader : sections.all("material")) result.materials.push_back(read_material(reader));
+  for (const SectionReader& reader : sections.all("material"))
+    result.materials.push_back(read_material(reader, result));
   check_distinct(sections.all("material"), "material", "group");
   read_obstacles_and_contacts(root, sections, result);
-  for (const SectionReader& reader : sections.all("support")) result.supports.push_back(read_support(reader));
+  for (const SectionReader& reader : sections.all("support")) result.supports.push_back(read_support(reader, result));
   for (const SectionReader& reader : sections.all("traction")) {
-    result.tractions.push_back({reader.text("group"), reader.formulas("value")});
+    result.tractions.push_back({reader.groups("group", result.group_lists), reader.formulas("value")});
   }
   const SectionReader load = sections.one("load");
   result.load = {load.vector("gravity"), load.formulas("body_force")};
   result.initial = read_initial(sections.one("initial"));
   result.mass.type = sections.one("mass").text("type");
   result.time = read_time(sections.one("time"), remarks);
-  for (const SectionReader& reader : sections.all("probe")) result.probes.push_back(read_probe(reader));
+  for (const SectionReader& reader : sections.all("probe")) result.probes.push_back(read_probe(reader, result));
   check_distinct(sections.all("probe"), "probe", "name");
   const SectionReader solver = sections.one("solver");
   result.solver = {solver.text("method"), solver.number("tolerance"), solver.optional_number("memory"),

@@ -84,7 +84,9 @@ when = { "time.scheme" = "newmark" }
 - **Expressions** are texts in [muParser's syntax](https://beltoforion.de/en/muparser/features.php): `+ - * / ^`,
   comparisons, `a ? b : c`, `sin`, `cos`, `exp`, `sqrt`, `min`, `max` and so on, the constant `pi`, the names in the table
   `parameters` of the same section, and those of x, y, z and t that the key allows. x, y, z are reference coordinates,
-  after `mesh.scale`.
+  after `mesh.scale`, `mesh.turn` and `mesh.move`.
+- **Groups** are those of the mesh; "all" (every cell) and "boundary" (every boundary facet) are built in, and a list is the
+  union of its groups: `group = ["rim", "skin"]`. [meshes.md](meshes.md) says which groups a file gives.
 - **All problems** are reported together, with file, line and column; an unknown key is one of them. The exit status is
   then 2, or 4 if the file cannot be read.
 - **On the command line**, `--set key.path=value` replaces or adds a value before anything is checked:

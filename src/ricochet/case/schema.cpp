@@ -67,6 +67,11 @@ Json type_schema(const Key& key) {
     case KeyType::components:
     case KeyType::names:
       return {{"type", "array"}, {"items", {{"enum", key.choices}}}, {"minItems", 1}, {"uniqueItems", true}};
+    case KeyType::groups: {
+      const Json name{{"type", "string"}, {"minLength", 1}};
+      const Json list{{"type", "array"}, {"items", name}, {"minItems", 1}, {"uniqueItems", true}};
+      return {{"anyOf", Json::array({name, list})}};
+    }
     case KeyType::parameters:
       return {
           {"type", "object"},

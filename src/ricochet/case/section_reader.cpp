@@ -32,6 +32,11 @@ std::string SectionReader::text(const std::string& name) const {
   return node != nullptr ? node->text : "";
 }
 
+std::string SectionReader::value(const std::string& name) const {
+  const TomlNode* node = usable(name);
+  return node != nullptr ? value_text(*node) : "";
+}
+
 double SectionReader::number(const std::string& name) const {
   return optional_number(name).value_or(0.0);
 }
@@ -76,6 +81,20 @@ std::vector<std::string> SectionReader::chosen(const std::string& name) const {
     for (const TomlNode& entry : node->children) names.push_back(entry.text);
   }
   return names;
+}
+
+std::string SectionReader::groups(const std::string& name,
+                                  std::map<std::string, std::vector<std::string>>& lists) const {
+  const TomlNode* node = usable(name);
+  if (node == nullptr || node->children.empty()) return text(name);
+  const std::vector<std::string> names = chosen(name);
+  if (names.size() == 1) return names.front();
+  std::string list = value_text(*node);
+  // ["a, b", "c"] and ["a", "b, c"] look the same.
+  for (auto other = lists.find(list); other != lists.end() && other->second != names; other = lists.find(list))
+    list += "'";
+  lists[list] = names;
+  return list;
 }
 
 Expression SectionReader::expression(const Key& key, const TomlNode& node) const {

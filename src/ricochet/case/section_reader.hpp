@@ -30,6 +30,8 @@ class SectionReader {
   [[nodiscard]] bool is_usable(const std::string& name) const;
 
   [[nodiscard]] std::string text(const std::string& name) const;
+  /// Any value as text, a list as "[a, b]".
+  [[nodiscard]] std::string value(const std::string& name) const;
   [[nodiscard]] double number(const std::string& name) const;
   [[nodiscard]] std::optional<double> optional_number(const std::string& name) const;
   [[nodiscard]] long integer(const std::string& name) const;
@@ -40,6 +42,9 @@ class SectionReader {
   /// Compile the expressions with the section's parameters; their errors are problems at the place of the expression.
   /// The entries of a list of choices as they are given; empty where it is absent.
   [[nodiscard]] std::vector<std::string> chosen(const std::string& name) const;
+  /// The name of a group; of a list of groups its text, "[rim, skin]", under which it is put into `lists`.
+  [[nodiscard]] std::string groups(const std::string& name,
+                                   std::map<std::string, std::vector<std::string>>& lists) const;
   [[nodiscard]] Expression formula(const std::string& name) const;
   [[nodiscard]] std::vector<Expression> formulas(const std::string& name) const;
   [[nodiscard]] std::map<std::string, std::string> conditions(const std::string& name) const;

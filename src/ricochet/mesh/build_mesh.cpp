@@ -25,23 +25,71 @@ void check_coordinates(const RawMesh& raw, const std::string& source) {
     fail_mesh(source, fmt::format("{} with a coordinate that is not finite", not_finite.text("node")));
 }
 
-/// Groups for a CAD file, which has none: see BuildOptions.
-void name_entities(int dimension, const std::string& source, RawMesh& raw) {
-  std::size_t boundary_count = 0;
-  for (RawElements& elements : raw.elements) {
-    const int element_dimension = find_element_type(elements.type)->dimension;
-    if (element_dimension == dimension) elements.groups = {1};
-    if (element_dimension != dimension - 1) continue;
-    elements.groups = {elements.entity};
-    const std::string name = fmt::format("{} {}", dimension == 3 ? "surface" : "curve", elements.entity);
-    boundary_count += raw.physical_names.try_emplace({dimension - 1, elements.entity}, name).second ? 1 : 0;
+/// Groups for a file that has none: see BuildOptions.
+class EntityNamer {
+ public:
+  EntityNamer(int dimension, RawMesh& raw) : dimension_(dimension), raw_(raw) {}
+
+  /// Returns the note about it.
+  std::string name_all() {
+    number_entities();
+    raw_.physical_names[{dimension_, body_tag}] = "body";
+    for (RawElements& elements : raw_.elements) {
+      const int dimension = find_element_type(elements.type)->dimension;
+      if (dimension == dimension_) elements.groups = {body_tag};
+      if (const int tag = tag_of(dimension, elements.entity); tag != 0) elements.groups.push_back(tag);
+    }
+    std::string text = "no physical groups; all cells are in the group \"body\"";
+    if (cell_entities_.size() > 1) text += fmt::format(" and in {}", describe(dimension_, cell_entities_.size()));
+    if (!facet_entities_.empty())
+      text += fmt::format(", and the facets in {}", describe(dimension_ - 1, facet_entities_.size()));
+    return text;
   }
-  raw.physical_names[{dimension, 1}] = "body";
-  log::info(
-      fmt::format("{}: no physical groups; all cells are in the group \"body\", and the facets in {} groups \"{} N\", "
-                  "where N is Gmsh's number of the {}",
-                  source, boundary_count, dimension == 3 ? "surface" : "curve", dimension == 3 ? "surface" : "curve"));
-}
+
+ private:
+  static constexpr int body_tag = 1;
+
+  /// Groups of one body's cells would only repeat "body"; 0 is no entity.
+  void number_entities() {
+    for (const RawElements& elements : raw_.elements) {
+      const int dimension = find_element_type(elements.type)->dimension;
+      if (elements.entity == 0 || elements.tags.empty()) continue;
+      if (dimension == dimension_) cell_entities_.try_emplace(elements.entity, 0);
+      if (dimension == dimension_ - 1) facet_entities_.try_emplace(elements.entity, 0);
+    }
+    int tag = body_tag;
+    for (auto& [entity, number] : cell_entities_) {
+      number = ++tag;
+      if (cell_entities_.size() > 1) raw_.physical_names[{dimension_, number}] = name(dimension_, entity);
+    }
+    tag = 0;
+    for (auto& [entity, number] : facet_entities_) {
+      number = ++tag;
+      raw_.physical_names[{dimension_ - 1, number}] = name(dimension_ - 1, entity);
+    }
+  }
+
+  /// 0: no group of its own.
+  [[nodiscard]] int tag_of(int dimension, int entity) const {
+    const bool cells = dimension == dimension_ && cell_entities_.size() > 1;
+    if (!cells && dimension != dimension_ - 1) return 0;
+    const auto& entities = cells ? cell_entities_ : facet_entities_;
+    const auto found = entities.find(entity);
+    return found == entities.end() ? 0 : found->second;
+  }
+
+  static std::string kind(int dimension) { return dimension == 3 ? "volume" : dimension == 2 ? "surface" : "curve"; }
+  static std::string name(int dimension, int entity) { return fmt::format("{} {}", kind(dimension), entity); }
+  static std::string describe(int dimension, std::size_t count) {
+    return fmt::format("{} groups \"{} N\", where N is Gmsh's number of the {}", count, kind(dimension),
+                       kind(dimension));
+  }
+
+  int dimension_;
+  RawMesh& raw_;
+  std::map<int, int> cell_entities_;  ///< tags of groups by tags of entities
+  std::map<int, int> facet_entities_;
+};
 
 bool has_groups(const RawMesh& raw) {
   return !raw.physical_names.empty() ||
@@ -142,7 +190,8 @@ Mesh build_mesh(RawMesh raw, const BuildOptions& options) {
   mesh.source = options.source;
   check_coordinates(raw, mesh.source);
   if (options.name_entities && !has_groups(raw)) {
-    name_entities(select_elements(raw, mesh.source).dimension, mesh.source, raw);
+    const std::string note = EntityNamer(select_elements(raw, mesh.source).dimension, raw).name_all();
+    log::info(fmt::format("{}: {}", mesh.source, note));
   }
   const Selection selection = select_elements(raw, mesh.source);
   mesh.dimension = selection.dimension;

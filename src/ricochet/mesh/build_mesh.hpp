@@ -15,8 +15,9 @@ struct BuildOptions {
   std::string source;  ///< the file, for messages
   double scale = 1.0;
   bool allow_coincident_nodes = false;
-  /// Without any physical group, make the group "body" of all cells and a group "surface N" or "curve N" of the facets
-  /// on each entity of the geometry: a CAD file cannot name its parts.
+  /// Without any physical group, make the group "body" of all cells, a group "volume N" (in two dimensions "surface N")
+  /// of the cells on each entity of the geometry, where there are several, and a group "surface N" ("curve N") of the
+  /// facets on each: a CAD file cannot name its parts, and many a mesh has no names.
   bool name_entities = false;
 };
 
@@ -65,8 +66,8 @@ void check_facets(const Mesh& mesh);
 /// Keeps the nodes that belong to a cell, numbered in the file's order, and sets their coordinates.
 void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh);
 
-/// Turns cells round whose Jacobian is negative throughout, with a note that counts them: half of the programs that write
-/// meshes number the nodes of a cell so. No cell may be degenerate or tangled (the Jacobian changes sign).
+/// Turns cells round whose Jacobian is negative throughout, with a note that counts them: half of the programs that
+/// write meshes number the nodes of a cell so. No cell may be degenerate or tangled (the Jacobian changes sign).
 void orient_cells(Mesh& mesh);
 
 /// No two nodes may be at the same place.

@@ -4,6 +4,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/mesh/derived_groups.hpp"
 
 namespace ricochet {
 
@@ -30,6 +31,11 @@ std::string entity_name(int dimension, int mesh_dimension) {
   std::string message = fmt::format("{}: there is no group \"{}\" of {}; ", mesh.source, name, entities);
   message += names.empty() ? fmt::format("the mesh has no groups of {}", entities)
                            : fmt::format("the groups of {} are {}", entities, join_names(names));
+  const auto is_free = [&](const char* built_in) { return mesh.find_group(built_in, dimension) == nullptr; };
+  if (dimension == mesh.dimension && is_free(all_cells_name))
+    message += fmt::format("; a case's \"{}\" is every cell", all_cells_name);
+  if (dimension == mesh.dimension - 1 && is_free(whole_boundary_name))
+    message += fmt::format("; a case's \"{}\" is every boundary facet", whole_boundary_name);
   if (const std::string nearest = nearest_name(name, names); !nearest.empty()) {
     message += fmt::format("; did you mean \"{}\"?", nearest);
   }

@@ -68,7 +68,7 @@ void check_request(const MeshFile& file, bool by_program) {
 Mesh read_mesh(const MeshFile& file) {
   const bool by_program = needs_gmsh_program(file.path);
   check_request(file, by_program);
-  gmsh::BuildOptions options{file.path, file.scale, file.allow_coincident_nodes, gmsh::is_cad_file(file.path)};
+  gmsh::BuildOptions options{file.path, file.scale, file.allow_coincident_nodes, true};
   std::filesystem::path path = file.path;
   if (by_program) {
     (void)gmsh::read_whole_file(path);  // for the message of a file that cannot be read

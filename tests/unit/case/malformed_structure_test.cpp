@@ -23,13 +23,14 @@ TEST(MalformedCase, Structure) {
       {1, "density = 3\n[mesh]", "1:1: the key \"density\" stands outside of any section; it belongs to [[material]]"},
       {1, "qqqqqq = 3\n[mesh]", "1:1: unknown key \"qqqqqq\" in the top level of the file; its only key is \"title\""},
       {2, "",
-       "1:1: [mesh] has no \"file\": a text that is not empty. Mesh file (.msh), or geometry for the gmsh program "
+       "1:1: [mesh] has no \"file\": a text that is not empty. Mesh file (.msh, .inp, .vtu, .med, …; see "
+       "docs/meshes.md), or geometry for the gmsh program "
        "(.geo, .step, …). A relative path is relative to the folder of the case file, also when given by --set."},
       {5, "", "3:1: [[material]] has no \"density\": a positive number (unit: density). Mass per volume."},
       {11, "",
        "8:1: [time] has no \"end\": a positive number (unit: time). The run goes from t = 0 to here; at least one step "
        "and at most 1e9."},
-      {4, "group = \"\"", "4:9: \"group\" must be a text that is not empty; found the text \"\""},
+      {4, "group = \"\"", "4:9: \"group\" must be the name of a group, or a list of them; found the text \"\""},
       {7, "mu = 1.0\ndamping = { mas = 1.0 }",
        "8:13: unknown key \"mas\" in \"damping\" of [[material]]; did you mean \"mass\"?"},
       {7, "mu = 1.0\n[material.damping]\nstifness = 1.0",

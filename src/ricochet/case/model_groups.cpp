@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/case/model_parts.hpp"
+#include "ricochet/case/problems.hpp"
+#include "ricochet/mesh/derived_groups.hpp"
+
+/// @file The groups that a case names, in its mesh.
+namespace ricochet {
+
+namespace {
+
+class GroupCompleter {
+ public:
+  GroupCompleter(const Case& input, Mesh& mesh) : input_(input), mesh_(mesh) {}
+
+  void require(const std::string& key_path, const std::string& group, int dimension) {
+    const std::vector<std::string> names = names_in(group);
+    bool all_there = true;
+    for (const std::string& name : names) {
+      add_built_in_group(mesh_, name, dimension);
+      try {
+        (void)mesh_.group(name, dimension);
+      } catch (const Error& problem) {
+        problems_.add(input_.where(key_path), problem.what());
+        all_there = false;
+      }
+    }
+    if (all_there && names.size() > 1) add_union(key_path, group, names, dimension);
+  }
+
+  /// Groups of cells, or else of facets.
+  void require_any(const std::string& key_path, const std::string& group) {
+    const std::vector<std::string> names = names_in(group);
+    const auto are_groups = [&](int dimension, const char* built_in) {
+      return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+        return name == built_in || mesh_.find_group(name, dimension) != nullptr;
+      });
+    };
+    const bool of_facets =
+        !are_groups(mesh_.dimension, all_cells_name) && are_groups(mesh_.dimension - 1, whole_boundary_name);
+    require(key_path, group, of_facets ? mesh_.dimension - 1 : mesh_.dimension);
+  }
+
+  void raise() { problems_.raise(); }
+
+ private:
+  [[nodiscard]] std::vector<std::string> names_in(const std::string& group) const {
+    const auto list = input_.group_lists.find(group);
+    return list != input_.group_lists.end() ? list->second : std::vector<std::string>{group};
+  }
+
+  void add_union(const std::string& key_path, const std::string& group, const std::vector<std::string>& names,
+                 int dimension) {
+    const bool made_before = std::find(unions_.begin(), unions_.end(), std::pair{group, dimension}) != unions_.end();
+    if (!made_before && mesh_.find_group(group, dimension) != nullptr) {
+      problems_.add(
+          input_.where(key_path),
+          fmt::format("{}: the mesh has a group that is called \"{}\" as a whole; give the list in another order",
+                      mesh_.source, group));
+      return;
+    }
+    add_union_of_groups(mesh_, group, names, dimension);
+    unions_.emplace_back(group, dimension);
+  }
+
+  const Case& input_;
+  Mesh& mesh_;
+  Problems problems_;
+  std::vector<std::pair<std::string, int>> unions_;
+};
+
+}  // namespace
+
+void complete_groups(const Case& input, Mesh& mesh) {
+  GroupCompleter groups(input, mesh);
+  const auto require_boundaries = [&](const char* section, const auto& entries) {
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      groups.require(fmt::format("{}.{}.group", section, i), entries[i].group, mesh.dimension - 1);
+  };
+  for (std::size_t i = 0; i < input.materials.size(); ++i)
+    groups.require(fmt::format("material.{}.group", i), input.materials[i].group, mesh.dimension);
+  require_boundaries("contact", input.contacts);
+  require_boundaries("support", input.supports);
+  require_boundaries("traction", input.tractions);
+  for (std::size_t i = 0; i < input.probes.size(); ++i) {
+    const ProbeSection& probe = input.probes[i];
+    if (!probe.boundary.empty())
+      groups.require(fmt::format("probe.{}.boundary", i), probe.boundary, mesh.dimension - 1);
+    if (!probe.group.empty()) groups.require_any(fmt::format("probe.{}.group", i), probe.group);
+  }
+  groups.raise();
+}
+
+}  // namespace ricochet

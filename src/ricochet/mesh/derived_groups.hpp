@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/mesh/mesh.hpp"
+
+/// @file Groups that a mesh has without its file saying so. They are made when they are asked for: most runs need none.
+namespace ricochet {
+
+/// The names that stand for every cell and for every facet on the boundary. A group of the file with such a name, of
+/// the same dimension, is meant instead.
+inline constexpr const char* all_cells_name = "all";
+inline constexpr const char* whole_boundary_name = "boundary";
+
+/// Adds "all" or "boundary" where that is the name, the dimension is its own, and the mesh has no such group yet.
+/// Facets of the boundary that are in no group of the file join the mesh's facets, with the tag 0.
+void add_built_in_group(Mesh& mesh, const std::string& name, int dimension);
+
+/// Adds the union of groups, all of that dimension and there, under a name of its own, if it is not there yet.
+void add_union_of_groups(Mesh& mesh, const std::string& name, const std::vector<std::string>& parts, int dimension);
+
+}  // namespace ricochet
