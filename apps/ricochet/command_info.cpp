@@ -181,6 +181,8 @@ int info(const std::vector<std::string>& paths) {
       describe_case(path);
     } else if (fs::path(path).extension() == ".ckpt") {
       describe_checkpoint(path);
+    } else if (is_foreign_mesh(path)) {  // some of which are HDF5 files, too
+      describe_mesh(path);
     } else if (is_hdf5_file(path) || fs::path(path).extension() == ".hdf5") {
       describe_contact_problem(path);
     } else {

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -11,6 +10,7 @@
 #include "reading_runs.hpp"
 #include "ricochet/base/child_process.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/python.hpp"
 #include "ricochet/base/temporary_folder.hpp"
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/report/figure.hpp"
@@ -70,12 +70,6 @@ FigureOptions options_of(const PlotArguments& arguments) {
   return options;
 }
 
-/// Debian's Python, for which matplotlib is packaged; elsewhere the one that is found first.
-std::string python() {
-  const std::string own = "/usr/bin/python3";
-  return access(own.c_str(), X_OK) == 0 ? own : "python3";
-}
-
 void draw(const std::string& description, const std::string& format, const std::string& output) {
   const std::string script = installed_file("figure.py");
   if (script.empty()) {
@@ -85,7 +79,7 @@ void draw(const std::string& description, const std::string& format, const std::
   }
   const TemporaryFolder workspace(fs::temp_directory_path(), "ricochet-plot");
   ChildProcess child;
-  child.arguments = {python(), "-B", script, format, workspace.file("figure")};
+  child.arguments = {python_program(), "-B", script, format, workspace.file("figure")};
   child.variables = {"MPLCONFIGDIR=" + workspace.file("matplotlib")};  // the user's own settings change nothing
   child.input = workspace.file("description.json");
   child.output = workspace.file("messages");
@@ -98,10 +92,10 @@ void draw(const std::string& description, const std::string& format, const std::
     throw Error(ErrorKind::file_access,
                 fmt::format("figures are drawn by Python's matplotlib, which is not here ({}): apt-get install "
                             "python3-matplotlib",
-                            python()));
+                            python_program()));
   }
   if (!outcome.succeeded()) {
-    throw Error(ErrorKind::file_access, fmt::format("the figure could not be drawn: {} {}:\n{}", python(),
+    throw Error(ErrorKind::file_access, fmt::format("the figure could not be drawn: {} {}:\n{}", python_program(),
                                                     outcome.description(), read_file(workspace.file("messages"))));
   }
   // Under a temporary name first: what was there stays until all of the new file is.

@@ -5,12 +5,16 @@
 
 #include <cctype>
 #include <cstdlib>
-#include <fstream>
+#include <functional>
 #include <set>
+#include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/temporary_folder.hpp"
+#include "ricochet/mesh/convert_process.hpp"
 #include "ricochet/mesh/gmsh_process.hpp"
 
 namespace ricochet::gmsh {
@@ -21,10 +25,41 @@ namespace {
 
 __extension__ using Unsigned128 = unsigned __int128;  // not ISO C++, but GCC and Clang have it on 64-bit machines
 
-std::string extension(const std::string& path) {
-  std::string text = fs::path(path).extension().string();
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
+/// The files that a mesh of another program's format refers to: what an .inp file includes, the .h5 file of an .xdmf,
+/// the other half of TetGen's pair.
+std::vector<fs::path> companions(const fs::path& path, const std::string& content) {
+  std::vector<fs::path> found;
+  const std::string extension = extension_of(path.string());
+  if (extension == ".ele" || extension == ".node") {
+    for (const char* other : {".ele", ".node"}) found.push_back(fs::path(path).replace_extension(other));
+  }
+  // Whatever has the look of the name of a file: those that are none are not there, and cost nothing.
+  const bool is_inp = extension == ".inp";
+  if (!is_inp && extension != ".xdmf" && extension != ".xmf") return found;
+  std::istringstream lines(content);
+  for (std::string line; std::getline(lines, line);) {
+    if (is_inp && line.find('=') == std::string::npos) continue;
+    std::size_t start = 0;
+    for (std::size_t i = 0; i <= line.size(); ++i) {
+      const bool ends = i == line.size() ||
+                        std::string_view(is_inp ? "=,\r\"" : " \t\r<>\":").find(line[i]) != std::string_view::npos;
+      if (!ends) continue;
+      const std::size_t first = line.find_first_not_of(' ', start);
+      if (first < i)
+        found.push_back(path.parent_path() / line.substr(first, line.find_last_not_of(' ', i - 1) + 1 - first));
+      start = i + 1;
+    }
+  }
+  return found;
+}
+
+void append_companions(const fs::path& path, std::set<fs::path>& seen, std::string& key) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(path, error);
+  if (error || !fs::is_regular_file(canonical, error) || !seen.insert(canonical).second) return;
+  const std::string content = read_whole_file(canonical);
+  key += fmt::format("{} {}\n", path.filename().string(), content.size()) + content;
+  for (const fs::path& companion : companions(path, content)) append_companions(companion, seen, key);
 }
 
 /// Appends the contents the mesh depends on: the file, the options Gmsh reads beside it, and every file whose name a
@@ -37,7 +72,7 @@ void append_sources(const fs::path& path, std::set<fs::path>& seen, std::string&
   const std::string content = read_whole_file(canonical);
   key += fmt::format("{} {}\n", path.filename().string(), content.size()) + content;
   append_sources(fs::path(path.string() + ".opt"), seen, key);
-  if (extension(path.string()) != ".geo") return;
+  if (extension_of(path.string()) != ".geo") return;
   constexpr const char* quotes = "\"'";
   std::size_t quote = content.find_first_of(quotes);
   while (quote != std::string::npos) {
@@ -72,7 +107,7 @@ fs::path cache_directory() {
     if (!error && access(candidate.c_str(), W_OK | X_OK) == 0) return candidate;
   }
   throw Error(ErrorKind::file_access,
-              fmt::format("no place to keep meshes made by gmsh: cannot write to {}; set RICOCHET_CACHE "
+              fmt::format("no place to keep meshes that were made or converted: cannot write to {}; set RICOCHET_CACHE "
                           "to a directory that can be written to",
                           candidates.front().string()));
 }
@@ -90,6 +125,25 @@ std::string gmsh_options(const MeshFile& file) {
   return options;
 }
 
+/// The file that `make` writes, or wrote before with the same key.
+fs::path kept(const std::string& source, const std::string& key, const char* doing,
+              const std::function<void(const fs::path& workspace, const fs::path& output)>& make) {
+  const fs::path directory = cache_directory();
+  const fs::path result = directory / fmt::format("{}-{}.msh", fs::path(source).stem().string(), fnv1a_128(key));
+  if (fs::exists(result)) {
+    log::debug(fmt::format("{}: made before, {}", source, result.string()));
+    return result;
+  }
+  log::info(fmt::format("{}: {}", source, doing));
+  const TemporaryFolder workspace(directory, "meshing");
+  const fs::path output = workspace.path() / "mesh.msh";
+  make(workspace.path(), output);
+  std::error_code error;
+  fs::rename(output, result, error);  // in one step, so that a cached mesh is always a whole one
+  if (error) throw Error(ErrorKind::file_access, fmt::format("cannot write {}: {}", result.string(), error.message()));
+  return result;
+}
+
 }  // namespace
 
 std::string fnv1a_128(std::string_view content) {
@@ -101,7 +155,13 @@ std::string fnv1a_128(std::string_view content) {
 
 bool is_cad_file(const std::string& path) {
   static const std::set<std::string> extensions{".step", ".stp", ".iges", ".igs", ".brep"};
-  return extensions.contains(extension(path));
+  return extensions.contains(extension_of(path));
+}
+
+std::string extension_of(const std::string& path) {
+  std::string text = fs::path(path).extension().string();
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
 }
 
 fs::path meshed_file(const MeshFile& file) {
@@ -109,20 +169,17 @@ fs::path meshed_file(const MeshFile& file) {
   std::string key = "gmsh " + program_version(file.path) + "\n" + options;
   std::set<fs::path> seen;
   append_sources(file.path, seen, key);
-  const fs::path directory = cache_directory();
-  const fs::path result = directory / fmt::format("{}-{}.msh", fs::path(file.path).stem().string(), fnv1a_128(key));
-  if (fs::exists(result)) {
-    log::debug(fmt::format("{}: meshed before, {}", file.path, result.string()));
-    return result;
-  }
-  log::info(fmt::format("{}: meshing with the gmsh program", file.path));
-  const TemporaryFolder workspace(directory, "meshing");
-  const fs::path output = workspace.path() / "mesh.msh";
-  run_program(file.path, options, workspace.path(), output);
-  std::error_code error;
-  fs::rename(output, result, error);  // in one step, so that a cached mesh is always a whole one
-  if (error) throw Error(ErrorKind::file_access, fmt::format("cannot write {}: {}", result.string(), error.message()));
-  return result;
+  return kept(file.path, key, "meshing with the gmsh program", [&](const fs::path& workspace, const fs::path& output) {
+    run_program(file.path, options, workspace, output);
+  });
+}
+
+fs::path converted_file(const std::string& path) {
+  std::string key = "converter " + converter_version(path) + "\n";
+  std::set<fs::path> seen;
+  append_companions(path, seen, key);
+  return kept(path, key, "converting to .msh",
+              [&](const fs::path& workspace, const fs::path& output) { convert_mesh(path, workspace, output); });
 }
 
 }  // namespace ricochet::gmsh
@@ -130,7 +187,7 @@ fs::path meshed_file(const MeshFile& file) {
 namespace ricochet {
 
 bool needs_gmsh_program(const std::string& path) {
-  return gmsh::is_cad_file(path) || gmsh::extension(path) == ".geo";
+  return gmsh::is_cad_file(path) || gmsh::extension_of(path) == ".geo";
 }
 
 }  // namespace ricochet

@@ -6,11 +6,17 @@
 
 #include "ricochet/mesh/read_mesh.hpp"
 
-/// @file Meshes made by the gmsh program, kept by the content they were made from. Private to mesh/.
+/// @file Meshes made by the gmsh program or converted, kept by the content they were made from. Private to mesh/.
 namespace ricochet::gmsh {
 
 /// The .msh file of a .geo or CAD file: made now, or before from the same content with the same parameters and program.
 [[nodiscard]] std::filesystem::path meshed_file(const MeshFile& file);
+
+/// The .msh file of a mesh in another program's format: converted now, or before from the same content.
+[[nodiscard]] std::filesystem::path converted_file(const std::string& path);
+
+/// In lower case, with its dot.
+[[nodiscard]] std::string extension_of(const std::string& path);
 
 /// True for formats that only hold geometry (.step, .iges, .brep), false for .geo, which can define groups.
 [[nodiscard]] bool is_cad_file(const std::string& path);

@@ -11,6 +11,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
+#include "ricochet/mesh/convert_process.hpp"
 #include "ricochet/mesh/mesh_cache.hpp"
 #include "ricochet/mesh/raw_mesh.hpp"
 
@@ -69,13 +70,17 @@ Mesh read_mesh(const MeshFile& file) {
   const bool by_program = needs_gmsh_program(file.path);
   check_request(file, by_program);
   gmsh::BuildOptions options{file.path, file.scale, file.allow_coincident_nodes, true};
+  const bool converted = is_foreign_mesh(file.path);
   std::filesystem::path path = file.path;
-  if (by_program) {
+  if (by_program || converted) {
     (void)gmsh::read_whole_file(path);  // for the message of a file that cannot be read
-    path = gmsh::meshed_file(file);
+    path = by_program ? gmsh::meshed_file(file) : gmsh::converted_file(file.path);
   }
   const std::string content = gmsh::read_whole_file(path);
-  const std::string shown = by_program ? fmt::format("{} (meshed as {})", file.path, path.string()) : file.path;
+  if (converted) gmsh::repeat_notes(content, file.path);
+  std::string shown = file.path;
+  if (by_program || converted)
+    shown += fmt::format(" ({} {})", by_program ? "meshed as" : "converted to", path.string());
   return gmsh::build_mesh(gmsh::read_msh(content, shown), options);
 }
 

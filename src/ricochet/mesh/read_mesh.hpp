@@ -5,7 +5,8 @@
 
 #include "ricochet/mesh/mesh.hpp"
 
-/// @file Reading meshes: Gmsh .msh (2.2 and 4.1, ASCII and binary) by ourselves; .geo and CAD through the gmsh program.
+/// @file Reading meshes: Gmsh .msh (2.2 and 4.1, ASCII and binary) by ourselves; .geo and CAD through the gmsh program;
+/// the formats of other programs (.inp, .vtu, .med, Exodus, …) through Python's meshio, see docs/meshes.md.
 namespace ricochet {
 
 struct MeshFile {
@@ -20,6 +21,9 @@ struct MeshFile {
 
 /// True for files that need the gmsh program (.geo, .step, .stp, .iges, .igs, .brep).
 [[nodiscard]] bool needs_gmsh_program(const std::string& path);
+
+/// True for meshes in the formats of other programs, by the extension of the file.
+[[nodiscard]] bool is_foreign_mesh(const std::string& path);
 
 /// Reads and checks a mesh. Throws Error(file_access) when the file cannot be read, Error(invalid_input) when it is not
 /// a valid mesh; messages name the file, the line (ASCII) or the byte (binary), and the entities concerned.
