@@ -2,6 +2,7 @@ import { runColour } from "./colours";
 import type { Run } from "./data/run";
 import { el } from "./elements";
 import { count, number, seconds } from "./format";
+import { impactTable } from "./results/outcomes";
 import type { Store } from "./store";
 
 /** Inputs, sizes, timings, warnings: what a run was, in tables with a column for each run. */
@@ -122,10 +123,11 @@ export function details(store: Store): HTMLElement {
     const several = runs.reduce((sum, run) => sum + run.summary.warnings.length + run.data.thinned.length, 0);
     place.replaceChildren(
       section(`Warnings and messages${several > 0 ? ` (${several})` : ""}`, open[0] ?? true, messages(runs)),
-      section("Inputs", open[1] ?? true, inputs(runs)),
-      section("Sizes", open[2] ?? false, sizes(runs)),
-      section("Timings by phase", open[3] ?? false, timings(runs)),
-      section("Checks, expectations, probes", open[4] ?? false, outcomes(runs)),
+      section("Impacts", open[1] ?? runs.length === 1, impactTable(runs) ?? el("p.note", {}, "None are known.")),
+      section("Inputs", open[2] ?? true, inputs(runs)),
+      section("Sizes", open[3] ?? false, sizes(runs)),
+      section("Timings by phase", open[4] ?? false, timings(runs)),
+      section("Checks, expectations, probes", open[5] ?? false, outcomes(runs)),
     );
   };
   fill();

@@ -14,6 +14,7 @@ import { ContactMap } from "./maps/contact_map";
 import { ProfileChart } from "./maps/profile";
 import { Player } from "./player";
 import type { ColourScale } from "./maps/colour_range";
+import { outcomeElements } from "./results/outcomes";
 import { ResultsChart } from "./results/results_chart";
 import { runTable } from "./results/run_table";
 import { Store, type Axis } from "./store";
@@ -44,13 +45,15 @@ function title(runs: Run[]): string {
 }
 
 /** The card of a run: its name switches it, in all plots. */
-function card(store: Store, run: Run): HTMLElement {
+function card(store: Store, run: Run, stage: () => Stage | null): HTMLElement {
   const swatch = el("i");
   const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name}${run.number < 9 ? ` (key ${run.number + 1})` : ""}; with shift this run alone`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) }, swatch, run.name);
   const warnings = run.summary.warnings.length;
   const status = run.summary.status === "done" ? null : el("span.status", {}, run.summary.status);
+  const findings = findingsElement(run);
+  findings.append(...outcomeElements(run, { time: (time) => store.setTime(time), peak: () => stage()?.showPeak(run) }));
   const element = el("article.card", {}, el("h2", {}, button, status),
-    el("p.muted", {}, `${run.summary.scheme}, ${run.summary.mass} mass`), findingsElement(run),
+    el("p.muted", {}, `${run.summary.scheme}, ${run.summary.mass} mass`), findings,
     warnings > 0 && el("a.warned", { href: "#messages" }, `${warnings} ${warnings === 1 ? "warning" : "warnings"}`));
   const show = () => {
     swatch.style.background = runColour(run.number);
@@ -219,7 +222,7 @@ async function start(): Promise<void> {
         runs.length > 2 && el("button.small", { type: "button", onclick: () => store.all() }, "all runs"),
         el("button.small", { type: "button", title: "Keys (?)", onclick: () => help.showModal() }, "keys"),
         el("button.small", { type: "button", title: "Dark or light (t)", onclick: switchTheme }, "dark / light"))),
-    runs.length > mostCards ? runTable(store, runs) : el("div.cards", {}, ...runs.map((run) => card(store, run))),
+    runs.length > mostCards ? runTable(store, runs) : el("div.cards", {}, ...runs.map((run) => card(store, run, () => window.ricochet?.stage ?? null))),
     results?.isTrend ? el("div.results-first", {}, results.element) : "",
     el("div.charts", {}, chart("force"), chart("energy")),
     moving,

@@ -33,7 +33,7 @@ function candidates(dark: boolean): Candidate[] {
     for (let green = 0; green < 256; green += 15)
       for (let blue = 0; blue < 256; blue += 15) {
         const lab = oklab(red, green, blue);
-        if (dark ? lab[0] < 0.62 || lab[0] > 0.93 : lab[0] < 0.25 || lab[0] > 0.7) continue;
+        if (dark ? lab[0] < 0.62 || lab[0] > 0.93 : lab[0] < 0.36 || lab[0] > 0.7) continue;
         result.push({ colour: hex([red, green, blue]), lab, distance: Infinity });
       }
   return result;

@@ -2,7 +2,7 @@
 import { execFileSync } from "node:child_process";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
-import { ballRun, closeBrowser, discRuns, folder, frictionRun, open, report, settle, source } from "./support.mjs";
+import { ballRun, closeBrowser, discRuns, folder, frictionRun, open, report, settle, source, studyRuns } from "./support.mjs";
 
 const figures = join(source, "docs/figures");
 const frames = join(folder, "frames");
@@ -28,14 +28,25 @@ await picture(friction, "report-friction-dark.png", { width: 1300, height: 1130,
   store.set("quantity", "contact_status", "contact");
   document.querySelector("#bodies").scrollIntoView();
 });
-await picture(ball, "report-ball.png", { width: 1300, height: 900 }, () => {
+await picture(ball, "report-ball.png", { width: 1300, height: 1080 }, () => {
+  const { store, stage } = window.ricochet;
+  store.set("showMesh", true, "body");
+  stage.showPeak(store.runs[0]);
+  stage.lenses.space.camera.zoom = 1.6;
+  window.scrollTo(0, 0);
+});
+await picture(ball, "report-contact-zone.png", { width: 1300, height: 560 }, () => {
   const { store, stage } = window.ricochet;
   store.setTime(0.0365);
   store.set("field", "contact_pressure", "body");
   store.set("showMesh", true, "body");
-  stage.look("below");
-  stage.lenses.space.camera.zoom = 2;
+  stage.look("contact");
   document.querySelector("#bodies").scrollIntoView();
+});
+await picture(report("study", ...studyRuns()), "report-study.png", { width: 1300, height: 1000 }, () => {
+  const { results } = window.ricochet;
+  results.show("restitution", "initial.velocity y");
+  document.querySelector("#against").value = "initial.velocity y";
 });
 for (const colorScheme of ["light", "dark"])
   await picture(disc, `phone-${colorScheme}.png`, { width: 390, height: 844, touch: true, colorScheme }, `

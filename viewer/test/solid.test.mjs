@@ -1,13 +1,16 @@
 // What is inside a solid, where it touches, and colours that show a few large values.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { assertNear, ballRun, closeBrowser, fingerprint, open, report, settle } from "./support.mjs";
 
 const radius = 0.05;
 const picture = ".bodies canvas";
-let view, page;
+let run, view, page;
 before(async () => {
-  view = await open(report("ball", ballRun()));
+  run = ballRun();
+  view = await open(report("ball", run));
   ({ page } = view);
   await page.evaluate(() => window.ricochet.store.setTime(0.0365));
   await page.$eval("#bodies", (element) => element.scrollIntoView());
@@ -136,7 +139,8 @@ test("colours reach the largest value, in a scale that shows the others, too", a
   const range = () => page.evaluate(() => {
     const { view } = window.ricochet.stage.panels[0];
     const levels = [view.body, view.body.volume].map((part) => part.fields.find(({ name }) => name === "von_mises").values);
-    const most = Math.max(...levels.map(({ low, step, none }) => low + step * (none - 1)));
+    // Between frames it was larger.
+    const most = Math.max(...levels.map(({ low, step, none }) => low + step * (none - 1)), view.run.summary.peak_stress.von_mises);
     return { ...view.range, most };
   });
   await page.selectOption("#field", "von_mises");
@@ -155,6 +159,56 @@ test("colours reach the largest value, in a scale that shows the others, too", a
   assert.ok(found.high < 0.9 * found.most && found.clipped);
   assert.match(await page.textContent(".bodies .colour-bar"), /≥ [\d.·⁰-⁹]+, up to [\d.·⁰-⁹]+/);
   await page.selectOption("#scale", "automatic");
+});
+
+test("the card tells the impacts, and goes to them", async () => {
+  const { impacts, peak_stress: peak } = JSON.parse(readFileSync(join(run, "summary.json"), "utf8"));
+  assert.equal(impacts.length, 2);
+  const card = await page.textContent(".card");
+  for (const { restitution, normal_impulse, largest_force } of impacts) {
+    const words = new RegExp(`restitution ${restitution.toFixed(3)}, lasts [\\d.]+, impulse ([\\d.]+), force up to ([\\d.]+)`).exec(card);
+    assert.ok(words, card);
+    assertNear(Number(words[1]), normal_impulse, 2e-3 * normal_impulse);
+    assertNear(Number(words[2]), largest_force, 2e-3 * largest_force);
+  }
+  const rows = await page.$$eval("#impacts tbody tr", (all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
+  assert.deepEqual(rows.map((row) => Number(row[5])), impacts.map(({ restitution }) => Number(restitution.toPrecision(4))));
+  await page.locator(".outcome .link").nth(1).click();
+  assertNear(await page.evaluate(() => window.ricochet.store.time), impacts[1].largest_force_time, 1e-12);
+  assert.match(card, /Largest stress/);
+  assertNear(peak.von_mises, 6e5, 1e5); // 0.6 of Hertz' pressure under 92.5 N, which is 1.0e6
+});
+
+test("the largest stress is marked where it is, and colours reach it", async () => {
+  const { peak_stress: peak } = JSON.parse(readFileSync(join(run, "summary.json"), "utf8"));
+  await page.locator(".outcome .link").last().click();
+  await settle(page);
+  const found = await page.evaluate(() => {
+    const { store, stage } = window.ricochet;
+    const { view } = stage.panels[0];
+    const { volume } = view.body;
+    const field = volume.fields.find(({ name }) => name === "von_mises").values;
+    const values = Array.from(volume.cells, (cell) => field.low + field.step * field.levels[view.frame * field.columns + cell]);
+    const most = Math.max(...values);
+    const corners = volume.corners.subarray(4 * values.indexOf(most), 4 * values.indexOf(most) + 4);
+    const centre = [0, 1, 2].map((k) => corners.reduce((sum, node) => sum + view.section.positions[3 * node + k] / 4, 0));
+    const { sprite } = view.peak;
+    return { time: store.time, field: store.field, cut: store.cut, most, centre, visible: sprite.visible, opacity: sprite.material.opacity,
+      place: view.content.worldToLocal(sprite.position.clone()).toArray(), high: view.range.high };
+  });
+  assertNear(found.time, peak.time, 1e-12);
+  assert.deepEqual([found.field, found.cut, found.visible, found.opacity], ["von_mises", "y", true, 1]);
+  // The frame is beside the peak in time, and its largest stress is in the same cell or beside it.
+  assert.ok(found.most <= 1.001 * peak.von_mises && found.most > 0.9 * peak.von_mises, JSON.stringify([found.most, peak]));
+  assert.ok(Math.hypot(...found.place.map((x, k) => x - found.centre[k])) < 0.2 * radius, JSON.stringify(found));
+  assert.ok(found.high >= peak.von_mises);
+  const hidden = await fingerprint(page, picture);
+  await page.selectOption("#field", "contact_pressure");
+  await settle(page);
+  assert.equal(await page.evaluate(() => window.ricochet.stage.panels[0].view.peak.sprite.visible), false);
+  await page.selectOption("#field", "von_mises");
+  await settle(page);
+  assert.equal(await fingerprint(page, picture), hidden);
 });
 
 test("nothing was said on the console", async () => {

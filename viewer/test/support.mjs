@@ -44,6 +44,11 @@ export function discRuns() {
 export const frictionRun = () => simulate("cases/oblique/oblique.toml", "oblique", { "output.fields_every": 2 });
 export const ballRun = () => simulate("cases/ball/ball.toml", "ball", { "output.fields_every": 4 });
 
+/** A puck of two stiffnesses that strikes a wall at six speeds. */
+export const studyRuns = () => [3e7, 5e7].flatMap((young) => [0.5, 0.75, 1, 1.25, 1.5, 2].map((speed) =>
+  simulate("cases/puck/puck.toml", `study/E${young / 1e6}-v${speed}`, { "material.0.young": young, "initial.velocity": `[1.5, -${speed}]`, "time.end": 0.0019,
+    "output.fields_every": 100 })));
+
 /** history.csv by columns. */
 export function readHistory(directory) {
   const [header, ...rows] = readFileSync(join(directory, "history.csv"), "utf8").trimEnd().split("\n");

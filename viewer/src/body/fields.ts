@@ -1,5 +1,6 @@
 import { valueAt, type Levels } from "../data/decode";
 import { indexAt, type Field, type Run } from "../data/run";
+import { toNumber } from "../results/outcomes";
 import type { Moving } from "./geometry";
 import { colourRange, type ColourRange, type ColourScale } from "../maps/colour_range";
 
@@ -91,7 +92,8 @@ export function fieldRange(run: Run, name: string, scale: ColourScale): ColourRa
   if (!body || name === "" || name === "contact_status") return null;
   const own = [body, body.volume].flatMap((part) => part?.fields.filter((field) => field.name === name).map(({ values }) => values) ?? []);
   const contact = contactQuantity(run, name);
-  if (own.length > 0) return colourRange(own, scale);
+  const peak = name === "von_mises" ? toNumber(run.summary.peak_stress?.von_mises) : NaN;
+  if (own.length > 0) return colourRange(own, scale, Number.isFinite(peak) ? peak : 0);
   if (contact) return colourRange([contact], scale);
   let low = Infinity;
   let high = -Infinity;

@@ -27,8 +27,8 @@ export class SectionView {
   readonly mesh: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
   section: Section | null = null;
   values: FieldValues | null = null;
-  private readonly reference: Float32Array;
-  private readonly positions: Float32Array;
+  readonly reference: Float32Array;
+  readonly positions: Float32Array;
   private key = "";
 
   constructor(private readonly body: Body, private readonly volume: Volume, content: three.Object3D) {

@@ -93,12 +93,16 @@ export class Stage {
         saveCanvas(withCaption(panel.canvas, `${run.name}, t = ${number(this.store.time, 4)}`, [], themeColour("panel"), themeColour("text"),
           view.values && colourKey(fieldName(this.store.field), view.values.isStatus ? null : view.range)), `${fileName(run.name)}-body.png`);
       } }, "PNG")), colours);
+    const { store } = this;
     const caption = () => {
       const at = run.body!.times[view.frame] ?? 0;
       time.textContent = `t = ${number(at, 5)}, contact force ${number(run.resultantAt(at), 4)}`;
       const name = fieldName(this.store.field);
       if (!view.values) colours.replaceChildren();
       else colours.replaceChildren(colourBar(name, view.values.isStatus ? null : view.range));
+      const peak = run.summary.peak_stress;
+      if (peak && store.field === "von_mises") colours.append(el("div.peak-note", {}, el("i"), `largest ${number(peak.von_mises, 4)} at `,
+        el("button.link", { type: "button", onclick: () => this.showPeak(run) }, `t = ${number(peak.time, 4)}`)));
     };
     const panel: BodyPanel = { element, view, canvas, renderer: null, message, tip, lens, home: { centre: new three.Vector3(), size: 1, sides: [1, 1] }, caption };
     this.panels.push(panel);
@@ -182,6 +186,24 @@ export class Stage {
     this.redraw(false);
   }
 
+  /** To the time and the place of a run's largest stress; solids are cut there. */
+  showPeak(run: Run): void {
+    const { store } = this;
+    const peak = run.summary.peak_stress;
+    const panel = this.panels.find(({ view }) => view.run === run);
+    if (!peak || !panel) return;
+    store.setTime(peak.time);
+    store.set("field", "von_mises", "body");
+    const { start, section } = panel.view;
+    if (section) {
+      store.set("cut", "y", "body");
+      store.set("cutFlipped", false, "body");
+      store.set("cutAt", Math.min(Math.max((peak.place[1] - start.low[1]) / (start.high[1] - start.low[1]), 0), 1), "body");
+      this.look("y");
+    }
+    panel.element.scrollIntoView({ block: "nearest" });
+  }
+
   private directionOf(from: View): three.Vector3 {
     if (from === "contact" || from === "contact-side") {
       const first = this.panels.find(({ lens, view, element }) => lens === this.lenses.space && view.zone && element.offsetParent !== null);
@@ -225,6 +247,7 @@ export class Stage {
       const [wide, high] = [Math.round(width * scale), Math.round(height * scale)];
       if (size.x !== wide || size.y !== high) renderer.setSize(wide, high, false);
       this.frameCamera(panel, width / height);
+      view.markPeak(panel.lens.camera);
       renderer.setClearColor(new three.Color().setStyle(themeColour("panel")));
       renderer.render(view.scene, panel.lens.camera);
       drew = true;

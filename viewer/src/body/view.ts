@@ -8,6 +8,7 @@ import { contactQuantity, fieldAt, fieldRange, type FieldValues } from "./fields
 import { boxOf, boxOverTime, diagonal, outlineOf, OutwardNormals, placeNodes, referencePositions, type Box } from "./geometry";
 import { bodyMaterial } from "./material";
 import { ObstacleView } from "./obstacles";
+import { PeakMarker } from "./peak";
 import { cutOf, SectionView, type Cut } from "./section_view";
 import { ContactZone } from "./zone";
 
@@ -26,6 +27,8 @@ export class BodyView {
   readonly zone: ContactZone | null;
   /** null: in the plane, and where the page has no room for it. */
   readonly section: SectionView | null;
+  /** null: the summary has no largest stress. */
+  readonly peak: PeakMarker | null;
   private cut: Cut | null = null;
   private readonly body: Body;
   private readonly reference: Float32Array;
@@ -83,6 +86,8 @@ export class BodyView {
     this.scene.add(this.content);
     this.zone = run.contact ? new ContactZone(run, this.reference, this.size) : null;
     this.section = body.volume ? new SectionView(body, body.volume, this.content) : null;
+    this.peak = run.summary.peak_stress ? new PeakMarker(run, this.section?.reference ?? this.reference) : null;
+    if (this.peak) this.scene.add(this.peak.sprite);
     const { low, high } = this.start;
     const middle = low.map((value, k) => (value + high[k]) / 2);
     this.obstacles = run.obstacles ? new ObstacleView(run.obstacles, middle, this.size, this.content) : null;
@@ -218,6 +223,17 @@ export class BodyView {
     }
     this.outline.material.color.setStyle(themeColour("text"));
     this.obstacles?.recolour();
+  }
+
+  /** After the body has its place in the picture. */
+  markPeak(camera: three.OrthographicCamera | three.PerspectiveCamera): void {
+    if (!this.peak) return;
+    const { times } = this.body;
+    const ofStress = this.store.field === "von_mises" || this.store.field === "";
+    this.peak.sprite.visible = ofStress;
+    if (this.section) placeNodes(this.body.volume!, this.body.mean, this.section.reference, this.frame, this.store.deformation, this.section.positions);
+    this.peak.update(this.section?.positions ?? this.positions, this.content, indexAt(times, this.run.summary.peak_stress!.time) !== this.frame);
+    this.peak.scaleFor(camera);
   }
 
   /** Into the middle of the contact zone, as large as it is; follows it from frame to frame. */

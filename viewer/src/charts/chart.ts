@@ -228,7 +228,7 @@ export class TimeChart {
 
   /** Of smooth curves that may lie upon one another those below are wider; those that rattle are thin. */
   private widthOf(i: number): number {
-    if (this.store.runs.length === 1) return 1.6;
+    if (this.store.runs.length === 1 || this.series.length > 4) return 1.6;
     const rattles = (series: Series) => !this.definition.nested && series.run.data.judgement.roughness > 2;
     if (rattles(this.series[i])) return 1.2;
     const above = this.series.slice(i + 1).filter((series) => !rattles(series)).length;

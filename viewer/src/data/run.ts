@@ -87,7 +87,7 @@ export class Run {
   ) {
     this.name = data.name;
     // What older versions did not write.
-    this.summary = { ...{ checks: {}, expectations: [], parameters: {}, warnings: [], solver: "–", libraries: "–", factor_entries: 0 }, ...data.summary };
+    this.summary = { ...{ checks: {}, expectations: [], parameters: {}, warnings: [], solver: "–", libraries: "–", factor_entries: 0, impacts: [], impacts_left_out: 0, peak_stress: null }, ...data.summary };
   }
 
   /** The run's own name of a column: "@force" is what its contact force is judged by. */

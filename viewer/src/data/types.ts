@@ -95,7 +95,44 @@ export interface Expectation {
   note: string;
 }
 
-/** summary.json of a run; see the README of Ricochet. */
+/** A number that is not finite is a word in JSON: "inf", "-inf", "nan"; what is not known is null. */
+export type Value = number | string | null;
+
+/** A body's collision with an obstacle; see docs/results.md. */
+export interface Impact {
+  body: number;
+  obstacle: string;
+  begin: number;
+  end: number | null;
+  duration: number;
+  ended: boolean;
+  from_start: boolean;
+  restitution: Value;
+  normal_impulse: Value;
+  largest_force: Value;
+  largest_force_time: number;
+  normal_velocity_before: Value;
+  normal_velocity_after: Value;
+  /** In the plane one number, about z. */
+  spin_before: Value | Value[];
+  spin_after: Value | Value[];
+  kinetic_energy_ratio: Value;
+}
+
+/** The largest von Mises stress of a run, between frames, too. */
+export interface PeakStress {
+  von_mises: Value;
+  time: number;
+  step: number;
+  /** Centre of the cell at the start. */
+  place: number[];
+  material: string;
+  cell: number;
+  states_looked_at: number;
+  states: number;
+}
+
+/** summary.json of a run; see docs/results.md. */
 export interface Summary {
   status: string;
   message: string;
@@ -126,6 +163,9 @@ export interface Summary {
   probes: { name: string; position: number[]; distance: number; in_contact_boundary: boolean }[];
   checks: Record<string, CheckOutcome>;
   warnings: string[];
+  impacts: Impact[];
+  impacts_left_out: number;
+  peak_stress: PeakStress | null;
   expectations: Expectation[];
   parameters: Record<string, string>;
 }

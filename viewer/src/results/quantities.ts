@@ -1,6 +1,8 @@
 import { extentOf } from "../charts/scale";
 import type { Run } from "../data/run";
+import type { Impact, Value } from "../data/types";
 import { columnName } from "../format";
+import { spin, toNumber } from "./outcomes";
 
 /** What a run came to, in one number. */
 export interface Quantity {
@@ -28,7 +30,14 @@ function timeInContact(run: Run): number {
 
 /** Those that some run has, the most telling ones first. */
 export function quantities(runs: Run[]): Quantity[] {
+  const first = (of: (impact: Impact) => Value | Value[]) => (run: Run) => (run.summary.impacts.length > 0 ? spin(of(run.summary.impacts[0])) : NaN);
   const list: Quantity[] = [
+    { id: "restitution", title: "restitution of the first impact", value: first(({ restitution }) => restitution) },
+    { id: "duration", title: "duration of the first impact", value: first(({ duration, ended }) => (ended ? duration : null)) },
+    { id: "impulse", title: "impulse of the first impact", value: first(({ normal_impulse, ended }) => (ended ? normal_impulse : null)) },
+    { id: "impact-force", title: "largest force of the first impact", value: first(({ largest_force }) => largest_force) },
+    { id: "spin", title: "spin after the first impact", value: first(({ spin_after }) => spin_after) },
+    { id: "stress", title: "largest von Mises stress", value: (run) => toNumber(run.summary.peak_stress?.von_mises) },
     { id: "force", title: "largest contact force", value: (run) => run.data.judgement.force_largest },
     { id: "force-time", title: "time of the largest contact force", value: (run) => run.data.judgement.force_largest_at },
     { id: "contact-time", title: "time in contact", value: timeInContact },

@@ -37,6 +37,7 @@ export class ResultsChart {
   private logarithmic = false;
   private readonly plotArea = el("div.plot");
   private readonly tip = el("div.tip", { hidden: true });
+  private readonly without = el("p.note");
   private plot: uPlot | null = null;
   private width = 0;
 
@@ -62,7 +63,7 @@ export class ResultsChart {
         el("div.tools", {}, what.element, over.element, log,
           el("button.small", { type: "button", title: "Save the picture", onclick: () => this.savePicture() }, "PNG"),
           el("button.small", { type: "button", title: "Save the numbers", onclick: () => this.saveNumbers() }, "CSV"))),
-      el("div.results-area", {}, this.plotArea, this.tip));
+      el("div.results-area", {}, this.plotArea, this.tip), this.without);
     for (const topic of ["runs", "theme", "highlight"] as const) store.on(topic, () => this.rebuild());
     this.plotArea.addEventListener("pointermove", (event) => this.pointed(event));
     this.plotArea.addEventListener("pointerleave", () => {
@@ -97,7 +98,8 @@ export class ResultsChart {
   /** What is drawn. */
   get lines(): Line[] {
     const parameter = this.parameter;
-    const others = this.parameters.filter((each) => each !== parameter);
+    // What the abscissa fixes, such as another component of the same vector, makes no line of its own.
+    const others = parameter ? this.parameters.filter((each) => !follows(each, parameter)) : [];
     const lines = new Map<string, Point[]>();
     this.runs.forEach((run, i) => {
       const x = !parameter ? i : parameter.numbers ? parameter.numbers[i] : this.categories!.indexOf(parameter.texts[i]);
@@ -121,6 +123,8 @@ export class ResultsChart {
     this.width = this.plotArea.clientWidth;
     if (this.width === 0) return;
     const { points, categories } = this;
+    const without = this.runs.length - points.length;
+    this.without.textContent = without > 0 ? `${without} of ${this.runs.length} runs have no such result.` : "";
     const axis = axisStyle();
     const [low, high] = this.rangeOfY(points.map(({ y }) => y));
     const xs = points.map(({ x }) => x);
@@ -140,7 +144,7 @@ export class ResultsChart {
       },
       series: [{}, { show: true, stroke: "transparent", points: { show: false } }],
       axes: [
-        { ...axis, label: this.against, labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 36, grid: { ...axis.grid, show: !categories },
+        { ...axis, space: 80, label: this.against, labelSize: 18, labelFont: "12px system-ui, sans-serif", size: 36, grid: { ...axis.grid, show: !categories },
           ...(categories ? { splits: () => categories.map((_, i) => i).filter((i) => i % step === 0), values: (_: uPlot, ticks: number[]) => ticks.map((i) => shortened(categories[i] ?? "")) } : { values: tickTexts }) },
         this.logarithmic ? { ...axis, size: axisWidth, values: tickTexts, splits: () => powersOfTen(decades), filter: (_, splits) => splits }
           : { ...axis, size: axisWidth, values: tickTexts },
@@ -169,6 +173,12 @@ export class ResultsChart {
     const at = ({ x, y }: Point): [number, number] => [plot.valToPos(x, "x", true), plot.valToPos(y, "y", true)];
     const lines = this.lines.map(({ name, points }) => ({ name, points: points.filter(({ y }) => Number.isFinite(y) && (!this.logarithmic || y > 0)) }));
     ctx.font = `${11 * scale}px system-ui, sans-serif`;
+    // Names stand where lines are farther apart.
+    const spread = (end: number) => {
+      const ends = lines.flatMap(({ points }) => points.slice(end).slice(0, 1)).map((point) => at(point)[1]);
+      return Math.max(...ends) - Math.min(...ends);
+    };
+    const atStart = spread(0) > spread(-1);
     for (const { name, points } of lines) {
       if (this.categories || points.length < 2) continue;
       ctx.strokeStyle = ctx.fillStyle = themeColour("muted");
@@ -176,9 +186,10 @@ export class ResultsChart {
       ctx.beginPath();
       points.forEach((point, i) => (i === 0 ? ctx.moveTo(...at(point)) : ctx.lineTo(...at(point))));
       ctx.stroke();
-      const [x, y] = at(points[points.length - 1]);
-      ctx.textAlign = "right";
-      if (lines.length > 1) ctx.fillText(name, x - 8 * scale, y - 7 * scale);
+      if (lines.length < 2 || lines.length > 8) continue; // the tip tells
+      const [x, y] = at(points[atStart ? 0 : points.length - 1]);
+      ctx.textAlign = atStart ? "left" : "right";
+      ctx.fillText(name, x + (atStart ? 9 : -9) * scale, y < top + 22 * scale ? y + 15 * scale : y - 8 * scale);
     }
     const bar = 0.62 * (plot.valToPos(1, "x", true) - plot.valToPos(0, "x", true));
     const foot = this.logarithmic ? top + height : plot.valToPos(0, "y", true);
@@ -242,6 +253,15 @@ function padded(values: number[]): [number, number] {
   if (!(low < high)) return Number.isFinite(low) ? [low - (Math.abs(low) || 1) * 0.1, high + (Math.abs(high) || 1) * 0.1] : [0, 1];
   const margin = 0.07 * (high - low);
   return [low === 0 ? 0 : low - margin, high === 0 ? 0 : high + margin];
+}
+
+/** Equal values of one entry always come with equal values of the other. */
+function follows(each: Parameter, other: Parameter): boolean {
+  const seen = new Map<string, string>();
+  return other.texts.every((text, i) => {
+    if (!seen.has(text)) seen.set(text, each.texts[i]);
+    return seen.get(text) === each.texts[i];
+  });
 }
 
 const shortened = (text: string) => (text.length > 15 ? `…${text.slice(-14)}` : text);

@@ -1,0 +1,86 @@
+import { runColour } from "../colours";
+import type { Run } from "../data/run";
+import type { Impact, PeakStress, Value } from "../data/types";
+import { el } from "../elements";
+import { number } from "../format";
+
+/** What came of a run: its impacts and its largest stress. */
+
+/** Numbers that are no numbers (words, nulls) as NaN or infinity. */
+export function toNumber(value: Value | undefined): number {
+  if (typeof value === "number") return value;
+  return value === "inf" ? Infinity : value === "-inf" ? -Infinity : NaN;
+}
+
+/** In space its size. */
+export function spin(value: Value | Value[]): number {
+  return Array.isArray(value) ? Math.hypot(...value.map(toNumber)) : toNumber(value);
+}
+
+const place = (peak: PeakStress, dimension: number) => `(${peak.place.slice(0, dimension).map((x) => number(x, 3)).join(", ")})`;
+
+/** It turns by more than a ten-thousandth of a radian while it touches: what is less says nothing. */
+const turns = ({ spin_before, spin_after, duration }: Impact) => Math.max(Math.abs(spin(spin_before)), Math.abs(spin(spin_after))) * duration > 1e-4;
+
+export function impactWords(impact: Impact): string {
+  const parts: string[] = [];
+  const restitution = toNumber(impact.restitution);
+  if (Number.isFinite(restitution)) parts.push(`restitution ${restitution.toFixed(3)}`);
+  if (!impact.ended) parts.push("still touches at the end");
+  parts.push(`${impact.ended ? "lasts" : "so far"} ${number(impact.duration, 3)}`, `impulse ${number(impact.normal_impulse, 3)}`, `force up to ${number(impact.largest_force, 3)}`);
+  if (impact.ended && turns(impact)) {
+    const spins = [spin(impact.spin_before), spin(impact.spin_after)];
+    const least = 1e-6 * Math.max(...spins.map(Math.abs)); // below is rounding
+    parts.push(`spin ${spins.map((value) => (Math.abs(value) < least ? "0" : number(value, 3))).join(" → ")}`);
+  }
+  return parts.join(", ");
+}
+
+const mostOnCard = 3;
+
+/** Lines of a run's card. `show` takes the page to a time, or to the peak of the stress. */
+export function outcomeElements(run: Run, show: { time: (time: number) => void; peak: () => void }): HTMLElement[] {
+  const { impacts, impacts_left_out: leftOut, peak_stress: peak, dimension } = run.summary;
+  const result: HTMLElement[] = [];
+  impacts.slice(0, mostOnCard).forEach((impact, i) => {
+    const name = impacts.length > 1 ? `Impact ${i + 1}` : "Impact";
+    const when = `t = ${number(impact.begin, 4)}${impact.from_start ? " (from the start)" : ""}`;
+    result.push(el("dt", {}, name), el("dd.outcome", { title: `On ${impact.obstacle}, from ${when}: docs/results.md says how impacts are told apart` },
+      el("button.link", { type: "button", onclick: () => show.time(impact.largest_force_time) }, when), `: ${impactWords(impact)}`));
+  });
+  const more = impacts.length - mostOnCard + leftOut;
+  if (more > 0) result.push(el("dt"), el("dd.outcome", {}, el("a", { href: "#impacts" }, `and ${more} more`)));
+  if (peak && Number.isFinite(toNumber(peak.von_mises))) {
+    const all = peak.states_looked_at >= peak.states;
+    result.push(el("dt", {}, "Largest stress"), el("dd.outcome", { title: all ? "von Mises, of all steps" : `von Mises; ${peak.states_looked_at} of ${peak.states} states were looked at: it may be higher between them` },
+      `${all ? "" : "≥ "}${number(peak.von_mises, 4)} `, el("button.link", { type: "button", onclick: () => show.peak() }, `at t = ${number(peak.time, 4)}, ${place(peak, dimension)}`)));
+  }
+  return result;
+}
+
+const columns: [string, (impact: Impact) => string][] = [
+  ["obstacle", ({ obstacle }) => obstacle],
+  ["body", ({ body }) => String(body)],
+  ["begin", ({ begin, from_start }) => `${number(begin, 5)}${from_start ? " (start)" : ""}`],
+  ["duration", ({ duration, ended }) => `${number(duration, 4)}${ended ? "" : " so far"}`],
+  ["restitution", ({ restitution }) => number(restitution, 4)],
+  ["normal speed before", ({ normal_velocity_before }) => number(normal_velocity_before, 4)],
+  ["after", ({ normal_velocity_after }) => number(normal_velocity_after, 4)],
+  ["impulse", ({ normal_impulse }) => number(normal_impulse, 4)],
+  ["largest force", ({ largest_force }) => number(largest_force, 4)],
+  ["at", ({ largest_force_time }) => number(largest_force_time, 5)],
+  ["spin before", ({ spin_before }) => number(spin(spin_before), 4)],
+  ["after", ({ spin_after }) => number(spin(spin_after), 4)],
+  ["kinetic energy, after / before", ({ kinetic_energy_ratio }) => number(kinetic_energy_ratio, 4)],
+];
+
+/** All impacts of all runs, a row for each. */
+export function impactTable(runs: Run[]): HTMLElement | null {
+  if (runs.every((run) => run.summary.impacts.length === 0)) return null;
+  const rows = runs.flatMap((run) => run.summary.impacts.map((impact) =>
+    el("tr", {}, el("th", { scope: "row", style: `color:${runColour(run.number)}` }, run.name), ...columns.map(([, text]) => el("td", {}, text(impact))))));
+  const leftOut = runs.filter((run) => run.summary.impacts_left_out > 0).map((run) => `${run.name}: ${run.summary.impacts_left_out} later ones`);
+  return el("div.table", { id: "impacts" },
+    el("table", {}, el("thead", {}, el("tr", {}, el("th"), ...columns.map(([name]) => el("th", { scope: "col" }, name)))), el("tbody", {}, ...rows)),
+    leftOut.length > 0 && el("p.note", {}, `Only counted: ${leftOut.join("; ")}.`));
+}
