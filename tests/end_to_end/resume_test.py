@@ -257,7 +257,7 @@ class Resume(TestCase):
         self.assertIn("1.5", text)
         mesh.write_text(text.replace("1.5 ", "1.5000001 "))
         process = self.expect_status(2, run("run", case, "-o", output, "--resume"))
-        self.assertIn("the mesh is another one than before (it differs in: nodes)", process.stderr)
+        self.assertIn("the mesh has changed since it began (differences in: nodes)", process.stderr)
         mesh.write_text(text)
         self.expect_status(0, run("run", case, "-o", output, "--resume"))
 

@@ -100,8 +100,8 @@ class Watching(TestCase):
             process = self.expect_status(0, run("run", DISC, "-o", output, "--quiet", "--set", "time.end=0.02",
                                                 *settings(limit)))
             name = {"energy_residual": "energy"}.get(check, check.replace("_", " "))
-            self.assertEqual(process.stderr.count("does not close"), 1, process.stderr)
-            self.assertIn(f"the account of {name} does not close", process.stderr)
+            self.assertEqual(process.stderr.count("is violated"), 1, process.stderr)
+            self.assertIn(f"the balance of {name} is violated", process.stderr)
             self.assertIn(f"check.{check} = 1e-17", process.stderr)
             result = json.loads((output / "summary.json").read_text())["checks"][check]
             self.assertEqual(result["limit"], 1e-17)
@@ -110,7 +110,7 @@ class Watching(TestCase):
             stopped = self.folder / f"stop-{check}"
             process = self.expect_status(3, run("run", DISC, "-o", stopped, "--quiet", "--set", "time.end=0.02",
                                                 "--set", 'check.on_failure="stop"', *settings(limit)))
-            self.assertIn("does not close", process.stderr)
+            self.assertIn("is violated", process.stderr)
             self.assertLess(len(History(stopped / "history.csv").rows), 201)
 
     def test_accounts_close_by_default(self):

@@ -20,9 +20,9 @@ Section probe_section() {
       .kind = SectionKind::list,
       .alternatives = {{"at"}, {"from", "to"}, {"boundary"}, {"group"}, {"contact"}},
       .doc =
-          "What is watched, in columns NAME.… of history.csv: the node nearest to a point, all nodes along a "
-          "segment, the force and moment on a boundary, averages and extrema of a group, or the resultant of a "
-          "contact.",
+          "A quantity to record in columns NAME.… of history.csv: the motion of the node nearest to a point or of all "
+          "nodes along a segment, the force and moment on a boundary, averages and extrema of a group, or the "
+          "resultant of a contact.",
       .keys = {
           {.name = "name",
            .required = true,
@@ -42,7 +42,7 @@ Section probe_section() {
            .type = KeyType::number,
            .unit = "length",
            .range = positive,
-           .doc = "Of a segment: nodes up to this distance from it belong to it; absent: 1e-6 of the body's size."},
+           .doc = "Nodes within this distance of the segment belong to it. Default: 1e-6 of the body's size."},
           {.name = "boundary",
            .type = KeyType::groups,
            .doc = "Group of boundary facets, or a list of them: force and moment on the body of supports and "
@@ -51,8 +51,7 @@ Section probe_section() {
           {.name = "about",
            .type = KeyType::vector,
            .unit = "length",
-           .doc = "Point that the moment of a boundary is about, in the reference configuration; absent: the "
-                  "origin."},
+           .doc = "Reference point of the moment on a boundary, in the reference configuration. Default: the origin."},
           {.name = "group",
            .type = KeyType::groups,
            .doc = "Group of cells or of boundary facets, or a list of them: columns "
@@ -62,69 +61,74 @@ Section probe_section() {
            .type = KeyType::integer,
            .unit = "1",
            .range = nonnegative,
-           .doc = "Number of an entry of [[contact]], the first is 0: its force on the body NAME.force_x …, centre of "
-                  "pressure NAME.centre_x … (0 where it is open) and area in contact NAME.area (in 2D a length)."},
+           .doc = "Number of an entry of [[contact]], from 0. Columns: its force on the body NAME.force_x …, its "
+                  "centre of "
+                  "pressure NAME.centre_x … (0 while it is open) and its area in contact NAME.area (a length in 2D)."},
           {.name = "every",
            .type = KeyType::integer,
            .unit = "steps",
            .range = {.at_least = 1.0},
-           .doc = "Instead of history.csv: rows each so many steps in probes-EVERY.csv, with all probes of the same "
-                  "interval."},
+           .doc = "Steps between rows. The probe is then written to probes-EVERY.csv, together with all probes of the "
+                  "same "
+                  "interval, instead of history.csv."},
       }};
 }
 
 Section output_section() {
-  return {.name = "output",
-          .doc = "How often results are written.",
-          .keys = {
-              {.name = "fields_every",
-               .type = KeyType::integer,
-               .unit = "steps",
-               .range = nonnegative,
-               .doc = "Fields are written each so many steps; 0: never; absent: 10 + steps * dofs / 80000 "
-                      "times in the run, but at most 100 times."},
-              {.name = "fields_interval",
-               .type = KeyType::number,
-               .unit = "time",
-               .range = positive,
-               .doc = "Instead of fields_every: fields are written at the first step at or after each multiple of this "
-                      "time, and at the start and the end."},
-              {.name = "fields",
-               .type = KeyType::names,
-               .choices = field_choices(),
-               .doc = "The fields that are written (docs/results.md describes them); \"all\" stands for all. Default: "
-                      "displacement, velocity, those of contact, and von_mises."},
-              {.name = "fields_precision",
-               .type = KeyType::choice,
-               .standard = "double",
-               .choices = {"double", "single"},
-               .doc = "Of the numbers in results.h5: 64 or 32 bits. The mesh always has 64."},
-              {.name = "compression",
-               .type = KeyType::integer,
-               .unit = "1",
-               .standard = "0",
-               .range = {.at_least = 0.0, .at_most = 9.0},
-               .doc = "Of results.h5: 0 none, 1 fast, 9 small. Full precision compresses little, single more."},
-              {.name = "history_every",
-               .type = KeyType::integer,
-               .unit = "steps",
-               .standard = "1",
-               .range = {.at_least = 1.0},
-               .doc = "A row of history.csv is written each so many steps."},
-              {.name = "checkpoint_every",
-               .type = KeyType::integer,
-               .unit = "steps",
-               .standard = "0",
-               .range = nonnegative,
-               .doc = "A checkpoint is written each so many steps, from which an interrupted run goes on (`run "
-                      "--resume`); 0: by time only."},
-              {.name = "checkpoint_seconds",
-               .type = KeyType::number,
-               .unit = "seconds",
-               .standard = "300",
-               .range = nonnegative,
-               .doc = "A checkpoint is written when so much time has passed since the last one; 0: by steps only."},
-          }};
+  return {
+      .name = "output",
+      .doc = "How often results are written.",
+      .keys = {
+          {.name = "fields_every",
+           .type = KeyType::integer,
+           .unit = "steps",
+           .range = nonnegative,
+           .doc = "Steps between field frames; 0 disables them. Default: 10 + steps * dofs / 80000 frames in the run, "
+                  "at most 100."},
+          {.name = "fields_interval",
+           .type = KeyType::number,
+           .unit = "time",
+           .range = positive,
+           .doc =
+               "Time between field frames, instead of fields_every: a frame is written at the first step at or after "
+               "each multiple of it, and at the start and the end."},
+          {.name = "fields",
+           .type = KeyType::names,
+           .choices = field_choices(),
+           .doc = "The fields that are written (docs/results.md describes them); \"all\" stands for all. Default: "
+                  "displacement, velocity, those of contact, and von_mises."},
+          {.name = "fields_precision",
+           .type = KeyType::choice,
+           .standard = "double",
+           .choices = {"double", "single"},
+           .doc = "Precision of the fields in results.h5: 64 or 32 bits. The mesh always has 64."},
+          {.name = "compression",
+           .type = KeyType::integer,
+           .unit = "1",
+           .standard = "0",
+           .range = {.at_least = 0.0, .at_most = 9.0},
+           .doc = "zlib level of results.h5, from 0 (off) to 9. Double precision compresses little, single precision "
+                  "more."},
+          {.name = "history_every",
+           .type = KeyType::integer,
+           .unit = "steps",
+           .standard = "1",
+           .range = {.at_least = 1.0},
+           .doc = "Steps between rows of history.csv."},
+          {.name = "checkpoint_every",
+           .type = KeyType::integer,
+           .unit = "steps",
+           .standard = "0",
+           .range = nonnegative,
+           .doc =
+               "Steps between checkpoints, from which an interrupted run goes on (`run --resume`); 0: by time only."},
+          {.name = "checkpoint_seconds",
+           .type = KeyType::number,
+           .unit = "seconds",
+           .standard = "300",
+           .range = nonnegative,
+           .doc = "Wall-clock time between checkpoints; 0: by steps only."},
+      }};
 }
 
 Section check_section() {
@@ -132,70 +136,73 @@ Section check_section() {
   return {
       .name = "check",
       .doc =
-          "What a run must keep, whatever the case: a run that breaks its own account of energy or momentum says "
-          "so. summary.json has the largest residuals under `checks`.",
+          "Balances that every run must keep: a run that violates its balance of energy or momentum warns, or stops. "
+          "summary.json has the largest residuals under `checks`.",
       .keys = {
           {.name = "energy_residual",
            .type = KeyType::number,
            .unit = "1",
            .standard = "1e-8",
            .range = small,
-           .doc = "Largest energy_residual, relative to the largest energy so far; 0: not checked."},
+           .doc = "Allowed energy_residual, relative to the largest energy so far; 0 disables the check."},
           {.name = "momentum",
            .type = KeyType::number,
            .unit = "1",
            .standard = "1e-8",
            .range = small,
-           .doc = "What the impulses of all forces may leave unexplained of the change of momentum, relative to the "
-                  "largest momentum and the sum of all impulses; 0: not checked."},
+           .doc = "Allowed imbalance of momentum (its change less the impulses of all forces), relative to the largest "
+                  "momentum and the sum of all impulses; 0 disables the check."},
           {.name = "angular_momentum",
            .type = KeyType::number,
            .unit = "1",
            .standard = "1e-8",
            .range = small,
-           .doc = "The same of angular momentum, relative to that times the largest distance of a node from the "
-                  "origin. Not checked with degree 1 on curved cells, whose functions contain no rotations."},
+           .doc = "Allowed imbalance of angular momentum, relative to the scale of `momentum` times the largest "
+                  "distance of "
+                  "a node from the origin. Not checked with degree 1 on curved cells, whose functions contain no "
+                  "rotations."},
           {.name = "on_failure",
            .type = KeyType::choice,
            .standard = "warn",
            .choices = {"warn", "stop"},
-           .doc = "\"warn\": once per account; \"stop\": the run ends with status 3."},
+           .doc = "\"warn\" warns once per balance; \"stop\" ends the run with status 3."},
       }};
 }
 
 Section expect_section() {
-  return {.name = "expect",
-          .kind = SectionKind::list,
-          .doc =
-              "Something that must hold at the end of a run, so that a case is its own regression test: either a value "
-              "with "
-              "a tolerance (relative, absolute or both: the larger one counts), or bounds.",
-          .keys = {
-              {.name = "quantity", .required = true, .doc = "A number of the results; see Quantities."},
-              {.name = "value", .type = KeyType::number, .unit = "of the quantity", .doc = "The value it must have."},
-              {.name = "relative",
-               .type = KeyType::number,
-               .unit = "1",
-               .range = nonnegative,
-               .doc = "Tolerance as a fraction of value."},
-              {.name = "absolute",
-               .type = KeyType::number,
-               .unit = "of the quantity",
-               .range = nonnegative,
-               .doc = "Tolerance as a difference from value."},
-              {.name = "minimum",
-               .type = KeyType::number,
-               .unit = "of the quantity",
-               .doc = "Instead of value: the least it may be."},
-              {.name = "maximum",
-               .type = KeyType::number,
-               .unit = "of the quantity",
-               .doc = "Instead of value: the most it may be."},
-              {.name = "when",
-               .type = KeyType::conditions,
-               .doc = "Key paths and values, as in { \"time.scheme\" = \"midpoint\" }: only runs where all of them "
-                      "hold are checked."},
-          }};
+  return {
+      .name = "expect",
+      .kind = SectionKind::list,
+      .doc =
+          "A condition that must hold at the end of a run, which makes a case its own regression test: a value with a "
+          "tolerance (relative, absolute or both: the larger one counts), or bounds.",
+      .keys = {
+          {.name = "quantity", .required = true, .doc = "A number from the results; see Quantities."},
+          {.name = "value", .type = KeyType::number, .unit = "of the quantity", .doc = "Expected value."},
+          {.name = "relative",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = nonnegative,
+           .doc = "Tolerance as a fraction of value."},
+          {.name = "absolute",
+           .type = KeyType::number,
+           .unit = "of the quantity",
+           .range = nonnegative,
+           .doc = "Tolerance as a difference from value."},
+          {.name = "minimum",
+           .type = KeyType::number,
+           .unit = "of the quantity",
+           .doc = "Lower bound, instead of value."},
+          {.name = "maximum",
+           .type = KeyType::number,
+           .unit = "of the quantity",
+           .doc = "Upper bound, instead of value."},
+          {.name = "when",
+           .type = KeyType::conditions,
+           .doc =
+               "Key paths and values, as in { \"time.scheme\" = \"midpoint\" }: the condition is checked only in runs "
+               "where all of them hold."},
+      }};
 }
 
 }  // namespace ricochet

@@ -45,7 +45,7 @@ double read_newmark_parameter(const SectionReader& reader, const std::string& na
   if (!reader.is_usable("preset")) return reader.number(name);
   const bool own_counts = reader.is_override(name);
   const std::string loser = own_counts ? "preset" : name;
-  remarks.infos.push_back(fmt::format("{}: \"{}\" gives way to {}", reader.where(loser).text(), loser,
+  remarks.infos.push_back(fmt::format("{}: \"{}\" is overridden by {}", reader.where(loser).text(), loser,
                                       reader.where(own_counts ? name : "preset").text()));
   if (!own_counts) return of_preset;
   time.preset.clear();

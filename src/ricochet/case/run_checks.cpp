@@ -127,8 +127,8 @@ void RunChecks::judge(Account& account, double residual, double scale, const std
   account.told = true;
   const std::string what = &account == &energy_ ? "energy" : &account == &linear_ ? "momentum" : "angular momentum";
   const std::string message = fmt::format(
-      "at t = {:.6g} (step {:.0f}) the account of {} does not close: {:.2g} of the largest {} are missing, "
-      "more than check.{} = {:g}; {}",
+      "at t = {:.6g} (step {:.0f}) the balance of {} is violated by {:.2g} of the largest {}, more than "
+      "check.{} = {:g}; {}",
       row[1], row[0], what, residual / scale, what, result.name, result.limit, account.advice);
   if (stops_) throw Error(ErrorKind::not_converged, message);
   log::warning(message);

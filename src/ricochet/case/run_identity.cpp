@@ -117,9 +117,10 @@ void require_same_case(const Case& input, const std::string& version_before,
   if (differences.empty()) return;
   throw Error(
       ErrorKind::invalid_input,
-      fmt::format("{} cannot be resumed: the case is another one:{}\nRun it as it was (the same --set, too), or "
-                  "start anew in another directory (-o) or over it (--force)",
-                  before, differences));
+      fmt::format(
+          "{} cannot be resumed: the case has changed since this run began:{}\nRestore it (the same --set, too), or "
+          "start anew in another directory (-o) or over it (--force)",
+          before, differences));
 }
 
 void require_same_case(const Case& input, const Snapshot& snapshot, const std::string& before) {
@@ -135,11 +136,10 @@ std::string compare_model(const Case& input, const Model& model, const Snapshot&
     if (found == before.end() || found->second != sum) differences += (differences.empty() ? "" : ", ") + part;
   }
   if (!differences.empty()) {
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("{}: the run cannot be resumed: the mesh is another one than before (it differs in: {}); put "
-                    "back the mesh, or start anew in another directory (-o) or over this run (--force)",
-                    input.where("mesh.file").text(), differences));
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: the run cannot be resumed: the mesh has changed since it began (differences in: {}); "
+                            "restore the mesh, or start anew in another directory (-o) or over this run (--force)",
+                            input.where("mesh.file").text(), differences));
   }
   const std::string libraries = library_versions();
   if (libraries != snapshot.text("identity.libraries")) {

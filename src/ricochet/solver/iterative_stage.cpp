@@ -236,11 +236,12 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
     }
     solve_linear(touches ? std::max(0.3 * target, round_reduction * norm) : 0.9 * target);
   }
-  throw Error(ErrorKind::not_converged,
-              fmt::format("contact and the rest of the body did not come to terms in {} rounds; the time step is long "
-                          "beside the time in which a wave crosses {} cells: set solver.method = \"direct\" or take a "
-                          "smaller time.step",
-                          round_limit, zone_layers));
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format("contact and conjugate gradients did not converge in {} rounds; the time step is long compared "
+                  "with the time in which a wave crosses {} cells: set solver.method = \"direct\" or take a "
+                  "smaller time.step",
+                  round_limit, zone_layers));
 }
 
 void IterativeStage::end(const Stage& stage, StageSolution& solution) {
