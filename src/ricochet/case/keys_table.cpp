@@ -363,7 +363,7 @@ Section time_section() {
 Section solver_section() {
   return {
       .name = "solver",
-      .doc = "How a step is solved. Nothing here needs to be given.",
+      .doc = "How a step is solved. Every key has a default.",
       .keys = {
           {.name = "method",
            .type = KeyType::choice,
@@ -379,13 +379,14 @@ Section solver_section() {
            .unit = "1",
            .standard = "1e-10",
            .range = {.above = 0.0, .at_most = 1e-3},
-           .doc = "Of the iterative method: the force left over in a step, relative to the forces of the step, in "
-                  "the energy norm. Contact and friction hold to rounding with any method."},
+           .doc =
+               "Allowed residual of the iterative method in a step, relative to the forces of the step, in the energy "
+               "norm. Contact and friction hold to rounding with any method."},
           {.name = "memory",
            .type = KeyType::number,
            .unit = "GB",
            .range = positive,
-           .doc = "What factors may take, for the choice of \"auto\"; absent: half of the machine's memory."},
+           .doc = "Memory that factors may take when \"auto\" chooses. Default: half of the machine's memory."},
           {.name = "contact_points",
            .type = KeyType::choice,
            .standard = "near",
