@@ -81,8 +81,8 @@ class EntityNamer {
   static std::string kind(int dimension) { return dimension == 3 ? "volume" : dimension == 2 ? "surface" : "curve"; }
   static std::string name(int dimension, int entity) { return fmt::format("{} {}", kind(dimension), entity); }
   static std::string describe(int dimension, std::size_t count) {
-    return fmt::format("{} groups \"{} N\", where N is Gmsh's number of the {}", count, kind(dimension),
-                       kind(dimension));
+    return fmt::format("{} group{} \"{} N\", where N is Gmsh's number of the {}", count, count == 1 ? "" : "s",
+                       kind(dimension), kind(dimension));
   }
 
   int dimension_;
