@@ -28,7 +28,7 @@ await picture(friction, "report-friction-dark.png", { width: 1300, height: 1130,
   store.set("quantity", "contact_status", "contact");
   document.querySelector("#bodies").scrollIntoView();
 });
-await picture(ball, "report-ball.png", { width: 1300, height: 1080 }, () => {
+await picture(ball, "report-ball.png", { width: 1300, height: 1290 }, () => {
   const { store, stage } = window.ricochet;
   store.set("showMesh", true, "body");
   stage.showPeak(store.runs[0]);

@@ -25,7 +25,7 @@ const turns = ({ spin_before, spin_after, duration }: Impact) => Math.max(Math.a
 export function impactWords(impact: Impact): string {
   const parts: string[] = [];
   const restitution = toNumber(impact.restitution);
-  if (Number.isFinite(restitution)) parts.push(`restitution ${restitution.toFixed(3)}`);
+  if (Number.isFinite(restitution)) parts.push(`restitution ${restitution.toFixed(3).replace("-", "−")}`);
   if (!impact.ended) parts.push("still touches at the end");
   parts.push(`${impact.ended ? "lasts" : "so far"} ${number(impact.duration, 3)}`, `impulse ${number(impact.normal_impulse, 3)}`, `force up to ${number(impact.largest_force, 3)}`);
   if (impact.ended && turns(impact)) {

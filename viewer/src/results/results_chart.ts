@@ -189,7 +189,11 @@ export class ResultsChart {
       if (lines.length < 2 || lines.length > 8) continue; // the tip tells
       const [x, y] = at(points[atStart ? 0 : points.length - 1]);
       ctx.textAlign = atStart ? "left" : "right";
-      ctx.fillText(name, x + (atStart ? 9 : -9) * scale, y < top + 22 * scale ? y + 15 * scale : y - 8 * scale);
+      const place = [x + (atStart ? 9 : -9) * scale, y < top + 22 * scale ? y + 15 * scale : y - 8 * scale] as const;
+      ctx.strokeStyle = themeColour("panel"); // lines do not cross the letters
+      ctx.lineWidth = 4 * scale;
+      ctx.strokeText(name, ...place);
+      ctx.fillText(name, ...place);
     }
     const bar = 0.62 * (plot.valToPos(1, "x", true) - plot.valToPos(0, "x", true));
     const foot = this.logarithmic ? top + height : plot.valToPos(0, "y", true);
