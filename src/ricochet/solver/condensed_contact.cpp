@@ -1,13 +1,17 @@
 #include "ricochet/solver/condensed_contact.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
+#include <set>
+#include <string>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
+#include "ricochet/solver/contact/contact_iteration.hpp"
 
 namespace ricochet {
 
@@ -292,7 +296,42 @@ void CondensedContact::report() const {
   if (asked_ && observer_) observer_(contact_, contact_solution_);
 }
 
+/// Where, and between which contacts, by their numbers in the case and the normals of their obstacles.
+void CondensedContact::throw_contradiction(const std::vector<Index>& contradiction) const {
+  const auto as_text = [](const auto& vector) {
+    std::string text;
+    for (const double component : vector) text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", component);
+    return "(" + text + ")";
+  };
+  std::set<std::string> places, contacts;
+  for (const Index candidate : contradiction) {
+    const Index point = candidates_.points()[static_cast<std::size_t>(candidate)];
+    Vector at = Vector::Zero(problem_.dimension);
+    for (SparseRowMatrix::InnerIterator entry(problem_.contact.trace, point); entry; ++entry)
+      at += entry.value() * problem_.nodes.col(entry.col());
+    places.insert(as_text(at));
+    contacts.insert(fmt::format("contact.{} (normal {})", problem_.contact.pair[static_cast<std::size_t>(point)],
+                                as_text(problem_.contact.normals.col(point))));
+  }
+  constexpr std::size_t shown = 3;
+  std::vector<std::string> some(places.begin(), places.end());
+  const std::size_t more = some.size() > shown ? some.size() - shown : 0;
+  some.resize(some.size() - more);
+  const bool one = contacts.size() == 1;
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("no motion meets the conditions of contact: the body at {}{} (reference position) would have to be "
+                  "outside of the {} of {} at once{}; {}",
+                  fmt::join(some, ", "), more > 0 ? fmt::format(" and {} more places", more) : "",
+                  one ? "obstacle" : "obstacles", fmt::join(contacts, ", "),
+                  one ? " and where supports hold it" : ", and they leave it no room",
+                  one ? "change the supports or the obstacle's motion"
+                      : "leave more room between them, end their motion earlier, or remove one of these contacts"));
+}
+
 void CondensedContact::throw_not_solved() const {
+  const auto* const solver = dynamic_cast<const IterativeContactSolver*>(solver_.get());
+  if (solver != nullptr && !solver->contradiction().empty()) throw_contradiction(solver->contradiction());
   const bool tresca = ((bound_.array() > 0.0) && (coefficient_.array() == 0.0)).any();
   const char* const advice = tresca ? "; with a friction_bound alone a step need not have a solution: give a friction "
                                       "coefficient beside it"

@@ -25,7 +25,7 @@ class CondensedContact {
                    bool all_points = false);
 
   /// Finds the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
-  /// Error(not_converged).
+  /// Error(not_converged), and Error(invalid_input) where no motion meets the conditions of contact.
   void solve(const Stage& stage, Vector& y, StageSolution& solution);
   /// With the increment that followed: false when no other point penetrates. True: those that do are candidates now,
   /// and the stage must be solved again.
@@ -61,6 +61,7 @@ class CondensedContact {
   void tell_iterations() const;
   void give(StageSolution& solution) const;
   [[noreturn]] void throw_not_solved() const;
+  [[noreturn]] void throw_contradiction(const std::vector<Index>& contradiction) const;
 
   const SemidiscreteProblem& problem_;
   const SparseCholesky& factor_;

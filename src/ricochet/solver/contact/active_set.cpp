@@ -1,5 +1,6 @@
 #include "ricochet/solver/contact/active_set.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "ricochet/solver/contact/alart_curnier.hpp"
@@ -10,6 +11,16 @@ namespace ricochet {
 namespace {
 /// Block steps without fewer violations before single ones are taken.
 constexpr int patience = 8;
+/// Rounding of u, as a part of the data, above which reactions are so large that they may balance nothing but the
+/// rounding of a singular W.
+constexpr double trusted = 1e-9;
+
+double hidden_part(const ContactSystem& system, const ContactIterate& iterate) {
+  double largest = 0.0;
+  for (const ContactPoint& point : system.points())
+    largest = std::max(largest, sum_rounding * iterate.size[point.first] / std::sqrt(point.diagonal));
+  return largest / system.data();
+}
 }  // namespace
 
 /// The factor is of rows of another selection of points.
@@ -23,14 +34,17 @@ void PrimalDualActiveSet::renumber(const ContactSystem& system) {
     }
     renumbered_.push_back(found);
   }
-  factor_.renumber_base(renumbered_);
-  if (has_base_to_factor_) factor_.set_base(*system.dense(), renumbered_);
+  if (!has_base_to_factor_) return factor_.renumber_base(renumbered_);
+  if (!factor_.set_base(*system.dense(), renumbered_)) return reset();
   has_base_to_factor_ = false;
 }
 
 /// r on the active points from W_AA r_A = −q_A, once more for what rounding left over, and u everywhere.
 bool PrimalDualActiveSet::solve_active(const ContactSystem& system, ContactIterate& current) {
-  if (!factor_.set_indices(*system.dense(), indices_)) return false;
+  if (!factor_.set_indices(*system.dense(), indices_)) {
+    reset();  // the factor has no base any more
+    return false;
+  }
   const auto count = static_cast<Index>(indices_.size());
   right_.resize(count);
   current.reaction.setZero(system.rows());
@@ -54,10 +68,28 @@ void PrimalDualActiveSet::find_violations(const ContactSystem& system, const Con
   }
 }
 
-std::string PrimalDualActiveSet::solve(const ContactSystem& system, ContactIterate& current, int& iterations,
+std::string PrimalDualActiveSet::solve(const ContactSystem& system, double tolerance, ContactIterate& current,
+                                       int& iterations, int& factorizations, const Watch& watch) {
+  start_ = current;
+  renumber(system);
+  const std::string reason = pivot(system, current, iterations, factorizations, watch);
+  const bool solved = reason.empty() && system.is_solved(current, std::max(tolerance, loosest_residual));
+  const double hidden = solved ? hidden_part(system, current) : std::numeric_limits<double>::infinity();
+  if (hidden <= trusted) return "";
+  // Whatever it was that pivoting has come to: a few steps lead to the solution from where it began.
+  std::swap(current, start_);
+  const std::string why = dependent_.solve(system, current, iterations);
+  if (solved && dependent_.contradiction().empty() && !(why.empty() && hidden_part(system, current) < hidden)) {
+    std::swap(current, start_);
+    return "";
+  }
+  if (watch) watch(current);
+  return why;
+}
+
+std::string PrimalDualActiveSet::pivot(const ContactSystem& system, ContactIterate& current, int& iterations,
                                        int& factorizations, const Watch& watch) {
   const std::vector<ContactPoint>& points = system.points();
-  renumber(system);
   active_.assign(points.size(), 0);
   if (current.reaction.isZero(0.0)) {
     find_violations(system, current);
@@ -131,7 +163,9 @@ std::string ActiveSetSolver::iterate(const ContactSystem& system, const ContactO
   bool friction = false;
   for (const ContactPoint& point : system.points()) friction = friction || point.has_friction();
   if (!friction) {
-    const std::string reason = frictionless_.solve(system, current, solution.newton_steps, solution.factorizations);
+    const std::string reason =
+        frictionless_.solve(system, options.tolerance, current, solution.newton_steps, solution.factorizations);
+    if (!reason.empty()) note_contradiction(frictionless_.contradiction());
     note(system, options, "active set", system.residual(current), current.reaction, solution);
     return reason;
   }

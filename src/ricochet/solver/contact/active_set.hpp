@@ -7,6 +7,7 @@
 
 #include "ricochet/linear_algebra/principal_factor.hpp"
 #include "ricochet/solver/contact/contact_system.hpp"
+#include "ricochet/solver/contact/dual_active_set.hpp"
 
 /// @file The frictionless contact problem.
 namespace ricochet {
@@ -17,18 +18,22 @@ namespace ricochet {
 /// Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587–596. Starts from the points that have a reaction.
 ///
 /// Wrong sides are r_i < 0 (no tolerance: what is returned is never negative) and u_i below −(rounding of q_i + that of
-/// W r). The factor follows the set (PrincipalFactor).
+/// W r). The factor follows the set (PrincipalFactor). Where W is singular on a set that it comes to, or so nearly that
+/// what comes out is no solution, conditions depend on one another: DualActiveSet.
 class PrimalDualActiveSet {
  public:
   /// A system whose points have no friction, with entries in dense form. Counts its steps in `iterations`. Returns why
   /// it ended without a solution, or nothing: `current` is the solution, evaluated. Shows what it has come to after
   /// every step to `watch`, if there is one.
   using Watch = std::function<void(const ContactIterate& current)>;
-  std::string solve(const ContactSystem& system, ContactIterate& current, int& iterations, int& factorizations,
-                    const Watch& watch = {});
+  std::string solve(const ContactSystem& system, double tolerance, ContactIterate& current, int& iterations,
+                    int& factorizations, const Watch& watch = {});
+  /// Points of the problem that no motion satisfies together, see DualActiveSet.
+  [[nodiscard]] const std::vector<Index>& contradiction() const { return dependent_.contradiction(); }
   void reset() {
     factor_.reset();
     base_.clear();
+    has_base_to_factor_ = false;
   }
 
   /// The rows of the factor's base set, see IterativeContactSolver.
@@ -44,6 +49,8 @@ class PrimalDualActiveSet {
 
  private:
   void renumber(const ContactSystem& system);
+  std::string pivot(const ContactSystem& system, ContactIterate& current, int& iterations, int& factorizations,
+                    const Watch& watch);
   bool solve_active(const ContactSystem& system, ContactIterate& current);
   void find_violations(const ContactSystem& system, const ContactIterate& current);
 
@@ -55,6 +62,8 @@ class PrimalDualActiveSet {
   std::vector<Index> renumbered_;
   bool has_base_to_factor_ = false;  ///< after take_base
   Vector right_, solution_;
+  DualActiveSet dependent_;
+  ContactIterate start_;
 };
 
 }  // namespace ricochet

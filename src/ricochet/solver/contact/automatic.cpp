@@ -78,7 +78,9 @@ void learn(double& mean, double value) {
 
 /// Non-smooth Newton after accelerated projected Gauss–Seidel.
 ///
-/// 0. Without friction and with the entries of W: the primal–dual active set. From the reactions of an earlier step,
+/// 0. Without friction and with the entries of W: the primal–dual active set, the dual one where conditions depend on
+/// one
+///    another. From the reactions of an earlier step,
 ///    where the factor kept from it has proved cheaper than sweeps: Newton at once.
 /// 1. From the last r, accelerated sweeps: first order, robust; they find the contact and the directions of slip
 ///    roughly, and where W is well conditioned they go on to the end.
@@ -125,6 +127,7 @@ class AutomaticSolver final : public IterativeContactSolver {
   bool newton(const ContactWork& work);
   bool sweeps_and_newton(const ContactWork& work);
   bool alternate(const ContactWork& work, int sweeps, double damping);
+  std::string find_contradiction(const ContactWork& work);
   bool fall_back(const ContactWork& work, bool was_cold);
   static void begin_at_zero(const ContactWork& work);
   void keep_fallback();
@@ -137,6 +140,7 @@ class AutomaticSolver final : public IterativeContactSolver {
   std::unique_ptr<ContactSolver> products_;                       ///< where there are no entries of W
   std::map<std::string, std::unique_ptr<ContactSolver>> others_;  ///< where all else has failed
   PrimalDualActiveSet frictionless_;
+  DualActiveSet normals_;
   BestIterate best_;      ///< of a part of the iteration
   BestIterate fallback_;  ///< of all
   Vector begin_;
@@ -340,7 +344,11 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
         record(system, options, "active set", system.residual(now), now.reaction, solution);
       };
     }
-    if (frictionless_.solve(system, current, solution.iterations, solution.factorizations, watch) == "") return "";
+    const std::string reason =
+        frictionless_.solve(system, options.tolerance, current, solution.iterations, solution.factorizations, watch);
+    if (reason.empty()) return "";
+    note_contradiction(frictionless_.contradiction());
+    if (!contradiction().empty()) return reason;
   }
   best_.restart(work);
   if (cold) best_.merit = std::numeric_limits<double>::infinity();
@@ -351,10 +359,22 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
     work.current = best_.iterate;
   }
   if (sweeps_and_newton(work)) return "";
+  if (const std::string reason = find_contradiction(work); !reason.empty()) return reason;
   if (!std::isfinite(best_.merit)) return "the iteration diverged: the contact operator is not positive definite";
   if (fall_back(work, cold)) return "";
   return "the conditions of contact and friction are not met after all that was tried: there may be no solution, or W "
          "is not positive semi-definite";
+}
+
+/// Of the normal conditions among themselves: friction makes no room.
+std::string AutomaticSolver::find_contradiction(const ContactWork& work) {
+  if (work.system.dense() == nullptr) return "";
+  work.current.reaction.setZero();
+  int steps = 0;
+  const std::string reason = normals_.solve(work.system, work.current, steps);
+  work.current = best_.iterate;
+  note_contradiction(normals_.contradiction());
+  return contradiction().empty() ? "" : reason;
 }
 
 void AutomaticSolver::begin_at_zero(const ContactWork& work) {

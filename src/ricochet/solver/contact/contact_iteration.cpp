@@ -319,6 +319,7 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
   options.validate();
   solution.outcome = ContactOutcome::not_converged;
   solution.reason.clear();
+  contradiction_.clear();
   solution.iterations = solution.newton_steps = solution.factorizations = 0;
   solution.residual = solution.rounding_floor = 0.0;
   solution.record.clear();

@@ -17,6 +17,9 @@ class IterativeContactSolver : public ContactSolver {
   void solve(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution) override;
   [[nodiscard]] Vector warm_start() const override;
   void set_warm_start(const Vector& start) override;
+  /// After `solve`: points whose normal conditions no motion meets together, ascending, where that is why the problem is
+  /// not solved. Only solvers that know the entries of W look for them.
+  [[nodiscard]] const std::vector<Index>& contradiction() const { return contradiction_; }
 
   /// From `current`, which is evaluated and satisfies the signs and limits of its law, towards a solution: until
   /// system.is_solved(current, tolerance), or for as long as it gets closer. Leaves the best r and its u in `current`.
@@ -50,6 +53,9 @@ class IterativeContactSolver : public ContactSolver {
   /// penetrate, instead of on all points.
   [[nodiscard]] virtual bool works_on_candidates() const { return false; }
 
+  /// These contradict one another.
+  void note_contradiction(const std::vector<Index>& points) { contradiction_ = points; }
+
   /// r on the law: signs and limits hold exactly; where friction is at its limit it is against the slip, to the last
   /// digits where `exactly` is asked for. u does not follow.
   static void put_on_law(const ContactSystem& system, const Vector& motion, bool exactly, Vector& reaction);
@@ -71,6 +77,7 @@ class IterativeContactSolver : public ContactSolver {
   std::vector<Index> analysed_first_;
   Vector warm_reaction_;
   std::vector<char> wanted_;
+  std::vector<Index> contradiction_;
   ContactIterate current_, finished_;
   ContactIterate closest_;          ///< of several passes
   ContactSystem::Measure measure_;  ///< of `finished_`

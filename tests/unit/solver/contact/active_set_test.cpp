@@ -359,12 +359,17 @@ TEST(ActiveSet, PowersOfTwoChangeNoBit) {
   }
 }
 
-TEST(ActiveSet, SaysWhenConditionsDependOnOneAnother) {
+TEST(ActiveSet, SolvesConditionsThatDependOnOneAnother) {
   ActiveSetRun solver;
   const Problem singular(Matrix::Ones(2, 2), Vector::Constant(2, -1.0));
-  const ContactSolution solution = solver.solve(singular.points());
+  EXPECT_EQ(solve(singular, solver).sum(), 1.0);
+  // One that is in the way of the other.
+  solver.reset();
+  Problem opposed(Matrix::Ones(2, 2), Eigen::Vector2d(-1.0, 0.5));
+  opposed.w(0, 1) = opposed.w(1, 0) = -1.0;
+  const ContactSolution solution = solver.solve(opposed.points());
   EXPECT_FALSE(solution.solved());
-  EXPECT_NE(solution.reason.find("not positive definite"), std::string::npos);
+  EXPECT_NE(solution.reason.find("contradict one another"), std::string::npos);
   // The same solver goes on with a problem that can be solved.
   solver.reset();
   EXPECT_EQ(solve(Problem(2.0 * Matrix::Identity(2, 2), Vector::Constant(2, -1.0)), solver), Vector::Constant(2, 0.5));
