@@ -41,6 +41,11 @@ def support(group, components, value, parameters=""):
     return "\n".join(lines + ([f"parameters = {{ {parameters} }}"] if parameters else [])) + "\n"
 
 
+def obstacle(name, point, normal, more=""):
+    return (f'[obstacle.{name}]\ntype = "plane"\npoint = {point}\nnormal = {normal}\n{more}'
+            f'[[contact]]\ngroup = "bottom"\nobstacle = "{name}"\n')
+
+
 class SemanticErrors(TestCase):
     def refuse(self, text, at, *fragments, command="validate", environment=None):
         """`at` is the piece of the case file whose place the message must name: its last occurrence."""
@@ -130,11 +135,14 @@ class SemanticErrors(TestCase):
         self.refuse(block_case().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nrotation_rate = 1.0"), "1.0\n[[contact",
                     "three dimensions")
 
-    def test_more_obstacles_than_directions_at_a_node(self):
-        more = "".join(f'[obstacle.{name}]\ntype = "plane"\npoint = [0.0, -1.0]\nnormal = {normal}\n'
-                       f'[[contact]]\ngroup = "bottom"\nobstacle = "{name}"\n'
-                       for name, normal in (("ramp", [1, 1]), ("wall", [-1, 1])))
-        self.refuse(block_case() + more, None, "case.toml:", "contact")
+    def test_one_plane_with_two_frictions(self):
+        self.refuse(block_case() + obstacle("again", [0.0, 0.0], [0.0, 2.0]) + "friction = 0.3\n", None, "case.toml:",
+                    '"again" and "floor"', "one and the same plane", "different friction")
+
+    def test_obstacles_that_leave_no_room(self):
+        press = obstacle("press", [0.0, 0.3], [0.0, -1.0], "velocity = [0.0, -100.0]\n")
+        self.refuse(block_case().split("[[probe]]")[0] + press, None, "step ", "no motion meets the conditions of contact", "reference position",
+                    "contact.0 (normal (0, 1))", "contact.1 (normal (0, -1))", command="run")
 
     def test_supports_that_disagree(self):
         self.refuse(MIXED + support("bottom", '["x"]', 0) + support("interface", '["x"]', '"t"'), '"interface"',

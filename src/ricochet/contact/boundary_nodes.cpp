@@ -1,9 +1,11 @@
 #include "ricochet/contact/boundary_nodes.hpp"
 
 #include <fmt/format.h>
-#include <Eigen/QR>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/contact/contact_directions.hpp"
@@ -31,6 +33,19 @@ void check_agreement(const ContactPair& first, const ContactPair& second, bool h
                           first.group, second.group, first.obstacle_name));
 }
 
+/// It makes no difference which of the two obstacles carries a node.
+bool carry_alike(const ContactPair& one, const ContactPair& other) {
+  if (!one.friction.any() && !other.friction.any()) return true;
+  return one.friction == other.friction && !one.obstacle->moves() && !other.obstacle->moves();
+}
+
+/// The surfaces agree here, to rounding, in place and direction.
+bool coincide(const Obstacle& one, const Obstacle& other, const Vector& at) {
+  constexpr double same_direction = 1e-8;
+  if ((one.normal(at) - other.normal(at)).norm() > same_direction) return false;
+  return std::abs(one.gap(at) - other.gap(at)) <= one.gap_rounding(at) + other.gap_rounding(at);
+}
+
 }  // namespace
 
 BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& pairs, const FreeComponent& is_free) {
@@ -45,7 +60,7 @@ BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& p
       check_agreement(pairs[static_cast<std::size_t>(entry->second.first_pair)], pairs[k], entry->second.held);
     }
   }
-  check_independence(body, pairs);
+  check_coincidence(body, pairs);
 }
 
 bool BoundaryNodes::is_held(Index node, const Obstacle* obstacle) const {
@@ -56,32 +71,25 @@ int BoundaryNodes::first_pair(Index node, const Obstacle* obstacle) const {
   return nodes_.at({node, obstacle}).first_pair;
 }
 
-/// The conditions at one node must be independent, or their forces are not determined.
-void BoundaryNodes::check_independence(const Body& body, const std::vector<ContactPair>& pairs) const {
-  for (auto entry = nodes_.begin(); entry != nodes_.end();) {
-    const Index node = entry->first.first;
-    const Vector at = body.space->nodes.col(node);
-    std::vector<int> meeting;
-    for (; entry != nodes_.end() && entry->first.first == node; ++entry) {
-      if (!entry->second.held) meeting.push_back(entry->second.first_pair);
+/// Conditions at a node may depend on one another: the step has one motion then, too. But where two surfaces are one
+/// and the same, it must not matter which of them carries the node: how they share the force is not determined.
+void BoundaryNodes::check_coincidence(const Body& body, const std::vector<ContactPair>& pairs) const {
+  for (auto one = nodes_.begin(); one != nodes_.end(); ++one) {
+    for (auto other = std::next(one); other != nodes_.end() && other->first.first == one->first.first; ++other) {
+      if (one->second.held || other->second.held) continue;
+      const ContactPair& first = pairs[static_cast<std::size_t>(one->second.first_pair)];
+      const ContactPair& second = pairs[static_cast<std::size_t>(other->second.first_pair)];
+      const Vector at = body.space->nodes.col(one->first.first);
+      if (carry_alike(first, second) || !coincide(*first.obstacle, *second.obstacle, at)) continue;
+      std::string place;
+      for (const double coordinate : at) place += fmt::format("{}{}", place.empty() ? "" : ", ", coordinate);
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("obstacles \"{}\" and \"{}\" are one and the same plane at the node at ({}), with "
+                              "different friction or motion: which of them carries the node is not determined; remove "
+                              "one of these contacts or move one of the planes",
+                              std::min(first.obstacle_name, second.obstacle_name),
+                              std::max(first.obstacle_name, second.obstacle_name), place));
     }
-    if (meeting.size() < 2) continue;
-    std::sort(meeting.begin(), meeting.end());
-    Matrix normals(at.size(), static_cast<Index>(meeting.size()));
-    std::string names;
-    for (std::size_t k = 0; k < meeting.size(); ++k) {
-      const ContactPair& pair = pairs[static_cast<std::size_t>(meeting[k])];
-      normals.col(static_cast<Index>(k)) = pair.obstacle->normal(at);
-      names += fmt::format("{}\"{}\"", k == 0 ? "" : ", ", pair.obstacle_name);
-    }
-    Eigen::ColPivHouseholderQR<Matrix> qr(normals);
-    qr.setThreshold(1e-8);
-    if (qr.rank() == normals.cols()) continue;
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("the node at ({}{}{}) is in contact with obstacles {} whose normals are linearly "
-                            "dependent there; remove one of these contacts",
-                            at[0], ", ",
-                            at.size() == 3 ? fmt::format("{}, {}", at[1], at[2]) : fmt::format("{}", at[1]), names));
   }
 }
 

@@ -13,7 +13,8 @@ namespace ricochet {
 class BoundaryNodes {
  public:
   /// Throws Error(invalid_input) when pairs that share a node and an obstacle differ in multipliers or, where a
-  /// multiplier stands for both, in friction; and when obstacles that share a node have dependent normals there.
+  /// multiplier stands for both, in friction; and when obstacles that share a node are one plane there, with different
+  /// friction or motion.
   BoundaryNodes(const Body& body, const std::vector<ContactPair>& pairs, const FreeComponent& is_free);
 
   /// Whether supports hold the node along the obstacle's normal.
@@ -29,7 +30,7 @@ class BoundaryNodes {
   };
   using Key = std::pair<Index, const Obstacle*>;
 
-  void check_independence(const Body& body, const std::vector<ContactPair>& pairs) const;
+  void check_coincidence(const Body& body, const std::vector<ContactPair>& pairs) const;
 
   std::map<Key, Entry> nodes_;
   Index held_count_ = 0;

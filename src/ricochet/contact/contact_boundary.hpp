@@ -84,7 +84,7 @@ struct ContactBoundary {
 
 /// Builds the boundary. Multipliers of nodes that supports hold along the normal are left out, and so are those of
 /// facets all of whose nodes are; `held_nodes` (may be null) receives the number of such nodes, each once per obstacle.
-/// Throws Error(invalid_input) when the obstacles that share a node have dependent normals there, when pairs that share
+/// Throws Error(invalid_input) when obstacles at a shared node are one plane of unlike friction, when pairs that share
 /// a node and an obstacle differ in multipliers or (but for "p0") in friction, when a multiplier space is unknown, when
 /// a multiplier has no positive D_i, or when a nodal force has a negative one under Tresca's law.
 [[nodiscard]] ContactBoundary make_contact_boundary(const Body& body, const std::vector<ContactPair>& pairs,

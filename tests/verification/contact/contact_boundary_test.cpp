@@ -242,12 +242,22 @@ TEST(ContactBoundary, RefusesWhatIsNotDetermined) {
   const auto floor = plane(Vector::Unit(2, 1));
   const auto other = plane(Eigen::Vector2d(0.0, 2.0));
   const auto wall = plane(Vector::Unit(2, 0));
+  const auto ceiling = plane(-Vector::Unit(2, 1));
   for (const std::string& multipliers : multiplier_space_names()) {
     EXPECT_EQ(message_of(*test, {pair_of(*test, "y0", *floor, multipliers), pair_of(*test, "x0", *wall, multipliers)}),
               "no error");
-    EXPECT_NE(message_of(*test, {pair_of(*test, "y0", *floor, multipliers), pair_of(*test, "x0", *other, multipliers)})
-                  .find("linearly dependent"),
-              std::string::npos);
+    // Conditions that depend on one another leave one motion; friction on two planes in one place does not.
+    EXPECT_EQ(
+        message_of(*test, {pair_of(*test, "y0", *floor, multipliers), pair_of(*test, "x0", *other, multipliers),
+                           pair_of(*test, "y0", *wall, multipliers), pair_of(*test, "y0", *ceiling, multipliers)}),
+        "no error");
+    const auto rubbing = [&](const FrictionLaw& one, const FrictionLaw& two) {
+      return message_of(
+          *test, {pair_of(*test, "y0", *floor, multipliers, one), pair_of(*test, "x0", *other, multipliers, two)});
+    };
+    EXPECT_NE(rubbing({0.3, 0.0}, {0.2, 0.0}).find("are one and the same plane at the node at ("), std::string::npos);
+    EXPECT_NE(rubbing({0.3, 0.0}, {}).find("different friction or motion"), std::string::npos);
+    EXPECT_EQ(rubbing({0.3, 0.0}, {0.3, 0.0}), "no error");
   }
   EXPECT_NE(message_of(*test, {pair_of(*test, "y0", *floor, "p1"), pair_of(*test, "x0", *floor, "dual")})
                 .find("different multipliers"),
