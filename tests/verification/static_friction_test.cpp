@@ -1,7 +1,16 @@
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <sstream>
+
 #include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
+#include "support/contact_problems.hpp"
 
 // Static starts of bodies that slide along their obstacle at t = 0.
 
@@ -19,7 +28,7 @@ std::string block_case(const std::string& mass, const std::string& belt_velocity
   const std::string mesh = test_support::mesh_geometry(
       "block",
       "Rectangle(1)={0,0,0,2,1}; Physical Surface(\"body\")={1}; Physical Curve(\"bottom\")={1}; "
-      "Physical Curve(\"right\")={2};",
+      "Physical Curve(\"right\")={2}; Physical Curve(\"top\")={3};",
       0.25, 1);
   return "[mesh]\nfile = \"" + mesh +
          "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 1e4\npoisson = 0.3\n"
@@ -86,6 +95,132 @@ TEST(StaticFriction, BlockThatSlidesDownASlopeIsRefused) {
     const std::string text = problem.what();
     EXPECT_NE(text.find("no equilibrium"), std::string::npos) << text;
     EXPECT_NE(text.find("friction does not hold points that slide at t = 0"), std::string::npos) << text;
+  }
+}
+
+/// A block on a floor of two or three dimensions, in gravity that is inclined by an angle to it.
+struct InclinedBlock {
+  int dimension;
+  double angle, heading;  ///< of gravity: to the floor's normal, and along the floor
+  double friction;
+  std::string mass, multipliers, mesh;
+
+  [[nodiscard]] std::vector<double> down() const {
+    const double along = std::sin(angle), across = -std::cos(angle);
+    if (dimension == 2) return {along * (heading < 3.0 ? 1.0 : -1.0), across};
+    return {along * std::cos(heading), along * std::sin(heading), across};
+  }
+  [[nodiscard]] std::string text() const {
+    const bool flat = dimension == 2;
+    const std::vector<double> g = down();
+    return fmt::format(
+        "[mesh]\nfile = \"{}\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 1e4\npoisson = 0.3\n"
+        "[obstacle.floor]\ntype = \"plane\"\npoint = [{}]\nnormal = [{}]\n[[contact]]\ngroup = \"bottom\"\n"
+        "obstacle = \"floor\"\nfriction = {:.17g}\nmultipliers = \"{}\"\nunstable_multipliers = \"allow\"\n"
+        "[load]\ngravity = [{:.17g}]\n[initial]\ndisplacement = \"static\"\n[mass]\ntype = \"{}\"\n"
+        "[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 0.001\nend = 0.01\n",
+        mesh, flat ? "0, 0" : "0, 0, 0", flat ? "0, 1" : "0, 0, 1", friction, multipliers, fmt::join(g, ", "), mass);
+  }
+};
+
+std::string inclined_mesh(int dimension) {
+  return dimension == 2 ? test_support::mesh_geometry("block",
+                                                      "Rectangle(1)={0,0,0,3,1}; Physical Surface(\"body\")={1}; "
+                                                      "Physical Curve(\"bottom\")={1};",
+                                                      0.34, 1)
+                        : test_support::mesh_geometry("brick",
+                                                      "Box(1)={0,0,0,3,3,1}; Physical Volume(\"body\")={1}; "
+                                                      "Physical Surface(\"bottom\")={5};",
+                                                      1.0, 1);
+}
+
+/// The numbers in parentheses that follows a word, component by component.
+std::vector<double> vector_after(const std::string& text, const std::string& word) {
+  std::vector<double> result;
+  const std::size_t at = text.find(word + " (");
+  if (at == std::string::npos) return result;
+  const std::size_t begin = at + word.size() + 2;
+  std::stringstream list(text.substr(begin, text.find(')', begin) - begin));
+  for (std::string part; std::getline(list, part, ',');) result.push_back(std::stod(part));
+  return result;
+}
+
+/// A block slides down any incline that is steeper than its friction, by however little, and the error says which way.
+/// RICOCHET_RANDOM_CASES=10 tries ten times as many.
+TEST(StaticFriction, OfABlockThatSlidesIsRefusedWithItsDirection) {
+  const char* const factor = std::getenv("RICOCHET_RANDOM_CASES");
+  const unsigned count = factor != nullptr ? 16 * static_cast<unsigned>(std::atoi(factor)) : 16;
+  const std::string flat = inclined_mesh(2), brick = inclined_mesh(3);
+  for (unsigned seed = 0; seed < count; ++seed) {
+    std::mt19937 random(seed);
+    const auto unit = [&] { return 0.5 * (test::uniform(random) + 1.0); };
+    const char* const masses[] = {"equivalent", "consistent", "lumped"};
+    const char* const kinds[] = {"nodal", "p0", "p1", "dual"};
+    InclinedBlock block{seed % 4 == 3 ? 3 : 2, 0.05 + 0.7 * unit(),         6.0 * unit(), 0.0, masses[random() % 3],
+                        kinds[random() % 4],   seed % 4 == 3 ? brick : flat};
+    const double nearness = std::pow(10.0, -5.0 * unit());
+    block.friction = std::tan(block.angle) * (1.0 - nearness);
+    SCOPED_TRACE(fmt::format("seed {}, nearness {}\n{}", seed, nearness, block.text()));
+    try {
+      CaseRun run(block.text());
+      ADD_FAILURE() << "not refused";
+    } catch (const Error& problem) {
+      const std::string message = problem.what();
+      EXPECT_EQ(problem.kind(), ErrorKind::invalid_input) << message;
+      EXPECT_NE(message.find("there is no equilibrium"), std::string::npos) << message;
+      const std::vector<double> direction = vector_after(message, "slides in the direction");
+      const std::vector<double> force = vector_after(message, "a force of");
+      ASSERT_EQ(direction.size(), static_cast<std::size_t>(block.dimension)) << message;
+      ASSERT_EQ(force.size(), direction.size()) << message;
+      const std::vector<double> down = block.down();
+      const double volume = block.dimension == 2 ? 3.0 : 9.0;
+      for (std::size_t k = 0; k < direction.size(); ++k) {
+        const bool along = k + 1 < direction.size();
+        // To the three digits that are printed.
+        EXPECT_NEAR(direction[k], along ? down[k] / std::sin(block.angle) : 0.0, 6e-4) << message;
+        const double lacking = along ? volume * nearness * down[k] : 0.0;
+        EXPECT_NEAR(force[k], lacking, 6e-3 * volume * nearness) << message;
+      }
+    }
+    // The other side is not refused for want of friction.
+    if (seed % 4 != 0) continue;
+    block.friction = std::tan(block.angle) * (1.0 + std::max(nearness, 0.01));
+    EXPECT_NO_THROW(CaseRun run(block.text()));
+    if (HasFailure()) return;
+  }
+}
+
+/// Without anything to slide on it is said, too.
+TEST(StaticFriction, ABodyThatFallsIsRefusedWithItsDirection) {
+  try {
+    CaseRun run(block_case("consistent", "[0.0, 0.0]", "[0.0, 0.0]", "", "[0.0, 10.0]"));
+    FAIL() << "not refused";
+  } catch (const Error& problem) {
+    EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+    EXPECT_EQ(vector_after(problem.what(), "moves in the direction"), (std::vector<double>{0.0, 1.0}));
+    EXPECT_EQ(vector_after(problem.what(), "a force of"), (std::vector<double>{0.0, 20.0})) << problem.what();
+  }
+}
+
+/// Pulled at its upper edge, above what its weight can hold down.
+TEST(StaticFriction, ABodyThatTipsIsRefused) {
+  for (const double pull : {0.99, 1.01}) {
+    // Friction holds it; it tips about a corner where pull × height > weight × half its width.
+    std::string text =
+        block_case("consistent", "[0.0, 0.0]", "[0.0, 0.0]",
+                   fmt::format("[[traction]]\ngroup = \"top\"\nvalue = [{}, 0.0]\n", pull * weight / 2.0));
+    text.replace(text.find("friction = 0.3"), 14, "friction = 1.5");
+    if (pull < 1.0) {
+      EXPECT_NO_THROW(CaseRun run(text));
+      continue;
+    }
+    try {
+      CaseRun run(text);
+      ADD_FAILURE() << "not refused";
+    } catch (const Error& problem) {
+      EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+      EXPECT_NE(std::string(problem.what()).find("there is no equilibrium"), std::string::npos) << problem.what();
+    }
   }
 }
 

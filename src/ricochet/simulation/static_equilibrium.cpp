@@ -10,12 +10,17 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/displacement_space.hpp"
 #include "ricochet/scheme/contact_conditions.hpp"
+#include "ricochet/simulation/rigid_equilibrium.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 namespace ricochet {
 
 namespace {
+
+/// Part of the loads that the test of an equilibrium may leave unbalanced (in places: see below), with room to spare. A
+/// body of which more is unbalanced is refused at once.
+constexpr double clearly_unbalanced = 1e-4;
 
 double lowest_local_frequency_squared(const SemidiscreteProblem& problem) {
   const Vector stiffness = problem.internal_force->tangent().diagonal();
@@ -75,6 +80,7 @@ class StaticFriction {
     }
   }
 
+  [[nodiscard]] const std::vector<char>& sliding() const { return sliding_; }
   [[nodiscard]] Index sliding_points() const { return std::count(sliding_.begin(), sliding_.end(), 1); }
   void leave_out_sliding() { left_out_ = true; }
 
@@ -141,6 +147,29 @@ class ProximalPoint {
 std::string role_of_friction(const SemidiscreteProblem& problem, const StaticFriction& friction) {
   if (friction.sliding_points() > 0) return ", and friction does not hold points that slide at t = 0";
   return problem.contact.has_friction() ? ", and contact with friction does not hold it (it slides or tips)" : "";
+}
+
+std::string as_text(const Vector& vector) {
+  std::string text;
+  for (const double component : vector) text += fmt::format("{}{:.3g}", text.empty() ? "" : ", ", component);
+  return "(" + text + ")";
+}
+
+/// A body that no reactions can hold has no equilibrium, whatever an iteration might say.
+[[noreturn]] void refuse_unheld(const SemidiscreteProblem& problem, const StaticFriction& friction,
+                                const UnheldMotion& motion) {
+  std::string how = "turns or tips over: a moment has";
+  if (!motion.force.isZero(0.0)) {
+    how = fmt::format("{} in the direction {}: a force of {} has", motion.slides ? "slides" : "moves",
+                      as_text(motion.force.normalized()), as_text(motion.force));
+  }
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("initial.displacement = \"static\": there is no equilibrium under the loads at t = 0: the body "
+                  "around {} {} nothing to balance it{}; add a [[support]] that holds it in the direction in "
+                  "which it moves or turns{}, or give the displacement by expressions",
+                  as_text(motion.centre), how, role_of_friction(problem, friction),
+                  motion.slides ? ", raise the friction" : ""));
 }
 
 [[noreturn]] void refuse_static(const SemidiscreteProblem& problem, const StaticFriction& friction,
@@ -223,8 +252,15 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
   StaticEquilibrium result = start;
   StaticFriction friction(problem, velocity);
   const EquilibriumTest test(problem);
+  const auto held = [&](const std::vector<char>& frictionless) {
+    const std::optional<UnheldMotion> unheld = find_unheld_motion(problem, frictionless);
+    if (unheld && unheld->unbalanced > clearly_unbalanced) refuse_unheld(problem, friction, *unheld);
+    return unheld;
+  };
+  std::optional<UnheldMotion> unheld = held({});
   bool found = friction.sliding_points() > 0 && find_sliding_equilibrium(problem, friction, test, options, result);
   if (!found) {
+    if (friction.sliding_points() > 0) unheld = held(friction.sliding());
     result = start;
     friction.leave_out_sliding();
     Vector left_over;
@@ -232,10 +268,12 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
       found = find_equilibrium(problem, friction, test, options, result, left_over);
     } catch (const Error& problem_of_contact) {
       if (problem_of_contact.kind() != ErrorKind::not_converged) throw;
+      if (unheld) refuse_unheld(problem, friction, *unheld);
       throw Error(ErrorKind::not_converged,
                   fmt::format("initial.displacement = \"static\": {}; there may be no equilibrium{}",
                               problem_of_contact.what(), role_of_friction(problem, friction)));
     }
+    if (!found && unheld) refuse_unheld(problem, friction, *unheld);
     if (!found) refuse_static(problem, friction, left_over);
     if (friction.sliding_points() > 0) {
       log::info(
