@@ -96,6 +96,16 @@ int degree_of(const CellBlock& block) {
   return block.nodes_per_cell == node_count(block.shape, 1) ? 1 : 2;
 }
 
+/// How many there would be.
+Index count_of(const std::vector<CellBlock>& blocks, int most_degree) {
+  Index count = 0;
+  for (const CellBlock& block : blocks) {
+    const auto patterns = patterns_of(block.shape, std::min(degree_of(block), most_degree));
+    count += block.size() * static_cast<Index>(patterns.size());
+  }
+  return count;
+}
+
 std::vector<Tetrahedron> tetrahedra_of(const std::vector<CellBlock>& blocks, int most_degree) {
   std::vector<Tetrahedron> result;
   int number = 0;
@@ -141,9 +151,8 @@ std::vector<Tetrahedron> merged(const Points& nodes, const std::vector<Tetrahedr
 Volume make_volume(const Points& nodes, const std::vector<CellBlock>& cells, Index most) {
   Volume volume;
   if (dimension(cells.front().shape) != 3) return volume;
-  std::vector<Tetrahedron> tetrahedra = tetrahedra_of(cells, 2);
+  std::vector<Tetrahedron> tetrahedra = tetrahedra_of(cells, count_of(cells, 2) <= most ? 2 : 1);
   const auto too_many = [&] { return static_cast<Index>(tetrahedra.size()) > most; };
-  if (too_many()) tetrahedra = tetrahedra_of(cells, 1);
   if (too_many()) {
     volume.is_thinned = true;
     const std::vector<Tetrahedron> all = std::move(tetrahedra);
