@@ -88,10 +88,12 @@ AssembledBody::AssembledBody(const BodyDescription& description) {
   file.geometry_degree = description.order;
   mesh = read_mesh(file);
   space = make_displacement_space(mesh, description.order);
-  Body body{&mesh, &space, PlaneState::strain, {{"body", 3.0, 1.0, 1.0, 0.0, 0.0}}, {}};
+  body = {&mesh, &space, PlaneState::strain, {{"body", 3.0, 1.0, 1.0, 0.0, 0.0}}, {}};
   body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), 0);
   consistent = assemble_scalar_mass(body, node_graph(space));
-  input = {&consistent, &space.nodes, facet_nodes(space, mesh.group("contact", mesh.dimension - 1).members)};
+  cells = std::make_unique<CellMasses>(body);
+  input = {&consistent, &space.nodes, facet_nodes(space, mesh.group("contact", mesh.dimension - 1).members), nullptr,
+           cells.get()};
 }
 
 }  // namespace ricochet::test_support

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/fem/assembly.hpp"
+#include "ricochet/fem/cell_masses.hpp"
 #include "ricochet/mass/mass.hpp"
 
 /// @file Bodies on whose meshes masses are tested: thin strips and plates, coarse balls, contact all around,
@@ -25,9 +25,13 @@ struct BodyDescription {
 struct AssembledBody {
   Mesh mesh;
   DisplacementSpace space;
+  Body body;
   SparseMatrix consistent;
+  std::unique_ptr<CellMasses> cells;
   MassInput input;
 
+  AssembledBody(const AssembledBody&) = delete;
+  AssembledBody& operator=(const AssembledBody&) = delete;
   explicit AssembledBody(const BodyDescription& description);
 };
 

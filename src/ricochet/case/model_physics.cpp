@@ -8,6 +8,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/model_parts.hpp"
 #include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/fem/cell_masses.hpp"
 #include "ricochet/mass/mass.hpp"
 
 namespace ricochet {
@@ -121,10 +122,19 @@ void assemble_operators(const Case& input, Model& model) {
   const NodeGraph graph = node_graph(model.space);
   const int d = model.mesh.dimension;
   const SparseMatrix consistent = assemble_scalar_mass(model.body, graph);
-  const std::unique_ptr<MassConstruction> construction = make_mass(input.mass.type);
   MassInput mass_input{&consistent, &model.space.nodes, model.problem.contact.unique_nodes(), &consistent};
-  const auto build = [&](const SparseMatrix& from) {
+  const bool compact = input.mass.type == "equivalent" && prefers_compact(mass_input);
+  if (compact) {
+    log::info(
+        fmt::format("the mass \"equivalent\" of {} contact nodes is built as \"equivalent-compact\", which keeps "
+                    "the factor small",
+                    mass_input.contact_nodes.size()));
+  }
+  const std::unique_ptr<MassConstruction> construction = make_mass(compact ? "equivalent-compact" : input.mass.type);
+  const auto build = [&](const SparseMatrix& from, const std::vector<double>& weight = {}) {
+    const CellMasses cells(model.body, weight);
     mass_input.consistent = &from;
+    mass_input.cells = &cells;
     try {
       return construction->build(mass_input);
     } catch (const Error& problem) {
@@ -143,7 +153,8 @@ void assemble_operators(const Case& input, Model& model) {
     return std::any_of(values.begin(), values.end(), [](double v) { return v > 0.0; });
   };
   if (any(mass_damping))
-    model.problem.damping = expand_to_components(build(assemble_scalar_mass(model.body, graph, mass_damping)), d);
+    model.problem.damping =
+        expand_to_components(build(assemble_scalar_mass(model.body, graph, mass_damping), mass_damping), d);
   if (any(stiffness_damping)) {
     const SparseMatrix part = assemble_stiffness(model.body, graph, stiffness_damping);
     model.problem.damping = model.problem.has_damping() ? SparseMatrix(model.problem.damping + part) : part;

@@ -10,6 +10,8 @@
 /// mass.cpp's registrations.
 namespace ricochet {
 
+class CellMasses;
+
 /// What a mass is built from.
 struct MassInput {
   const SparseMatrix* consistent = nullptr;  ///< ∫ρ N_i N_j, nodes × nodes; or ∫aρ N_i N_j, damping with rates a ≥ 0
@@ -17,6 +19,8 @@ struct MassInput {
   std::vector<Index> contact_nodes;          ///< ascending, each once
   /// ∫ρ N_i N_j when `consistent` is damping, which may vanish somewhere; null: the same.
   const SparseMatrix* inertia = nullptr;
+  /// The cells that `consistent` is the sum of; null where nobody works cell by cell.
+  const CellMasses* cells = nullptr;
 
   [[nodiscard]] const SparseMatrix& inertia_matrix() const { return inertia != nullptr ? *inertia : *consistent; }
 };
@@ -36,11 +40,15 @@ class MassConstruction {
 /// By the name used in a case file; throws Error(invalid_input) that lists the names.
 [[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name);
 [[nodiscard]] std::vector<std::string> mass_names();
+/// True where "equivalent" would couple so many nodes in space that a factor of the stage's operator is several times
+/// as large as with "equivalent-compact".
+[[nodiscard]] bool prefers_compact(const MassInput& input);
 
 /// One constructor per file.
 [[nodiscard]] std::unique_ptr<MassConstruction> make_consistent_mass();
 [[nodiscard]] std::unique_ptr<MassConstruction> make_lumped_mass();
 [[nodiscard]] std::unique_ptr<MassConstruction> make_equivalent_mass();
+[[nodiscard]] std::unique_ptr<MassConstruction> make_compact_equivalent_mass();
 [[nodiscard]] std::unique_ptr<MassConstruction> make_nearest_equivalent_mass();
 [[nodiscard]] std::unique_ptr<MassConstruction> make_lumped_equivalent_mass();
 

@@ -41,7 +41,8 @@ void expect_equivalent(const SparseMatrix& mass, const Assembled& body, const st
 
 TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKind) {
   int refused = 0;
-  std::printf("%-38s %6s %8s %12s %12s %12s\n", "body", "nodes", "contact", "consistent", "equivalent", "nearest");
+  std::printf("%-38s %6s %8s %12s %12s %12s %12s %12s %12s\n", "body", "nodes", "contact", "consistent", "equivalent",
+              "nearest", "compact", "entries", "compact's");
   for (const Description& description : test_support::bodies_of_every_kind()) {
     const Assembled body(description);
     const Vector scale = body.consistent.diagonal();
@@ -60,8 +61,14 @@ TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKi
       EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
       EXPECT_NE(std::string(problem.what()).find("use mass type \"equivalent\""), std::string::npos) << problem.what();
     }
-    std::printf("%-38s %6td %8zu %12.2f %12.2f %12s\n", description.name.c_str(), body.consistent.cols(),
-                body.input.contact_nodes.size(), top_eigenvalue(body.consistent, scale), top, nearest_text.c_str());
+    const SparseMatrix compact = make_compact_equivalent_mass()->build(body.input);
+    expect_equivalent(compact, body, description.name + " (compact)");
+    const auto share = [&](const SparseMatrix& of) {
+      return static_cast<double>(of.nonZeros()) / static_cast<double>(body.consistent.nonZeros());
+    };
+    std::printf("%-38s %6td %8zu %12.2f %12.2f %12s %12.2f %12.2f %12.2f\n", description.name.c_str(),
+                body.consistent.cols(), body.input.contact_nodes.size(), top_eigenvalue(body.consistent, scale), top,
+                nearest_text.c_str(), top_eigenvalue(compact, scale), share(mass), share(compact));
   }
   // Those on which the nearest matrix is indefinite are among the meshes, or the first construction would not be
   // needed.

@@ -1,0 +1,60 @@
+#include "ricochet/fem/cell_masses.hpp"
+
+#include "ricochet/fem/element_matrices.hpp"
+
+namespace ricochet {
+
+struct CellMasses::Rules {
+  std::vector<MassIntegration> of_block;
+};
+
+CellMasses::CellMasses(const Body& body, std::vector<double> weight)
+    : body_(body), weight_(std::move(weight)), rules_(std::make_unique<Rules>()) {
+  for (const CellBlock& block : body.mesh->cells)
+    rules_->of_block.emplace_back(block.shape, body.mesh->degree, body.space->degree);
+}
+
+CellMasses::~CellMasses() = default;
+
+void CellMasses::for_each(const Visit& visit) const {
+  std::vector<Index> nodes;
+  std::vector<double> pairs;
+  Matrix mass;
+  std::size_t number = 0;
+  for (std::size_t b = 0; b < body_.space->cells.size(); ++b) {
+    const CellBlock& cells = body_.space->cells[b];
+    const int count = cells.nodes_per_cell;
+    pairs.resize(static_cast<std::size_t>(pair_number(0, count)));
+    mass.resize(count, count);
+    for (Index cell = 0; cell < cells.size(); ++cell, ++number) {
+      const auto material = static_cast<std::size_t>(body_.cell_material[number]);
+      const double density = body_.materials[material].density * (weight_.empty() ? 1.0 : weight_[material]);
+      const Index* geometry = body_.mesh->cells[b].cell(cell);
+      if (body_.mesh->dimension == 2) {
+        element_mass<2>(rules_->of_block[b], body_.mesh->nodes, geometry, density, pairs.data());
+      } else {
+        element_mass<3>(rules_->of_block[b], body_.mesh->nodes, geometry, density, pairs.data());
+      }
+      for (int j = 0; j < count; ++j) {
+        for (int i = 0; i <= j; ++i) mass(i, j) = mass(j, i) = pairs[static_cast<std::size_t>(pair_number(i, j))];
+      }
+      nodes.assign(cells.cell(cell), cells.cell(cell) + count);
+      visit(nodes, mass);
+    }
+  }
+}
+
+void CellMasses::for_each_cell(const std::function<void(const std::vector<Index>& nodes)>& visit) const {
+  for (const CellBlock& cells : body_.space->cells) {
+    for (Index cell = 0; cell < cells.size(); ++cell)
+      visit({cells.cell(cell), cells.cell(cell) + cells.nodes_per_cell});
+  }
+}
+
+/// Of a simplex: d on degree 1, d (d + 1) / 2 on degree 2.
+int CellMasses::least_facet_nodes() const {
+  const int d = body_.mesh->dimension;
+  return body_.space->degree == 1 ? d : d * (d + 1) / 2;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/fem/assembly.hpp"
+
+/// @file The mass of single cells, for what needs more than their sum.
+namespace ricochet {
+
+/// ∫ wρ N_i N_j over one cell at a time, with w per material (empty: 1), as assemble_scalar_mass adds them. Keeps a
+/// reference to the body. Not for two threads at once.
+class CellMasses {
+ public:
+  explicit CellMasses(const Body& body, std::vector<double> weight = {});
+  ~CellMasses();
+  CellMasses(const CellMasses&) = delete;
+  CellMasses& operator=(const CellMasses&) = delete;
+
+  /// Calls visit(nodes of the cell, its matrix) for all cells, in the order of their numbers.
+  using Visit = std::function<void(const std::vector<Index>& nodes, const Matrix& mass)>;
+  void for_each(const Visit& visit) const;
+  /// The nodes alone.
+  void for_each_cell(const std::function<void(const std::vector<Index>& nodes)>& visit) const;
+  /// Nodes that two cells have in common when they share a facet, at least.
+  [[nodiscard]] int least_facet_nodes() const;
+
+ private:
+  const Body& body_;
+  std::vector<double> weight_;
+  struct Rules;
+  std::unique_ptr<Rules> rules_;
+};
+
+}  // namespace ricochet

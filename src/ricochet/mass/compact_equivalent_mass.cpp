@@ -1,0 +1,273 @@
+#include <fmt/format.h>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/fem/cell_masses.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
+#include "ricochet/mass/mass.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Σ|w| of a contact node for which more donors are not looked for. Weights that extrapolate have both signs; on
+/// straight simplices of degree 2 that have a facet on the contact boundary they are 2, −1 or 1, 1, −1.
+constexpr double small_weights = 4.0;
+/// After so many rings of cells these are good enough.
+constexpr std::size_t many_rings = 4;
+constexpr double fair_weights = 10.0;
+
+/// Cells in rings around one, by the facets that they share.
+class CellRings {
+ public:
+  CellRings(const CellMasses& cells, Index node_count) : at_node_(static_cast<std::size_t>(node_count)) {
+    cells.for_each_cell([&](const std::vector<Index>& nodes) {
+      for (const Index node : nodes)
+        at_node_[static_cast<std::size_t>(node)].push_back(static_cast<int>(nodes_.size()));
+      nodes_.push_back(nodes);
+    });
+    facet_nodes_ = cells.least_facet_nodes();
+  }
+
+  /// Adds the cells that share a facet with one of them.
+  void grow(std::vector<int>& cells) const {
+    std::map<int, int> common;
+    const std::vector<int> before = cells;
+    for (const int cell : before) {
+      common.clear();
+      for (const Index node : nodes_[static_cast<std::size_t>(cell)]) {
+        for (const int other : at_node_[static_cast<std::size_t>(node)]) ++common[other];
+      }
+      for (const auto& [other, count] : common) {
+        if (count >= facet_nodes_ && std::find(cells.begin(), cells.end(), other) == cells.end())
+          cells.push_back(other);
+      }
+    }
+  }
+  [[nodiscard]] const std::vector<Index>& nodes(int cell) const { return nodes_[static_cast<std::size_t>(cell)]; }
+
+ private:
+  std::vector<std::vector<int>> at_node_;
+  std::vector<std::vector<Index>> nodes_;
+  int facet_nodes_ = 0;
+};
+
+/// The extension of a cell: its contact nodes follow free nodes of its own, or of it and its neighbours.
+struct CellExtension {
+  std::vector<Index> donors;                                 ///< ascending
+  Matrix rows;                                               ///< E_e, nodes of the cell × donors
+  double weights = std::numeric_limits<double>::infinity();  ///< the largest Σ|w|
+};
+
+class CompactEquivalentMass final : public MassConstruction {
+ public:
+  [[nodiscard]] bool removes_contact_inertia() const override { return true; }
+  [[nodiscard]] SparseMatrix build(const MassInput& input) const override;
+};
+
+/// Builds one mass.
+class Builder {
+ public:
+  explicit Builder(const MassInput& input);
+  SparseMatrix build();
+
+ private:
+  void empty_result();
+  void add_cell(const std::vector<Index>& nodes, const Matrix& mass);
+  void add_value(Index row, Index column, double value);
+  CellExtension extend(const std::vector<Index>& nodes);
+  [[nodiscard]] std::vector<Index> free_nodes_of(const std::vector<Index>& nodes) const;
+  [[nodiscard]] std::vector<Index> free_nodes_around(const std::vector<int>& cells) const;
+  void extrapolate(const std::vector<Index>& nodes, CellExtension& extension) const;
+  [[nodiscard]] bool is_contact(Index node) const { return is_contact_[static_cast<std::size_t>(node)] != 0; }
+  [[noreturn]] void refuse(Index node, std::size_t free) const;
+
+  const MassInput& input_;
+  std::vector<char> is_contact_;
+  Vector trust_;  ///< m_jj
+  std::unique_ptr<CellRings> rings_;
+  SparseMatrix result_;                         ///< on the pattern of M
+  std::vector<Eigen::Triplet<double>> beyond_;  ///< what is not in it
+  int number_ = 0;                              ///< of the cell
+};
+
+Builder::Builder(const MassInput& input) : input_(input), trust_(input.inertia_matrix().diagonal()) {
+  is_contact_.assign(static_cast<std::size_t>(input.consistent->cols()), 0);
+  for (const Index node : input.contact_nodes) is_contact_[static_cast<std::size_t>(node)] = 1;
+}
+
+/// The rows and columns of free nodes of M, with zeros.
+void Builder::empty_result() {
+  const SparseMatrix& mass = input_.inertia_matrix();
+  result_.resize(mass.rows(), mass.cols());
+  int* outer = result_.outerIndexPtr();
+  for (int pass = 0; pass < 2; ++pass) {
+    int position = 0;
+    for (Index column = 0; column < mass.cols(); ++column) {
+      outer[column] = position;
+      if (is_contact(column)) continue;
+      for (SparseMatrix::InnerIterator entry(mass, column); entry; ++entry) {
+        if (is_contact(entry.row())) continue;
+        if (pass > 0) {
+          result_.innerIndexPtr()[position] = static_cast<int>(entry.row());
+          result_.valuePtr()[position] = 0.0;
+        }
+        ++position;
+      }
+    }
+    outer[mass.cols()] = position;
+    if (pass == 0) result_.resizeNonZeros(position);
+  }
+}
+
+void Builder::add_value(Index row, Index column, double value) {
+  const int* begin = result_.innerIndexPtr() + result_.outerIndexPtr()[column];
+  const int* end = result_.innerIndexPtr() + result_.outerIndexPtr()[column + 1];
+  const int* at = std::lower_bound(begin, end, static_cast<int>(row));
+  if (at != end && *at == row) {
+    result_.valuePtr()[at - result_.innerIndexPtr()] += value;
+  } else {
+    beyond_.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+  }
+}
+
+SparseMatrix Builder::build() {
+  empty_result();
+  input_.cells->for_each([this](const std::vector<Index>& nodes, const Matrix& mass) { add_cell(nodes, mass); });
+  if (!beyond_.empty()) {
+    SparseMatrix beyond(result_.rows(), result_.cols());
+    beyond.setFromTriplets(beyond_.begin(), beyond_.end());
+    add_sparse(result_, beyond).swap(result_);
+  }
+  return std::move(result_);
+}
+
+/// E_eᵀ m_e E_e.
+void Builder::add_cell(const std::vector<Index>& nodes, const Matrix& mass) {
+  ++number_;
+  const auto count = static_cast<Index>(nodes.size());
+  if (std::none_of(nodes.begin(), nodes.end(), [this](Index node) { return is_contact(node); })) {
+    for (Index j = 0; j < count; ++j) {
+      for (Index i = 0; i < count; ++i)
+        add_value(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)], mass(i, j));
+    }
+    return;
+  }
+  const CellExtension extension = extend(nodes);
+  const Matrix moved = extension.rows.transpose() * mass * extension.rows;
+  const auto donors = static_cast<Index>(extension.donors.size());
+  for (Index j = 0; j < donors; ++j) {
+    for (Index i = 0; i < donors; ++i) {
+      add_value(extension.donors[static_cast<std::size_t>(i)], extension.donors[static_cast<std::size_t>(j)],
+                0.5 * (moved(i, j) + moved(j, i)));
+    }
+  }
+}
+
+/// From the cell's own free nodes if they are enough, else from more and more rings of cells.
+CellExtension Builder::extend(const std::vector<Index>& nodes) {
+  CellExtension best;
+  std::vector<int> cells{number_ - 1};
+  std::size_t before = 0, free = 0;
+  for (std::size_t ring = 0; cells.size() > before; ++ring) {
+    before = cells.size();
+    CellExtension extension;
+    extension.donors = ring == 0 ? free_nodes_of(nodes) : free_nodes_around(cells);
+    free = extension.donors.size();
+    extrapolate(nodes, extension);
+    if (extension.weights < best.weights) std::swap(best, extension);
+    if (best.weights <= (ring < many_rings ? small_weights : fair_weights)) return best;
+    if (!rings_) rings_ = std::make_unique<CellRings>(*input_.cells, input_.consistent->cols());
+    rings_->grow(cells);
+  }
+  if (std::isfinite(best.weights)) return best;  // all free nodes of the body
+  refuse(*std::find_if(nodes.begin(), nodes.end(), [this](Index node) { return is_contact(node); }), free);
+}
+
+std::vector<Index> Builder::free_nodes_of(const std::vector<Index>& nodes) const {
+  std::vector<Index> result;
+  for (const Index node : nodes) {
+    if (!is_contact(node)) result.push_back(node);
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+std::vector<Index> Builder::free_nodes_around(const std::vector<int>& cells) const {
+  std::vector<Index> nodes;
+  for (const int cell : cells) nodes.insert(nodes.end(), rings_->nodes(cell).begin(), rings_->nodes(cell).end());
+  return free_nodes_of(nodes);
+}
+
+/// With the columns a_j = (1, x_j − x̄) of A and T = diag(m_jj), the w with A w = (1, x_c − x̄) that are least in
+/// Σ w_j²/m_jj: w = T^½ v with the least v of A T^½ v = (1, x_c − x̄). Leaves Σ|w| infinite where the donors do not
+/// span space.
+void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extension) const {
+  const Index dimension = input_.nodes->rows();
+  const auto count = static_cast<Index>(extension.donors.size());
+  if (count <= dimension) return;
+  Vector centre = Vector::Zero(dimension), scale(count);
+  for (Index k = 0; k < count; ++k) {
+    const Index donor = extension.donors[static_cast<std::size_t>(k)];
+    centre += input_.nodes->col(donor) / static_cast<double>(count);
+    scale[k] = trust_[donor];
+  }
+  scale = (scale / scale.maxCoeff()).cwiseSqrt();
+  Matrix conditions(dimension + 1, count);
+  for (Index k = 0; k < count; ++k) {
+    conditions(0, k) = 1.0;
+    conditions.col(k).tail(dimension) = input_.nodes->col(extension.donors[static_cast<std::size_t>(k)]) - centre;
+  }
+  const double size = conditions.bottomRows(dimension).cwiseAbs().maxCoeff();
+  conditions.bottomRows(dimension) /= size;
+  const Eigen::CompleteOrthogonalDecomposition<Matrix> solver(conditions * scale.asDiagonal());
+  if (solver.rank() <= dimension) return;
+  extension.rows.setZero(static_cast<Index>(nodes.size()), count);
+  Vector wanted(dimension + 1);
+  wanted[0] = 1.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (!is_contact(nodes[i])) {
+      const auto own = std::lower_bound(extension.donors.begin(), extension.donors.end(), nodes[i]);
+      extension.rows(static_cast<Index>(i), own - extension.donors.begin()) = 1.0;
+      continue;
+    }
+    wanted.tail(dimension) = (input_.nodes->col(nodes[i]) - centre) / size;
+    Vector weights = scale.cwiseProduct(solver.solve(wanted));
+    // In flat cells rounding leaves something to do.
+    weights += scale.cwiseProduct(solver.solve(wanted - conditions * weights));
+    largest = std::max(largest, weights.lpNorm<1>());
+    extension.rows.row(static_cast<Index>(i)) = weights.transpose();
+  }
+  if (std::isfinite(largest)) extension.weights = largest;
+}
+
+void Builder::refuse(Index node, std::size_t free) const {
+  const Vector at = input_.nodes->col(node);
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("mass type \"equivalent-compact\": the inertia of the contact node at ({:.6g}, {:.6g}{}) has "
+                          "nowhere to go: its body has {} nodes that are not on the contact boundary, and they do not "
+                          "span space; refine the mesh there, or use mass type \"consistent\" or "
+                          "\"lumped\"",
+                          at[0], at[1], at.size() == 3 ? fmt::format(", {:.6g}", at[2]) : "", free));
+}
+
+SparseMatrix CompactEquivalentMass::build(const MassInput& input) const {
+  if (input.cells == nullptr)
+    throw Error(ErrorKind::invalid_input, "mass type \"equivalent-compact\" needs the masses of single cells");
+  return Builder(input).build();
+}
+
+}  // namespace
+
+std::unique_ptr<MassConstruction> make_compact_equivalent_mass() {
+  return std::make_unique<CompactEquivalentMass>();
+}
+
+}  // namespace ricochet
