@@ -10,6 +10,7 @@
 #include "ricochet/fem/cell_masses.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/mass/mass.hpp"
+#include "ricochet/mass/mass_conditions.hpp"
 
 namespace ricochet {
 
@@ -85,7 +86,7 @@ class Builder {
   [[nodiscard]] std::vector<Index> free_nodes_around(const std::vector<int>& cells) const;
   void extrapolate(const std::vector<Index>& nodes, CellExtension& extension) const;
   [[nodiscard]] bool is_contact(Index node) const { return is_contact_[static_cast<std::size_t>(node)] != 0; }
-  [[noreturn]] void refuse(Index node, std::size_t free) const;
+  [[noreturn]] void refuse(Index node, std::vector<Index> free) const;
 
   const MassInput& input_;
   std::vector<char> is_contact_;
@@ -173,12 +174,13 @@ void Builder::add_cell(const std::vector<Index>& nodes, const Matrix& mass) {
 CellExtension Builder::extend(const std::vector<Index>& nodes) {
   CellExtension best;
   std::vector<int> cells{number_ - 1};
-  std::size_t before = 0, free = 0;
+  std::vector<Index> free;
+  std::size_t before = 0;
   for (std::size_t ring = 0; cells.size() > before; ++ring) {
     before = cells.size();
     CellExtension extension;
     extension.donors = ring == 0 ? free_nodes_of(nodes) : free_nodes_around(cells);
-    free = extension.donors.size();
+    free = extension.donors;
     extrapolate(nodes, extension);
     if (extension.weights < best.weights) std::swap(best, extension);
     if (best.weights <= (ring < many_rings ? small_weights : fair_weights)) return best;
@@ -248,20 +250,36 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
   if (std::isfinite(largest)) extension.weights = largest;
 }
 
-void Builder::refuse(Index node, std::size_t free) const {
-  const Vector at = input_.nodes->col(node);
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("mass type \"equivalent-compact\": the inertia of the contact node at ({:.6g}, {:.6g}{}) has "
-                          "nowhere to go: its body has {} nodes that are not on the contact boundary, and they do not "
-                          "span space; refine the mesh there, or use mass type \"consistent\" or "
-                          "\"lumped\"",
-                          at[0], at[1], at.size() == 3 ? fmt::format(", {:.6g}", at[2]) : "", free));
+void Builder::refuse(Index node, std::vector<Index> free) const {
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("mass type \"equivalent-compact\": the inertia of the contact node at {} cannot be moved to other "
+                  "nodes: its body has {}; refine the mesh there, so that at least {} nodes that are not all {} are "
+                  "off the contact boundary, or use mass type \"consistent\" or \"lumped\"",
+                  text_of_point(*input_.nodes, node), describe_free_nodes(*input_.nodes, free),
+                  input_.nodes->rows() + 1, input_.nodes->rows() == 3 ? "in one plane" : "on one line"));
+}
+
+/// The moments follow from the weights; rounding leaves 1e-13 of them.
+void check_conditions(const MassInput& input, const SparseMatrix& mass) {
+  const MassFrames frames = mass_frames(input.inertia_matrix(), *input.nodes);
+  const MassBody* worst = nullptr;
+  const double defect = moment_defect(mass, *input.consistent, frames, &worst);
+  if (defect <= 1e-10) return;
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("mass type \"equivalent-compact\": the moments of inertia of the body with the node at {} would "
+                  "be off by {:.2g} of the largest, because its mesh is too distorted for this construction; "
+                  "improve the mesh around the contact boundary, or use mass type \"consistent\" or \"lumped\"",
+                  text_of_point(*input.nodes, worst->nodes.front()), defect));
 }
 
 SparseMatrix CompactEquivalentMass::build(const MassInput& input) const {
   if (input.cells == nullptr)
     throw Error(ErrorKind::invalid_input, "mass type \"equivalent-compact\" needs the masses of single cells");
-  return Builder(input).build();
+  SparseMatrix result = Builder(input).build();
+  check_conditions(input, result);
+  return result;
 }
 
 }  // namespace
