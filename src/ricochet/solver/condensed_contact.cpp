@@ -243,12 +243,19 @@ bool CondensedContact::take_up_penetrating(const Stage& stage, const Vector& inc
   std::vector<Index> found = candidates_.penetrating(stage, motion_, !asked_);
   must_ask_ = !found.empty();
   if (!must_ask_) {
-    candidates_.learn(stage, motion_);
+    candidates_.learn(stage, motion_, asked_ ? closed_points() : 0);
     return false;
   }
   std::erase_if(found, [&](Index point) { return candidates_.number(point) >= 0; });
   if (!found.empty()) take_up(found);
   return true;
+}
+
+std::size_t CondensedContact::closed_points() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + 1 < contact_.first.size(); ++i)
+    count += contact_solution_.reaction[contact_.first[i]] > 0.0 ? 1 : 0;
+  return count;
 }
 
 /// With friction in stages that have a slip rate, and at points where they do not leave it out.

@@ -59,6 +59,7 @@ class CondensedContact {
   void choose_friction(const Stage& stage);
   void solve_contact();
   void tell_iterations() const;
+  [[nodiscard]] std::size_t closed_points() const;
   void give(StageSolution& solution) const;
   [[noreturn]] void throw_not_solved() const;
   [[noreturn]] void throw_contradiction(const std::vector<Index>& contradiction) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ricochet {
 
@@ -11,6 +12,12 @@ namespace {
 constexpr double reserve = 2.0;
 /// Points within so many reaches are taken up together.
 constexpr double ahead = 8.0;
+/// Points are taken up before they are needed up to so many, or so many times those that carried a force in the last
+/// stage. The others are taken up when they penetrate.
+constexpr std::size_t most_ahead = 512;
+constexpr std::size_t room_to_grow = 3;
+/// More candidates than so many times that are not kept for an instant.
+constexpr std::size_t flood = 4;
 /// Of the points that penetrate, those by more than this part of the deepest are taken up at once, but not more than
 /// there are candidates: a body that nothing held has fallen through its obstacle with all points, and the deepest ones
 /// may be enough to hold it.
@@ -38,11 +45,13 @@ void ContactCandidates::clear() {
 void ContactCandidates::save_history(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".largest_motion", largest_motion_);
   snapshot.save(name + ".oversized_stages", oversized_stages_);
+  snapshot.save(name + ".closed", static_cast<std::int64_t>(closed_));
 }
 
 void ContactCandidates::load_history(const Snapshot& snapshot, const std::string& name) {
   largest_motion_ = snapshot.real(name + ".largest_motion");
   oversized_stages_ = static_cast<int>(snapshot.integer(name + ".oversized_stages"));
+  closed_ = static_cast<std::size_t>(snapshot.integers(name + ".closed", 0, static_cast<Index>(number_.size())).at(0));
 }
 
 /// In the units of y: what stages have moved points by, or what this one must, where points are inside at δ = 0.
@@ -65,14 +74,6 @@ std::size_t ContactCandidates::count_below(const Stage& stage, double limit, boo
   return count;
 }
 
-std::vector<Index> ContactCandidates::eligible_below(const Stage& stage, double limit, bool candidates) const {
-  std::vector<Index> result;
-  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
-    if (is_below(stage, i, limit, candidates)) result.push_back(i);
-  }
-  return result;
-}
-
 bool ContactCandidates::some_may_touch(const Stage& stage) const {
   const double limit = reach(stage);
   for (Index i = 0; i < stage.gap_offset.size(); ++i) {
@@ -81,9 +82,35 @@ bool ContactCandidates::some_may_touch(const Stage& stage) const {
   return false;
 }
 
+std::size_t ContactCandidates::most() const {
+  return std::max(most_ahead, room_to_grow * closed_);
+}
+
+bool ContactCandidates::are_too_many() const {
+  return points_.size() > flood * most();
+}
+
+std::vector<Index> ContactCandidates::nearest(const Stage& stage) const {
+  const double limit = ahead * reach(stage);
+  std::vector<Index> result;
+  for (Index i = 0; i < stage.gap_offset.size(); ++i) {
+    if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= limit) result.push_back(i);
+  }
+  if (result.size() <= most()) return result;
+  const auto last = result.begin() + static_cast<std::ptrdiff_t>(most());
+  std::nth_element(result.begin(), last, result.end(), [&](Index a, Index b) {
+    return std::pair(stage.gap_offset[a], a) < std::pair(stage.gap_offset[b], b);
+  });
+  result.erase(last, result.end());
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 std::vector<Index> ContactCandidates::approaching(const Stage& stage) const {
-  const double limit = reach(stage);
-  return count_below(stage, limit, false) > 0 ? eligible_below(stage, ahead * limit, false) : std::vector<Index>{};
+  if (count_below(stage, reach(stage), false) == 0) return {};
+  std::vector<Index> result = nearest(stage);
+  std::erase_if(result, [&](Index point) { return number(point) >= 0; });
+  return result;
 }
 
 std::vector<Index> ContactCandidates::penetrating(const Stage& stage, const Vector& motion, bool left_out) const {
@@ -103,7 +130,8 @@ std::vector<Index> ContactCandidates::penetrating(const Stage& stage, const Vect
   return result;
 }
 
-void ContactCandidates::learn(const Stage& stage, const Vector& motion) {
+void ContactCandidates::learn(const Stage& stage, const Vector& motion, std::size_t closed) {
+  closed_ = closed;
   largest_motion_ = 0.0;
   for (Index i = 0; i < motion.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] != 0)
@@ -113,10 +141,13 @@ void ContactCandidates::learn(const Stage& stage, const Vector& motion) {
 
 std::vector<Index> ContactCandidates::worth_keeping(const Stage& stage) {
   if (points_.size() <= few_points) return {};
-  const double limit = ahead * reach(stage);
-  const bool oversized = points_.size() > oversize * std::max(count_below(stage, limit, true), few_points);
+  const std::size_t near = std::min(count_below(stage, ahead * reach(stage), true), most());
+  const bool oversized = points_.size() > oversize * std::max(near, few_points);
   oversized_stages_ = oversized ? oversized_stages_ + 1 : 0;
-  return oversized_stages_ < patience ? std::vector<Index>{} : eligible_below(stage, limit, true);
+  if (oversized_stages_ < patience && !are_too_many()) return {};
+  std::vector<Index> result = nearest(stage);
+  std::erase_if(result, [&](Index point) { return number(point) < 0; });
+  return result;
 }
 
 }  // namespace ricochet

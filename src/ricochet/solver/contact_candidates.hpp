@@ -28,26 +28,33 @@ class ContactCandidates {
   /// Some eligible point may touch in this stage: its y at δ = 0 is within reach of what stages have moved points by.
   [[nodiscard]] bool some_may_touch(const Stage& stage) const;
   /// Points that may touch and are no candidates, with those near them in time, so that the set does not grow in every
-  /// step. Empty: there are none that may touch.
+  /// step. Of many the nearest: a body that moves far in a step may touch with all of its skin, and does with little.
+  /// Empty: there are none that may touch.
   [[nodiscard]] std::vector<Index> approaching(const Stage& stage) const;
   /// After a stage with these G δ (per point): eligible points that penetrate by more than rounding, of many the
   /// deepest. Candidates are looked at only where they were `left_out` of the stage. Empty: the stage is solved.
   [[nodiscard]] std::vector<Index> penetrating(const Stage& stage, const Vector& motion, bool left_out) const;
-  /// Remembers how far a solved stage has moved points.
-  void learn(const Stage& stage, const Vector& motion);
-  /// Many more candidates than points near the obstacle, for long: those that are worth keeping. Empty: nothing to do.
+  /// Remembers how far a solved stage has moved points, and that so many carry a force.
+  void learn(const Stage& stage, const Vector& motion, std::size_t closed);
+  /// Many more candidates than points near the obstacle, for long, or very many: those that are worth keeping. Empty:
+  /// nothing to do.
   [[nodiscard]] std::vector<Index> worth_keeping(const Stage& stage);
+  /// There are so many candidates that those far from the obstacle should go at once.
+  [[nodiscard]] bool are_too_many() const;
+  /// Eligible points near the obstacle, candidates or not; of many the nearest. Ascending.
+  [[nodiscard]] std::vector<Index> nearest(const Stage& stage) const;
 
  private:
   [[nodiscard]] double reach(const Stage& stage) const;
   /// The point is eligible, a candidate or not, and its gap at δ = 0 is at most `limit`.
   [[nodiscard]] bool is_below(const Stage& stage, Index point, double limit, bool candidates) const;
   [[nodiscard]] std::size_t count_below(const Stage& stage, double limit, bool candidates) const;
-  [[nodiscard]] std::vector<Index> eligible_below(const Stage& stage, double limit, bool candidates) const;
+  [[nodiscard]] std::size_t most() const;
 
   std::vector<Index> points_;
   std::vector<Index> number_;  ///< per point
   double largest_motion_ = 0.0;
+  std::size_t closed_ = 0;
   int oversized_stages_ = 0;
 };
 

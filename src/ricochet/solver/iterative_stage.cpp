@@ -44,7 +44,7 @@ class IterativeStage final : public StageSolver {
 
  private:
   void begin(const Stage& stage, StageSolution& solution);
-  void make_zone(const std::vector<Index>& points);
+  void make_zone(const Stage& stage, const std::vector<Index>& points);
   void make_zone_of(const std::vector<Index>& points, const std::vector<Index>& nodes);
   [[nodiscard]] std::vector<Index> with_neighbours(const std::vector<Index>& nodes) const;
   void find_residual(const Stage& stage);
@@ -106,8 +106,15 @@ std::vector<Index> IterativeStage::with_neighbours(const std::vector<Index>& nod
   return result;
 }
 
-/// For these points and those near them.
-void IterativeStage::make_zone(const std::vector<Index>& points) {
+/// For these points and those near them, and those of the last zone unless it has become too large: a body that rolls
+/// leaves them behind.
+void IterativeStage::make_zone(const Stage& stage, const std::vector<Index>& wanted) {
+  std::vector<Index> points = wanted;
+  if (near_.are_too_many()) {
+    const std::vector<Index> nearest = near_.nearest(stage);
+    points.insert(points.end(), nearest.begin(), nearest.end());
+    near_.clear();
+  }
   std::vector<Index> nodes, all;
   {
     // Layers of cells: an equivalent mass has neighbours farther away.
@@ -162,7 +169,8 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
   solution.iterations = 0;
   if (near_.some_may_touch(stage)) {
-    if (const std::vector<Index> approaching = near_.approaching(stage); !approaching.empty()) make_zone(approaching);
+    if (const std::vector<Index> approaching = near_.approaching(stage); !approaching.empty())
+      make_zone(stage, approaching);
   }
 }
 
@@ -230,7 +238,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
       }
       must_touch = true;
       if (std::any_of(penetrating.begin(), penetrating.end(), [&](Index p) { return near_.number(p) < 0; }))
-        make_zone(penetrating);
+        make_zone(stage, penetrating);
       target = 0.0;
       continue;
     }
@@ -245,7 +253,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
 }
 
 void IterativeStage::end(const Stage& stage, StageSolution& solution) {
-  near_.learn(stage, motion_);
+  near_.learn(stage, motion_, static_cast<std::size_t>((solution.normal_reaction.array() > 0.0).count()));
   previous_ = increment_;
   increment_ = guess_;
   has_previous_ = true;

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 namespace ricochet {
 namespace {
 
@@ -45,7 +49,7 @@ TEST(ContactCandidates, ReachIsWhatTheLastStageMovedPointsBy) {
   ContactCandidates candidates(2);
   Stage stage = stage_with_gaps(gaps({1.5, 100.0}));
   EXPECT_FALSE(candidates.some_may_touch(stage));
-  candidates.learn(stage, gaps({-1.0, 0.2}));
+  candidates.learn(stage, gaps({-1.0, 0.2}), 0);
   EXPECT_TRUE(candidates.some_may_touch(stage));
   EXPECT_EQ(candidates.approaching(stage), (Points{0}));
   stage.gap_factor = 0.5;  // y = q + s G δ
@@ -111,6 +115,57 @@ TEST(ContactCandidates, AreDroppedWhenTheyHaveBeenFarForLong) {
   candidates.clear();
   EXPECT_EQ(candidates.number(0), -1);
   EXPECT_TRUE(candidates.points().empty());
+}
+
+/// A body that moves by more than its own size in a step may touch with every point, and does with few.
+TEST(ContactCandidates, AreTheNearestOfManyThatMayTouch) {
+  const Index count = 10000;
+  ContactCandidates candidates(count);
+  Vector distance(count);
+  for (Index i = 0; i < count; ++i) distance[i] = static_cast<double>(i * 7919 % count + 1);
+  const Stage stage = stage_with_gaps(distance);
+  candidates.learn(stage, Vector::Constant(count, -1e5), 0);
+  const Points taken = candidates.approaching(stage);
+  ASSERT_GE(taken.size(), 100U);
+  EXPECT_LE(taken.size(), 600U);
+  for (const Index point : taken) EXPECT_LE(distance[point], static_cast<double>(taken.size()));
+  candidates.take_up(taken);
+  EXPECT_EQ(candidates.approaching(stage), Points{}) << "the others are asked for where they penetrate";
+  // Many that carry a force have many around them.
+  candidates.learn(stage, Vector::Constant(count, -1e5), 1000);
+  const std::size_t all = taken.size() + candidates.approaching(stage).size();
+  EXPECT_GE(all, 2000U);
+  EXPECT_LE(all, 4000U);
+}
+
+/// A wheel of 4,000 points rolls a whole turn: each of its points comes to the floor and leaves it. Those that have
+/// left are dropped.
+TEST(ContactCandidates, StayFewOnAWheelThatRolls) {
+  const Index count = 4000;
+  const int steps = 400;
+  ContactCandidates candidates(count);
+  const auto height = [&](double turn) {
+    Vector result(count);
+    for (Index i = 0; i < count; ++i)
+      result[i] = 1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(i) / static_cast<double>(count) - turn));
+    return result;
+  };
+  std::vector<char> came(static_cast<std::size_t>(count), 0);
+  std::size_t most = 0;
+  for (int step = 0; step < steps; ++step) {
+    const Vector now = height(static_cast<double>(step) / steps);
+    const Stage stage = stage_with_gaps(now);
+    if (const Points kept = candidates.worth_keeping(stage); !kept.empty()) {
+      candidates.clear();
+      candidates.take_up(kept);
+    }
+    candidates.take_up(candidates.approaching(stage));
+    for (const Index point : candidates.points()) came[static_cast<std::size_t>(point)] = 1;
+    most = std::max(most, candidates.points().size());
+    candidates.learn(stage, height(static_cast<double>(step + 1) / steps) - now, 5);
+  }
+  EXPECT_EQ(std::count(came.begin(), came.end(), 1), count);
+  EXPECT_LE(most, 3000U);
 }
 
 }  // namespace
