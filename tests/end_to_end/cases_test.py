@@ -36,7 +36,8 @@ def documented_columns(dimension, probes):
 
 class CaseTest(TestCase):
     def test_is_valid_and_keeps_its_promises(self):
-        self.expect_status(0, run("validate", CASE))
+        validated = self.expect_status(0, run("validate", CASE))
+        self.assertRegex(validated.stdout, r"estimate, stage 1 of a step, \d+ unknowns: method direct; a factor of \S+ entries")
         results = self.simulate(CASE)
         history = History(results / "history.csv")
         summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))

@@ -1,7 +1,11 @@
 #include "ricochet/solver/contact_columns.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/timer.hpp"
 #include "ricochet/linear_algebra/dense_factor.hpp"
 #include "ricochet/linear_algebra/dense_kernels.hpp"
 
@@ -11,6 +15,8 @@ namespace {
 
 /// Columns that are stored together: few enough for their paths to be alike, enough for dense products to be quick.
 constexpr Index block_size = 24;
+/// Seconds after which a user hears how far it is.
+constexpr double silence = 5.0;
 
 /// The rows of a path gathered from a vector in factor order, into the first of `values`, which grows only.
 void gather(const FactorPath& path, const Vector& y, Vector& values) {
@@ -83,8 +89,13 @@ void ContactColumns::add_product(const Block& left, const Block& right, Matrix& 
 void ContactColumns::append(const SparseMatrix& transposed, Matrix& w) {
   const std::size_t old_blocks = blocks_.size();
   const Index old_rows = row_count_;
-  for (Index begin = 0; begin < transposed.cols(); begin += block_size)
+  Timer since_told;
+  for (Index begin = 0; begin < transposed.cols(); begin += block_size) {
     append_block(transposed, begin, std::min(begin + block_size, transposed.cols()));
+    if (since_told.seconds() < silence) continue;
+    log::info(fmt::format("condensing contact: {} of {} rows", row_count_ - old_rows, transposed.cols()));
+    since_told.restart();
+  }
   w.conservativeResize(row_count_, row_count_);
   w.rightCols(row_count_ - old_rows).setZero();
   w.bottomRows(row_count_ - old_rows).setZero();

@@ -3,19 +3,28 @@
 #include <fmt/format.h>
 
 #include "ricochet/base/log.hpp"
-#include "ricochet/base/memory.hpp"
 #include "ricochet/base/timer.hpp"
+#include "ricochet/solver/choose_method.hpp"
 #include "ricochet/solver/stage_solver.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// Part of the machine's memory that factors may take. While one is made, half as much again is needed.
-constexpr double memory_part = 0.5;
-/// Of a factorization: some ten minutes of one core. Reading a factor that takes longer to make is slower, too, than
-/// the iterations of most time steps.
-constexpr double most_operations = 2e13;
+/// Operations of a factorization that takes seconds: it is worth a message.
+constexpr double long_factorization = 1e11;
+
+void tell_factorization(const ChosenMethod& chosen, std::size_t unknowns) {
+  if (chosen.predicted_operations < long_factorization) return;
+  log::info(fmt::format("factorizing an operator of {} unknowns: {:.3g} entries ({:.2g} GB), {:.2g} operations",
+                        unknowns, chosen.predicted_entries, 1e-9 * sizeof(double) * chosen.predicted_entries,
+                        chosen.predicted_operations));
+}
+
+void tell_iterations(const ChosenMethod& chosen) {
+  log::info(fmt::format("solved by iterations: a factor would take {:.2g} GB and {:.2g} operations to make",
+                        1e-9 * sizeof(double) * chosen.predicted_entries, chosen.predicted_operations));
+}
 
 class StagesStepSolver final : public StepSolver {
  public:
@@ -52,16 +61,16 @@ class StagesStepSolver final : public StepSolver {
   void add_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                  const StepSolverOptions& options) {
     ChosenMethod chosen{.method = options.method};
-    // The contact dofs alone are few, and their matrix has no inertia that would help an iteration.
-    if (coefficients.dofs == StageDofs::contact) chosen.method = SolverMethod::direct;
     AnalysedOperator analysed;
     Timer timer;
-    if (chosen.method != SolverMethod::iterative) {
+    if (chosen.method != SolverMethod::iterative || coefficients.dofs == StageDofs::contact) {
       analysed = analyse_operator(problem, coefficients);
+      chosen = choose_method(analysed.factor.predicted(), coefficients, options);
       chosen.ordering_seconds = timer.restart();
-      decide(analysed.factor.predicted(), options, chosen);
+      if (chosen.method == SolverMethod::iterative) tell_iterations(chosen);
     }
     if (chosen.method == SolverMethod::direct) {
+      tell_factorization(chosen, analysed.dofs.size());
       stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options));
       chosen.factorization_seconds = timer.seconds();
     } else {
@@ -69,20 +78,6 @@ class StagesStepSolver final : public StepSolver {
       stages_.push_back(make_iterative_stage(problem, coefficients, options));
     }
     methods_.push_back(chosen);
-  }
-
-  static void decide(const SparseCholesky::Prediction& predicted, const StepSolverOptions& options,
-                     ChosenMethod& chosen) {
-    chosen.predicted_entries = predicted.entries;
-    chosen.predicted_operations = predicted.operations;
-    if (chosen.method != SolverMethod::automatic) return;
-    const double limit = options.memory > 0.0 ? options.memory : memory_part * physical_memory();
-    const bool fits = predicted.possible && sizeof(double) * predicted.entries <= limit;
-    chosen.method = fits && predicted.operations <= most_operations ? SolverMethod::direct : SolverMethod::iterative;
-    if (chosen.method == SolverMethod::iterative) {
-      log::info(fmt::format("solved by iterations: a factor would take {:.2g} GB and {:.2g} operations to make",
-                            1e-9 * sizeof(double) * predicted.entries, predicted.operations));
-    }
   }
 
   std::vector<std::unique_ptr<StageSolver>> stages_;

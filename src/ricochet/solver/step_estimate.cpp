@@ -1,0 +1,90 @@
+#include "ricochet/solver/step_estimate.hpp"
+
+#include <algorithm>
+
+#include "ricochet/base/timer.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
+#include "ricochet/solver/choose_method.hpp"
+#include "ricochet/solver/stage_operator.hpp"
+#include "ricochet/solver/stage_solver.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// While a factor is made there are, beside it, the largest update matrix and our copy of a part: a half as much again.
+constexpr double work_space = 1.5;
+constexpr Index sampled_points = 100;
+
+/// Of the elimination tree of a matrix in the order of its factor: per row the length of the path to the root, which is
+/// the number of entries of a column of L⁻¹. Liu's algorithm with compressed paths.
+std::vector<int> path_lengths(const SparseMatrix& matrix, const SparseCholesky& factor) {
+  const auto count = static_cast<std::size_t>(matrix.cols());
+  std::vector<int> parent(count, -1), ancestor(count, -1), length(count, 1);
+  for (std::size_t place = 0; place < count; ++place) {
+    for (SparseMatrix::InnerIterator entry(matrix, factor.permutation()[place]); entry; ++entry) {
+      auto row = static_cast<int>(factor.place(entry.row()));
+      while (row >= 0 && row < static_cast<int>(place)) {
+        const int next = ancestor[static_cast<std::size_t>(row)];
+        ancestor[static_cast<std::size_t>(row)] = static_cast<int>(place);
+        if (next < 0) parent[static_cast<std::size_t>(row)] = static_cast<int>(place);
+        row = next;
+      }
+    }
+  }
+  for (std::size_t place = count; place-- > 0;) {
+    if (parent[place] >= 0) length[place] = length[static_cast<std::size_t>(parent[place])] + 1;
+  }
+  return length;
+}
+
+/// Mean over some contact points, evenly spread over their numbers, of rows × the longest path of their unknowns.
+double column_entries(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                      const AnalysedOperator& analysed) {
+  const Index points = problem.contact.size();
+  if (points == 0 || analysed.dofs.empty()) return 0.0;
+  const std::vector<int> number = number_dofs(problem, analysed.dofs);
+  const auto unknowns = static_cast<Index>(analysed.dofs.size());
+  const SparseMatrix matrix = extract(combine_operator(problem, coefficients), number, unknowns, number, unknowns);
+  const std::vector<int> length = path_lengths(matrix, analysed.factor);
+  const double rows = problem.contact.has_friction() ? static_cast<double>(problem.dimension) : 1.0;
+  const Index samples = std::min(points, sampled_points);
+  double sum = 0.0;
+  for (Index k = 0; k < samples; ++k) {
+    int longest = 0;
+    for (SparseRowMatrix::InnerIterator entry(problem.contact.gap_operator, k * points / samples); entry; ++entry) {
+      const int unknown = number[static_cast<std::size_t>(entry.col())];
+      if (unknown >= 0) longest = std::max(longest, length[static_cast<std::size_t>(analysed.factor.place(unknown))]);
+    }
+    sum += rows * longest;
+  }
+  return sum / static_cast<double>(samples);
+}
+
+StageEstimate estimate(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                       const StepSolverOptions& options) {
+  StageEstimate result;
+  const AnalysedOperator analysed = analyse_operator(problem, coefficients);
+  const SparseCholesky::Prediction predicted = analysed.factor.predicted();
+  result.chosen = choose_method(predicted, coefficients, options);
+  result.unknowns = static_cast<Index>(analysed.dofs.size());
+  if (result.chosen.method == SolverMethod::iterative) return result;
+  result.factor_bytes = sizeof(double) * predicted.entries;
+  result.peak_bytes = work_space * result.factor_bytes;
+  result.factorization_seconds = predicted.operations / estimated_operations_per_second;
+  result.step_seconds = 2.0 * result.factor_bytes / estimated_bytes_per_second;
+  result.bytes_per_point = sizeof(double) * column_entries(problem, coefficients, analysed);
+  return result;
+}
+
+}  // namespace
+
+std::vector<StageEstimate> estimate_step_solver(const SemidiscreteProblem& problem,
+                                                const std::vector<OperatorCoefficients>& operators,
+                                                const StepSolverOptions& options) {
+  std::vector<StageEstimate> result;
+  for (const OperatorCoefficients& coefficients : operators) result.push_back(estimate(problem, coefficients, options));
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include "ricochet/mass/mass.hpp"
+#include "ricochet/solver/contact_columns.hpp"
+#include "ricochet/solver/stage_operator.hpp"
+#include "ricochet/solver/stage_solver.hpp"
+#include "ricochet/solver/step_estimate.hpp"
+#include "support/case_run.hpp"
+
+// A whole skin that may touch must not cost more than a small part of it: what is counted here does not depend on the
+// machine.
+
+namespace ricochet {
+namespace {
+
+/// A ball of degree 2: "skin" is all of its surface, "cap" what is near its lowest point.
+std::string ball_case(const std::string& group) {
+  const std::string geometry =
+      "cap = Pi/6; Sphere(1)={0,0,1.01,1,-Pi/2,-Pi/2+cap}; Sphere(2)={0,0,1.01,1,-Pi/2+cap,Pi/2}; Coherence; "
+      "Physical Volume(\"ball\")={1,2}; Physical Surface(\"cap\")={1}; Physical Surface(\"skin\")={1,3};";
+  return "[mesh]\nfile = \"" + test_support::mesh_geometry("large_contact", geometry, 0.3, 2) +
+         "\"\ndegree = 2\n[[material]]\ngroup = \"ball\"\ndensity = 1000.0\nyoung = 1.0e7\npoisson = 0.3\n"
+         "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\n"
+         "[[contact]]\ngroup = \"" +
+         group +
+         "\"\nobstacle = \"floor\"\nfriction = 0.3\n[initial]\nvelocity = [0.5, 0.0, -1.0]\n"
+         "[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 1.0e-3\nend = 0.02\n";
+}
+
+double matrix_share(const test_support::CaseRun& run, const test_support::CaseRun& of) {
+  return static_cast<double>(run.problem().mass.whole().nonZeros()) /
+         static_cast<double>(of.problem().mass.whole().nonZeros());
+}
+
+TEST(LargeContact, AWholeSkinMakesNoLargerFactorThanACap) {
+  const test_support::CaseRun consistent(ball_case("cap"), {"mass.type=consistent"}), cap(ball_case("cap")),
+      skin(ball_case("skin"), {"mass.type=equivalent-compact"}), wide(ball_case("skin"));
+  ASSERT_GT(skin.problem().contact.size(), 5 * cap.problem().contact.size());
+  EXPECT_LE(matrix_share(skin, consistent), 1.0);
+  EXPECT_GE(matrix_share(wide, consistent), 2.0) << "the mesh is too small to tell";
+}
+
+TEST(LargeContact, TheFactorOfAWholeSkinIsThatOfTheConsistentMass) {
+  test_support::CaseRun consistent(ball_case("skin"), {"mass.type=consistent"}),
+      skin(ball_case("skin"), {"mass.type=equivalent-compact"});
+  EXPECT_LE(static_cast<double>(skin.simulation().factor_entries()),
+            1.1 * static_cast<double>(consistent.simulation().factor_entries()));
+}
+
+/// The estimate from the symbolic analysis against the factor and the columns that are made.
+TEST(LargeContact, EstimatesAreWhatIsMade) {
+  test_support::CaseRun run(ball_case("skin"));
+  const std::vector<OperatorCoefficients> operators = run.scheme().operators(run.problem());
+  const std::vector<StageEstimate> estimates = estimate_step_solver(run.problem(), operators);
+  ASSERT_EQ(estimates.size(), operators.size());
+  ASSERT_EQ(estimates[0].chosen.method, SolverMethod::direct);
+  EXPECT_EQ(estimates[0].factor_bytes, 8.0 * static_cast<double>(run.simulation().factor_entries()));
+  EXPECT_GE(estimates[0].peak_bytes, estimates[0].factor_bytes);
+
+  AnalysedOperator analysed = analyse_operator(run.problem(), operators[0]);
+  analysed.factor.factorize();
+  ContactColumns columns(analysed.factor);
+  const std::vector<int> number = number_dofs(run.problem(), analysed.dofs);
+  std::vector<Eigen::Triplet<double>> entries;
+  const Index points = 40, rows = 3;
+  const ContactBoundary& contact = run.problem().contact;
+  const auto add = [&](const SparseRowMatrix& from, Index row, Index column) {
+    for (SparseRowMatrix::InnerIterator entry(from, row); entry; ++entry)
+      entries.emplace_back(number[static_cast<std::size_t>(entry.col())], static_cast<int>(column), entry.value());
+  };
+  for (Index k = 0; k < points; ++k) {
+    const Index point = k * contact.size() / points;
+    add(contact.gap_operator, point, rows * k);
+    add(contact.tangential_trace, 2 * point, rows * k + 1);
+    add(contact.tangential_trace, 2 * point + 1, rows * k + 2);
+  }
+  SparseMatrix transposed(static_cast<Index>(analysed.dofs.size()), rows * points);
+  transposed.setFromTriplets(entries.begin(), entries.end());
+  Matrix w;
+  columns.append(transposed, w);
+  const double made = 8.0 * static_cast<double>(columns.entries()) / static_cast<double>(points);
+  EXPECT_GE(estimates[0].bytes_per_point, 0.4 * made);  // columns that lie together share the union of their paths
+  EXPECT_LE(estimates[0].bytes_per_point, 1.1 * made);
+}
+
+TEST(LargeContact, ChoosesTheCompactMassForManyContactNodesInSpace) {
+  Points in_space(3, 1), in_plane(2, 1);
+  MassInput few{nullptr, &in_space, std::vector<Index>(500)}, many{nullptr, &in_space, std::vector<Index>(10000)},
+      plane{nullptr, &in_plane, std::vector<Index>(10000)};
+  EXPECT_FALSE(prefers_compact(few));
+  EXPECT_TRUE(prefers_compact(many));
+  EXPECT_FALSE(prefers_compact(plane));
+}
+
+}  // namespace
+}  // namespace ricochet
