@@ -9,6 +9,7 @@
 #include "outcome_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/case/old_run.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
 #include "ricochet/io/progress.hpp"
@@ -65,8 +66,35 @@ void print_summary(const RunSummary& s, const std::string& directory) {
 
 }  // namespace
 
-int run(const RunArguments& arguments) {
-  RunOptions options{arguments.output_directory, arguments.force, arguments.quiet};
+namespace {
+
+/// `--resume DIR` stands for the case and the settings that the run in DIR was begun with.
+RunArguments with_origin(RunArguments arguments) {
+  std::error_code ignored;
+  if (!arguments.resume) {
+    if (!arguments.case_file.empty()) return arguments;
+    throw Error(ErrorKind::usage, "run: a case file is required (or --resume and the directory of a run)");
+  }
+  if (!arguments.case_file.empty() && !std::filesystem::is_directory(arguments.case_file, ignored)) return arguments;
+  if (arguments.case_file.empty() == arguments.output_directory.empty())
+    throw Error(ErrorKind::usage, "run --resume: either a case file or the directory of one run is required");
+  if (arguments.output_directory.empty()) arguments.output_directory = arguments.case_file;
+  RunOrigin origin = find_origin(arguments.output_directory);
+  arguments.case_file = origin.case_path;
+  origin.settings.insert(origin.settings.end(), arguments.overrides.begin(), arguments.overrides.end());
+  arguments.overrides = origin.settings;
+  return arguments;
+}
+
+}  // namespace
+
+int run(const RunArguments& given) {
+  const RunArguments arguments = with_origin(given);
+  RunOptions options;
+  options.output_directory = arguments.output_directory;
+  options.settings = arguments.overrides;
+  options.force = arguments.force;
+  options.quiet = arguments.quiet;
   options.resume = arguments.resume;
   options.stop_signal = stop_signal;
   if (arguments.export_contact) options.export_contact = parse_steps(*arguments.export_contact);
@@ -76,7 +104,6 @@ int run(const RunArguments& arguments) {
     options.output_directory =
         (std::filesystem::path("out") / std::filesystem::path(arguments.case_file).stem()).string();
   }
-  catch_stop_signals();
   const RunSummary summary = run_case(input, options);
   print_summary(summary, options.output_directory);
   if (summary.status == "interrupted") return 128 + stop_signal();

@@ -61,6 +61,7 @@ double estimate(const Case& input, const SemidiscreteProblem& problem, const Sch
 
 int validate(const std::string& case_file, const std::vector<std::string>& overrides) {
   const Case input = read_case(case_file, overrides);
+  warn_of_end(input.time);
   if (needs_gmsh_program(input.mesh.file)) {
     require_mesh_file(input);
     // A .geo file can run shell commands: only `run` hands one to gmsh.

@@ -1,13 +1,21 @@
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <iostream>
 #include <new>
+#include <sstream>
 
 #include "commands.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/base/run_name.hpp"
+#include "ricochet/linear_algebra/blas_threads.hpp"
 #include "ricochet/version.hpp"
+#include "standard_streams.hpp"
 #include "stop_signal.hpp"
 
 namespace {
@@ -39,12 +47,14 @@ int dispatch(int argc, char** argv) {
   app.footer(
       "Exit status: 0 done; 1 wrong use of the command line; 2 invalid case or mesh; 3 a step did not converge;\n"
       "4 cannot read or write a file; 5 done, but an [[expect]] entry of the case does not hold;\n"
-      "129, 130 and 143 stopped by SIGHUP, SIGINT or SIGTERM with a checkpoint, from which run --resume goes on;\n"
+      "129, 130 and 143 stopped by SIGHUP, SIGINT or SIGTERM; run --resume goes on with a run that was stopped;\n"
       "70 a defect of Ricochet itself.");
   Arguments arguments;
 
   CLI::App* run = app.add_subcommand("run", "Run a case");
-  run->add_option("case", arguments.run.case_file, "case file")->required()->type_name("CASE.toml");
+  run->add_option("case", arguments.run.case_file,
+                  "case file; with --resume also the directory of a run, which knows its case")
+      ->type_name("CASE.toml");
   run->add_option("-o,--output", arguments.run.output_directory,
                   "output directory (default: out/NAME of the case file)")
       ->type_name("DIR");
@@ -54,7 +64,8 @@ int dispatch(int argc, char** argv) {
   run->add_option("--threads", arguments.threads, "number of threads; results do not depend on it")->type_name("N");
   run->add_flag("--quiet", arguments.run.quiet, "no progress and no messages but warnings and errors");
   run->add_flag("--force", arguments.run.force, "overwrite a run that is in the output directory");
-  run->add_flag("--resume", arguments.run.resume, "go on with the interrupted run that is in the output directory")
+  run->add_flag("--resume", arguments.run.resume,
+                "go on with the run that is in the output directory, also to a later time.end")
       ->excludes("--force");
   run->add_option("--export-contact", arguments.run.export_contact,
                   "write the contact problems of these steps as FCLib files, for example 10,20,50:60")
@@ -141,12 +152,20 @@ int dispatch(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
+    if (problem.get_exit_code() == 0) program::require_standard_output();  // --help, --version
+    std::ostringstream text;
+    const int status = app.exit(problem, text, std::cerr);
+    std::fputs(text.str().c_str(), stdout);
+    return status == 0 ? 0 : static_cast<int>(ErrorKind::usage);
   }
+  if (info->parsed() || validate->parsed() || schema->parsed() ||
+      (contact->parsed() && arguments.contact.output.empty()))
+    program::require_standard_output();
   log::set_level(log::parse_level(arguments.log_level));
   if (arguments.run.quiet && log::enabled(log::Level::info) && !log::enabled(log::Level::debug))
     log::set_level(log::Level::warning);
   set_thread_count(arguments.threads);
+  if (!schema->parsed() && !plot->parsed() && !report->parsed()) reserve_blas_memory(arguments.threads);
   if (run->parsed()) return program::run(arguments.run);
   if (validate->parsed()) return program::validate(arguments.validate_file, arguments.validate_overrides);
   if (info->parsed()) return program::info(arguments.info_paths);
@@ -156,20 +175,41 @@ int dispatch(int argc, char** argv) {
   return program::schema(arguments.markdown);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  ricochet::program::let_signals_come();
+/// The exit status; says what has gone wrong.
+int run_program(int argc, char** argv) {
   try {
-    return dispatch(argc, argv);
-  } catch (const ricochet::Error& problem) {
-    std::fprintf(stderr, "ricochet: %s\n", problem.what());
+    program::wait_for_stop_signals();
+    const int status = dispatch(argc, argv);
+    program::flush_standard_output();
+    return status;
+  } catch (const Error& problem) {
+    std::fprintf(stderr, "ricochet: %s\n", log::with_run_name(problem.what()).c_str());
     return problem.exit_status();
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "ricochet: out of memory; use a coarser mesh\n");
-    return static_cast<int>(ricochet::ErrorKind::not_converged);
+    std::fprintf(stderr, "ricochet: %s\n", log::with_run_name("out of memory; use a coarser mesh").c_str());
+    return static_cast<int>(ErrorKind::not_converged);
+  } catch (const std::filesystem::filesystem_error& problem) {
+    std::fprintf(stderr, "ricochet: %s: %s\n", problem.path1().c_str(), problem.code().message().c_str());
+    return static_cast<int>(ErrorKind::file_access);
   } catch (const std::exception& problem) {
+    if (program::standard_output_failed()) {
+      std::fprintf(stderr, "ricochet: standard output: %s\n", problem.what());
+      return static_cast<int>(ErrorKind::file_access);
+    }
     std::fprintf(stderr, "ricochet: internal error: %s\n", problem.what());
     return 70;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ricochet::program::open_closed_streams();
+  const int status = run_program(argc, argv);
+  // OpenBLAS waits at the end for its threads, which never end where a limit on memory keeps them from beginning.
+  if (ricochet::memory_is_limited()) {
+    std::fflush(nullptr);
+    _exit(status);
+  }
+  return status;
 }

@@ -1,52 +1,93 @@
 #include "stop_signal.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <csignal>
+#include <cstring>
+#include <ctime>
+#include <system_error>
+#include <thread>
+
+#include "ricochet/base/interruption.hpp"
 
 namespace ricochet::program {
 
 namespace {
 
-volatile std::sig_atomic_t received = 0;
+/// For a step to come to its end, in milliseconds; what is done after it takes some more of the two seconds.
+constexpr int patience = 1200;
 
-void receive(int signal) {
-  if (received != 0) _exit(128 + signal);
-  received = signal;
-  constexpr char text[] = "\nricochet: stopping at the end of this step; once more stops at once\n";
-  static_cast<void>(!write(STDERR_FILENO, text, sizeof(text) - 1));
-}
+std::atomic<int> received = 0;
 
 // SIGHUP: the terminal or the connection to it has gone.
 constexpr int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
-/// Threads that libraries start before main() begins (OpenBLAS does) inherit what is blocked here: signals are for the
-/// main thread alone, which holds them back while METIS works (linear_algebra/sparse_cholesky.cpp).
-sigset_t before_libraries;
+/// All threads hold these signals back, so that one thread can wait for them: those that libraries start before main()
+/// begins (OpenBLAS does) inherit what is blocked here.
 void hold_signals(int, char**, char**) {
   sigset_t held;
   sigemptyset(&held);
   for (const int signal : stop_signals) sigaddset(&held, signal);
-  sigprocmask(SIG_BLOCK, &held, &before_libraries);
+  sigprocmask(SIG_BLOCK, &held, nullptr);
 }
 __attribute__((section(".preinit_array"), used)) void (*const hold_signals_first)(int, char**, char**) = hold_signals;
 
-}  // namespace
-
-void let_signals_come() {
-  sigprocmask(SIG_SETMASK, &before_libraries, nullptr);
+/// The next signal, or 0 after so many milliseconds (−1: no end).
+int next_signal(const sigset_t& awaited, int milliseconds) {
+  const struct timespec limit { milliseconds / 1000, milliseconds % 1000 * 1000000L };
+  for (;;) {
+    const int signal = milliseconds < 0 ? sigwaitinfo(&awaited, nullptr) : sigtimedwait(&awaited, nullptr, &limit);
+    if (signal > 0) return signal;
+    if (errno != EINTR) return 0;
+  }
 }
 
-void catch_stop_signals() {
+/// Puts things in order and ends the process, on a thread of its own: another signal must not wait for that.
+void end_process(int signal) {
+  try {
+    std::thread([signal] {
+      if (interruption::take_actions()) _exit(128 + signal);
+    }).detach();
+  } catch (const std::system_error&) {  // no room for a thread
+    _exit(128 + signal);
+  }
+}
+
+void wait(const sigset_t& awaited) {
+  const int first = next_signal(awaited, -1);
+  if (first == 0) return;
+  if (const int second = next_signal(awaited, 0); second != 0) _exit(128 + second);
+  received = first;
+  if (interruption::has_stopping_points()) {
+    interruption::say("\nricochet: stopping at the end of this step; once more stops at once\n");
+    if (const int second = next_signal(awaited, patience); second != 0) _exit(128 + second);
+  } else {
+    interruption::say(fmt::format("\nricochet: stopped by SIG{}\n", sigabbrev_np(first)).c_str());
+  }
+  end_process(first);
+  const int second = next_signal(awaited, -1);
+  _exit(128 + second);
+}
+
+}  // namespace
+
+void wait_for_stop_signals() {
   // A file that may not grow any more is an error like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
+  sigset_t awaited;
+  sigemptyset(&awaited);
   for (const int signal : stop_signals) {
-    struct sigaction action {};
-    action.sa_handler = receive;
-    action.sa_flags = SA_RESTART;
-    // A signal that the caller ignores (nohup, a job in the background) stays ignored.
     struct sigaction before {};
-    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+    // A signal that the caller ignores (nohup, a job in the background) stays ignored.
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaddset(&awaited, signal);
+  }
+  try {
+    std::thread(wait, awaited).detach();
+  } catch (const std::system_error&) {  // no room for a thread: signals end the process as they do elsewhere
+    pthread_sigmask(SIG_UNBLOCK, &awaited, nullptr);
   }
 }
 

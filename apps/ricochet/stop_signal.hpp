@@ -1,12 +1,11 @@
 #pragma once
 
-/// @file SIGINT, SIGTERM and SIGHUP: the first asks the run to stop at the end of its step, a second one stops at once.
+/// @file SIGINT, SIGTERM and SIGHUP. While a run takes steps the first asks it to stop at the end of its step; where
+/// that takes too long, and in all other work, the process ends in the middle of it. A second one ends it at once.
 namespace ricochet::program {
 
-/// First in main(): until then they wait.
-void let_signals_come();
-
-void catch_stop_signals();
+/// Second in main(): a thread waits for signals from here on.
+void wait_for_stop_signals();
 
 /// The signal that has come, or 0.
 [[nodiscard]] int stop_signal();

@@ -17,6 +17,8 @@ import time
 import unittest
 import zlib
 
+import h5py
+
 from harness import DISC, MESHES, PROGRAM, SCHEMES, TestCase, block_case, run, settings, with_more
 
 KILLS = 50
@@ -157,8 +159,8 @@ class Resume(TestCase):
             time.sleep(chance.uniform(0.1, 1.0) * duration)
             process.send_signal(signal.SIGTERM)
             _, errors = process.communicate()
-            self.assertIn(process.returncode, (143, -signal.SIGTERM), errors)  # or before there was anything to keep
-            if process.returncode == 143:
+            self.assertEqual(process.returncode, 143, errors)
+            if (output / "summary.json").exists():  # else there was nothing to keep yet
                 self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "interrupted")
 
     def test_a_second_signal_stops_at_once(self):
@@ -179,18 +181,18 @@ class Resume(TestCase):
         values = busy("klr-conserving")
         expected = self.reference(values)
         self.assertEqual([path.name for path in checkpoints(expected)],
-                         ["checkpoint-000000720.ckpt", "checkpoint-000000760.ckpt"])
+                         ["checkpoint-000000760.ckpt", "checkpoint-000000800.ckpt"])
         content = checkpoints(expected)[1].read_bytes()
         damaged = [content[:-1], content[:100], b"", content[:5000] + b"x" + content[5001:], b"RICOCHET", content + b"0"]
         for k, bytes_left in enumerate(damaged):
             output = self.interrupted(values, f"damaged-{k}")
             checkpoints(output)[1].write_bytes(bytes_left)
             process = self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
-            self.assertIn("is damaged, the one before is taken", process.stderr)
-            self.assertIn("checkpoint-000000760.ckpt", process.stderr)
-            self.assertIn("resumed after step 720", process.stderr)
+            self.assertIn("cannot be used, the one before is taken", process.stderr)
+            self.assertIn("checkpoint-000000800.ckpt", process.stderr)
+            self.assertIn("resumed after step 760", process.stderr)
             self.expect_same(expected, output)
-            self.assertIn("is damaged", json.loads((output / "summary.json").read_text())["warnings"][-1])
+            self.assertIn("cannot be used", json.loads((output / "summary.json").read_text())["warnings"][-1])
         output = self.interrupted(values, "hopeless")
         for path in checkpoints(output):
             path.write_bytes(path.read_bytes()[:-1])
@@ -214,7 +216,7 @@ class Resume(TestCase):
         before = {path.name: path.read_bytes() for path in output.iterdir()}
         for key, value, names in (("time.step", 2e-4, "time.step was 0.0001, now it is 0.0002"),
                                   ("contact.0.friction", 0.2, "contact.0.friction was 0.3, now it is 0.2"),
-                                  ("time.end", 0.09, "time.end was 0.08, now it is 0.09"),
+                                  ("time.end", 0.07, "time.end = 0.07 comes before t = 0.08"),
                                   ("output.fields_every", 8, "output.fields_every was 7, now it is 8")):
             process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings({**values, key: value})))
             self.assertIn(names, process.stderr)
@@ -286,6 +288,134 @@ class Resume(TestCase):
         process = self.expect_status(4, run("run", self.disc, "-o", output, "--resume", *settings(values)))
         self.assertIn("history.csv: has 5 bytes", process.stderr)
         self.expect_status(1, run("run", self.disc, "-o", output, "--resume", "--force"))
+
+    def test_refuses_results_that_were_changed(self):
+        """And says which file and line; nothing is overwritten."""
+        values = busy("newmark")
+        expected = self.reference(values)
+        history = (expected / "history.csv").read_bytes()
+        lines = history.split(b"\n")
+        obstacles = (expected / "obstacles.xdmf").read_bytes()
+        side = (expected / "results.xdmf").read_bytes()
+        probes = (expected / "probes-3.csv").read_bytes()
+        fields = (expected / "results.h5").read_bytes()
+        other = (self.reference({**values, "initial.velocity": "[0.03,-0.11]"}) / "results.h5").read_bytes()
+        with h5py.File(expected / "results.h5") as file:
+            at = file["/frames/000050/displacement"].id.get_offset()
+        digit = lines[100][:-1] + bytes([lines[100][-1] ^ 1])
+        for k, (name, content, says) in enumerate((
+                ("history.csv", b"\n".join([*lines[:100], digit, *lines[101:]]), "lines 101 to 102 is|line 101 is"),
+                ("history.csv", history.replace(b"total_energy", b"total_Energy", 1), "line 1 is|lines 1 to 2 is"),
+                ("history.csv", history.replace(b"\n", b"\r\n"), "CR LF"),
+                ("probes-3.csv", probes[:2000] + bytes([probes[2000] ^ 1]) + probes[2001:], "probes-3.csv: "),
+                ("results.xdmf", side.replace(b"von_mises", b"von_Mises", 1), "results.xdmf: "),
+                ("obstacles.xdmf", obstacles.replace(b"Float", b"float", 1), "obstacles.xdmf: "),
+                ("results.h5", fields[:at] + bytes([fields[at] ^ 1]) + fields[at + 1:], "/frames/000050 is not what"),
+                ("results.h5", other, "/frames/0000"))):
+            output = self.interrupted(values, f"changed-{k}")
+            self.assertNotEqual(content, (output / name).read_bytes(), f"{name} {k}")
+            (output / name).write_bytes(content)
+            before = {path.name: path.read_bytes() for path in output.iterdir()}
+            process = self.expect_status(4, run("run", self.disc, "-o", output, "--resume", *settings(values)))
+            self.assertIn(name, process.stderr)
+            self.assertRegex(process.stderr, says)
+            self.assertIn("--force", process.stderr)
+            self.assertEqual(before, {path.name: path.read_bytes() for path in output.iterdir()})
+        # What came after the checkpoint does not count.
+        output = self.interrupted(values, "longer")
+        checkpoints(output)[1].unlink()
+        (output / "history.csv").write_bytes(b"\n".join(lines[:790]) + b"\n790,nonsense")
+        self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
+        self.expect_same(expected, output)
+
+    def test_refuses_compressed_and_single_results_that_were_changed(self):
+        values = {**busy("newmark"), "output.fields_precision": "single", "output.compression": 6}
+        expected = self.reference(values)
+        output = self.interrupted(values, "same")
+        checkpoints(output)[1].unlink()
+        self.expect_status(0, run("run", self.disc, "-o", output, "--resume", *settings(values)))
+        self.expect_same(expected, output)
+        output = self.interrupted(values, "changed")
+        fields = bytearray((output / "results.h5").read_bytes())
+        with h5py.File(output / "results.h5") as file:
+            displacement = file["/frames/000020/displacement"]
+            at = displacement.id.get_chunk_info(0).byte_offset if displacement.chunks else displacement.id.get_offset()
+        fields[at + 20] ^= 1
+        (output / "results.h5").write_bytes(fields)
+        process = self.expect_status(4, run("run", self.disc, "-o", output, "--resume", *settings(values)))
+        self.assertIn("/frames/000020", process.stderr)
+
+    def test_checkpoints_of_another_format(self):
+        values = busy("newmark")
+        output = self.interrupted(values, "out")
+        for path in checkpoints(output):
+            content = bytearray(path.read_bytes())
+            content[8:12] = struct.pack("<I", 1)
+            path.write_bytes(content)
+        process = self.expect_status(2, run("run", self.disc, "-o", output, "--resume", *settings(values)))
+        self.assertIn("another version of the program wrote it (format 1, and this one reads format 2)", process.stderr)
+        self.assertIn("--force", process.stderr)
+
+    def test_goes_on_to_a_later_end(self):
+        """The bytes of one run to that end, whatever is written at an end only."""
+        for k, (scheme, more, ends) in enumerate((
+                ("newmark", {}, (0.0413, 0.08)), ("midpoint", {"output.history_every": 3}, (0.02, 0.0405, 0.08)),
+                ("klr-conserving", {"output.compression": 3}, (0.0401, 0.08)),
+                ("semi-explicit", {"output.fields_every": 0}, (0.0401, 0.08)))):
+            values = {**busy(scheme), **more}
+            expected = self.reference(values)
+            output = self.folder / f"longer-{k}"
+            self.expect_status(0, run("run", self.disc, "-o", output, "--quiet", *settings({**values, "time.end": ends[0]})))
+            for end in ends[1:]:
+                self.assertEqual(json.loads((output / "summary.json").read_text())["status"], "done")
+                self.expect_status(0, run("run", "--resume", output, "--quiet", "--set", f"time.end={end}"))
+            self.expect_same(expected, output)
+            steps = json.loads((output / "summary.json").read_text())["resumed_at"]
+            self.assertEqual(steps, [round(end / 1e-4) for end in ends[:-1]])
+        # Without a word on frames: as often as the run that began.
+        values = busy("newmark")
+        del values["output.fields_every"]
+        output = self.simulate(self.disc, "began", {**values, "time.end": 0.02})
+        with h5py.File(output / "results.h5") as file:
+            before = len(file["frames"])
+        self.expect_status(0, run("run", "--resume", output, "--quiet", "--set", "time.end=0.04"))
+        with h5py.File(output / "results.h5") as file:
+            self.assertAlmostEqual(len(file["frames"]), 2 * before, delta=2)
+        # Backwards, and where the checkpoint is gone.
+        process = self.expect_status(2, run("run", "--resume", output, "--set", "time.end=0.03"))
+        self.assertIn("time.end = 0.03 comes before t = 0.04", process.stderr)
+        for path in checkpoints(output):
+            path.unlink()
+        process = self.expect_status(2, run("run", "--resume", output, "--set", "time.end=0.05"))
+        self.assertIn("cannot go on to a later time.end", process.stderr)
+
+    def test_a_directory_knows_its_case(self):
+        values = busy("newmark")
+        expected = self.reference(values)
+        for lost in ((), ("summary.json",)):
+            output = self.interrupted(values, f"known{len(lost)}")
+            checkpoints(output)[1].unlink()
+            for name in lost:
+                (output / name).unlink()
+            self.expect_status(0, run("run", "--resume", output, directory="/"))
+            self.expect_same(expected, output)
+        # The case has changed, or is gone.
+        output = self.interrupted(values, "known")
+        text = self.disc.read_text()
+        self.disc.write_text(text.replace("[load]", "[load]\nbody_force = [\"0\", \"-1\"]") if "[load]" in text
+                             else text + "[load]\ngravity = [0.0, -1.0]\n")
+        process = self.expect_status(2, run("run", "--resume", output))
+        self.assertIn("the case has changed since this run began", process.stderr)
+        self.disc.rename(self.folder / "elsewhere.toml")
+        process = self.expect_status(4, run("run", "--resume", output))
+        self.assertIn(f"its case file {self.disc} is not there any more", process.stderr)
+        self.assertIn("ricochet run CASE.toml", process.stderr)
+        empty = self.folder / "empty"
+        empty.mkdir()
+        self.assertIn("no run is in this directory", self.expect_status(4, run("run", "--resume", empty)).stderr)
+        self.expect_status(1, run("run", "--resume"))
+        self.expect_status(1, run("run"))
+        self.expect_status(1, run("run", "--resume", output, "-o", empty))
 
     def test_results_of_nobody_knows_what_are_not_overwritten(self):
         """Nothing in the directory says that they are of this case: a job that ran before must not be lost."""

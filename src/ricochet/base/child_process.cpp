@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,6 +11,8 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
+
+#include "ricochet/base/interruption.hpp"
 
 extern char** environ;
 
@@ -35,6 +38,37 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
   for (std::string& string : strings) result.push_back(string.data());
   result.push_back(nullptr);
   return result;
+}
+
+/// In a group of its own, so that it ends when this process says so, with all that it has started; and with none of the
+/// signals held back that this process may hold back.
+class Attributes {
+ public:
+  Attributes() {
+    posix_spawnattr_init(&attributes_);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&attributes_, &none);
+  }
+  ~Attributes() { posix_spawnattr_destroy(&attributes_); }
+  Attributes(const Attributes&) = delete;
+  Attributes& operator=(const Attributes&) = delete;
+
+  [[nodiscard]] const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_{};
+};
+
+/// Until it has ended; its number stays its own until it is asked how.
+bool wait_for_end(pid_t process) {
+  siginfo_t ignored;
+  while (waitid(P_PID, static_cast<id_t>(process), &ignored, WEXITED | WNOWAIT) != 0) {
+    if (errno != EINTR) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -66,15 +100,18 @@ ChildOutcome run_child(ChildProcess child) {
   posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
   ChildOutcome outcome;
   pid_t process = 0;
-  outcome.spawn_error = posix_spawnp(&process, child.arguments.front().c_str(), &actions, nullptr,
+  outcome.spawn_error = posix_spawnp(&process, child.arguments.front().c_str(), &actions, Attributes().get(),
                                      pointers(child.arguments).data(), pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   if (outcome.spawn_error != 0) return outcome;
-  while (waitpid(process, &outcome.status, 0) < 0) {
-    if (errno != EINTR) {
-      outcome.spawn_error = errno;
-      break;
-    }
+  {
+    const AtInterruption kill_child([process] {
+      if (kill(-process, SIGKILL) == 0) wait_for_end(process);
+    });
+    if (!wait_for_end(process)) outcome.spawn_error = errno;
+  }
+  while (outcome.spawn_error == 0 && waitpid(process, &outcome.status, 0) < 0) {
+    if (errno != EINTR) outcome.spawn_error = errno;
   }
   return outcome;
 }

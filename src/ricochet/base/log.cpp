@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/run_name.hpp"
 
 namespace ricochet::log {
 
@@ -32,6 +33,11 @@ spdlog::logger& logger() {
 std::vector<std::string>& remembered_warnings() {
   static std::vector<std::string> messages;
   return messages;
+}
+
+std::string& run_name() {
+  static std::string name;
+  return name;
 }
 
 spdlog::level::level_enum spdlog_level(Level level) {
@@ -77,10 +83,18 @@ void info(const std::string& message) {
 }
 void warning(const std::string& message) {
   remembered_warnings().push_back(message);
-  logger().warn("{}", message);
+  logger().warn("{}", with_run_name(message));
 }
 void error(const std::string& message) {
-  logger().error("{}", message);
+  logger().error("{}", with_run_name(message));
+}
+
+void set_run_name(std::string name) {
+  run_name() = std::move(name);
+}
+std::string with_run_name(const std::string& message) {
+  const bool says = run_name().empty() || message.find(run_name()) != std::string::npos;
+  return says ? message : run_name() + ": " + message;
 }
 
 const std::vector<std::string>& warnings() {

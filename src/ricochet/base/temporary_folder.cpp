@@ -20,6 +20,10 @@ TemporaryFolder::TemporaryFolder(const fs::path& parent, const std::string& pref
                 fmt::format("cannot make a directory in {}: {}", parent.string(), std::strerror(errno)));
   }
   path_ = pattern;
+  at_interruption_.emplace([this] {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  });
 }
 
 TemporaryFolder::~TemporaryFolder() {

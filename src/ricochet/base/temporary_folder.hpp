@@ -1,9 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
-/// @file A folder that lives as long as its object.
+#include "ricochet/base/interruption.hpp"
+
+/// @file A folder that lives as long as its object, or until the process is interrupted.
 namespace ricochet {
 
 class TemporaryFolder {
@@ -19,6 +22,7 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
+  std::optional<AtInterruption> at_interruption_;
 };
 
 }  // namespace ricochet

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/durable_file.hpp"
 
 namespace ricochet {
@@ -29,6 +31,39 @@ void refuse_old_run(const RunDirectory& directory, const RunOptions& options) {
               fmt::format("{}: holds contact problems of a run already; choose another directory, or overwrite them "
                           "with --force",
                           contact));
+}
+
+namespace {
+
+/// Empty where the directory does not know.
+RunOrigin remembered_origin(const std::string& directory) {
+  const std::string summary_path = (std::filesystem::path(directory) / "summary.json").string();
+  try {
+    const RunSummary summary = read_summary(summary_path);
+    if (!summary.case_path.empty()) return {summary.case_path, summary.settings};
+  } catch (const Error&) {  // it is not waited for until it is on the disk: checkpoints are
+  }
+  const std::optional<Snapshot> snapshot = newest_checkpoint(directory);
+  if (!snapshot) return {};
+  return {snapshot->text("run.case_path"), snapshot->texts("run.settings")};
+}
+
+}  // namespace
+
+RunOrigin find_origin(const std::string& directory) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: cannot be resumed: {}; name the case: ricochet run CASE.toml -o "
+                            "{} --resume",
+                            directory, why, directory));
+  };
+  std::error_code problem;
+  if (!std::filesystem::is_directory(directory, problem)) refuse("there is no such directory");
+  RunOrigin origin = remembered_origin(directory);
+  if (origin.case_path.empty()) refuse("no run is in this directory that says which case it is of");
+  if (!std::filesystem::exists(origin.case_path, problem))
+    refuse(fmt::format("its case file {} is not there any more", origin.case_path));
+  return origin;
 }
 
 void replace_old_run(const RunDirectory& directory, const RunOptions& options, RunSummary summary) {

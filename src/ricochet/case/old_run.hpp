@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "ricochet/case/run_case.hpp"
 #include "ricochet/io/run_directory.hpp"
@@ -13,6 +14,15 @@ namespace ricochet {
 
 /// Throws Error(file_access) where there are results of another run.
 void refuse_old_run(const RunDirectory& directory, const RunOptions& options);
+
+/// The case of a run, as its directory remembers it.
+struct RunOrigin {
+  std::string case_path;
+  std::vector<std::string> settings;
+};
+
+/// Throws Error(file_access) where the directory does not know, or the case file is not there any more.
+[[nodiscard]] RunOrigin find_origin(const std::string& directory);
 
 /// Takes away what an earlier run left (this one may write no fields) and says which run is here now. Called when the
 /// new run is ready to start, so that a case that is refused costs nothing. Whenever it is interrupted, summary.json

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/input_file.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/keys_check.hpp"
 #include "ricochet/case/keys_override.hpp"
@@ -20,14 +21,18 @@ namespace ricochet {
 namespace {
 
 std::string read_text(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw Error(ErrorKind::file_access, fmt::format("{}: cannot be read: it is a directory, not a case file", path));
-  }
+  const auto fail = [&path](const std::string& why) {
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot be read: {}", path, why));
+  };
+  if (const std::string why = why_no_input(path); !why.empty()) fail(why + ", not a case file");
+  constexpr std::uintmax_t longest = 64u << 20;
+  std::error_code unknown;
+  if (const std::uintmax_t size = std::filesystem::file_size(path, unknown); !unknown && size > longest)
+    fail(fmt::format("it has {} MB: case files are texts of a few kB", size >> 20));
+  errno = 0;
   std::ifstream stream(path, std::ios::binary);
-  std::string text;
-  if (stream) text.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
-  if (!stream) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+  if (!stream) fail(std::strerror(errno));
+  std::string text(std::istreambuf_iterator<char>(stream), {});
   return text;
 }
 

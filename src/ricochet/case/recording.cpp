@@ -38,15 +38,26 @@ ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, co
   return {model.problem, scheme, state, std::move(obstacles), std::move(bodies.of_node), std::move(separation)};
 }
 
+std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const Model& model,
+                                            const std::string& directory, const Snapshot* snapshot) {
+  const ResultsOptions options{output.fields, {output.single_precision, output.compression}};
+  if (snapshot != nullptr)
+    return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, *snapshot, "results");
+  return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options);
+}
+
 std::string sampled_name(long every) {
   return fmt::format("probes-{}", every);
 }
 
 }  // namespace
 
-FieldSchedule::FieldSchedule(const Case& input, long steps, Index dofs) : step_size_(input.time.step), steps_(steps) {
+FieldSchedule::FieldSchedule(const Case& input, long steps, Index dofs, const Snapshot* snapshot)
+    : step_size_(input.time.step) {
   if (input.output.fields_interval) {
     interval_ = *input.output.fields_interval;
+  } else if (snapshot != nullptr) {
+    every_ = snapshot->integer("fields.every");
   } else {
     const long frames = default_frames(steps, dofs);
     every_ = input.output.fields_every.value_or((steps + frames - 1) / frames);
@@ -59,23 +70,22 @@ double FieldSchedule::intervals(long step) const {
 }
 
 bool FieldSchedule::includes(long step) const {
-  if (step == 0 || step == steps_) return any();
+  if (step == 0) return any();
   if (interval_ > 0.0) return interval_ <= step_size_ || intervals(step) > intervals(step - 1);
   return every_ > 0 && step % every_ == 0;
 }
 
 Recording::Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
                      const std::string& directory, long steps, std::size_t factor_entries, const Snapshot* snapshot)
-    : recorder_(model.problem, *model.rotation, model.sensors),
+    : fields_(input, steps, model.problem.dof_count(), snapshot),
+      results_(fields_.any() ? open_results(input.output, model, directory, snapshot) : nullptr),
+      recorder_(model.problem, *model.rotation, model.sensors),
       history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot, "history")),
       checks_(input, model, scheme, state, recorder_.columns(), snapshot),
       model_(model),
       impacts_(make_impact_recorder(model, scheme, state)),
       peak_stress_(model.body, step_work(model.body, factor_entries)),
-      history_every_(input.output.history_every),
-      fields_(input, steps, model.problem.dof_count()),
-      steps_(steps) {
-  if (fields_.any()) open_results(input.output, model, directory, snapshot);
+      history_every_(input.output.history_every) {
   for (const auto& [every, sensors] : model.sampled_sensors) {
     SensorRecorder recorder(model.problem, sensors);
     HistoryWriter file =
@@ -89,16 +99,6 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   rotation_warned_ = snapshot->flag("rotation_warned");
 }
 
-void Recording::open_results(const OutputSection& output, const Model& model, const std::string& directory,
-                             const Snapshot* snapshot) {
-  const ResultsOptions options{output.fields, {output.single_precision, output.compression}};
-  if (snapshot != nullptr) {
-    results_.emplace(directory, model.body, model.problem, options, *snapshot, "results");
-  } else {
-    results_.emplace(directory, model.body, model.problem, options);
-  }
-}
-
 void Recording::record(const State& state, EnergyAccount& account) {
   Timer timer;
   if (state.step > 0) {
@@ -107,16 +107,9 @@ void Recording::record(const State& state, EnergyAccount& account) {
   }
   const bool is_frame = results_ && fields_.includes(state.step);
   peak_stress_.enter(state, is_frame);
-  if (state.step % history_every_ == 0 || state.step == steps_) {
-    const std::vector<double>& row = recorder_.row(state, account);
-    check_finite(row);
-    history_.write(row);
-    digest_.add(row);
-    watch_rotation(row);
-    checks_.watch(row, state);
-  }
+  if (state.step % history_every_ == 0) write_row(state, account);
   for (Sampled& sampled : sampled_) {
-    if (state.step % sampled.every == 0 || state.step == steps_) sampled.file.write(sampled.recorder.row(state));
+    if (state.step % sampled.every == 0) sampled.file.write(sampled.recorder.row(state));
   }
   if (is_frame) results_->write(state);
   if (since_flush_.seconds() > flush_interval) {
@@ -124,6 +117,29 @@ void Recording::record(const State& state, EnergyAccount& account) {
     since_flush_.restart();
   }
   seconds_ += timer.seconds();
+}
+
+void Recording::record_end(const State& state, EnergyAccount& account) {
+  Timer timer;
+  if (state.step % history_every_ != 0) write_row(state, account);
+  for (Sampled& sampled : sampled_) {
+    if (state.step % sampled.every != 0) sampled.file.write(sampled.recorder.row(state));
+  }
+  if (results_ && !fields_.includes(state.step)) {
+    peak_stress_.enter_frame(state);
+    results_->write(state);
+  }
+  flush();
+  seconds_ += timer.seconds();
+}
+
+void Recording::write_row(const State& state, EnergyAccount& account) {
+  const std::vector<double>& row = recorder_.row(state, account);
+  check_finite(row);
+  history_.write(row);
+  digest_.add(row);
+  watch_rotation(row);
+  checks_.watch(row, state);
 }
 
 void Recording::flush() {
@@ -142,6 +158,7 @@ void Recording::save(Snapshot& snapshot) {
     results_->sync();
     results_->save(snapshot, "results");
   }
+  fields_.save(snapshot);
   digest_.save(snapshot, "digest");
   checks_.save(snapshot, "checks");
   impacts_.save(snapshot, "impacts");

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 
 #include "ricochet/base/timer.hpp"
 #include "ricochet/case/model.hpp"
@@ -17,7 +17,10 @@ namespace ricochet {
 /// The steps after which fields are written.
 class FieldSchedule {
  public:
-  FieldSchedule(const Case& input, long steps, Index dofs);
+  /// Where the case does not say how often, that depends on the number of steps. A run that goes on keeps what it began
+  /// with, as its end may have been moved.
+  FieldSchedule(const Case& input, long steps, Index dofs, const Snapshot* snapshot);
+  void save(Snapshot& snapshot) const { snapshot.save("fields.every", std::int64_t{every_}); }
   [[nodiscard]] bool any() const { return every_ > 0 || interval_ > 0.0; }
   [[nodiscard]] bool includes(long step) const;
 
@@ -27,7 +30,6 @@ class FieldSchedule {
   long every_ = 0;
   double interval_ = 0.0;  ///< time, instead
   double step_size_;
-  long steps_;
 };
 
 class Recording {
@@ -37,9 +39,12 @@ class Recording {
   Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
             const std::string& directory, long steps, std::size_t factor_entries, const Snapshot* snapshot);
 
-  /// Of the state after every step, the first one included. Throws Error(file_access), and Error(not_converged) when
-  /// the motion has grown beyond all bounds or breaks an account that is to stop it.
+  /// Of the state after every step, the first one included: what a run without end would write. Throws
+  /// Error(file_access), and Error(not_converged) when the motion has grown beyond all bounds or breaks an account that
+  /// is to stop it.
   void record(const State& state, EnergyAccount& account);
+  /// Of the last state, what record() has left out: the end of a run is always in its results.
+  void record_end(const State& state, EnergyAccount& account);
   /// What is needed to go on; the files are on the disk then.
   void save(Snapshot& snapshot);
   void flush();
@@ -49,13 +54,15 @@ class Recording {
   [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
-  void open_results(const OutputSection& output, const Model& model, const std::string& directory,
-                    const Snapshot* snapshot);
+  void write_row(const State& state, EnergyAccount& account);
   void check_finite(const std::vector<double>& row) const;
   void describe_bodies(RunSummary& summary) const;
   void describe_peak_stress(RunSummary& summary) const;
   void watch_rotation(const std::vector<double>& row);
 
+  FieldSchedule fields_;
+  std::unique_ptr<ResultsWriter>
+      results_;  ///< first: looks whether the fields are what was written, and changes nothing else
   HistoryRecorder recorder_;
   HistoryWriter history_;
   /// Probes with an interval of their own.
@@ -65,15 +72,12 @@ class Recording {
     HistoryWriter file;
   };
   std::vector<Sampled> sampled_;
-  std::optional<ResultsWriter> results_;
   HistoryDigest digest_;
   RunChecks checks_;
   const Model& model_;
   ImpactRecorder impacts_;
   PeakStress peak_stress_;
   long history_every_;
-  FieldSchedule fields_;
-  long steps_;
   bool rotation_warned_ = false;
   Timer since_flush_;
   double seconds_ = 0.0;

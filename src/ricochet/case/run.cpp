@@ -10,6 +10,7 @@
 #include "ricochet/case/run_description.hpp"
 #include "ricochet/case/run_identity.hpp"
 #include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/line_checksums.hpp"
 #include "ricochet/io/progress.hpp"
 
 namespace ricochet {
@@ -24,7 +25,11 @@ constexpr Index large_body = 20000;
 }  // namespace
 
 Run::Run(const Case& input, const RunOptions& options)
-    : input_(input), options_(options), directory_(options.output_directory), steps_(step_count(input.time)) {}
+    : input_(input),
+      options_(options),
+      directory_(options.output_directory),
+      steps_(step_count(input.time)),
+      at_interruption_([this] { end_early(); }) {}
 
 RunSummary Run::go() {
   if (options_.resume) {
@@ -52,7 +57,10 @@ bool Run::is_complete() {
   if (summary_.parameters.empty()) return false;
   knows_what_ran_ = true;
   require_same_case(input_, summary_.version, summary_.parameters, options_.output_directory);
+  if (steps_ < summary_.steps) refuse_earlier_end(summary_.steps);
   if (summary_.status != "done") return false;
+  was_complete_ = true;
+  if (steps_ > summary_.all_steps) return false;
   log::info(fmt::format("{}: this run is complete, there is nothing to resume", options_.output_directory));
   if (!options_.export_contact.empty())
     log::warning("--export-contact: the run is complete, nothing more is exported; make it again with --force");
@@ -64,10 +72,18 @@ void Run::find_checkpoint() {
   snapshot_ = newest_checkpoint(options_.output_directory);
   if (snapshot_) {
     require_same_case(input_, *snapshot_, options_.output_directory);
+    if (const auto step = static_cast<long>(snapshot_->integer("state.step")); steps_ < step) refuse_earlier_end(step);
+    require_same_files(options_.output_directory, *snapshot_);
   } else if (!checkpoint_files(options_.output_directory).empty()) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: cannot be resumed: no checkpoint can be read; start anew with --force",
                             options_.output_directory));
+  } else if (was_complete_) {
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("{}: this run is complete and cannot go on to a later time.end: the checkpoint of its end is "
+                    "not there; start anew with --force",
+                    options_.output_directory));
   } else if (const std::vector<std::string> results = directory_.results(); !knows_what_ran_ && !results.empty()) {
     throw Error(
         ErrorKind::file_access,
@@ -77,6 +93,15 @@ void Run::find_checkpoint() {
   } else {
     log::info(fmt::format("{}: there is no checkpoint, the run starts from the beginning", options_.output_directory));
   }
+}
+
+void Run::refuse_earlier_end(long reached) const {
+  throw Error(
+      ErrorKind::invalid_input,
+      fmt::format("{}: time.end = {:.9g} comes before t = {:.9g}, which the run in {} has reached; give a later "
+                  "end, or start anew in another directory (-o) or over it (--force)",
+                  input_.where("time.end").text(), input_.time.end, static_cast<double>(reached) * input_.time.step,
+                  options_.output_directory));
 }
 
 void Run::begin() {
@@ -95,15 +120,16 @@ void Run::begin() {
   scheme_ = make_scheme(input_.time);
   begin_simulation();
   times_.add_start(timer.seconds(), simulation_->methods());
-  if (std::abs(static_cast<double>(steps_) * input_.time.step - input_.time.end) > 1e-9 * input_.time.end) {
-    log::info(fmt::format("time.end is not a whole number of steps: the run ends at t = {:.9g}",
-                          static_cast<double>(steps_) * input_.time.step));
-  }
   summary_ = describe_run(input_, *model_, *scheme_, *simulation_);
+  summary_.case_path = std::filesystem::absolute(input_.path).lexically_normal().string();
+  summary_.settings = options_.settings;
+  stopping_points_.emplace();  // the steps are near
   if (snapshot_) {
     // Those of the model have been said and remembered already.
     std::vector<std::string> warnings = snapshot_->texts("run.warnings");
     warnings.insert(warnings.end(), resume_warnings.begin(), resume_warnings.end());
+    // The end may have been moved.
+    std::erase_if(warnings, [](const std::string& warning) { return warning.starts_with(end_warning); });
     log::set_warnings(std::move(warnings));
     if (!difference.empty()) log::warning(difference);
     const Snapshot::Integers& resumed_at = snapshot_->integers("run.resumed_at");
@@ -111,18 +137,22 @@ void Run::begin() {
     summary_.resumed_at.push_back(simulation_->state().step);
     summary_.checkpoint_step = simulation_->state().step;
     times_.load(*snapshot_, "run.times");
-    remove_files(directory_.left_behind(simulation_->state().step));
     log::info(fmt::format("resumed after step {} of {}", simulation_->state().step, steps_));
   } else {
+    const std::lock_guard files(files_);
     replace_old_run(directory_, options_, summary_);
+    reported_ = summary_;
   }
+  warn_of_end(input_.time);
 }
 
 /// An error here is told in the summary, as one of a step is.
 void Run::open_files() {
+  const std::lock_guard files(files_);
   try {
     start_recording();
   } catch (const Error& problem) {
+    if (snapshot_) throw;  // the run is as it was
     summary_.status = "failed";
     summary_.message = problem.what();
     summary_.steps = simulation_->state().step;
@@ -146,6 +176,8 @@ void Run::start_recording() {
   recording_.emplace(input_, *model_, *scheme_, simulation_->state(), options_.output_directory, steps_,
                      simulation_->factor_entries(), snapshot_ ? &*snapshot_ : nullptr);
   if (!snapshot_) recording_->record(simulation_->state(), simulation_->account());
+  // Only now, when the run has found its files as it left them.
+  if (snapshot_) remove_files(directory_.left_behind(simulation_->state().step));
   snapshot_.reset();
   contact_before_ = simulation_->contact_seconds();
   report_progress();
@@ -173,19 +205,27 @@ void Run::take_steps() {
   try {
     while (simulation.state().step < steps_) {
       if (const int signal = options_.stop_signal ? options_.stop_signal() : 0; signal != 0) return stop(signal);
+      keep_state_before_step();
       const Timer timer;
       ++step;
       if (log::enabled(log::Level::debug))
         log::debug(fmt::format("step {}, t = {:.9g}", step, static_cast<double>(step) * scheme_->step()));
       if (contact_export_) contact_export_->begin_step(step);
       simulation.advance();
-      times_.steps += timer.seconds();
+      step_seconds_ = timer.seconds();
+      times_.steps += step_seconds_;
+      const std::lock_guard files(files_);
       recording_->record(simulation.state(), simulation.account());
       progress.update(simulation.state().step, simulation.state().time);
       if (simulation.state().step < steps_ && checkpoint_is_due()) write_checkpoint();
       if (since_report_.seconds() >= report_interval) report_progress();
     }
-    recording_->flush();
+    const std::lock_guard files(files_);
+    before_step_.reset();
+    // Before what is written at the end only: from here the run can go on to a later end.
+    const bool checkpoints = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
+    if (checkpoints && summary_.checkpoint_step != steps_) write_checkpoint();
+    recording_->record_end(simulation.state(), simulation.account());
   } catch (const Error& problem) {
     failure_ = problem;
     if (problem.kind() == ErrorKind::not_converged) write_failure_bundle(step);

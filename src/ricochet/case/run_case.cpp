@@ -7,6 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/run_name.hpp"
 #include "ricochet/case/run.hpp"
 
 namespace ricochet {
@@ -47,8 +48,19 @@ long step_count(const TimeSection& time) {
   return std::max(1L, static_cast<long>(std::ceil(time.end / time.step * (1.0 - 1e-12))));
 }
 
+void warn_of_end(const TimeSection& time) {
+  const double end = static_cast<double>(step_count(time)) * time.step;
+  if (std::abs(end - time.end) <= 1e-9 * time.end) return;
+  log::warning(
+      fmt::format("{}{:.9g} is no whole number of steps of {:.9g}: the run ends at t = {:.9g}, after "
+                  "step {}",
+                  end_warning, time.end, time.step, end, step_count(time)));
+}
+
 RunSummary run_case(const Case& input, const RunOptions& options) {
   log::clear_warnings();
+  // Of runs that are silent but for their warnings there may be many at once.
+  log::set_run_name(options.quiet ? options.output_directory : "");
   check_export(input, options, step_count(input.time));
   return Run(input, options).go();
 }

@@ -19,6 +19,8 @@ struct Model;
 
 struct RunOptions {
   std::string output_directory;
+  std::vector<std::string> settings =
+      {};              ///< what --set has changed in the case, for a --resume that is not told again
   bool force = false;  ///< overwrite a run that is there
   bool quiet = false;  ///< no progress
   /// Go on with the run that is in the directory, from its last checkpoint; from the beginning where it has none.
@@ -37,6 +39,10 @@ RunSummary run_case(const Case& input, const RunOptions& options);
 
 /// Number of steps to the end time; the last step ends at or after it.
 [[nodiscard]] long step_count(const TimeSection& time);
+
+/// Warns where the end time is no whole number of steps, in words that begin so.
+inline constexpr const char* end_warning = "time.end = ";
+void warn_of_end(const TimeSection& time);
 
 /// Throws Error(invalid_input), at its place in the case, where an [[expect]] entry that applies is about a column that
 /// history.csv will not have.

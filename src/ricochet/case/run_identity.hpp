@@ -9,8 +9,8 @@
 /// @file Which run a checkpoint belongs to. A run goes on only with what would have given the same results so far.
 namespace ricochet {
 
-/// The values of a case that decide its results (key path → value as text, defaults included): not its title, what
-/// it expects, how often checkpoints are written, nor where its mesh file lies, whose content is compared.
+/// The values of a case that decide its results (key path → value as text, defaults included): not its title, its
+/// end, what it expects, how often checkpoints are written, nor where its mesh file lies, whose content is compared.
 [[nodiscard]] std::map<std::string, std::string> deciding_values(const Case& input);
 
 void save_identity(const Case& input, const Model& model, Snapshot& snapshot);

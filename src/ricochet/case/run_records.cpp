@@ -1,14 +1,25 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstring>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/run_name.hpp"
 #include "ricochet/case/run.hpp"
 #include "ricochet/case/run_identity.hpp"
 #include "ricochet/case/run_judgement.hpp"
 #include "ricochet/io/checkpoint.hpp"
 
 namespace ricochet {
+
+namespace {
+
+/// For the files of the run to come to rest, where it is to end in the middle of its work.
+constexpr std::chrono::milliseconds longest_wait{300};
+/// Seconds of a step from which on the state before it is kept, where that takes no more than this share of the step.
+constexpr double long_step = 0.5, snapshot_share = 0.05;
+
+}  // namespace
 
 /// The state before the step that failed (or after it, where its results are not to be had) and its contact problem;
 /// the message tells where they are.
@@ -25,14 +36,46 @@ void Run::write_failure_bundle(long step) {
 }
 
 void Run::stop(int signal) {
+  interruption::reach_stopping_point();
+  const std::lock_guard files(files_);
   write_checkpoint();
   summary_.status = "interrupted";
   summary_.message = fmt::format("stopped by SIG{} after step {} of {}; run --resume goes on from there",
                                  sigabbrev_np(signal), simulation_->state().step, steps_);
 }
 
-void Run::write_checkpoint() {
+/// On another thread, while this run is in the middle of something that takes too long. What is on the disk is good
+/// enough for --resume at any time; if the files are at rest, more is kept of the run.
+void Run::end_early() {
+  const std::unique_lock files(files_, longest_wait);
+  if (!files || !reported_) return;
+  RunSummary& summary = *reported_;
+  summary.status = "interrupted";
+  summary.message = fmt::format(
+      "stopped in the middle of a step or of what comes before the first; run --resume {}",
+      before_step_ ? "goes on from the state before that step" : "goes on from the last checkpoint, if there is one");
+  if (before_step_) {
+    summary.steps = summary.checkpoint_step = static_cast<long>(before_step_->integer("state.step"));
+    ricochet::write_checkpoint(options_.output_directory, summary.checkpoint_step, *before_step_);
+  }
+  write_summary(summary_path(), summary);
+  interruption::say(fmt::format("ricochet: {}\n", log::with_run_name(summary.message)).c_str());
+}
+
+/// Where a step takes longer than anybody should wait who wants to stop the run: a checkpoint of the state before it
+/// can then be written at any time.
+void Run::keep_state_before_step() {
+  const bool wanted = step_seconds_ >= long_step && snapshot_seconds_ <= snapshot_share * step_seconds_;
+  if (!wanted && !before_step_) return;
+  const std::lock_guard files(files_);
+  before_step_.reset();
+  if (!wanted) return;
   const Timer timer;
+  before_step_ = take_snapshot();
+  snapshot_seconds_ = timer.seconds();
+}
+
+Snapshot Run::take_snapshot() {
   Snapshot snapshot;
   simulation_->save(snapshot);
   recording_->save(snapshot);
@@ -42,9 +85,16 @@ void Run::write_checkpoint() {
   times.output += recording_->seconds();
   times.save(snapshot, "run.times");
   snapshot.save("run.warnings", log::warnings());
+  snapshot.save("run.case_path", summary_.case_path);
+  snapshot.save("run.settings", Snapshot::Texts(summary_.settings));
   snapshot.save("run.resumed_at", Snapshot::Integers(summary_.resumed_at.begin(), summary_.resumed_at.end()));
+  return snapshot;
+}
+
+void Run::write_checkpoint() {
+  const Timer timer;
   const long step = simulation_->state().step;
-  ricochet::write_checkpoint(options_.output_directory, step, snapshot);
+  ricochet::write_checkpoint(options_.output_directory, step, take_snapshot());
   summary_.checkpoint_step = step;
   times_.checkpoints += timer.seconds();
   since_checkpoint_.restart();
@@ -68,10 +118,13 @@ void Run::report_progress() {
   summary.status = "running";
   describe_progress(summary);
   write_summary(summary_path(), summary);
+  reported_ = std::move(summary);
   since_report_.restart();
 }
 
 void Run::finish() {
+  const std::lock_guard files(files_);
+  reported_.reset();
   if (failure_) {
     summary_.status = "failed";
     summary_.message = failure_->what();

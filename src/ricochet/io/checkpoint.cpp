@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <regex>
 
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/input_file.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/io/durable_file.hpp"
 
@@ -25,7 +24,7 @@ namespace fs = std::filesystem;
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view magic = "RICOCHET";
-constexpr std::uint32_t format = 1;
+constexpr std::uint32_t format = 2;
 constexpr std::size_t kept_checkpoints = 2;
 constexpr std::size_t head_size = magic.size() + sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
@@ -139,7 +138,8 @@ Snapshot decode_snapshot(const std::string& text) {
   Cursor head(std::string_view(text).substr(magic.size()));
   if (const auto found = head.number<std::uint32_t>(); found != format) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("it is of format {}, and this program reads format {}", found, format));
+                fmt::format("another version of the program wrote it (format {}, and this one reads format {})", found,
+                            format));
   }
   if (head.number<std::uint64_t>() != text.size() - head_size - sizeof(std::uint32_t))
     throw Error(ErrorKind::invalid_input, "it has not the length it should have: it is cut off");
@@ -179,11 +179,14 @@ void write_checkpoint(const std::string& directory, long step, const Snapshot& s
 }
 
 Snapshot read_checkpoint(const std::string& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw_file_error(path, "read", errno);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) throw_file_error(path, "read", errno);
+  {
+    char head[magic.size()] = {};
+    std::ifstream file(path, std::ios::binary);
+    // Nothing that is no checkpoint is read to its end.
+    if (why_no_input(path).empty() && file.read(head, sizeof(head)) && std::string_view(head, sizeof(head)) != magic)
+      throw Error(ErrorKind::invalid_input, fmt::format("{}: it is no checkpoint", path));
+  }
+  const std::string text = read_file(path);
   try {
     return decode_snapshot(text);
   } catch (const Error& problem) {
@@ -198,7 +201,7 @@ std::optional<Snapshot> newest_checkpoint(const std::string& directory) {
     try {
       return read_checkpoint(file.path);
     } catch (const Error& problem) {
-      log::warning(fmt::format("this checkpoint is damaged, the one before is taken: {}", problem.what()));
+      log::warning(fmt::format("this checkpoint cannot be used, the one before is taken: {}", problem.what()));
     }
   }
   return std::nullopt;

@@ -14,6 +14,7 @@
 #include <filesystem>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/input_file.hpp"
 
 namespace ricochet {
 
@@ -87,13 +88,15 @@ void write_durably(const std::string& path, const std::string& content) {
 }
 
 std::string read_file(const std::string& path) {
+  if (const std::string why = why_no_input(path); !why.empty())
+    throw Error(ErrorKind::file_access, fmt::format("{}: cannot read: {}", path, why));
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw_file_error(path, "read", errno);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-void cut_back(const std::string& path, std::int64_t length) {
+void require_length(const std::string& path, std::int64_t length) {
   const auto refuse = [&](const std::string& state) {
     throw Error(
         ErrorKind::file_access,
@@ -101,11 +104,17 @@ void cut_back(const std::string& path, std::int64_t length) {
                     "back, or start anew with --force",
                     path, state, length));
   };
-  if (!std::filesystem::exists(path)) refuse("is missing");
-  const OpenFile file(path, O_WRONLY);
   struct stat about {};
-  if (fstat(file.descriptor(), &about) != 0) throw_file_error(path, "look at", errno);
+  if (stat(path.c_str(), &about) != 0) {
+    if (errno == ENOENT) refuse("is missing");
+    throw_file_error(path, "look at", errno);
+  }
   if (about.st_size < length) refuse(fmt::format("has {} bytes", about.st_size));
+}
+
+void cut_back(const std::string& path, std::int64_t length) {
+  require_length(path, length);
+  const OpenFile file(path, O_WRONLY);
   if (ftruncate(file.descriptor(), length) != 0) throw_file_error(path, "cut back", errno);
 }
 

@@ -19,6 +19,9 @@ void write_durably(const std::string& path, const std::string& content);
 /// All of a file. Throws Error(file_access).
 [[nodiscard]] std::string read_file(const std::string& path);
 
+/// Throws Error(file_access) where a file is missing or shorter than it was when a checkpoint was written.
+void require_length(const std::string& path, std::int64_t length);
+
 /// Cuts a file back to a length it had before. Throws Error(file_access) where it is missing or shorter.
 void cut_back(const std::string& path, std::int64_t length);
 

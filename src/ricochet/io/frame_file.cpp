@@ -12,6 +12,7 @@
 #include <list>
 #include <numeric>
 
+#include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/hdf5_handle.hpp"
@@ -135,12 +136,16 @@ FrameFile::FrameFile(std::string path, const std::vector<FixedDataset>& fixed, s
                 fmt::format("the saved state does not fit: {} frames of {} data sets with {} sizes", frames_,
                             layout_.size(), stored_sizes_.size()));
   }
+  checksums_ = snapshot.integers(name + ".checksums", 0, 0xffffffff);
+  if (static_cast<long>(checksums_.size()) != frames_)
+    throw Error(ErrorKind::invalid_input, "the saved state does not fit: a checksum per frame");
   repair(fixed);
 }
 
 void FrameFile::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".frames", std::int64_t{frames_});
   snapshot.save(name + ".stored_sizes", stored_sizes_);
+  snapshot.save(name + ".checksums", checksums_);
 }
 
 void FrameFile::create(const std::string& path, const std::vector<FixedDataset>& fixed) const {
@@ -176,7 +181,45 @@ void FrameFile::append(const std::vector<const void*>& values) {
   if (options_.compression > 0) {
     for (const Extent& extent : extents) stored_sizes_.push_back(extent.size);
   }
+  checksums_.push_back(checksum(extents, &values));
   ++frames_;
+}
+
+/// Of the numbers of a frame as they are in the file. Those that are there as they are in memory, `values`, are not
+/// read again.
+std::uint32_t FrameFile::checksum(const std::vector<Extent>& extents, const std::vector<const void*>* values) const {
+  Checksum sum;
+  std::ifstream file;
+  std::vector<char> bytes;
+  for (std::size_t i = 0; i < layout_.size(); ++i) {
+    const Extent& extent = extents[i];
+    const bool as_in_memory = !Prepared::is_compressed(layout_[i], options_) && (layout_[i].whole || !options_.single);
+    if (values != nullptr && as_in_memory) {
+      sum.add_bytes((*values)[i], static_cast<std::size_t>(extent.size));
+      continue;
+    }
+    if (!file.is_open()) file.open(path_, std::ios::binary);
+    bytes.resize(static_cast<std::size_t>(extent.size));
+    file.seekg(extent.address);
+    if (!file.read(bytes.data(), extent.size)) throw_file_error(path_, "read", errno);
+    sum.add_bytes(bytes.data(), bytes.size());
+  }
+  return sum.value();
+}
+
+/// Extents of all frames, one after the other.
+void FrameFile::require_same(const std::vector<Extent>& extents) const {
+  for (long frame = 0; frame < frames_; ++frame) {
+    const auto first = extents.begin() + frame * static_cast<long>(layout_.size());
+    if (checksum({first, first + static_cast<long>(layout_.size())}, nullptr) ==
+        checksums_[static_cast<std::size_t>(frame)])
+      continue;
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format("{}: {} is not what the run wrote before its checkpoint; put the file back as it was, or start "
+                    "anew with --force",
+                    path_, frame_name(frame)));
+  }
 }
 
 /// Without values: an empty frame of the same extents, given the stored sizes of compressed data sets.
@@ -246,8 +289,10 @@ void FrameFile::repair(const std::vector<FixedDataset>& fixed) const {
       const std::vector<Extent> extents = write_frame(pattern, frame, nullptr, sizes);
       kept.insert(kept.end(), extents.begin(), extents.end());
     }
-    std::sort(kept.begin(), kept.end(), [](const Extent& a, const Extent& b) { return a.address < b.address; });
     const auto size = static_cast<std::int64_t>(std::filesystem::file_size(pattern));
+    require_length(path_, size);
+    require_same(kept);
+    std::sort(kept.begin(), kept.end(), [](const Extent& a, const Extent& b) { return a.address < b.address; });
     cut_back(path_, size);
     std::ifstream from(pattern, std::ios::binary);
     std::fstream to(path_, std::ios::binary | std::ios::in | std::ios::out);

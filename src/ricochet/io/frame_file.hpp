@@ -42,7 +42,8 @@ class FrameFile {
   FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
             const FrameFileOptions& options = {});
   /// Goes on with a file that held so many frames when save() was called, and may have been changed by an interrupted
-  /// run since. Throws Error(file_access) where it is not that file.
+  /// run since. Throws Error(file_access) where it is not that file, or where numbers of these frames are others now:
+  /// then nothing has happened to it.
   FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
             const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name);
   void save(Snapshot& snapshot, const std::string& name) const;
@@ -62,6 +63,9 @@ class FrameFile {
   void create(const std::string& path, const std::vector<FixedDataset>& fixed) const;
   std::vector<Extent> write_frame(const std::string& path, long frame, const std::vector<const void*>* values,
                                   const std::int64_t* stored_sizes) const;
+  [[nodiscard]] std::uint32_t checksum(const std::vector<Extent>& extents,
+                                       const std::vector<const void*>* values) const;
+  void require_same(const std::vector<Extent>& extents) const;
   void repair(const std::vector<FixedDataset>& fixed) const;
   [[nodiscard]] std::int64_t frame_bytes() const;
 
@@ -70,6 +74,7 @@ class FrameFile {
   FrameFileOptions options_;
   std::shared_ptr<const Prepared> prepared_;
   long frames_ = 0;
+  std::vector<std::int64_t> checksums_;     ///< of the numbers of every frame as they are in the file
   std::vector<std::int64_t> stored_sizes_;  ///< of the data sets of all frames, when compressed
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <iterator>
 
 #include "ricochet/base/error.hpp"
@@ -20,21 +21,21 @@ HistoryWriter::HistoryWriter(const std::string& path, const std::vector<std::str
 }
 
 HistoryWriter::HistoryWriter(const std::string& path, const Snapshot& snapshot, const std::string& name)
-    : path_(path), length_(snapshot.integer(name + ".length")) {
-  cut_back(path_, length_);
+    : path_(path), checksums_(snapshot, name) {
+  cut_back(path_, checksums_.length());
   file_.open(path, std::ios::binary | std::ios::app);
   if (!file_) throw_file_error(path_, "write", errno);
 }
 
 void HistoryWriter::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".length", length_);
+  checksums_.save(snapshot, name, std::filesystem::path(path_).filename().string());
 }
 
 void HistoryWriter::put_line() {
   line_ += '\n';
   errno = 0;
   if (!file_.write(line_.data(), static_cast<std::streamsize>(line_.size()))) throw_file_error(path_, "write", errno);
-  length_ += static_cast<std::int64_t>(line_.size());
+  checksums_.add(line_);
 }
 
 void HistoryWriter::write(const std::vector<double>& row) {

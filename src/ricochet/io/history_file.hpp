@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
+#include "ricochet/io/line_checksums.hpp"
 
 /// @file history.csv: a header row, then one row per step, numbers as %.17g, never an empty field.
 namespace ricochet {
@@ -31,7 +32,7 @@ class HistoryWriter {
   std::string path_;
   std::ofstream file_;
   std::string line_;
-  std::int64_t length_ = 0;
+  LineChecksums checksums_;
 };
 
 /// A history read back, column by column.

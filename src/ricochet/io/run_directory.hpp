@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "ricochet/base/interruption.hpp"
 
 /// @file The directory that a run writes into, for one run at a time.
 namespace ricochet {
@@ -31,6 +34,7 @@ class RunDirectory {
   std::string path_;
   int lock_ = -1;
   bool is_new_ = false;
+  std::optional<AtInterruption> at_interruption_;
 };
 
 /// Removes files. Throws Error(file_access).

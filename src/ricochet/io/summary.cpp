@@ -138,6 +138,8 @@ std::string to_json(const RunSummary& s) {
                {"title", s.title},
                {"case", s.case_file},
                {"overrides", s.overrides},
+               {"case_path", s.case_path},
+               {"settings", s.settings},
                {"ricochet_version", s.version},
                {"libraries", s.libraries},
                {"scheme", s.scheme},
@@ -199,6 +201,8 @@ RunSummary read_summary(const std::string& path) {
     s.title = json.at("title");
     s.case_file = json.at("case");
     s.overrides = json.at("overrides").get<std::vector<std::string>>();
+    s.case_path = json.value("case_path", "");
+    s.settings = json.value("settings", std::vector<std::string>{});
     s.version = json.at("ricochet_version");
     s.scheme = json.at("scheme");
     s.mass = json.at("mass");

@@ -59,7 +59,9 @@ struct RunSummary {
   std::string message;          ///< of the failure or the interruption
   std::string case_file, title, version, scheme, mass;
   std::string libraries;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides;                  ///< key paths given by --set
+  std::string case_path;                               ///< absolute: with `settings` what --resume needs to know
+  std::vector<std::string> settings;                   ///< as given to --set
   std::map<std::string, std::string> parameters = {};  ///< all entries of the case: key path → value as text
   int dimension = 2;
   int degree = 1;

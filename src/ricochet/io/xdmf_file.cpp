@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <filesystem>
 
 #include "ricochet/io/durable_file.hpp"
 
@@ -27,15 +28,15 @@ XdmfFile::XdmfFile(std::string path, const std::string& collection, const std::s
 }
 
 XdmfFile::XdmfFile(std::string path, const Snapshot& snapshot, const std::string& name)
-    : path_(std::move(path)), length_(snapshot.integer(name + ".length")) {
-  cut_back(path_, length_);
+    : path_(std::move(path)), checksums_(snapshot, name) {
+  cut_back(path_, checksums_.length());
   file_.open(path_, std::ios::in | std::ios::out | std::ios::binary);
   if (!file_) throw_file_error(path_, "write", errno);
   append("");
 }
 
 void XdmfFile::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".length", length_);
+  checksums_.save(snapshot, name, std::filesystem::path(path_).filename().string());
 }
 
 /// The closing tags are overwritten by the next grid, in one piece with what follows, once there is room for both.
@@ -43,10 +44,10 @@ void XdmfFile::append(const std::string& grid) {
   const std::string text = grid + tail;
   reserve_space(path_, static_cast<std::int64_t>(text.size()));
   errno = 0;
-  file_.seekp(length_);
+  file_.seekp(checksums_.length());
   file_ << text << std::flush;
   if (!file_) throw_file_error(path_, "write", errno);
-  length_ += static_cast<std::int64_t>(grid.size());
+  if (!grid.empty()) checksums_.add(grid);
 }
 
 }  // namespace ricochet

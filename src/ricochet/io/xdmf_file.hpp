@@ -4,6 +4,7 @@
 #include <string>
 
 #include "ricochet/base/snapshot.hpp"
+#include "ricochet/io/line_checksums.hpp"
 
 /// @file The XDMF 3.0 side-file: a temporal collection of grids, a complete document after every one of them.
 namespace ricochet {
@@ -24,7 +25,7 @@ class XdmfFile {
  private:
   std::string path_;
   std::fstream file_;
-  std::int64_t length_ = 0;  ///< without the closing tags
+  LineChecksums checksums_;  ///< without the closing tags
 };
 
 }  // namespace ricochet

@@ -1,13 +1,13 @@
 #include "ricochet/mesh/gmsh_process.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <deque>
 #include <fstream>
 
 #include "ricochet/base/child_process.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/temporary_folder.hpp"
 
 namespace ricochet::gmsh {
 
@@ -62,16 +62,12 @@ void check_spawned(const ChildOutcome& outcome, const std::string& source) {
 }  // namespace
 
 std::string program_version(const std::string& source) {
-  const std::filesystem::path directory = std::filesystem::temp_directory_path();
-  std::string log = (directory / "ricochet-gmsh-version-XXXXXX").string();
-  const int descriptor = mkstemp(log.data());
-  if (descriptor < 0) throw Error(ErrorKind::file_access, fmt::format("cannot write to {}", directory.string()));
-  close(descriptor);
-  const ChildOutcome outcome = run({"-version"}, directory, log);
+  const TemporaryFolder workspace(std::filesystem::temp_directory_path(), "ricochet-gmsh-version");
+  const std::filesystem::path log = workspace.path() / "log";
+  const ChildOutcome outcome = run({"-version"}, workspace.path(), log);
   std::string version;
   std::string line;
   for (std::ifstream stream(log); std::getline(stream, line);) version += line;
-  std::filesystem::remove(log);
   check_spawned(outcome, source);
   return version;
 }

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/input_file.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
 #include "ricochet/mesh/convert_process.hpp"
 #include "ricochet/mesh/mesh_cache.hpp"
@@ -24,7 +25,7 @@ std::string read_whole_file(const std::filesystem::path& path) {
     throw Error(ErrorKind::file_access, fmt::format("cannot read {}: {}", path.string(), why));
   };
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) fail("it is a directory");
+  if (const std::string why = why_no_input(path); !why.empty()) fail(why);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (file == nullptr) fail(std::strerror(errno));
   std::string content;

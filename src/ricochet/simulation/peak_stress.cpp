@@ -58,8 +58,13 @@ void PeakStress::enter(const State& state, bool is_frame) {
   look(state);
 }
 
+void PeakStress::enter_frame(const State& state) {
+  if (last_look_ != state.step) look(state);
+}
+
 void PeakStress::look(const State& state) {
   ++result_.looks;
+  last_look_ = state.step;
   const LargestOfCells largest = stress_.largest_von_mises(state.displacement);
   if (result_.cell >= 0 && !(largest.value > result_.von_mises)) return;
   result_.von_mises = std::max(0.0, largest.value);
@@ -87,7 +92,8 @@ void PeakStress::save(Snapshot& snapshot, const std::string& name) const {
   Vector numbers(6);
   numbers << looks_per_step_, saved_, since_look_, hardest_press_, result_.von_mises, result_.time;
   snapshot.save(name, numbers);
-  snapshot.save(name + ".counts", Snapshot::Integers{result_.step, result_.cell, result_.looks, result_.states});
+  snapshot.save(name + ".counts",
+                Snapshot::Integers{result_.step, result_.cell, result_.looks, result_.states, last_look_});
 }
 
 void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
@@ -99,12 +105,13 @@ void PeakStress::load(const Snapshot& snapshot, const std::string& name) {
   result_.von_mises = numbers[4];
   result_.time = numbers[5];
   const Snapshot::Integers& counts = snapshot.integers(name + ".counts");
-  if (counts.size() != 4 || counts[1] < -1 || counts[1] >= body_.mesh->cell_count())
+  if (counts.size() != 5 || counts[1] < -1 || counts[1] >= body_.mesh->cell_count())
     throw Error(ErrorKind::invalid_input, "the checkpoint's largest stress is not one of this mesh");
   result_.step = counts[0];
   result_.cell = counts[1];
   result_.looks = counts[2];
   result_.states = counts[3];
+  last_look_ = counts[4];
 }
 
 }  // namespace ricochet

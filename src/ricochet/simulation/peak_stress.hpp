@@ -31,6 +31,8 @@ class PeakStress {
 
   /// A state, one after the other. One of a frame is looked at in any case.
   void enter(const State& state, bool is_frame);
+  /// The last of these states gets a frame all the same, as an end does.
+  void enter_frame(const State& state);
   [[nodiscard]] const PeakStressResult& result() const { return result_; }
 
  private:
@@ -42,6 +44,7 @@ class PeakStress {
   double saved_ = 0.0;          ///< looks for states that press harder
   double since_look_ = 0.0;     ///< looks that regular ones have not taken
   double hardest_press_ = 0.0;  ///< Σ r_N of the states looked at
+  long last_look_ = -1;         ///< its step
   PeakStressResult result_;
 };
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+/// @file Is there something to be read from a path?
+namespace ricochet {
+
+/// Why a file is not to be read at all: it is a directory, a device (which may have no end), or begins with nothing but
+/// zeros, which no format does, and may have gigabytes of them. Empty: it may be read, as far as this can tell; a
+/// file that is not there or may not be read says so when it is opened.
+[[nodiscard]] std::string why_no_input(const std::string& path);
+
+}  // namespace ricochet

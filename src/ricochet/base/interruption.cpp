@@ -1,0 +1,85 @@
+#include "ricochet/base/interruption.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstring>
+#include <exception>
+#include <iterator>
+#include <mutex>
+#include <utility>
+
+namespace ricochet {
+
+namespace {
+
+/// Never destroyed: the process may be asked to end while it ends.
+struct Registry {
+  std::mutex mutex;
+  std::list<std::function<void()>> actions;
+  bool at_stopping_point = false;
+};
+
+Registry& registry() {
+  static auto* const instance = new Registry;
+  return *instance;
+}
+
+std::atomic<int> stopping_points = 0;
+
+}  // namespace
+
+AtInterruption::AtInterruption(std::function<void()> action) {
+  const std::lock_guard lock(registry().mutex);
+  entry_ = registry().actions.insert(registry().actions.end(), std::move(action));
+}
+
+AtInterruption::~AtInterruption() {
+  const std::lock_guard lock(registry().mutex);
+  registry().actions.erase(entry_);
+}
+
+StoppingPoints::StoppingPoints() {
+  ++stopping_points;
+}
+
+StoppingPoints::~StoppingPoints() {
+  --stopping_points;
+}
+
+namespace interruption {
+
+void reach_stopping_point() {
+  const std::lock_guard lock(registry().mutex);
+  registry().at_stopping_point = true;
+}
+
+bool has_stopping_points() {
+  return stopping_points > 0;
+}
+
+bool take_actions() {
+  std::unique_lock lock(registry().mutex);
+  if (registry().at_stopping_point) return false;
+  for (auto action = registry().actions.rbegin(); action != registry().actions.rend(); ++action) {
+    try {
+      (*action)();
+    } catch (const std::exception&) {  // the next one is due all the same
+    }
+  }
+  static_cast<void>(lock.release());  // nobody goes on any more
+  return true;
+}
+
+void say(const char* line) {
+  struct pollfd output {
+    STDERR_FILENO, POLLOUT, 0
+  };
+  if (poll(&output, 1, 0) == 1 && (output.revents & POLLOUT) != 0)
+    static_cast<void>(!write(STDERR_FILENO, line, std::strlen(line)));
+}
+
+}  // namespace interruption
+
+}  // namespace ricochet

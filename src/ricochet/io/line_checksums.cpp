@@ -1,0 +1,122 @@
+#include "ricochet/io/line_checksums.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr std::size_t most_blocks = 512;
+constexpr const char* file_suffix = ".lines.file";
+
+[[noreturn]] void refuse(const std::string& path, const std::string& lines, bool windows) {
+  throw Error(
+      ErrorKind::file_access,
+      fmt::format("{}: {} not what the run wrote before its checkpoint{}; put the file back as it was, or start "
+                  "anew with --force",
+                  path, lines, windows ? " (lines end in CR LF)" : ""));
+}
+
+}  // namespace
+
+LineChecksums::LineChecksums() {
+  blocks_.reserve(most_blocks);
+}
+
+LineChecksums::LineChecksums(const Snapshot& snapshot, const std::string& name) : LineChecksums() {
+  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums", 0, 0xffffffff);
+  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths", 0, std::int64_t{1} << 50);
+  pieces_ = snapshot.integer(name + ".lines.pieces");
+  pieces_per_block_ = snapshot.integer(name + ".lines.per_block");
+  const auto count = static_cast<std::int64_t>(sums.size());
+  if (sums.size() != lengths.size() || sums.size() > most_blocks || pieces_per_block_ < 1 ||
+      pieces_ > count * pieces_per_block_ || pieces_ <= (count - 1) * pieces_per_block_)
+    throw Error(ErrorKind::invalid_input, fmt::format("the saved state does not fit: checksums of {}", name));
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    blocks_.push_back({static_cast<std::uint32_t>(sums[i]), lengths[i]});
+    length_ += lengths[i];
+  }
+}
+
+void LineChecksums::save(Snapshot& snapshot, const std::string& name, const std::string& file_name) const {
+  Snapshot::Integers sums, lengths;
+  for (const Block& block : blocks_) {
+    sums.push_back(block.sum);
+    lengths.push_back(block.length);
+  }
+  snapshot.save(name + file_suffix, file_name);
+  snapshot.save(name + ".lines.sums", std::move(sums));
+  snapshot.save(name + ".lines.lengths", std::move(lengths));
+  snapshot.save(name + ".lines.pieces", pieces_);
+  snapshot.save(name + ".lines.per_block", pieces_per_block_);
+}
+
+void LineChecksums::add(std::string_view piece) {
+  if (pieces_ == static_cast<std::int64_t>(blocks_.size()) * pieces_per_block_) {
+    if (blocks_.size() == most_blocks) merge_blocks();
+    if (pieces_ == static_cast<std::int64_t>(blocks_.size()) * pieces_per_block_) blocks_.emplace_back();
+  }
+  Block& block = blocks_.back();
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(piece.data());
+  block.sum = static_cast<std::uint32_t>(crc32_z(block.sum, bytes, piece.size()));
+  block.length += static_cast<std::int64_t>(piece.size());
+  length_ += static_cast<std::int64_t>(piece.size());
+  ++pieces_;
+}
+
+/// Two and two, when all of them are full.
+void LineChecksums::merge_blocks() {
+  for (std::size_t i = 0; i < most_blocks / 2; ++i) {
+    const Block first = blocks_[2 * i], second = blocks_[2 * i + 1];
+    blocks_[i] = {static_cast<std::uint32_t>(crc32_combine(first.sum, second.sum, second.length)),
+                  first.length + second.length};
+  }
+  blocks_.resize(most_blocks / 2);
+  pieces_per_block_ *= 2;
+}
+
+namespace {
+
+void require_same_file(const std::string& path, const Snapshot& snapshot, const std::string& name) {
+  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums");
+  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths");
+  std::int64_t length = 0, line = 1;
+  for (const std::int64_t each : lengths) length += each;
+  require_length(path, length);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw_file_error(path, "read", errno);
+  std::string block;
+  for (std::size_t i = 0; i < std::min(sums.size(), lengths.size()); ++i) {
+    block.resize(static_cast<std::size_t>(lengths[i]));
+    if (!file.read(block.data(), lengths[i])) throw_file_error(path, "read", errno);
+    const std::int64_t last = std::max(line, line + std::count(block.begin(), block.end(), '\n') - 1);
+    if (Checksum().add(block.data(), block.size()).value() != sums[i]) {
+      refuse(path,
+             line == last ? fmt::format("line {} is", line) : fmt::format("something in lines {} to {} is", line, last),
+             block.find('\r') != std::string::npos);
+    }
+    line = last + 1;
+  }
+}
+
+}  // namespace
+
+void require_same_files(const std::string& directory, const Snapshot& snapshot) {
+  for (const auto& [key, value] : snapshot.values()) {
+    if (!key.ends_with(file_suffix)) continue;
+    const std::string name = key.substr(0, key.size() - std::string_view(file_suffix).size());
+    require_same_file((std::filesystem::path(directory) / snapshot.text(key)).string(), snapshot, name);
+  }
+}
+
+}  // namespace ricochet
