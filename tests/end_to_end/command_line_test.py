@@ -20,7 +20,7 @@ class CommandLine(TestCase):
     def test_wrong_use_is_status_1(self):
         for arguments, said in (((), "subcommand"),
                                 (("simulate", self.case), ""),
-                                (("run",), "case is required"),
+                                (("run",), "a case file is required"),
                                 (("info",), "path is required"),
                                 (("validate",), "case is required"),
                                 (("run", self.case, "--bogus"), "--bogus"),
@@ -102,7 +102,8 @@ class CommandLine(TestCase):
     def test_a_run_is_not_overwritten_without_force(self):
         output = self.simulate(self.case)
         before = {path.name: path.read_bytes() for path in output.iterdir()}
-        self.assertEqual(sorted(before), ["history.csv", "obstacles.xdmf", "results.h5", "results.xdmf", "summary.json"])
+        self.assertEqual(sorted(before), ["checkpoint-000000030.ckpt", "history.csv", "obstacles.xdmf", "results.h5", "results.xdmf",
+                                          "summary.json"])
         process = self.expect_status(4, run("run", self.case, "-o", output, "--quiet"))
         self.assertIn("--force", process.stderr)
         self.assertEqual({path.name: path.read_bytes() for path in output.iterdir()}, before)
@@ -114,7 +115,7 @@ class CommandLine(TestCase):
         (output / "notes.txt").write_text("mine", encoding="ascii")
         self.expect_status(0, run("run", self.case, "-o", output, "--quiet", "--force", "--set",
                                   "output.fields_every=0", "--set", "time.end=0.1"))
-        self.assertEqual(sorted(path.name for path in output.iterdir()), ["history.csv", "notes.txt", "summary.json"],
+        self.assertEqual(sorted(path.name for path in output.iterdir()), ["checkpoint-000000010.ckpt", "history.csv", "notes.txt", "summary.json"],
                          "nothing of the old run stays, and nothing else goes")
         self.assertEqual(History(output / "history.csv")["step"], list(range(11)))
 
