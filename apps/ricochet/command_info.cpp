@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "contact_text.hpp"
 #include "outcome_text.hpp"
+#include "penetration_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/model.hpp"
@@ -121,8 +122,7 @@ void describe_result(const std::string& directory) {
   print_friction(s);
   print_impacts(s, 0);
   print_peak_stress(s);
-  fmt::print("  deepest interpenetration {:.3g}, largest rotation {:.3g} rad\n", s.digest("max_penetration").maximum,
-             s.digest("max_rotation").maximum);
+  fmt::print("{}\n", deformation_text(s));
   for (std::size_t i = 0; i < s.probes.size(); ++i) {
     const Probe& probe = s.probes[i];
     fmt::print("  probe \"{}\" {:.3g} from the point asked for", probe.name, probe.distance);
@@ -156,9 +156,9 @@ void compare_results(const std::vector<std::string>& directories) {
       for (const char* axis : {"x", "y", "z"})
         variation = std::max(variation, s.digest(fmt::format("contact_force_{}", axis)).total_variation);
     }
-    fmt::print("{:<24} {:<15} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14.4g} {:>14.3g} {:>9.3g}{}\n", directory,
-               s.scheme, s.mass, energy.first, energy.last, energy.maximum, variation,
-               s.digest("max_penetration").maximum, 1e3 * s.time_per_step, status_text(directory, s));
+    fmt::print("{:<24} {:<15} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14.4g} {:>14} {:>9.3g}{}\n", directory, s.scheme,
+               s.mass, energy.first, energy.last, energy.maximum, variation, deepest_penetration_text(s),
+               1e3 * s.time_per_step, status_text(directory, s));
   }
 }
 

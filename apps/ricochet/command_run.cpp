@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "contact_text.hpp"
 #include "outcome_text.hpp"
+#include "penetration_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/old_run.hpp"
@@ -53,8 +54,7 @@ void print_summary(const RunSummary& s, const std::string& directory) {
   print_friction(s);
   print_impacts(s, most_impacts_shown);
   print_peak_stress(s);
-  fmt::print("  deepest interpenetration {:.3g}, largest rotation of a cell {:.3g} rad\n",
-             s.digest("max_penetration").maximum, s.digest("max_rotation").maximum);
+  fmt::print("{}\n", deformation_text(s));
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
              s.timings.empty() ? "" : duration_text(s.timings.back().second));
   print_expectations(s.expectations);

@@ -10,6 +10,7 @@
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/impacts.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
+#include "ricochet/simulation/penetration_watch.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
@@ -79,6 +80,8 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
       const ConnectedBodies connected = find_connected_bodies(run.model().space);
       ImpactRecorder impacts(run.problem(), run.scheme(), run.state(), {"plane"}, connected.of_node, {0.1});
       PeakStress peak(run.model().body, 1e30);
+      PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs,
+                             {{"floor", run.model().obstacles.front().get()}});
       std::vector<ContactStatus> status;
       long same = 0;
       Tally apart, in_contact;
@@ -88,6 +91,7 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
         (void)recorder.row(run.state(), run.simulation().account());
         impacts.enter_step(run.state());
         peak.enter(run.state(), false);
+        watch.look(run.state());
         const long count = allocation_count() - before;
         same = run.state().contact_status == status ? same + 1 : 0;
         status = run.state().contact_status;

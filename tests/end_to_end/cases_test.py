@@ -48,6 +48,9 @@ class CaseTest(TestCase):
         self.assertGreater(scale, 0.0, "a case in which nothing moves shows nothing")
         for step, residual in zip(history["step"], history["energy_residual"]):
             self.assertLessEqual(abs(residual), 1e-10 * scale, f"energy_residual in step {step:g}")
+        watched = summary["unwatched_penetration"]
+        self.assertTrue(watched["checked"])
+        self.assertEqual((watched["found"], watched["contact_beyond_rim"]), ([], []), "all that touches is in contact")
         for expectation in summary["expectations"]:
             self.assertTrue(expectation["holds"], expectation)
 

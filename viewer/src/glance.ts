@@ -57,17 +57,39 @@ export function penetrationFinding(j: Judgement): Finding {
   const what = "Interpenetration";
   if (j.penetration_broken_at !== null) return broken(what, j.penetration_broken_at);
   const relative = j.relative_penetration;
-  if (relative === null) return { what, grade: j.penetration === 0 ? "good" : "none", words: j.penetration === 0 ? "none" : number(j.penetration, 2), detail: "the run wrote no fields: the body's size is not known" };
-  const detail = `deepest ${number(j.penetration, 3)}, ${number(relative, 2)} of the body's size`;
-  if (relative < 1e-9) return { what, grade: "good", words: "none", detail };
-  const words = `${percent(relative)} of the body's size`;
-  return { what, grade: relative < 1e-5 ? "good" : relative < 0.01 ? "fair" : "poor", words, detail };
+  const size = relative === null ? `${number(j.penetration, 3)} deep` : `${percent(relative)} of the body's size`;
+  if (j.unwatched_penetration !== "") {
+    return { what, grade: "poor", words: `${size}, where no contact prevents it`, detail: `${j.unwatched_penetration}: deepest ${number(j.penetration, 3)}; warnings say where and when` };
+  }
+  const detail = relative === null
+    ? `deepest ${number(j.penetration, 3)}; the run wrote no fields: the body's size is not known`
+    : `deepest ${number(j.penetration, 3)}, ${number(relative, 2)} of the body's size`;
+  const none = relative === null ? j.penetration === 0 : relative < 1e-9;
+  if (!j.penetration_checked) {
+    return { what, grade: "none", words: `${none ? "none" : size} at contact points, elsewhere not checked`, detail: `${detail}; results of a version that looked at contact points only` };
+  }
+  if (j.contact_beyond_rim !== "") return { what, grade: "fair", words: "contact goes on beyond its group", detail: `group "${j.contact_beyond_rim}" is in contact at its rim; ${detail}` };
+  if (none) return { what, grade: "good", words: "none", detail };
+  if (relative === null) return { what, grade: "none", words: size, detail };
+  return { what, grade: relative < 1e-5 ? "good" : relative < 0.01 ? "fair" : "poor", words: size, detail };
+}
+
+/** In rad: above it small strain no longer holds. */
+const rotationLimit = 0.1;
+
+export function rotationFinding(j: Judgement): Finding {
+  const what = "Rotation";
+  const strain = 1 - Math.cos(Math.min(j.rotation, Math.PI));
+  const detail = `largest of a cell; small strain takes a rotation θ for a strain of 1 − cos θ, here ${number(strain, 2)}, that is not there`;
+  if (!(j.rotation > rotationLimit)) return { what, grade: "good", words: `${number(j.rotation, 2)} rad`, detail };
+  return { what, grade: "poor", words: `${number(j.rotation, 2)} rad: small strain does not hold (a strain of ${percent(strain)} is not there)`, detail };
 }
 
 export const findings = (run: Run): Finding[] => [
   energyFinding(run.data.judgement),
   forceFinding(run.data.judgement),
   penetrationFinding(run.data.judgement),
+  rotationFinding(run.data.judgement),
 ];
 
 export const marks: Record<Grade, [string, string]> = {
@@ -100,6 +122,12 @@ export function conclusion(runs: Run[]): string {
   const all = runs.map(findings);
   // Nothing can be said of a run of which something is not known.
   if (all.some((each) => each.some(({ grade }) => grade === "none"))) return "";
+  // Beyond small strain even the best method gives the answer to another question.
+  const turned = runs.filter((run) => run.data.judgement.rotation > rotationLimit);
+  if (turned.length > 0) {
+    const names = turned.length === runs.length ? "all of these runs" : turned.map((run) => run.name).join(", ");
+    return `No recommendation: in ${names} cells turn by more than ${rotationLimit} rad, and small strain does not hold.`;
+  }
   const points = { good: 0, none: 0, fair: 1, poor: 3 };
   const scores = all.map((each) => each.reduce((sum, { grade }) => sum + points[grade], 0));
   const best = Math.min(...scores);

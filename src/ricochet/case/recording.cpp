@@ -13,8 +13,6 @@ namespace ricochet {
 
 namespace {
 
-/// Above this rotation, in rad, small strain no longer holds.
-constexpr double rotation_limit = 0.1;
 /// History is handed over to readers this often, in seconds.
 constexpr double flush_interval = 1.0;
 
@@ -44,6 +42,17 @@ std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const M
   if (snapshot != nullptr)
     return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, *snapshot, "results");
   return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options);
+}
+
+std::size_t column_of(const std::vector<std::string>& columns, const std::string& name) {
+  return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
+}
+
+PenetrationWatch make_penetration_watch(const Case& input, const Model& model) {
+  std::vector<NamedObstacle> obstacles;
+  for (std::size_t i = 0; i < input.obstacles.size(); ++i)
+    obstacles.push_back({input.obstacles[i].name, model.obstacles[i].get()});
+  return {model.body, model.problem, model.contact_pairs, obstacles};
 }
 
 std::string sampled_name(long every) {
@@ -85,6 +94,8 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       model_(model),
       impacts_(make_impact_recorder(model, scheme, state)),
       peak_stress_(model.body, step_work(model.body, factor_entries)),
+      penetration_(make_penetration_watch(input, model)),
+      rotation_(model.body, column_of(recorder_.columns(), "max_rotation")),
       history_every_(input.output.history_every) {
   for (const auto& [every, sensors] : model.sampled_sensors) {
     SensorRecorder recorder(model.problem, sensors);
@@ -96,7 +107,8 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   digest_.load(*snapshot, "digest", recorder_.columns().size());
   impacts_.load(*snapshot, "impacts");
   peak_stress_.load(*snapshot, "peak_stress");
-  rotation_warned_ = snapshot->flag("rotation_warned");
+  penetration_.load(*snapshot, "penetration");
+  rotation_.load(*snapshot, "rotation_warned");
 }
 
 void Recording::record(const State& state, EnergyAccount& account) {
@@ -108,6 +120,9 @@ void Recording::record(const State& state, EnergyAccount& account) {
   const bool is_frame = results_ && fields_.includes(state.step);
   peak_stress_.enter(state, is_frame);
   if (state.step % history_every_ == 0) write_row(state, account);
+  const Timer watch_timer;
+  penetration_.look(state);
+  watch_seconds_ += watch_timer.seconds();
   for (Sampled& sampled : sampled_) {
     if (state.step % sampled.every == 0) sampled.file.write(sampled.recorder.row(state));
   }
@@ -129,6 +144,9 @@ void Recording::record_end(const State& state, EnergyAccount& account) {
     peak_stress_.enter_frame(state);
     results_->write(state);
   }
+  const Timer watch_timer;
+  penetration_.look_at_end(state);
+  watch_seconds_ += watch_timer.seconds();
   flush();
   seconds_ += timer.seconds();
 }
@@ -138,7 +156,7 @@ void Recording::write_row(const State& state, EnergyAccount& account) {
   check_finite(row);
   history_.write(row);
   digest_.add(row);
-  watch_rotation(row);
+  rotation_.watch(row, state);
   checks_.watch(row, state);
 }
 
@@ -163,7 +181,8 @@ void Recording::save(Snapshot& snapshot) {
   checks_.save(snapshot, "checks");
   impacts_.save(snapshot, "impacts");
   peak_stress_.save(snapshot, "peak_stress");
-  snapshot.save("rotation_warned", rotation_warned_);
+  penetration_.save(snapshot, "penetration");
+  rotation_.save(snapshot, "rotation_warned");
 }
 
 void Recording::describe(RunSummary& summary) const {
@@ -173,6 +192,7 @@ void Recording::describe(RunSummary& summary) const {
   summary.checks = checks_.results();
   summary.impacts = impacts_.impacts();
   summary.impacts_left_out = impacts_.left_out();
+  summary.penetration = penetration_.report();
   describe_bodies(summary);
   describe_peak_stress(summary);
 }
@@ -203,18 +223,6 @@ void Recording::check_finite(const std::vector<double>& row) const {
                             "time.step",
                             row[0], row[1], recorder_.columns()[i]));
   }
-}
-
-void Recording::watch_rotation(const std::vector<double>& row) {
-  if (rotation_warned_) return;
-  const auto column = static_cast<std::size_t>(
-      std::find(recorder_.columns().begin(), recorder_.columns().end(), "max_rotation") - recorder_.columns().begin());
-  if (!(row[column] > rotation_limit)) return;
-  rotation_warned_ = true;
-  log::warning(
-      fmt::format("at t = {:.6g} a cell has rotated by {:.3g} rad: above {} rad small strain no longer holds "
-                  "(a turning body inflates); read what follows with care",
-                  row[1], row[column], rotation_limit));
 }
 
 }  // namespace ricochet

@@ -4,12 +4,14 @@
 
 #include "ricochet/base/timer.hpp"
 #include "ricochet/case/model.hpp"
+#include "ricochet/case/rotation_watch.hpp"
 #include "ricochet/case/run_checks.hpp"
 #include "ricochet/io/history_file.hpp"
 #include "ricochet/io/results_file.hpp"
 #include "ricochet/io/summary.hpp"
 #include "ricochet/simulation/impacts.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
+#include "ricochet/simulation/penetration_watch.hpp"
 
 /// @file Everything that is written while a run goes on: history and fields.
 namespace ricochet {
@@ -52,13 +54,14 @@ class Recording {
   void describe(RunSummary& summary) const;
   /// Spent here.
   [[nodiscard]] double seconds() const { return seconds_; }
+  /// Of these, looking for penetration.
+  [[nodiscard]] double watch_seconds() const { return watch_seconds_; }
 
  private:
   void write_row(const State& state, EnergyAccount& account);
   void check_finite(const std::vector<double>& row) const;
   void describe_bodies(RunSummary& summary) const;
   void describe_peak_stress(RunSummary& summary) const;
-  void watch_rotation(const std::vector<double>& row);
 
   FieldSchedule fields_;
   std::unique_ptr<ResultsWriter>
@@ -77,10 +80,11 @@ class Recording {
   const Model& model_;
   ImpactRecorder impacts_;
   PeakStress peak_stress_;
+  PenetrationWatch penetration_;
+  RotationWatch rotation_;
   long history_every_;
-  bool rotation_warned_ = false;
   Timer since_flush_;
-  double seconds_ = 0.0;
+  double seconds_ = 0.0, watch_seconds_ = 0.0;
 };
 
 }  // namespace ricochet

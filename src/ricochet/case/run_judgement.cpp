@@ -6,13 +6,14 @@
 #include <cmath>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/case/rotation_watch.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// Above this rotation, in rad, results no longer resemble anything.
-constexpr double large_rotation = 1.0;
+/// Above this rotation, in rad, the run says again how large the error has become: it grows with the square.
+constexpr double large_rotation = 2.0 * rotation_limit;
 
 }  // namespace
 
@@ -26,7 +27,8 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
   const double scale = summary.energy_scale();
   const bool contact_creates = summary.digest("contact_work").maximum > 0.01 * scale;
   const bool friction_creates = summary.digest("friction_work").maximum > 0.01 * scale;
-  const bool rotates = summary.digest("max_rotation").maximum > large_rotation;
+  const double rotation = summary.digest("max_rotation").maximum;
+  const bool rotates = rotation > large_rotation;
   if (!(contact_creates || friction_creates || rotates) || is_rounding_of_energy(scale, problem, state)) return;
   if (contact_creates) {
     const bool best = (summary.scheme == "newmark" || summary.scheme == "semi-explicit") && problem.has_singular_mass();
@@ -44,10 +46,11 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
         summary.digest("friction_work").maximum / scale, summary.scheme));
   }
   if (rotates) {
-    log::warning(
-        fmt::format("cells rotate by up to {:.3g} rad: this is far outside small strain, and the motion is not that "
-                    "of a real body; a body much softer or faster than was meant (units?) or one that spins",
-                    summary.digest("max_rotation").maximum));
+    log::warning(fmt::format(
+        "cells rotate by up to {:.3g} rad, which small strain takes for {}: energies, forces and rebounds "
+        "of this run are not those of a real body. A stiffer body, a slower impact or less spin keeps within "
+        "{} rad; check the units, too",
+        rotation, spurious_strain(rotation), rotation_limit));
   }
 }
 

@@ -83,6 +83,7 @@ Snapshot Run::take_snapshot() {
   RunTimes times = times_;
   times.contact += simulation_->contact_seconds() - contact_before_;
   times.output += recording_->seconds();
+  times.watch += recording_->watch_seconds();
   times.save(snapshot, "run.times");
   snapshot.save("run.warnings", log::warnings());
   snapshot.save("run.case_path", summary_.case_path);
@@ -107,6 +108,7 @@ void Run::describe_progress(RunSummary& summary) const {
   RunTimes times = times_;
   times.contact += simulation_->contact_seconds() - contact_before_;
   times.output += recording_->seconds();
+  times.watch += recording_->watch_seconds();
   summary.timings = times.phases();
   summary.time_per_step = summary.steps > 0 ? times.steps / static_cast<double>(summary.steps) : 0.0;
   summary.warnings = log::warnings();

@@ -27,6 +27,7 @@ std::vector<std::pair<std::string, double>> RunTimes::phases() const {
           {"steps", steps},
           {"contact_solver", contact},
           {"output", output},
+          {"penetration_watch", watch},
           {"checkpoints", checkpoints},
           {"total", earlier_total_ + session_.seconds()}};
 }
@@ -46,6 +47,7 @@ void RunTimes::load(const Snapshot& snapshot, const std::string& name) {
   add("steps", steps);
   add("contact_solver", contact);
   add("output", output);
+  add("penetration_watch", watch);
   add("checkpoints", checkpoints);
   add("total", earlier_total_);
 }

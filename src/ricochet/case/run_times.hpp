@@ -18,6 +18,7 @@ struct RunTimes {
   double steps = 0.0;    ///< without output
   double contact = 0.0;  ///< in contact solvers, of `steps`
   double output = 0.0, checkpoints = 0.0;
+  double watch = 0.0;  ///< looking for penetration, of `output`
 
   void add_build(const BuildTimes& build);
   void add_start(double seconds, const std::vector<ChosenMethod>& methods);

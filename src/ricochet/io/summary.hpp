@@ -10,6 +10,7 @@
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/impacts.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
+#include "ricochet/simulation/penetration_watch.hpp"
 
 /// @file summary.json: what ran, sizes, timings, extrema, warnings.
 namespace ricochet {
@@ -89,6 +90,7 @@ struct RunSummary {
   std::vector<Impact> impacts = {};
   long impacts_left_out = 0;  ///< that were only counted
   std::optional<PeakStressDescription> peak_stress;
+  PenetrationReport penetration = {};  ///< where no contact is; what the contact points do is a column of the history
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;
   std::string contact_export;  ///< what became of contact problems to be exported, in words; not in the file
@@ -98,6 +100,9 @@ struct RunSummary {
   /// Largest |total_energy| + |algorithmic_energy| bound, the scale of the energy account: max of |first|, |min|, |max|
   /// of total energy and of kinetic and elastic energy.
   [[nodiscard]] double energy_scale() const;
+  /// The deepest interpenetration of all, at contact points and elsewhere; of results that did not look elsewhere
+  /// (penetration.checked) it may be deeper.
+  [[nodiscard]] double deepest_penetration() const;
   /// Largest |work| of any kind. Works that cancel may be far larger than all energies.
   [[nodiscard]] double work_scale() const;
 };

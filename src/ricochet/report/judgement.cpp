@@ -122,6 +122,25 @@ void judge_force(const RunData& run, Judgement& result) {
   }
 }
 
+/// The worst of what contact points do and of what was found where there are none.
+void judge_penetration(const RunData& run, Judgement& result) {
+  result.penetration = largest_magnitude(run.column("max_penetration"));
+  if (run.results) {
+    const Points& nodes = run.results->nodes();
+    const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
+    if (size > 0.0) result.relative_penetration = result.penetration / size;
+  }
+  const PenetrationReport& report = run.summary.penetration;
+  result.penetration_checked = report.checked;
+  if (!report.rims.empty()) result.contact_beyond_rim = report.rims.front().group;
+  const UnwatchedPenetration* deepest = report.deepest();
+  if (deepest == nullptr) return;
+  result.penetration = std::max(result.penetration, deepest->depth);
+  result.relative_penetration = std::max(result.relative_penetration.value_or(0.0), deepest->relative_depth);
+  result.unwatched_penetration = deepest->obstacle.empty() ? deepest->bodies[0] + " and " + deepest->bodies[1]
+                                                           : deepest->bodies[0] + " in \"" + deepest->obstacle + "\"";
+}
+
 }  // namespace
 
 Judgement judge(const RunData& run) {
@@ -136,12 +155,8 @@ Judgement judge(const RunData& run) {
   if (!result.node_force.empty()) forces.push_back(result.node_force);
   result.force_broken_at = broken_at(run, forces);
   result.penetration_broken_at = broken_at(run, {"max_penetration"});
-  result.penetration = largest_magnitude(run.column("max_penetration"));
-  if (run.results) {
-    const Points& nodes = run.results->nodes();
-    const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
-    if (size > 0.0) result.relative_penetration = result.penetration / size;
-  }
+  judge_penetration(run, result);
+  result.rotation = largest_magnitude(run.column("max_rotation"));
   return result;
 }
 

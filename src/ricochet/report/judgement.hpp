@@ -37,9 +37,16 @@ struct Judgement {
   std::string node_force;
   double node_roughness = 0.0;
 
-  double penetration = 0.0;  ///< the deepest
+  double penetration = 0.0;  ///< the deepest, at contact points and wherever else was looked
   /// To the diagonal of the box around the body; nothing where the body is not known.
   std::optional<double> relative_penetration;
+  /// Whether the boundary that no contact looks after, and bodies against each other, were looked at, too.
+  bool penetration_checked = false;
+  /// Where no contact prevents it: in which obstacle, or of which bodies; empty: there was none.
+  std::string unwatched_penetration;
+  std::string contact_beyond_rim;  ///< the group of a contact that goes on beyond it; empty: none was seen
+
+  double rotation = 0.0;  ///< the largest of a cell, in rad
 };
 
 [[nodiscard]] Judgement judge(const RunData& run);

@@ -71,7 +71,11 @@ Json to_json(const Judgement& j) {
           {"node_force", j.node_force},
           {"node_roughness", j.node_roughness},
           {"penetration", j.penetration},
-          {"relative_penetration", to_json(j.relative_penetration)}};
+          {"relative_penetration", to_json(j.relative_penetration)},
+          {"penetration_checked", j.penetration_checked},
+          {"unwatched_penetration", j.unwatched_penetration},
+          {"contact_beyond_rim", j.contact_beyond_rim},
+          {"rotation", j.rotation}};
 }
 
 Json times_of(const std::vector<int>& frames, const ResultsReader& results) {

@@ -35,6 +35,14 @@ export interface Judgement {
   penetration: number;
   /** null: the body's size is not known. */
   relative_penetration: number | null;
+  /** Whether the boundary outside of contact groups, and bodies against each other, were looked at. */
+  penetration_checked: boolean;
+  /** Where no contact prevents it: which body in which obstacle, or which bodies; empty: nowhere. */
+  unwatched_penetration: string;
+  /** The group of a contact that goes on beyond it; empty: none. */
+  contact_beyond_rim: string;
+  /** The largest of a cell, in rad. */
+  rotation: number;
 }
 
 export interface ContactData {

@@ -1,0 +1,190 @@
+#include "ricochet/contact/body_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "ricochet/contact/closest_point.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr int pieces_of_leaf = 4;
+/// Of the tree: half of the pieces go to each side.
+constexpr std::size_t deepest_tree = 64;
+
+double squared_distance(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& point) {
+  return box.squaredExteriorDistance(point);
+}
+
+/// Angle of a triangle between two of its sides.
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+}  // namespace
+
+BodySurface::BodySurface(const Points& positions, const std::vector<Piece>& pieces) : plane_(positions.rows() == 2) {
+  const std::size_t corners = plane_ ? 2 : 3;
+  for (const Piece& piece : pieces)
+    nodes_.insert(nodes_.end(), piece.begin(), piece.begin() + static_cast<long>(corners));
+  std::sort(nodes_.begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  first_piece_.assign(nodes_.size() + 1, 0);
+  for (const Piece& piece : pieces) {
+    std::array<int, 3> own{-1, -1, -1};
+    for (std::size_t k = 0; k < corners; ++k) {
+      own[k] = static_cast<int>(std::lower_bound(nodes_.begin(), nodes_.end(), piece[k]) - nodes_.begin());
+      ++first_piece_[static_cast<std::size_t>(own[k]) + 1];
+    }
+    pieces_.push_back(own);
+  }
+  std::partial_sum(first_piece_.begin(), first_piece_.end(), first_piece_.begin());
+  around_.resize(static_cast<std::size_t>(first_piece_.back()));
+  std::vector<int> next(first_piece_.begin(), first_piece_.end() - 1);
+  for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
+    for (std::size_t k = 0; k < corners; ++k)
+      around_[static_cast<std::size_t>(next[static_cast<std::size_t>(pieces_[piece][k])]++)] = static_cast<int>(piece);
+  }
+  positions_.assign(nodes_.size(), Eigen::Vector3d::Zero());
+  move(positions, Vector());
+
+  order_.resize(pieces_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  build(order_, 0, static_cast<int>(order_.size()));
+  refit();
+  for (const std::array<int, 3>& piece : pieces_) {
+    for (std::size_t k = 0; k < corners; ++k) edge_length_ += (at(piece[k]) - at(piece[(k + 1) % corners])).norm();
+  }
+  edge_length_ /= static_cast<double>(corners * pieces_.size());
+}
+
+void BodySurface::move(const Points& positions, const Vector& displacement) {
+  const Index d = positions.rows();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Index node = nodes_[i];
+    for (Index k = 0; k < d; ++k)
+      positions_[i][k] = positions(k, node) + (displacement.size() > 0 ? displacement[node * d + k] : 0.0);
+  }
+  refit();
+}
+
+/// Halves along the longest side of the box around the middles of the pieces. Returns the number of the box.
+int BodySurface::build(std::vector<int>& pieces, int first, int last) {
+  const int number = static_cast<int>(tree_.size());
+  tree_.push_back({{}, first, last - first, 0});
+  if (last - first <= pieces_of_leaf) return number;
+  const auto middle_of = [&](int piece, Index axis) {
+    const std::array<int, 3>& corners = pieces_[static_cast<std::size_t>(piece)];
+    const double two = at(corners[0])[axis] + at(corners[1])[axis];
+    return plane_ ? two / 2.0 : (two + at(corners[2])[axis]) / 3.0;
+  };
+  Eigen::AlignedBox3d middles;
+  for (int i = first; i < last; ++i) {
+    const int piece = pieces[static_cast<std::size_t>(i)];
+    middles.extend(Eigen::Vector3d(middle_of(piece, 0), middle_of(piece, 1), middle_of(piece, 2)));
+  }
+  Index axis = 0;
+  middles.sizes().maxCoeff(&axis);
+  const int half = (first + last) / 2;
+  std::nth_element(pieces.begin() + first, pieces.begin() + half, pieces.begin() + last, [&](int a, int b) {
+    const double left = middle_of(a, axis), right = middle_of(b, axis);
+    return left != right ? left < right : a < b;
+  });
+  tree_[static_cast<std::size_t>(number)].count = 0;
+  build(pieces, first, half);
+  const int second = build(pieces, half, last);
+  tree_[static_cast<std::size_t>(number)].second = second;
+  return number;
+}
+
+/// From the last box to the first: those inside of a box come after it.
+void BodySurface::refit() {
+  for (auto box = tree_.rbegin(); box != tree_.rend(); ++box) {
+    box->box.setEmpty();
+    if (box->count == 0) {
+      const std::size_t number = static_cast<std::size_t>(tree_.rend() - box) - 1;
+      box->box.extend(tree_[number + 1].box).extend(tree_[static_cast<std::size_t>(box->second)].box);
+      continue;
+    }
+    for (int i = box->first; i < box->first + box->count; ++i) {
+      for (const int node : pieces_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]) {
+        if (node >= 0) box->box.extend(at(node));
+      }
+    }
+  }
+}
+
+void BodySurface::try_piece(const Eigen::Vector3d& point, int piece, Closest& best) const {
+  const std::array<int, 3>& corners = pieces_[static_cast<std::size_t>(piece)];
+  const ClosestPoint found = plane_ ? closest_on_segment(point, at(corners[0]), at(corners[1]))
+                                    : closest_on_triangle(point, at(corners[0]), at(corners[1]), at(corners[2]));
+  const double squared = (point - found.position).squaredNorm();
+  if (!(squared < best.squared_distance)) return;
+  best = {squared, found.position, piece, {-1, -1, -1}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (found.corners[k] >= 0) best.corners[k] = corners[static_cast<std::size_t>(found.corners[k])];
+  }
+}
+
+BodySurface::Closest BodySurface::closest(const Eigen::Vector3d& point) const {
+  Closest best{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero(), -1, {-1, -1, -1}};
+  std::array<int, deepest_tree> waiting{};
+  std::size_t count = 1;
+  while (count > 0) {
+    const int number = waiting[--count];
+    const Box& box = tree_[static_cast<std::size_t>(number)];
+    if (squared_distance(box.box, point) >= best.squared_distance) continue;
+    for (int i = box.first; i < box.first + box.count; ++i) try_piece(point, order_[static_cast<std::size_t>(i)], best);
+    if (box.count > 0) continue;
+    // The nearer one first: it comes from the end.
+    const bool first_is_nearer = squared_distance(tree_[static_cast<std::size_t>(number) + 1].box, point) <=
+                                 squared_distance(tree_[static_cast<std::size_t>(box.second)].box, point);
+    waiting[count++] = first_is_nearer ? box.second : number + 1;
+    waiting[count++] = first_is_nearer ? number + 1 : box.second;
+  }
+  return best;
+}
+
+/// Of unit length; zero of a piece without extent.
+Eigen::Vector3d BodySurface::normal_of(int piece) const {
+  const std::array<int, 3>& corners = pieces_[static_cast<std::size_t>(piece)];
+  const Eigen::Vector3d along = at(corners[1]) - at(corners[0]);
+  if (plane_) return Eigen::Vector3d(along[1], -along[0], 0.0).normalized();
+  return along.cross(at(corners[2]) - at(corners[0])).normalized();
+}
+
+/// Of the piece inside of it; at an edge the sum of those of its pieces, at a corner weighted by the pieces' angles
+/// there.
+Eigen::Vector3d BodySurface::normal_at(const Closest& place) const {
+  const std::array<int, 3>& corners = place.corners;
+  const bool inside = corners[1] >= 0 && (plane_ || corners[2] >= 0);
+  if (inside) return normal_of(place.piece);
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  const auto node = static_cast<std::size_t>(corners[0]);
+  for (int i = first_piece_[node]; i < first_piece_[node + 1]; ++i) {
+    const int piece = around_[static_cast<std::size_t>(i)];
+    const std::array<int, 3>& own = pieces_[static_cast<std::size_t>(piece)];
+    if (corners[1] >= 0) {
+      if (std::find(own.begin(), own.end(), corners[1]) != own.end()) normal += normal_of(piece);
+    } else if (plane_) {
+      normal += normal_of(piece);
+    } else {
+      const auto here = static_cast<std::size_t>(std::find(own.begin(), own.end(), corners[0]) - own.begin());
+      normal += normal_of(piece) *
+                angle_between(at(own[(here + 1) % 3]) - at(own[here]), at(own[(here + 2) % 3]) - at(own[here]));
+    }
+  }
+  return normal;
+}
+
+double BodySurface::signed_distance(const Eigen::Vector3d& point) const {
+  const Closest place = closest(point);
+  if (place.piece < 0) return std::numeric_limits<double>::infinity();  // numbers too large to be squared
+  const double distance = std::sqrt(place.squared_distance);
+  return normal_at(place).dot(point - place.position) < 0.0 ? -distance : distance;
+}
+
+}  // namespace ricochet

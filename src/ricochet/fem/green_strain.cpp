@@ -1,0 +1,45 @@
+#include "ricochet/fem/green_strain.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/fem/cell_integration.hpp"
+
+namespace ricochet {
+
+namespace {
+
+template <int d>
+double largest_of_block(const Body& body, std::size_t block, const Vector& displacement) {
+  using Tensor = Eigen::Matrix<double, d, d>;
+  const CellBlock &geometry = body.mesh->cells[block], &cells = body.space->cells[block];
+  const Points centre = reference_centre(geometry.shape);
+  const Matrix map = ReferenceElement::get(geometry.shape, body.mesh->degree).tabulate(centre).gradients[0];
+  const Matrix shape = ReferenceElement::get(geometry.shape, body.space->degree).tabulate(centre).gradients[0];
+  double largest = 0.0;
+  for (Index cell = 0; cell < cells.size(); ++cell) {
+    const Tensor inverse = jacobian<d>(body.mesh->nodes, geometry.cell(cell), map).inverse();
+    Tensor gradient = Tensor::Zero();
+    for (Index k = 0; k < shape.rows(); ++k)
+      gradient += displacement.segment<d>(cells.cell(cell)[k] * d) * (shape.template block<1, d>(k, 0) * inverse);
+    const Tensor strain = 0.5 * (gradient + gradient.transpose() + gradient.transpose() * gradient);
+    if (!strain.allFinite()) continue;
+    const Eigen::SelfAdjointEigenSolver<Tensor> principal(strain, Eigen::EigenvaluesOnly);
+    largest = std::max(largest, principal.eigenvalues().cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+}  // namespace
+
+double largest_green_strain(const Body& body, const Vector& displacement) {
+  double largest = 0.0;
+  for (std::size_t block = 0; block < body.space->cells.size(); ++block) {
+    largest = std::max(largest, body.mesh->dimension == 2 ? largest_of_block<2>(body, block, displacement)
+                                                          : largest_of_block<3>(body, block, displacement));
+  }
+  return largest;
+}
+
+}  // namespace ricochet

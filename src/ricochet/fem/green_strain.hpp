@@ -1,0 +1,12 @@
+#pragma once
+
+#include "ricochet/fem/assembly.hpp"
+
+/// @file Strain that rotations do not change.
+namespace ricochet {
+
+/// The largest principal value, in size, of Green's strain ½ (∇u + ∇uᵀ + ∇uᵀ∇u) at the centres of all cells. It is zero
+/// for every rigid motion, where small strain ½ (∇u + ∇uᵀ) is cos θ − 1 in the plane of a rotation by θ.
+[[nodiscard]] double largest_green_strain(const Body& body, const Vector& displacement);
+
+}  // namespace ricochet

@@ -1,0 +1,218 @@
+#include "ricochet/simulation/penetration_watch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+namespace {
+
+std::vector<const Obstacle*> obstacles_of(const std::vector<NamedObstacle>& named) {
+  std::vector<const Obstacle*> result;
+  for (const NamedObstacle& one : named) result.push_back(one.obstacle);
+  return result;
+}
+
+/// Diagonal of the box around the body that a node belongs to.
+std::vector<double> sizes(const Points& nodes, const ConnectedBodies& bodies) {
+  std::vector<Eigen::AlignedBox3d> boxes(static_cast<std::size_t>(bodies.count));
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (Index node = 0; node < nodes.cols(); ++node) {
+    position.head(nodes.rows()) = nodes.col(node);
+    boxes[static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)])].extend(position);
+  }
+  std::vector<double> result;
+  for (const int body : bodies.of_node) result.push_back(boxes[static_cast<std::size_t>(body)].diagonal().norm());
+  return result;
+}
+
+std::string coordinates(const std::vector<double>& place) {
+  std::string text;
+  for (const double value : place) text += fmt::format("{}{:.4g}", text.empty() ? "(" : ", ", value);
+  return text + ")";
+}
+
+std::string when(double time) {
+  return time == 0.0 ? "at the start" : fmt::format("at t = {:.6g}", time);
+}
+
+/// "3.1e-06 (0.00012 of its size)"
+std::string depth_text(const UnwatchedPenetration& p) {
+  return fmt::format("{:.3g} ({:.2g} of {} size)", p.depth, p.relative_depth,
+                     p.bodies.size() == 1 ? "its" : "the smaller one's");
+}
+
+constexpr const char* see_summary = "\"unwatched_penetration\" in summary.json says how deep it gets";
+
+}  // namespace
+
+const UnwatchedPenetration* PenetrationReport::deepest() const {
+  const auto largest = std::max_element(
+      found.begin(), found.end(), [](const auto& a, const auto& b) { return a.relative_depth < b.relative_depth; });
+  return largest == found.end() ? nullptr : &*largest;
+}
+
+PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& problem,
+                                   const std::vector<ContactPair>& pairs, const std::vector<NamedObstacle>& obstacles)
+    : PenetrationWatch(body, problem, pairs, obstacles, boundary_facets(body.space->cells)) {}
+
+PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& problem,
+                                   const std::vector<ContactPair>& pairs, const std::vector<NamedObstacle>& obstacles,
+                                   const std::vector<CellFacet>& boundary)
+    : body_(body),
+      pairs_(pairs),
+      named_(obstacles),
+      bodies_(find_connected_bodies(*body.space)),
+      size_(sizes(problem.nodes, bodies_)),
+      obstacles_(problem, body.space->cells, boundary, obstacles_of(obstacles), size_),
+      body_watch_(problem.nodes, body.space->cells, boundary, bodies_, size_),
+      told_obstacle_(obstacles.size(), 0) {}
+
+void PenetrationWatch::look(const State& state) {
+  ++looks_;
+  obstacles_.look(state);
+  body_watch_.look(state.displacement, state.time, false);
+  tell();
+}
+
+void PenetrationWatch::look_at_end(const State& state) {
+  body_watch_.look(state.displacement, state.time, true);
+  tell();
+}
+
+void PenetrationWatch::tell() {
+  for (std::size_t k = 0; k < named_.size(); ++k) {
+    if (told_obstacle_[k] != 0 || !obstacles_.deepest()[k].found()) continue;
+    told_obstacle_[k] = 1;
+    const UnwatchedPenetration p = in_obstacle(k);
+    log::warning(fmt::format("{} {} is {} inside obstacle \"{}\" at {}, where no contact keeps it out: {}; {}",
+                             when(p.time), p.bodies.front(), depth_text(p), p.obstacle, coordinates(p.place), advice(k),
+                             see_summary));
+  }
+  for (; told_rims_ < obstacles_.rims().size(); ++told_rims_) {
+    const ContactBeyondRim rim = beyond(obstacles_.rims()[told_rims_]);
+    log::warning(
+        fmt::format("{} the contact of group \"{}\" with \"{}\" has reached the rim of the group, at {}: what lies "
+                    "beyond it goes into the obstacle unhindered; add the boundary beyond it to the group{}",
+                    when(rim.time), rim.group, rim.obstacle, coordinates(rim.place),
+                    rim.groups.empty() ? "" : fmt::format(" ({})", join_names(rim.groups))));
+  }
+  for (; told_pairs_ < body_watch_.pairs().size(); ++told_pairs_) {
+    const UnwatchedPenetration p = of_pair(body_watch_.pairs()[told_pairs_]);
+    log::warning(
+        fmt::format("{} {} and {} overlap by {} at {}: nothing keeps bodies apart from one another, they go "
+                    "through each other; {}",
+                    when(p.time), p.bodies[0], p.bodies[1], depth_text(p), coordinates(p.place), see_summary));
+  }
+}
+
+std::string PenetrationWatch::advice(std::size_t obstacle) const {
+  const Index node = obstacles_.deepest()[obstacle].node;
+  std::vector<std::string> groups;
+  for (const ContactPair& pair : pairs_) {
+    if (pair.obstacle != named_[obstacle].obstacle) continue;
+    const std::vector<Index> nodes = facet_nodes(*body_.space, pair.facets);
+    if (std::binary_search(nodes.begin(), nodes.end(), node))
+      return fmt::format("it is in the contact group \"{}\", but supports hold it", pair.group);
+    groups.push_back(pair.group);
+  }
+  const std::vector<std::string> own = groups_of(node);
+  const std::string place =
+      own.empty() ? "no boundary group of the mesh holds it; \"boundary\" is built in and names all of the boundary"
+                  : fmt::format("it belongs to the boundary group{} {}", own.size() == 1 ? "" : "s", join_names(own));
+  if (groups.empty()) return fmt::format("no [[contact]] names this obstacle ({})", place);
+  return fmt::format("the [[contact]] group {} does not reach so far; extend it ({})", join_names(groups), place);
+}
+
+std::string PenetrationWatch::name_of_body(int body) const {
+  std::vector<std::string> names;
+  for (const Group& group : body_.mesh->groups) {
+    if (group.dimension != body_.mesh->dimension) continue;
+    if (std::any_of(group.members.begin(), group.members.end(),
+                    [&](Index cell) { return bodies_.of_cell[static_cast<std::size_t>(cell)] == body; }))
+      names.push_back(group.name);
+  }
+  if (bodies_.count == 1) return "the body";
+  return fmt::format("body {} ({})", body, join_names(names));
+}
+
+std::vector<std::string> PenetrationWatch::groups_of(Index node) const {
+  std::vector<std::string> names;
+  for (const Group& group : body_.mesh->groups) {
+    if (group.dimension != body_.mesh->dimension - 1) continue;
+    const std::vector<Index> nodes = facet_nodes(*body_.space, group.members);
+    if (std::binary_search(nodes.begin(), nodes.end(), node)) names.push_back(group.name);
+  }
+  return names;
+}
+
+std::vector<double> PenetrationWatch::place_of(const Eigen::Vector3d& place) const {
+  return {place.data(), place.data() + body_.mesh->dimension};
+}
+
+UnwatchedPenetration PenetrationWatch::describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const {
+  UnwatchedPenetration result;
+  for (const int body : bodies) result.bodies.push_back(name_of_body(body));
+  double size = size_[static_cast<std::size_t>(deepest.node)];
+  for (std::size_t node = 0; node < size_.size(); ++node) {
+    if (std::find(bodies.begin(), bodies.end(), bodies_.of_node[node]) != bodies.end())
+      size = std::min(size, size_[node]);
+  }
+  result.depth = deepest.depth;
+  result.relative_depth = deepest.depth / size;
+  result.time = deepest.time;
+  result.place = place_of(deepest.place);
+  result.first_time = deepest.first_time;
+  result.groups = groups_of(deepest.node);
+  return result;
+}
+
+UnwatchedPenetration PenetrationWatch::in_obstacle(std::size_t obstacle) const {
+  const DeepestPoint& deepest = obstacles_.deepest()[obstacle];
+  UnwatchedPenetration result = describe(deepest, {bodies_.of_node[static_cast<std::size_t>(deepest.node)]});
+  result.obstacle = named_[obstacle].name;
+  return result;
+}
+
+UnwatchedPenetration PenetrationWatch::of_pair(const BodyPair& pair) const {
+  return describe(pair.deepest, {pair.first, pair.second});
+}
+
+ContactBeyondRim PenetrationWatch::beyond(const RimContact& rim) const {
+  const ContactPair& pair = pairs_[static_cast<std::size_t>(rim.pair)];
+  std::vector<std::string> groups = groups_of(rim.node);
+  std::erase(groups, pair.group);
+  return {pair.group, pair.obstacle_name, rim.time, place_of(rim.place), groups};
+}
+
+PenetrationReport PenetrationWatch::report() const {
+  PenetrationReport result{true, looks_, body_watch_.looks()};
+  for (std::size_t k = 0; k < named_.size(); ++k) {
+    if (obstacles_.deepest()[k].found()) result.found.push_back(in_obstacle(k));
+  }
+  for (const BodyPair& pair : body_watch_.pairs()) result.found.push_back(of_pair(pair));
+  for (const RimContact& rim : obstacles_.rims()) result.rims.push_back(beyond(rim));
+  return result;
+}
+
+void PenetrationWatch::save(Snapshot& snapshot, const std::string& name) const {
+  obstacles_.save(snapshot, name + ".obstacles");
+  body_watch_.save(snapshot, name + ".bodies");
+  snapshot.save(name + ".looks", std::int64_t{looks_});
+}
+
+void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
+  obstacles_.load(snapshot, name + ".obstacles");
+  body_watch_.load(snapshot, name + ".bodies");
+  looks_ = snapshot.integer(name + ".looks");
+  // What was found was told at once.
+  for (std::size_t k = 0; k < told_obstacle_.size(); ++k) told_obstacle_[k] = obstacles_.deepest()[k].found() ? 1 : 0;
+  told_rims_ = obstacles_.rims().size();
+  told_pairs_ = body_watch_.pairs().size();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/simulation/body_watch.hpp"
+#include "ricochet/simulation/obstacle_watch.hpp"
+
+/// @file Penetration that no contact prevents: the whole boundary against every obstacle, and bodies against each
+/// other.
+namespace ricochet {
+
+/// A body that was found inside of an obstacle, or two bodies that were found inside of each other.
+struct UnwatchedPenetration {
+  std::string obstacle;             ///< empty: bodies
+  std::vector<std::string> bodies;  ///< one, or two
+  double depth = 0.0;
+  double relative_depth = 0.0;  ///< to the size of the (smaller) body, the diagonal of the box around it
+  double time = 0.0;
+  std::vector<double> place;        ///< of the node, at that time
+  double first_time = 0.0;          ///< when it was found
+  std::vector<std::string> groups;  ///< boundary groups of the mesh that the node belongs to
+};
+
+/// A contact that goes on beyond its group.
+struct ContactBeyondRim {
+  std::string group, obstacle;
+  double time = 0.0;
+  std::vector<double> place;
+  std::vector<std::string> groups;  ///< boundary groups of the facets beyond
+};
+
+struct PenetrationReport {
+  bool checked = false;  ///< false: results of a version that did not look
+  long looks_at_obstacles = 0, looks_at_bodies = 0;
+  std::vector<UnwatchedPenetration> found = {};
+  std::vector<ContactBeyondRim> rims = {};
+
+  /// The deepest of what was found; nullptr: nothing was.
+  [[nodiscard]] const UnwatchedPenetration* deepest() const;
+};
+
+/// An obstacle and its name in the case.
+struct NamedObstacle {
+  std::string name;
+  const Obstacle* obstacle = nullptr;
+};
+
+class PenetrationWatch {
+ public:
+  /// Keeps references to body and problem.
+  PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
+                   const std::vector<NamedObstacle>& obstacles);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// After every step, and of the starting state. Warns, once, of each obstacle, contact and pair of bodies. Allocates
+  /// nothing where there is nothing to tell.
+  void look(const State& state);
+  /// Of the last state, besides: at bodies even if none has moved far.
+  void look_at_end(const State& state);
+
+  [[nodiscard]] PenetrationReport report() const;
+
+ private:
+  PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
+                   const std::vector<NamedObstacle>& obstacles, const std::vector<CellFacet>& boundary);
+  [[nodiscard]] std::string name_of_body(int body) const;
+  [[nodiscard]] std::vector<std::string> groups_of(Index node) const;
+  [[nodiscard]] std::vector<double> place_of(const Eigen::Vector3d& place) const;
+  [[nodiscard]] UnwatchedPenetration describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const;
+  [[nodiscard]] UnwatchedPenetration in_obstacle(std::size_t obstacle) const;
+  [[nodiscard]] UnwatchedPenetration of_pair(const BodyPair& pair) const;
+  [[nodiscard]] ContactBeyondRim beyond(const RimContact& rim) const;
+  /// What to do about a node that no contact keeps out of an obstacle.
+  [[nodiscard]] std::string advice(std::size_t obstacle) const;
+  void tell();
+
+  const Body& body_;
+  const std::vector<ContactPair>& pairs_;
+  std::vector<NamedObstacle> named_;
+  ConnectedBodies bodies_;
+  std::vector<double> size_;  ///< of its body, per node
+  ObstacleWatch obstacles_;
+  BodyWatch body_watch_;
+  long looks_ = 0;
+  // What was told.
+  std::vector<char> told_obstacle_;
+  std::size_t told_rims_ = 0, told_pairs_ = 0;
+};
+
+}  // namespace ricochet

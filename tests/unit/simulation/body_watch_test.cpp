@@ -1,0 +1,129 @@
+#include "ricochet/simulation/body_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+// Two squares of unit cells, one of which moves through the other as a rigid body: how deep it is follows from where it
+// is.
+
+namespace ricochet {
+namespace {
+
+constexpr double edge = 0.1;
+
+/// [0, 1]² and, 0.2 above its middle, a square with a side of 0.4.
+struct TwoSquares {
+  Points positions{2, 0};
+  std::vector<CellBlock> cells{{CellShape::quadrilateral, 4, {}, {}}};
+  ConnectedBodies bodies;
+  std::vector<double> size;
+
+  TwoSquares() {
+    add(0.0, 0.0, 10);
+    add(0.3, 1.2, 4);
+  }
+
+  void add(double x, double y, Index count) {
+    const Index first = positions.cols(), row = count + 1;
+    positions.conservativeResize(2, first + row * row);
+    for (Index j = 0; j < row; ++j) {
+      for (Index i = 0; i < row; ++i) {
+        positions.col(first + j * row + i) << x + edge * static_cast<double>(i), y + edge * static_cast<double>(j);
+        bodies.of_node.push_back(bodies.count);
+        size.push_back(std::sqrt(2.0) * edge * static_cast<double>(count));
+      }
+    }
+    for (Index j = 0; j < count; ++j) {
+      for (Index i = 0; i < count; ++i) {
+        const Index corner = first + j * row + i;
+        for (const Index node : {corner, corner + 1, corner + row, corner + row + 1}) cells[0].nodes.push_back(node);
+        cells[0].tags.push_back(0);
+      }
+    }
+    ++bodies.count;
+  }
+
+  [[nodiscard]] BodyWatch watch() const { return {positions, cells, boundary_facets(cells), bodies, size}; }
+  /// The second one displaced.
+  [[nodiscard]] Vector displacement(double x, double y) const {
+    Vector result = Vector::Zero(2 * positions.cols());
+    for (Index node = 0; node < positions.cols(); ++node) {
+      if (bodies.of_node[static_cast<std::size_t>(node)] == 1) result.segment<2>(2 * node) << x, y;
+    }
+    return result;
+  }
+};
+
+TEST(BodyWatch, FindsBodiesThatGoThroughEachOther) {
+  const TwoSquares squares;
+  BodyWatch watch = squares.watch();
+  // Its lower side is at 1.2 − t. Nodes of its corners are 0.3 from the sides: until then 1 − y tells how deep they
+  // are.
+  const double speed = 1.0, step = 1e-3;
+  long steps = 0;
+  for (; static_cast<double>(steps) * step < 0.35; ++steps) {
+    watch.look(squares.displacement(0.0, -speed * static_cast<double>(steps) * step), static_cast<double>(steps) * step,
+               false);
+    const double depth = static_cast<double>(steps) * step - 0.2;
+    if (depth < 0.0) {
+      EXPECT_TRUE(watch.pairs().empty()) << depth;
+    } else if (depth > 0.25 * edge) {
+      // No deeper than a quarter of an edge unseen, and within an edge from then on.
+      ASSERT_EQ(watch.pairs().size(), 1U) << depth;
+      EXPECT_LE(watch.pairs()[0].deepest.depth, depth + 1e-12);
+      EXPECT_GE(watch.pairs()[0].deepest.depth, depth - edge - speed * step);
+    }
+  }
+  EXPECT_LT(watch.looks(), steps / 8);
+  const double end = static_cast<double>(steps - 1) * step;
+  watch.look(squares.displacement(0.0, -speed * end), end, true);
+  ASSERT_EQ(watch.pairs().size(), 1U);
+  const BodyPair& pair = watch.pairs()[0];
+  EXPECT_EQ(pair.first, 0);
+  EXPECT_EQ(pair.second, 1);
+  EXPECT_NEAR(pair.deepest.depth, end - 0.2, 1e-14);
+  EXPECT_EQ(pair.deepest.time, end);
+  EXPECT_LT(pair.deepest.first_time, 0.2 + 0.25 * edge + 2.0 * step);
+}
+
+TEST(BodyWatch, SaysNothingOfBodiesThatPassOrTouch) {
+  const TwoSquares squares;
+  BodyWatch watch = squares.watch();
+  // Down beside it, then along its side with coinciding nodes, in touch.
+  for (int i = 0; i <= 200; ++i) watch.look(squares.displacement(0.8, -0.01 * i), i, false);
+  for (int i = 0; i <= 200; ++i) watch.look(squares.displacement(0.7, -0.01 * i), i, true);
+  EXPECT_TRUE(watch.pairs().empty());
+  EXPECT_GT(watch.looks(), 5);
+}
+
+TEST(BodyWatch, SeesAnOverlapOfTheStart) {
+  const TwoSquares squares;
+  BodyWatch watch = squares.watch();
+  watch.look(squares.displacement(0.0, -0.3), 0.0, false);
+  ASSERT_EQ(watch.pairs().size(), 1U);
+  EXPECT_NEAR(watch.pairs()[0].deepest.depth, 0.1, 1e-14);
+}
+
+TEST(BodyWatch, GoesOnWhereItWasSaved) {
+  const TwoSquares squares;
+  BodyWatch whole = squares.watch();
+  std::unique_ptr<BodyWatch> parts = std::make_unique<BodyWatch>(squares.watch());
+  for (int i = 0; i <= 300; ++i) {
+    const Vector now = squares.displacement(0.0, -0.002 * i);
+    whole.look(now, i, i == 300);
+    parts->look(now, i, i == 300);
+    if (i % 37 != 0) continue;
+    Snapshot snapshot;
+    parts->save(snapshot, "watch");
+    parts = std::make_unique<BodyWatch>(squares.watch());
+    parts->load(snapshot, "watch");
+  }
+  EXPECT_EQ(parts->looks(), whole.looks());
+  ASSERT_EQ(parts->pairs().size(), 1U);
+  EXPECT_EQ(parts->pairs()[0].deepest.to_numbers(), whole.pairs()[0].deepest.to_numbers());
+}
+
+}  // namespace
+}  // namespace ricochet
