@@ -19,8 +19,6 @@ struct Model;
 
 struct RunOptions {
   std::string output_directory;
-  std::vector<std::string> settings =
-      {};              ///< what --set has changed in the case, for a --resume that is not told again
   bool force = false;  ///< overwrite a run that is there
   bool quiet = false;  ///< no progress
   /// Go on with the run that is in the directory, from its last checkpoint; from the beginning where it has none.
@@ -30,6 +28,8 @@ struct RunOptions {
   /// Steps whose contact problems are written as FCLib files, see io/contact_export.hpp.
   std::vector<StepRange> export_contact = {};
   std::string export_contact_to = {};  ///< their directory; empty: contact/ in the output directory
+  /// What --set has changed in the case, for a --resume that is not told again.
+  std::vector<std::string> settings = {};
 };
 
 /// Runs a case and writes history.csv, results.h5, results.xdmf, summary.json and checkpoints, and contact problems
