@@ -15,7 +15,6 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/json_number.hpp"
-#include "ricochet/io/penetration_json.hpp"
 #include "ricochet/io/summary_outcome.hpp"
 
 namespace ricochet {
@@ -179,7 +178,6 @@ std::string to_json(const RunSummary& s) {
                {"probes", probes_to_json(s)},
                {"extrema", extrema_to_json(s)},
                {"checks", checks_to_json(s)},
-               {"unwatched_penetration", to_json(s.penetration)},
                {"warnings", s.warnings},
                {"expectations", expectations_to_json(s)},
                {"parameters", s.parameters}};
@@ -245,8 +243,6 @@ RunSummary read_summary(const std::string& path) {
       if (json.contains(entry)) outcome[entry] = json.at(entry);
     }
     read_outcome(outcome.dump(), path, s);
-    if (json.contains("unwatched_penetration"))
-      s.penetration = penetration_report_from_json(json.at("unwatched_penetration"));
     for (const auto& contact : json.at("contacts")) {
       s.contacts.push_back({contact.at("group"), contact.at("obstacle"), contact.at("multipliers"),
                             contact.at("friction"), contact.at("friction_bound"), contact.at("obstacle_velocity"),

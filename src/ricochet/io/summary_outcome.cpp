@@ -94,6 +94,38 @@ Json impacts_to_json(const RunSummary& summary) {
   return result;
 }
 
+Json found_to_json(const UnwatchedPenetration& p) {
+  return {{"obstacle", p.obstacle.empty() ? Json() : Json(p.obstacle)},
+          {"bodies", p.bodies},
+          {"depth", number(p.depth)},
+          {"relative_depth", number(p.relative_depth)},
+          {"time", p.time},
+          {"place", p.place},
+          {"first_time", p.first_time},
+          {"groups", p.groups}};
+}
+
+/// The deepest first, by itself, so that it can be named by its path (summary.unwatched_penetration.depth); then all.
+Json penetration_to_json(const PenetrationReport& report) {
+  Json found = Json::array(), rims = Json::array();
+  for (const UnwatchedPenetration& p : report.found) found.push_back(found_to_json(p));
+  for (const ContactBeyondRim& rim : report.rims) {
+    rims.push_back({{"group", rim.group},
+                    {"obstacle", rim.obstacle},
+                    {"time", rim.time},
+                    {"place", rim.place},
+                    {"groups", rim.groups}});
+  }
+  const UnwatchedPenetration* deepest = report.deepest();
+  return {{"checked", report.checked},
+          {"looks_at_obstacles", report.looks_at_obstacles},
+          {"looks_at_bodies", report.looks_at_bodies},
+          {"depth", number(deepest != nullptr ? deepest->depth : 0.0)},
+          {"relative_depth", number(deepest != nullptr ? deepest->relative_depth : 0.0)},
+          {"found", found},
+          {"contact_beyond_rim", rims}};
+}
+
 Json peak_stress_to_json(const RunSummary& summary) {
   if (!summary.peak_stress) return {};
   const PeakStressDescription& d = *summary.peak_stress;
@@ -137,7 +169,8 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies)
   impact.largest_force_time = json.at("largest_force_time");
   impact.obstacle_velocity = to_number(json.at("obstacle_normal_velocity"));
   if (impact.body < 0 || impact.body >= static_cast<int>(bodies.size()))
-    throw Error(ErrorKind::invalid_input, fmt::format("not a summary of a run: an impact is of body {}, which it does not list", impact.body));
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("not a summary of a run: an impact is of body {}, which it does not list", impact.body));
   impact.mass = bodies[static_cast<std::size_t>(impact.body)].rigid.mass;
   impact.before = motion_from(json, "before");
   if (impact.ended) impact.after = motion_from(json, "after");
@@ -156,6 +189,18 @@ BodyDescription body_from(const Json& json) {
   return body;
 }
 
+PenetrationReport penetration_from(const Json& json) {
+  PenetrationReport report{json.at("checked"), json.at("looks_at_obstacles"), json.at("looks_at_bodies")};
+  for (const Json& p : json.at("found")) {
+    report.found.push_back({p.at("obstacle").is_string() ? p.at("obstacle").get<std::string>() : "", p.at("bodies"),
+                            to_number(p.at("depth")), to_number(p.at("relative_depth")), p.at("time"), p.at("place"),
+                            p.at("first_time"), p.at("groups")});
+  }
+  for (const Json& rim : json.at("contact_beyond_rim"))
+    report.rims.push_back({rim.at("group"), rim.at("obstacle"), rim.at("time"), rim.at("place"), rim.at("groups")});
+  return report;
+}
+
 PeakStressDescription peak_stress_from(const Json& json) {
   PeakStressDescription result;
   result.peak = {to_number(json.at("von_mises")), json.at("time"),  json.at("step"), json.at("cell"),
@@ -169,7 +214,8 @@ PeakStressDescription peak_stress_from(const Json& json) {
 }  // namespace
 
 std::string outcome_to_json(const RunSummary& summary) {
-  const Json json = {{"bodies", bodies_to_json(summary)},
+  const Json json = {{"unwatched_penetration", penetration_to_json(summary.penetration)},
+                     {"bodies", bodies_to_json(summary)},
                      {"impacts", impacts_to_json(summary)},
                      {"impacts_left_out", summary.impacts_left_out},
                      {"peak_stress", peak_stress_to_json(summary)}};
@@ -179,6 +225,8 @@ std::string outcome_to_json(const RunSummary& summary) {
 void read_outcome(const std::string& text, const std::string& path, RunSummary& summary) {
   try {
     const Json json = Json::parse(text);
+    if (json.contains("unwatched_penetration"))
+      summary.penetration = penetration_from(json.at("unwatched_penetration"));
     for (const auto& body : json.value("bodies", Json::array())) summary.bodies.push_back(body_from(body));
     for (const auto& impact : json.value("impacts", Json::array()))
       summary.impacts.push_back(impact_from(impact, summary.bodies));
