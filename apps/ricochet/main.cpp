@@ -2,11 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 #include <sstream>
+#include <string_view>
 
 #include "commands.hpp"
 #include "ricochet/base/error.hpp"
@@ -201,15 +203,19 @@ int run_program(int argc, char** argv) {
   }
 }
 
+/// Where memory is limited, OpenBLAS must not have threads of its own: it starts them when it is loaded, and one that
+/// gets no memory asks for it for ever, takes what others have given back, and does not end.
+void restart_without_blas_threads(char** argv) {
+  const char* const threads = std::getenv("OPENBLAS_NUM_THREADS");
+  if (!memory_is_limited() || (threads != nullptr && std::string_view(threads) == "1")) return;
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  execv("/proc/self/exe", argv);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  restart_without_blas_threads(argv);
   ricochet::program::open_closed_streams();
-  const int status = run_program(argc, argv);
-  // OpenBLAS waits at the end for its threads, which never end where a limit on memory keeps them from beginning.
-  if (ricochet::memory_is_limited()) {
-    std::fflush(nullptr);
-    _exit(status);
-  }
-  return status;
+  return run_program(argc, argv);
 }

@@ -3,7 +3,7 @@
 /// @file Standard input, output and error: those that the caller has closed, and output that cannot be written.
 namespace ricochet::program {
 
-/// First in main(). Opens /dev/null as each of the descriptors 0 to 2 that is closed: else the next file that is opened
+/// In main(), before any file is opened. Opens /dev/null as each of the descriptors 0 to 2 that is closed: else the next file that is opened
 /// has this descriptor, and messages are written into results.
 void open_closed_streams();
 

@@ -172,7 +172,7 @@ class Files(TestCase):
         """OpenBLAS asks again and again for memory that it does not get."""
         case = self.write("block.toml", block_case())
         environment = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
-        for megabytes in (150, 200, 250, 300, 400, 600, 1000):
+        for megabytes in (150, 200, 250, 300, 300, 300, 350, 400, 600, 1000):
             answer = subprocess.run(["sh", "-c", f'ulimit -v {megabytes}000; exec "$@"', "sh", str(PROGRAM), "run", str(case),
                                      "-o", str(self.folder / "out"), "--force", "--quiet"], env=environment,
                                     capture_output=True, text=True, timeout=60)
