@@ -123,7 +123,7 @@ class Probes(TestCase):
         self.assertEqual(len(nodes), 4)
         normal = numpy.array([history[f"{p['name']}.reaction_normal"] for p in nodes])
         tangential = numpy.array([history[f"{p['name']}.reaction_tangential_x"] for p in nodes])
-        x = numpy.array([p["position"][0] + numpy.array(history[f"{p['name']}.displacement_x"]) for p in nodes])
+        x = numpy.array([[p["position"][0]] for p in nodes])
         total = normal.sum(axis=0)
         size = total.max()
         closed = total > 0
@@ -135,6 +135,12 @@ class Probes(TestCase):
         numpy.testing.assert_allclose(centre[closed], ((normal * x).sum(axis=0) / numpy.where(closed, total, 1))[closed],
                                       rtol=1e-12)
         self.assertFalse(centre[~closed].any())
+        # Without friction the resultant at the centre has the moment of all of them, about any point.
+        smooth = History(self.simulate(case, "smooth", values={"time.end": 1.0}) / "history.csv")
+        moment = numpy.array(smooth["bottom.moment_z"])
+        expected = (numpy.array(smooth["contact.centre_x"]) - 0.3) * numpy.array(smooth["contact.force_y"])
+        self.assertGreater(numpy.abs(moment).max(), 0.0)
+        numpy.testing.assert_allclose(moment, expected, rtol=0, atol=1e-12 * numpy.abs(moment).max())
         self.assertFalse(numpy.array(history["contact.area"])[~closed].any())
         # Nodal forces: each node has half of the edges beside it.
         length = numpy.hypot(1.2, 0.1) / 3

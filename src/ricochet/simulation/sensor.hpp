@@ -51,8 +51,9 @@ class Sensor {
 [[nodiscard]] std::unique_ptr<Sensor> make_facet_group_sensor(const std::string& name, const Body& body,
                                                               const std::vector<Index>& facets);
 
-/// Resultant of a contact (an index of [[contact]]): force on the body, centre of pressure Σ r_N x / Σ r_N with the
-/// positions x of the moment (0 where open), and area of the points that are pressed (in 2D a length).
+/// Resultant of a contact (an index of [[contact]]): force on the body, centre of pressure Σ r_N X / Σ r_N with the
+/// reference positions X (0 where open), as the moments of boundaries take them, and area of the points that are pressed
+/// (in 2D a length).
 [[nodiscard]] std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                                           int contact);
 

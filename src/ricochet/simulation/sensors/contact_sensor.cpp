@@ -33,10 +33,8 @@ class ContactSensor final : public Sensor {
       if (!(normal > 0.0)) continue;
       pressing += normal;
       area += contact.weights[point];
-      for (SparseRowMatrix::InnerIterator entry(contact.trace, point); entry; ++entry) {
-        centre +=
-            normal * entry.value() * (problem_.nodes.col(entry.col()) + state.displacement.segment(entry.col() * d, d));
-      }
+      for (SparseRowMatrix::InnerIterator entry(contact.trace, point); entry; ++entry)
+        centre += normal * entry.value() * problem_.nodes.col(entry.col());
     }
     if (pressing > 0.0) centre /= pressing;
     append(force, row);
