@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "advice_text.hpp"
 #include "commands.hpp"
 #include "contact_text.hpp"
 #include "outcome_text.hpp"
@@ -18,7 +19,6 @@
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
-#include "ricochet/scheme/critical_step.hpp"
 
 namespace ricochet::program {
 
@@ -32,9 +32,13 @@ std::string plural(CellShape shape) {
   return singular.ends_with("hedron") ? singular.substr(0, singular.size() - 2) + "a" : singular + "s";
 }
 
+/// A .geo file can run shell commands: only `run` hands one to gmsh. CAD files cannot.
+bool is_program(const std::string& path) {
+  return fs::path(path).extension() == ".geo";
+}
+
 void describe_mesh(const std::string& path) {
-  if (needs_gmsh_program(path)) {
-    // A .geo file can run shell commands: only `run` hands one to gmsh.
+  if (is_program(path)) {
     fmt::print("{}: a geometry, meshed by the gmsh program when a case that names it is run\n", path);
     return;
   }
@@ -44,9 +48,8 @@ void describe_mesh(const std::string& path) {
   fmt::print("{}: mesh of dimension {}, degree {}, {} nodes\n", path, mesh.dimension, mesh.degree, mesh.node_count());
   for (const CellBlock& block : mesh.cells) fmt::print("  cells   {:>9} {}\n", block.size(), plural(block.shape));
   for (const CellBlock& block : mesh.facets) fmt::print("  facets  {:>9} {}\n", block.size(), plural(block.shape));
-  for (const Group& group : mesh.groups) {
-    fmt::print("  group   {:>9} of dimension {} in \"{}\"\n", group.members.size(), group.dimension, group.name);
-  }
+  print_groups(mesh);
+  print_cell_sizes(mesh);
   for (int k = 0; k < mesh.dimension; ++k) {
     fmt::print("  {} from {:.6g} to {:.6g}\n", "xyz"[k], mesh.nodes.row(k).minCoeff(), mesh.nodes.row(k).maxCoeff());
   }
@@ -66,10 +69,11 @@ void describe_case(const std::string& path) {
   print_contacts(describe_contacts(input));
   fmt::print("  scheme {}, mass {}, {} steps of {:g} to {:g}\n", input.time.scheme, input.mass.type,
              step_count(input.time), input.time.step, input.time.end);
-  // A .geo file can run shell commands: only `run` hands one to gmsh.
-  if (input.time.scheme != "semi-explicit" || needs_gmsh_program(input.mesh.file)) return;
-  const std::unique_ptr<Model> model = build_model(input);
-  if (model->problem.mass.is_diagonal()) print_critical_step(input.time.step, central_difference_limit(model->problem));
+  if (is_program(input.mesh.file)) {
+    fmt::print("  sizes and a suggested step are told of meshes: {} has to be meshed first\n", input.mesh.file);
+    return;
+  }
+  print_advice(input, *build_model(input));
 }
 
 /// The lines of a message after its first one further in.

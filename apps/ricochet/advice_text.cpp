@@ -1,0 +1,192 @@
+#include "advice_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/fem/connected_bodies.hpp"
+#include "ricochet/fem/mesh_measures.hpp"
+#include "ricochet/fem/stress.hpp"
+#include "ricochet/fem/wave_speed.hpp"
+#include "ricochet/scheme/critical_step.hpp"
+#include "ricochet/simulation/rigid_bodies.hpp"
+
+namespace ricochet::program {
+
+namespace {
+
+/// Of a mean normal: below this length the facets are not flat.
+constexpr double flat = 1.0 - 1e-6;
+
+std::string vector_text(const Eigen::Vector3d& values, int dimension) {
+  std::string text;
+  for (int k = 0; k < dimension; ++k) text += fmt::format("{}{:.4g}", k == 0 ? "" : ", ", values[k]);
+  return "(" + text + ")";
+}
+
+std::string normal_text(const MeshMeasure& measure, int dimension) {
+  if (measure.inside > 0) return ", inside the body";
+  const double length = measure.mean_normal.norm();
+  if (length < 1e-6) return ", closed";
+  const Eigen::Vector3d direction = measure.mean_normal / length;
+  return fmt::format(", {} {}", length > flat ? "flat, normal" : "curved, mean normal",
+                     vector_text(direction, dimension));
+}
+
+/// Rounded down to two digits.
+double two_digits(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::floor(value / unit * (1.0 + 1e-9)) * unit;
+}
+
+bool is_plane_stress(const Body& body) {
+  return body.mesh->dimension == 2 && body.plane == PlaneState::stress;
+}
+
+void print_materials(const Body& body) {
+  const Vector volumes = cell_volumes(body);
+  std::vector<double> volume(body.materials.size(), 0.0);
+  for (Index cell = 0; cell < volumes.size(); ++cell)
+    volume[static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(cell)])] += volumes[cell];
+  for (std::size_t i = 0; i < body.materials.size(); ++i) {
+    const Material& material = body.materials[i];
+    fmt::print("  material \"{}\": {} {:.6g}, mass {:.6g}, compression waves {:.5g}, shear waves {:.5g}\n",
+               material.name, body.mesh->dimension == 2 ? "area" : "volume", volume[i], volume[i] * material.density,
+               compression_wave_speed(material, is_plane_stress(body)), shear_wave_speed(material));
+  }
+}
+
+void print_bodies(const Model& model, const ConnectedBodies& connected) {
+  const int d = model.mesh.dimension;
+  const RigidBodies rigid(model.problem, connected.of_node, connected.count);
+  constexpr std::size_t shown = 10;
+  for (std::size_t i = 0; i < std::min(rigid.bodies().size(), shown); ++i) {
+    const RigidBody& body = rigid.bodies()[i];
+    const std::string inertia =
+        d == 2 ? fmt::format("{:.5g}", body.inertia(2, 2)) : vector_text(body.inertia.diagonal(), 3) + " (xx, yy, zz)";
+    fmt::print("  body {}: mass {:.6g}{}, centre {}, moment of inertia about it {}\n", i, body.mass,
+               d == 2 ? " per unit of thickness" : "", vector_text(body.centre, d), inertia);
+  }
+  if (rigid.bodies().size() > shown) fmt::print("  {} bodies more\n", rigid.bodies().size() - shown);
+}
+
+/// Times that a compression wave takes through cells, ascending.
+std::vector<double> crossing_times(const Body& body) {
+  std::vector<double> times = cell_heights(*body.mesh);
+  for (std::size_t cell = 0; cell < times.size(); ++cell) {
+    const Material& material = body.materials[static_cast<std::size_t>(body.cell_material[cell])];
+    times[cell] /= compression_wave_speed(material, is_plane_stress(body));
+  }
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+void print_steps(const Case& input, const Model& model, const ConnectedBodies& connected) {
+  const std::vector<double> times = crossing_times(model.body);
+  const std::vector<double> bodies = wave_crossing_times(model.body, connected);
+  fmt::print("  a compression wave crosses the smallest cell in {:.4g}, a median one in {:.4g}, {} in {:.4g}\n",
+             times.front(), times[times.size() / 2], bodies.size() > 1 ? "the largest body" : "the body",
+             *std::max_element(bodies.begin(), bodies.end()));
+  const double step = input.time.step;
+  if (input.time.scheme == "semi-explicit" && model.problem.mass.is_diagonal()) {
+    const double critical = central_difference_limit(model.problem);
+    fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", critical, step / critical);
+    fmt::print(
+        "  suggested step {:.2g}: nine tenths of the critical one, above which central differences are unstable\n",
+        two_digits(0.9 * critical));
+    return;
+  }
+  fmt::print(
+      "  suggested step {:.2g}: a compression wave crosses a median cell in it, so that the mesh resolves the waves of "
+      "an "
+      "impact\n"
+      "    and contact creates no energy; the case's step {:g} is {:.3g} of that\n",
+      two_digits(times[times.size() / 2]), step, step / times[times.size() / 2]);
+}
+
+/// When a node at this gap meets the obstacle; infinite if it does not.
+double time_of_contact(double gap, double velocity, double acceleration) {
+  const double never = std::numeric_limits<double>::infinity();
+  if (gap <= 0.0) return 0.0;
+  if (acceleration == 0.0) return velocity < 0.0 ? -gap / velocity : never;
+  const double discriminant = velocity * velocity - 2.0 * acceleration * gap;
+  if (discriminant < 0.0) return never;
+  // The smaller positive root of gap + velocity t + acceleration t²/2, without cancellation.
+  const double root = std::sqrt(discriminant);
+  if (velocity <= 0.0) return 2.0 * gap / (root - velocity);
+  return acceleration < 0.0 ? -(velocity + root) / acceleration : never;
+}
+
+void print_contact(const Case& input, const Model& model, std::size_t pair) {
+  const ContactBoundary& contact = model.problem.contact;
+  const int d = model.mesh.dimension;
+  const ContactSection& section = input.contacts[pair];
+  const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
+                                     [&](const ObstacleSection& o) { return o.name == section.obstacle; });
+  double nearest = std::numeric_limits<double>::infinity(), meets = nearest;
+  for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
+    if (contact.node_pair[i] != static_cast<int>(pair)) continue;
+    const auto row = static_cast<Index>(i);
+    const Vector normal = contact.node_normals.col(row);
+    const double gap = contact.node_initial_gap[row];
+    nearest = std::min(nearest, gap);
+    double velocity = normal.dot(model.initial.velocity.segment(contact.nodes[i] * d, d)), acceleration = 0.0;
+    for (int k = 0; k < d; ++k) {
+      if (!obstacle->velocity.empty()) velocity -= normal[k] * obstacle->velocity[static_cast<std::size_t>(k)];
+      if (!input.load.gravity.empty()) acceleration += normal[k] * input.load.gravity[static_cast<std::size_t>(k)];
+    }
+    meets = std::min(meets, time_of_contact(gap, velocity, acceleration));
+  }
+  if (!std::isfinite(nearest)) return;
+  fmt::print("  \"{}\" is {:.4g} away from \"{}\" at its nearest node", section.group, nearest, section.obstacle);
+  const bool falls_freely = input.supports.empty() && input.tractions.empty() && input.load.body_force.empty() &&
+                            input.initial.displacement.empty() && !input.initial.static_equilibrium;
+  if (falls_freely) {
+    fmt::print("{}", std::isfinite(meets)
+                         ? fmt::format(" and meets it at t = {:.4g}, of the run's {:g}", meets, input.time.end)
+                         : " and does not come nearer");
+  }
+  fmt::print("\n");
+}
+
+}  // namespace
+
+void print_groups(const Mesh& mesh) {
+  const int d = mesh.dimension;
+  constexpr std::array<const char*, 4> sizes{"", "length", "area", "volume"};
+  for (const Group& group : mesh.groups) {
+    if (group.dimension != d && group.dimension != d - 1) {
+      fmt::print("  group \"{}\" of dimension {}, not used\n", group.name, group.dimension);
+      continue;
+    }
+    const MeshMeasure measure = measure_group(mesh, group);
+    const bool are_cells = group.dimension == d;
+    fmt::print("  group \"{}\": {} {} of dimension {}, {} {:.5g}, centre {}, from {} to {}{}\n", group.name,
+               group.members.size(), are_cells ? "cells" : "facets", group.dimension,
+               sizes[static_cast<std::size_t>(group.dimension)], measure.size, vector_text(measure.centre, d),
+               vector_text(measure.lowest, d), vector_text(measure.highest, d),
+               are_cells ? "" : normal_text(measure, d));
+  }
+}
+
+void print_cell_sizes(const Mesh& mesh) {
+  std::vector<double> heights = cell_heights(mesh);
+  std::sort(heights.begin(), heights.end());
+  fmt::print("  heights of cells: smallest {:.4g}, median {:.4g}, largest {:.4g}\n", heights.front(),
+             heights[heights.size() / 2], heights.back());
+}
+
+void print_advice(const Case& input, const Model& model) {
+  const ConnectedBodies connected = find_connected_bodies(model.space);
+  print_materials(model.body);
+  print_bodies(model, connected);
+  print_groups(model.mesh);
+  print_cell_sizes(model.mesh);
+  for (std::size_t pair = 0; pair < input.contacts.size(); ++pair) print_contact(input, model, pair);
+  print_steps(input, model, connected);
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,183 @@
+#include "ricochet/fem/mesh_measures.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "ricochet/fem/cell_integration.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+
+namespace ricochet {
+
+namespace {
+
+Eigen::Vector3d position(const Mesh& mesh, Index node) {
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  result.head(mesh.dimension) = mesh.nodes.col(node);
+  return result;
+}
+
+/// Mean of the first `count` nodes: of the vertices.
+Eigen::Vector3d mean(const Mesh& mesh, const Index* nodes, int count) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int k = 0; k < count; ++k) sum += position(mesh, nodes[k]);
+  return sum / static_cast<double>(count);
+}
+
+/// Size, first moment and ∫n of one cell or facet: n on whichever side its numbering says.
+struct Integral {
+  double size = 0.0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
+};
+
+Eigen::Vector3d normal_of(const Matrix& map) {
+  if (map.rows() == 2) return {map(1, 0), -map(0, 0), 0.0};
+  return Eigen::Vector3d(map.col(0)).cross(Eigen::Vector3d(map.col(1)));
+}
+
+Integral integrate(const Mesh& mesh, const BlockIntegration& rule, const CellBlock& block, Index cell) {
+  Integral result;
+  const Index* const nodes = block.cell(cell);
+  for (Index q = 0; q < rule.rule.weights.size(); ++q) {
+    const Matrix& gradients = rule.geometry.gradients[static_cast<std::size_t>(q)];
+    Matrix map = Matrix::Zero(mesh.dimension, gradients.cols());
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
+    for (Index k = 0; k < gradients.rows(); ++k) {
+      map += mesh.nodes.col(nodes[k]) * gradients.row(k);
+      at += rule.geometry.values(k, q) * position(mesh, nodes[k]);
+    }
+    const bool is_cell = map.cols() == map.rows();
+    const Eigen::Vector3d normal = is_cell ? Eigen::Vector3d::Zero() : normal_of(map);
+    const double weight = rule.rule.weights[q];
+    const double size = weight * (is_cell ? std::abs(map.determinant()) : normal.norm());
+    result.size += size;
+    result.moment += size * at;
+    result.normal += weight * normal;
+  }
+  return result;
+}
+
+/// The cells around the vertices of some facets.
+class CellsOfFacets {
+ public:
+  explicit CellsOfFacets(const Mesh& mesh) : mesh_(mesh), around_(static_cast<std::size_t>(mesh.node_count())) {
+    std::vector<char> wanted(around_.size(), 0);
+    for (const CellBlock& block : mesh.facets) {
+      for (const Index node : block.nodes) wanted[static_cast<std::size_t>(node)] = 1;
+    }
+    for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
+      const CellBlock& block = mesh.cells[b];
+      for (Index cell = 0; cell < block.size(); ++cell) {
+        for (int v = 0; v < vertex_count(block.shape); ++v) {
+          const auto node = static_cast<std::size_t>(block.cell(cell)[v]);
+          if (wanted[node] != 0) around_[node].push_back({b, cell});
+        }
+      }
+    }
+  }
+
+  /// How many cells have this facet, and the centre of the first of them.
+  [[nodiscard]] std::pair<int, Eigen::Vector3d> find(const CellBlock& facets, Index facet) const {
+    const Index* const nodes = facets.cell(facet);
+    std::pair<int, Eigen::Vector3d> result{0, Eigen::Vector3d::Zero()};
+    for (const Place& place : around_[static_cast<std::size_t>(nodes[0])]) {
+      const CellBlock& block = mesh_.cells[place.block];
+      const Index *const first = block.cell(place.cell), *const last = first + vertex_count(block.shape);
+      const bool has_all = std::all_of(nodes, nodes + vertex_count(facets.shape),
+                                       [&](Index node) { return std::find(first, last, node) != last; });
+      if (!has_all) continue;
+      if (result.first++ == 0) result.second = mean(mesh_, first, vertex_count(block.shape));
+    }
+    return result;
+  }
+
+ private:
+  struct Place {
+    std::size_t block;
+    Index cell;
+  };
+  const Mesh& mesh_;
+  std::vector<std::vector<Place>> around_;
+};
+
+/// Calls visit(block, rule, cell in it) for some cells or facets, numbered through all blocks, ascending.
+template <class Visit>
+void for_each_member(const Mesh& mesh, const std::vector<CellBlock>& blocks, const std::vector<Index>& members,
+                     const Visit& visit) {
+  Index first = 0;
+  auto member = members.begin();
+  for (const CellBlock& block : blocks) {
+    const BlockIntegration rule(block.shape, mesh.degree, mesh.degree,
+                                product_quadrature_degree(block.shape, mesh.degree, 1));
+    for (; member != members.end() && *member < first + block.size(); ++member) visit(block, rule, *member - first);
+    first += block.size();
+  }
+}
+
+}  // namespace
+
+MeshMeasure measure_group(const Mesh& mesh, const Group& group) {
+  MeshMeasure result;
+  const bool are_facets = group.dimension == mesh.dimension - 1;
+  if ((!are_facets && group.dimension != mesh.dimension) || group.members.empty()) return result;
+  const double infinity = std::numeric_limits<double>::infinity();
+  result.lowest.head(mesh.dimension).setConstant(infinity);
+  result.highest.head(mesh.dimension).setConstant(-infinity);
+  std::optional<CellsOfFacets> cells;
+  if (are_facets) cells.emplace(mesh);
+  for_each_member(mesh, are_facets ? mesh.facets : mesh.cells, group.members,
+                  [&](const CellBlock& block, const BlockIntegration& rule, Index member) {
+                    const Integral own = integrate(mesh, rule, block, member);
+                    result.size += own.size;
+                    result.centre += own.moment;
+                    for (int k = 0; k < block.nodes_per_cell; ++k) {
+                      const Eigen::Vector3d at = position(mesh, block.cell(member)[k]);
+                      result.lowest = result.lowest.cwiseMin(at);
+                      result.highest = result.highest.cwiseMax(at);
+                    }
+                    if (!are_facets) return;
+                    const auto [count, inside] = cells->find(block, member);
+                    if (count != 1) {
+                      ++result.inside;
+                      return;
+                    }
+                    const Eigen::Vector3d out = mean(mesh, block.cell(member), vertex_count(block.shape)) - inside;
+                    result.mean_normal += own.normal.dot(out) < 0.0 ? Eigen::Vector3d(-own.normal) : own.normal;
+                  });
+  result.centre /= result.size;
+  result.mean_normal /= result.size;
+  return result;
+}
+
+namespace {
+
+/// Of a straight facet, by its vertices.
+double facet_size(const Mesh& mesh, CellShape shape, const Index* cell, const std::vector<int>& vertices) {
+  const auto at = [&](std::size_t k) { return position(mesh, cell[vertices[k]]); };
+  if (shape == CellShape::interval) return (at(1) - at(0)).norm();
+  const double first = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
+  return shape == CellShape::triangle ? first : first + 0.5 * (at(1) - at(3)).cross(at(2) - at(3)).norm();
+}
+
+}  // namespace
+
+std::vector<double> cell_heights(const Mesh& mesh) {
+  std::vector<double> heights;
+  for (const CellBlock& block : mesh.cells) {
+    const BlockIntegration rule(block.shape, mesh.degree, mesh.degree,
+                                product_quadrature_degree(block.shape, mesh.degree, 1));
+    const CellShape shape = facet_shape(block.shape);
+    const bool is_simplex = block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
+    for (Index cell = 0; cell < block.size(); ++cell) {
+      double largest = 0.0;
+      for (const std::vector<int>& vertices : facet_nodes(block.shape, 1))
+        largest = std::max(largest, facet_size(mesh, shape, block.cell(cell), vertices));
+      const double size = integrate(mesh, rule, block, cell).size;
+      heights.push_back((is_simplex ? mesh.dimension : 1.0) * size / largest);
+    }
+  }
+  return heights;
+}
+
+}  // namespace ricochet
