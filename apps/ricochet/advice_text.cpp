@@ -21,9 +21,13 @@ namespace {
 /// Of a mean normal: below this length the facets are not flat.
 constexpr double flat = 1.0 - 1e-6;
 
+/// Components that are rounding of the others are zero.
 std::string vector_text(const Eigen::Vector3d& values, int dimension) {
   std::string text;
-  for (int k = 0; k < dimension; ++k) text += fmt::format("{}{:.4g}", k == 0 ? "" : ", ", values[k]);
+  for (int k = 0; k < dimension; ++k) {
+    const double value = std::abs(values[k]) > 1e-12 * values.norm() ? values[k] : 0.0;
+    text += fmt::format("{}{:.4g}", k == 0 ? "" : ", ", value);
+  }
   return "(" + text + ")";
 }
 
@@ -99,12 +103,11 @@ void print_steps(const Case& input, const Model& model, const ConnectedBodies& c
         two_digits(0.9 * critical));
     return;
   }
+  const double median = times[times.size() / 2];
   fmt::print(
-      "  suggested step {:.2g}: a compression wave crosses a median cell in it, so that the mesh resolves the waves of "
-      "an "
-      "impact\n"
-      "    and contact creates no energy; the case's step {:g} is {:.3g} of that\n",
-      two_digits(times[times.size() / 2]), step, step / times[times.size() / 2]);
+      "  suggested step {:.2g}: a compression wave crosses a median cell in it, so the mesh resolves the waves of an "
+      "impact; the case's step {:g} is {:.3g} of that\n",
+      two_digits(median), step, step / median);
 }
 
 /// When a node at this gap meets the obstacle; infinite if it does not.
