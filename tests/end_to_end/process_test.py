@@ -107,9 +107,8 @@ class Streams(TestCase):
             self.expect_status(0, redirected(marks, "contact", exported, "-o", solution))
             self.assertEqual(solution.read_bytes()[:8], b"\x89HDF\r\n\x1a\n")
             page = self.folder / "report.html"
-            answer = redirected(marks, "report", output, "-o", page)
-            if answer.returncode == 0:  # it may be built without the viewer
-                self.assertTrue(page.read_text().startswith("<!doctype html>"))
+            self.expect_status(0, redirected(marks, "report", output, "-o", page))
+            self.assertTrue(page.read_text().startswith("<!doctype html>"))
             figure = self.folder / "figure.svg"
             self.expect_status(0, redirected(marks, "plot", output, "--what", "energy", "-o", figure))
             self.assertIn("<svg", figure.read_text())

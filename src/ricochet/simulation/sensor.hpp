@@ -52,8 +52,8 @@ class Sensor {
                                                               const std::vector<Index>& facets);
 
 /// Resultant of a contact (an index of [[contact]]): force on the body, centre of pressure Σ r_N X / Σ r_N with the
-/// reference positions X (0 where open), as the moments of boundaries take them, and area of the points that are pressed
-/// (in 2D a length).
+/// reference positions X (0 where open), as the moments of boundaries take them, and area of the points that are
+/// pressed (in 2D a length).
 [[nodiscard]] std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
                                                           int contact);
 

@@ -46,7 +46,8 @@ TEST(MalformedCase, Values) {
        "9:10: \"scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\" or \"semi-explicit\"; found the "
        "integer 3"},
       {0, "[mass]\ntype = \"equivalent_nearest\"",
-       "13:8: \"type\" must be one of \"consistent\", \"lumped\", \"equivalent\", \"equivalent-nearest\" or "
+       "13:8: \"type\" must be one of \"consistent\", \"lumped\", \"equivalent\", \"equivalent-compact\", "
+       "\"equivalent-nearest\" or "
        "\"equivalent-lumped\"; found the "
        "text \"equivalent_nearest\"; did you mean \"equivalent-nearest\"?"},
       {0, "[output]\nhistory_every = 0",

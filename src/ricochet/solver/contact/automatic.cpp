@@ -78,10 +78,9 @@ void learn(double& mean, double value) {
 
 /// Non-smooth Newton after accelerated projected Gauss–Seidel.
 ///
-/// 0. Without friction and with the entries of W: the primal–dual active set, the dual one where conditions depend on
-/// one
-///    another. From the reactions of an earlier step,
-///    where the factor kept from it has proved cheaper than sweeps: Newton at once.
+/// 0. Without friction and with the entries of W: the primal–dual active set, or the dual one where conditions depend
+///    on one another. From the reactions of an earlier step, where the factor kept from it has proved cheaper than
+///    sweeps: Newton at once.
 /// 1. From the last r, accelerated sweeps: first order, robust; they find the contact and the directions of slip
 ///    roughly, and where W is well conditioned they go on to the end.
 /// 2. Newton on the Alart–Curnier equations (GlobalizedNewton), each step cut back until the merit decreases; where no

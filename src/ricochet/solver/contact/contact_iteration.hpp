@@ -17,8 +17,8 @@ class IterativeContactSolver : public ContactSolver {
   void solve(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution) override;
   [[nodiscard]] Vector warm_start() const override;
   void set_warm_start(const Vector& start) override;
-  /// After `solve`: points whose normal conditions no motion meets together, ascending, where that is why the problem is
-  /// not solved. Only solvers that know the entries of W look for them.
+  /// After `solve`: points whose normal conditions no motion meets together, ascending, where that is why the problem
+  /// is not solved. Only solvers that know the entries of W look for them.
   [[nodiscard]] const std::vector<Index>& contradiction() const { return contradiction_; }
 
   /// From `current`, which is evaluated and satisfies the signs and limits of its law, towards a solution: until
