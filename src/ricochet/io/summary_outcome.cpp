@@ -22,6 +22,18 @@ double to_number(const Json& value) {
   return number_from_json(value);
 }
 
+Json numbers(const std::vector<double>& values) {
+  Json result = Json::array();
+  for (const double value : values) result.push_back(number(value));
+  return result;
+}
+
+std::vector<double> to_numbers(const Json& values) {
+  std::vector<double> result;
+  for (const Json& value : values) result.push_back(to_number(value));
+  return result;
+}
+
 /// In the plane two components.
 Json components(const Eigen::Vector3d& values, int dimension) {
   Json result = Json::array();
@@ -56,19 +68,19 @@ Json impact_to_json(const Impact& impact, int dimension) {
   const std::optional<double> restitution = impact.restitution();
   return {{"body", impact.body},
           {"obstacle", impact.obstacle},
-          {"begin", impact.begin},
-          {"end", if_ended(impact.end)},
-          {"duration", impact.end - impact.begin},
+          {"begin", number(impact.begin)},
+          {"end", if_ended(number(impact.end))},
+          {"duration", number(impact.end - impact.begin)},
           {"ended", impact.ended},
           {"from_start", impact.from_start},
           {"intervals", impact.intervals},
-          {"contact_time", impact.contact_time},
+          {"contact_time", number(impact.contact_time)},
           {"impulse", components(impact.impulse, dimension)},
           {"normal", components(impact.normal(), dimension)},
           {"normal_impulse", number(impact.normal_impulse.norm())},
           {"other_impulse", if_ended(components(impact.other_impulse(), dimension))},
           {"largest_force", number(impact.largest_force)},
-          {"largest_force_time", impact.largest_force_time},
+          {"largest_force_time", number(impact.largest_force_time)},
           {"restitution", restitution ? number(*restitution) : Json()},
           {"normal_velocity_before", number(impact.normal_velocity_before())},
           {"normal_velocity_after", if_ended(number(impact.normal_velocity_after()))},
@@ -99,9 +111,9 @@ Json found_to_json(const UnwatchedPenetration& p) {
           {"bodies", p.bodies},
           {"depth", number(p.depth)},
           {"relative_depth", number(p.relative_depth)},
-          {"time", p.time},
-          {"place", p.place},
-          {"first_time", p.first_time},
+          {"time", number(p.time)},
+          {"place", numbers(p.place)},
+          {"first_time", number(p.first_time)},
           {"groups", p.groups}};
 }
 
@@ -112,8 +124,8 @@ Json penetration_to_json(const PenetrationReport& report) {
   for (const ContactBeyondRim& rim : report.rims) {
     rims.push_back({{"group", rim.group},
                     {"obstacle", rim.obstacle},
-                    {"time", rim.time},
-                    {"place", rim.place},
+                    {"time", number(rim.time)},
+                    {"place", numbers(rim.place)},
                     {"groups", rim.groups}});
   }
   const UnwatchedPenetration* deepest = report.deepest();
@@ -130,9 +142,9 @@ Json peak_stress_to_json(const RunSummary& summary) {
   if (!summary.peak_stress) return {};
   const PeakStressDescription& d = *summary.peak_stress;
   return {{"von_mises", number(d.peak.von_mises)},
-          {"time", d.peak.time},
+          {"time", number(d.peak.time)},
           {"step", d.peak.step},
-          {"place", d.place},
+          {"place", numbers(d.place)},
           {"material", d.material},
           {"cell", d.peak.cell},
           {"element", d.element},
@@ -153,24 +165,25 @@ RigidMotionState motion_from(const Json& impact, const std::string& when) {
           to_number(impact.at("kinetic_energy_" + when)), to_number(impact.at("rigid_kinetic_energy_" + when))};
 }
 
-Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies) {
+Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies, const std::string& path) {
   Impact impact;
   impact.body = json.at("body");
   impact.obstacle = json.at("obstacle");
-  impact.begin = json.at("begin");
-  impact.end = impact.begin + json.at("duration").get<double>();
+  impact.begin = to_number(json.at("begin"));
+  impact.end = impact.begin + to_number(json.at("duration"));
   impact.ended = json.at("ended");
   impact.from_start = json.at("from_start");
   impact.intervals = json.at("intervals");
-  impact.contact_time = json.at("contact_time");
+  impact.contact_time = to_number(json.at("contact_time"));
   impact.impulse = vector_from(json.at("impulse"));
   impact.normal_impulse = to_number(json.at("normal_impulse")) * vector_from(json.at("normal"));
   impact.largest_force = to_number(json.at("largest_force"));
-  impact.largest_force_time = json.at("largest_force_time");
+  impact.largest_force_time = to_number(json.at("largest_force_time"));
   impact.obstacle_velocity = to_number(json.at("obstacle_normal_velocity"));
   if (impact.body < 0 || impact.body >= static_cast<int>(bodies.size()))
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("not a summary of a run: an impact is of body {}, which it does not list", impact.body));
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("{}: not a summary of a run: an impact is of body {}, which it does not list", path, impact.body));
   impact.mass = bodies[static_cast<std::size_t>(impact.body)].rigid.mass;
   impact.before = motion_from(json, "before");
   if (impact.ended) impact.after = motion_from(json, "after");
@@ -193,19 +206,20 @@ PenetrationReport penetration_from(const Json& json) {
   PenetrationReport report{json.at("checked"), json.at("looks_at_obstacles"), json.at("looks_at_bodies")};
   for (const Json& p : json.at("found")) {
     report.found.push_back({p.at("obstacle").is_string() ? p.at("obstacle").get<std::string>() : "", p.at("bodies"),
-                            to_number(p.at("depth")), to_number(p.at("relative_depth")), p.at("time"), p.at("place"),
-                            p.at("first_time"), p.at("groups")});
+                            to_number(p.at("depth")), to_number(p.at("relative_depth")), to_number(p.at("time")),
+                            to_numbers(p.at("place")), to_number(p.at("first_time")), p.at("groups")});
   }
   for (const Json& rim : json.at("contact_beyond_rim"))
-    report.rims.push_back({rim.at("group"), rim.at("obstacle"), rim.at("time"), rim.at("place"), rim.at("groups")});
+    report.rims.push_back({rim.at("group"), rim.at("obstacle"), to_number(rim.at("time")), to_numbers(rim.at("place")),
+                           rim.at("groups")});
   return report;
 }
 
 PeakStressDescription peak_stress_from(const Json& json) {
   PeakStressDescription result;
-  result.peak = {to_number(json.at("von_mises")), json.at("time"),  json.at("step"), json.at("cell"),
+  result.peak = {to_number(json.at("von_mises")), to_number(json.at("time")), json.at("step"), json.at("cell"),
                  json.at("states_looked_at"),     json.at("states")};
-  result.place = json.at("place").get<std::vector<double>>();
+  result.place = to_numbers(json.at("place"));
   result.element = json.at("element");
   result.material = json.at("material");
   return result;
@@ -229,7 +243,7 @@ void read_outcome(const std::string& text, const std::string& path, RunSummary& 
       summary.penetration = penetration_from(json.at("unwatched_penetration"));
     for (const auto& body : json.value("bodies", Json::array())) summary.bodies.push_back(body_from(body));
     for (const auto& impact : json.value("impacts", Json::array()))
-      summary.impacts.push_back(impact_from(impact, summary.bodies));
+      summary.impacts.push_back(impact_from(impact, summary.bodies, path));
     summary.impacts_left_out = json.value("impacts_left_out", 0L);
     if (json.contains("peak_stress") && json.at("peak_stress").is_object())
       summary.peak_stress = peak_stress_from(json.at("peak_stress"));

@@ -5,9 +5,8 @@
 
 #include "ricochet/io/summary.hpp"
 
-/// @file What came out of a run, as entries of summary.json: penetration where no contact is,
-/// bodies, impacts, the largest stress. Not part of the
-/// public interface.
+/// @file What came out of a run, as entries of summary.json: penetration where no contact is, bodies, impacts, the
+/// largest stress. Not part of the public interface.
 namespace ricochet {
 
 /// The names of these entries, in their order.
