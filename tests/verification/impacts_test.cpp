@@ -217,6 +217,28 @@ TEST(Impacts, OfABodyAtRest) {
   EXPECT_NEAR(found[0].impulse[0], 100.0 * 2.0, 1e-9 * 200.0);
 }
 
+/// A bar that rests on the floor and is thrown up faster than its weight can press it down: only the force at t = 0,
+/// its weight, acts, with half a step's weight. The interval of contact and the time of contact are the same.
+TEST(Impacts, OfABodyThatLeavesInTheFirstStep) {
+  for (const char* scheme : {"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "scheme = \"semi-explicit\"\n"}) {
+    std::string text = bar(10,
+                           "[load]\ngravity = [-10.0, 0.0]\n[initial]\ndisplacement = \"static\"\n"
+                           "velocity = [10.0, 0.0]\n");
+    text.replace(text.find(trapezoidal), trapezoidal.size(), scheme);
+    std::vector<std::string> overrides{"time.end=0.5", "obstacle.wall.point=[5.0, 0.0]"};
+    if (scheme != trapezoidal) overrides.push_back("mass.type=equivalent-lumped");
+    const std::vector<Impact> found = impacts_of(text, overrides);
+    ASSERT_EQ(found.size(), 1u) << scheme;
+    const Impact& impact = found[0];
+    const double step = 0.5 * 1.0 / 30.0;
+    EXPECT_TRUE(impact.from_start && impact.ended) << scheme;
+    EXPECT_EQ(impact.begin, 0.0) << scheme;
+    EXPECT_NEAR(impact.contact_time, 0.5 * step, 1e-14 * step) << scheme;
+    EXPECT_EQ(impact.end, impact.contact_time) << scheme;
+    EXPECT_NEAR(impact.impulse[0], 100.0 * 0.5 * step, 1e-9 * 100.0 * step) << scheme;
+  }
+}
+
 /// Goes on from a snapshot to the same numbers.
 TEST(Impacts, GoOnFromASnapshot) {
   const std::string text = thrown_case(thrown_bodies()[0], "equivalent", trapezoidal, "friction = 0.3\n");

@@ -171,6 +171,8 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
     }
     interval.phase = touching;
     if (acts_before) {
+      // It acts in the first half of the step, and may be the only one that does.
+      interval.end = instant - 0.5 * h;
       interval.contact_time += 0.5 * h;
       take_largest(interval, previous, instant - h);
     }
