@@ -44,6 +44,7 @@ struct Key {
   Range range = {};
   std::string variables = {};  ///< of expressions: "t", "x, y and z" or "x, y, z and t"
   std::vector<Key> keys = {};  ///< of a sub-table
+  bool decides = false;        ///< which other keys there are: where its value is refused, nothing else is looked at
   std::string doc;             ///< one line of documentation
 };
 

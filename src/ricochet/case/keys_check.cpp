@@ -65,6 +65,7 @@ class TreeChecker {
   void check_list(const Section& section, TomlNode& list);
   void check_named(const Section& section, TomlNode& sections);
   void check_keys(const std::vector<Key>& keys, const std::string& title, TomlNode& table);
+  bool is_of_unknown_type(const std::vector<Key>& keys, TomlNode& table);
   void check_key(const Key& key, const std::string& title, TomlNode& value);
   void check_alternatives(const Section& section, const std::string& title, const TomlNode& table);
   void report_missing_section(const Section& section);
@@ -179,10 +180,22 @@ void TreeChecker::check_named(const Section& section, TomlNode& sections) {
     } else if (!is_plain_name(entry.key)) {
       entry.is_refused = true;
       problems_.add(entry.key_location, fmt::format("the name of {} can only have letters, digits, _ and -", title));
+    } else if (is_of_unknown_type(section.keys, entry)) {
+      entry.is_refused = true;
     } else {
       check_keys(section.keys, title, entry);
     }
   }
+}
+
+bool TreeChecker::is_of_unknown_type(const std::vector<Key>& keys, TomlNode& table) {
+  for (const Key& key : keys) {
+    TomlNode* value = key.decides ? table.find(key.name) : nullptr;
+    if (value == nullptr) continue;
+    check_value(key, *value, problems_);
+    if (value->is_refused) return true;
+  }
+  return false;
 }
 
 void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& title, TomlNode& table) {

@@ -47,10 +47,9 @@ std::string suggestion(const TomlNode& value, const std::vector<std::string>& ch
 
 void check_choice(const Key& key, TomlNode& value, Problems& problems) {
   if (value.kind == Kind::text && is_choice(value.text, key.choices)) return;
-  refuse(value,
-         fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted(key), describe(value),
-                     suggestion(value, key.choices)),
-         problems);
+  std::string more = suggestion(value, key.choices);
+  if (key.decides && more.empty()) more = ". " + key.doc;
+  refuse(value, fmt::format("\"{}\" must be {}; found {}{}", key.name, wanted(key), describe(value), more), problems);
 }
 
 void check_number(const Key& key, TomlNode& value, Problems& problems) {

@@ -168,7 +168,9 @@ Section obstacle_section() {
            .type = KeyType::choice,
            .required = true,
            .choices = obstacle_types(),
-           .doc = "Shape: a half-space bounded by a plane."},
+           .decides = true,
+           .doc = "This version has planes only, each with a half-space behind it: curved obstacles are not "
+                  "supported."},
           {.name = "point",
            .type = KeyType::vector,
            .unit = "length",
