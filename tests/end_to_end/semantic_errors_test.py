@@ -2,6 +2,7 @@
 wrong, where it stands (file:line:column), and what there is instead."""
 
 import os
+import re
 import unittest
 
 from harness import MESHES, TestCase, block_case, run
@@ -189,6 +190,17 @@ class SemanticErrors(TestCase):
         case = self.write("case.toml", block_case() + support("bottom", '["y"]', 0))
         process = self.expect_status(0, run("validate", case))
         self.assertIn("warning: 4 nodes of contact boundaries are held by supports", process.stderr)
+
+    def test_locking_is_told_from_a_ratio_of_0_45_on(self):
+        """Whatever the modulus is: the ratio is the user's number, not what rounding makes of it."""
+        def warns(young, ratio):
+            text = re.sub(r"lambda = .*\nmu = .*", f"young = {young}\npoisson = {ratio}", block_case())
+            process = self.expect_status(0, run("validate", self.write("case.toml", text)))
+            return "elements of degree 1 lock" in process.stderr
+
+        for young in ("5e6", "60e6", "61e6", "1e9", "210e9"):
+            self.assertTrue(warns(young, 0.45), young)
+        self.assertFalse(warns("60e6", 0.4499))
 
     def test_supports_with_parameters_of_their_own(self):
         """Two supports with the same text are not the same support."""

@@ -139,7 +139,8 @@ void assign_materials(const Case& input, Model& model) {
         {section.group, section.density, section.lambda, section.mu, section.damping.mass, section.damping.stiffness});
     const double poisson = model.body.materials.back().poisson();
     const bool locks = input.mesh.degree == 1 && !(mesh.dimension == 2 && model.body.plane == PlaneState::stress);
-    if (locks && poisson > 0.45) {
+    // Got back from λ and μ, 0.45 itself is a little more or less.
+    if (locks && poisson >= 0.45 * (1.0 - 1e-9)) {
       log::warning(fmt::format(
           "material \"{}\" is nearly incompressible (Poisson's ratio {:.4g}): elements of degree 1 lock and "
           "are far too stiff; use mesh.degree = 2",
