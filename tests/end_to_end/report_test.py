@@ -365,7 +365,12 @@ class Report(TestCase):
         self.assertEqual(other.read_text(), "<p>my notes</p>")
         self.report(results, "-o", self.folder / "page.html")
         self.report(results, "-o", self.folder / "page.html")  # one's own is written over
-        self.assertIn("missing/page.html", self.report(results, "-o", self.folder / "missing" / "page.html", status=4).stderr)
+        missing = self.folder / "missing"
+        process = self.report(results, "-o", missing / "page.html", status=4)
+        self.assertIn(f"{missing}/page.html: cannot write: {missing} does not exist", process.stderr)
+        self.assertNotIn(".new", process.stderr)
+        process = self.report(results, "-o", other / "page.html", status=4)
+        self.assertIn(f"{other}/page.html: cannot write: {other} is no directory", process.stderr)
         os.truncate(results / "results.h5", 3000)
         self.assertIn("results.h5", self.report(results, status=2).stderr)
         self.viewer.unlink()

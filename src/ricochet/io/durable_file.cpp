@@ -23,7 +23,10 @@ namespace {
 /// Closed at the end of its scope.
 class OpenFile {
  public:
-  OpenFile(const std::string& path, int flags) : path_(path), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+  OpenFile(const std::string& path, int flags) : OpenFile(path, flags, path) {}
+  /// A file that the user knows by another name.
+  OpenFile(const std::string& path, int flags, const std::string& known_as)
+      : path_(known_as), descriptor_(open(path.c_str(), flags | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) throw_file_error(path_, "open", errno);
   }
   ~OpenFile() {
@@ -53,6 +56,18 @@ std::string parent_of(const std::string& path) {
   return parent.empty() ? "." : parent;
 }
 
+/// What else may be wrong with it is told when the file is opened.
+void require_parent_directory(const std::string& path) {
+  const std::string parent = parent_of(path);
+  std::error_code ignored;
+  using Type = std::filesystem::file_type;
+  const Type type = std::filesystem::status(parent, ignored).type();
+  if (type == Type::directory || type == Type::none || type == Type::unknown) return;
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: cannot write: {} {}", path, parent,
+                          type == Type::not_found ? "does not exist; make this directory first" : "is no directory"));
+}
+
 void write_all(const std::string& path, int descriptor, const std::string& content) {
   for (std::size_t done = 0; done < content.size();) {
     const ssize_t written = write(descriptor, content.data() + done, content.size() - done);
@@ -73,9 +88,10 @@ void sync_to_disk(const std::string& path) {
 }
 
 void write_durably(const std::string& path, const std::string& content) {
+  require_parent_directory(path);
   const std::string temporary = path + ".new";
   try {
-    OpenFile file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+    OpenFile file(temporary, O_WRONLY | O_CREAT | O_TRUNC, path);
     write_all(path, file.descriptor(), content);
     file.sync();
     file.close();
