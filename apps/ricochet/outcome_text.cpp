@@ -45,9 +45,18 @@ std::string impact_text(const Impact& impact, const RunSummary& summary) {
   return text;
 }
 
+void print_no_contact(const RunSummary& summary) {
+  // Results of a version that told no impacts list no bodies: nothing is known of them.
+  if (summary.contacts.empty() || summary.bodies.empty() || summary.steps == 0) return;
+  if (!summary.impacts.empty() || summary.impacts_left_out > 0) return;
+  fmt::print("  no contact: no contact force {}\n",
+             summary.status == "done" ? "acted in this run" : "has acted in this run so far");
+}
+
 }  // namespace
 
 void print_impacts(const RunSummary& summary, std::size_t most) {
+  print_no_contact(summary);
   const std::size_t count = summary.impacts.size();
   const std::size_t shown = most == 0 ? count : std::min(most, count);
   for (std::size_t i = 0; i < shown; ++i)

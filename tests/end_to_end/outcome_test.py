@@ -6,7 +6,7 @@ import unittest
 import h5py
 import numpy
 
-from harness import DISC, SOURCE, TestCase, run, settings
+from harness import DISC, SOURCE, TestCase, block_case, run, settings, with_more
 
 # The puck of the first case strikes a wall once and leaves.
 PUCK = SOURCE / "cases" / "puck" / "puck.toml"
@@ -37,6 +37,23 @@ class Outcome(TestCase):
         said = self.expect_status(0, run("info", folder)).stdout
         self.assertIn(f"restitution {impact['restitution']:.4g}", said)
         self.assertIn(f"largest von Mises stress {found['peak_stress']['von_mises']:.6g}", said)
+
+    def test_a_run_without_contact_says_so(self):
+        told = "  no contact: no contact force acted in this run\n"
+
+        def says(case, name, *options):
+            process = self.expect_status(0, run("run", case, "-o", self.folder / name, "--quiet", *options))
+            info = self.expect_status(0, run("info", self.folder / name)).stdout
+            self.assertEqual(told in process.stdout, told in info)
+            return told in info
+
+        text = with_more(PUCK, "")
+        short = self.write("short.toml", text.replace("end = 1.5e-3", "end = 3.0e-4"))
+        self.assertTrue(says(short, "short"))
+        touches = self.write("touches.toml", text.replace("end = 1.5e-3", "end = 4.2e-4"))
+        self.assertFalse(says(touches, "touches"))
+        text = block_case().replace('[[contact]]\ngroup = "bottom"\nobstacle = "floor"\n', "")
+        self.assertFalse(says(self.write("free.toml", text), "free"))
 
     def test_they_do_not_depend_on_what_else_is_written(self):
         often = summary(self.simulate(DISC, "often", {"time.end": 0.03}))
