@@ -15,6 +15,39 @@ import numpy
 from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, run
 from vtk_cells import middles, volumes
 
+# Four squares in a row, of two materials by turns, with numbers that go down.
+STRIP = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+1 3 "bottom"
+2 1 "light"
+2 2 "heavy"
+$EndPhysicalNames
+$Nodes
+10
+1 0 0 0
+2 1 0 0
+3 2 0 0
+4 3 0 0
+5 4 0 0
+6 0 1 0
+7 1 1 0
+8 2 1 0
+9 3 1 0
+10 4 1 0
+$EndNodes
+$Elements
+5
+90 1 2 3 1 1 2
+70 3 2 1 1 1 2 7 6
+50 3 2 2 2 2 3 8 7
+30 3 2 1 1 3 4 9 8
+10 3 2 2 2 4 5 10 9
+$EndElements
+"""
+
 CASE = """
 [mesh]
 file = "{mesh}"
@@ -180,6 +213,19 @@ class ResultsFiles(TestCase):
         times = [float(element.get("Value")) for element in tree.iter("Time")]
         self.assertEqual(len(times), len(read))
         self.check_probes(results, points, list(zip(times, read)))
+
+    def test_cells_have_the_numbers_of_the_mesh_file(self):
+        text = CASE.format(mesh=self.write("strip.msh", STRIP), degree=1, scheme="midpoint", up=[0, 1], down=[0, -1],
+                           point=[0.0, -0.01], group="light", bottom="bottom", lowest=[0.0, 0.0], highest=[0.0, 1.0])
+        text += '[[material]]\ngroup = "heavy"\ndensity = 2.0\nlambda = 100.0\nmu = 50.0\n'
+        results = self.simulate(self.write("case.toml", text))
+        elements = [list(map(int, line.split())) for line in STRIP.split("$Elements")[1].splitlines()[2:-1]]
+        nodes_of = {element[0]: element[5:] for element in elements}
+        with h5py.File(results / "results.h5", "r") as file:
+            numbers, cells = list(file["/mesh/element"][()]), file["/mesh/cells"][()]
+        self.assertEqual(numbers, [70, 30, 50, 10])  # by group, in the order of the file
+        for number, cell in zip(numbers, cells):
+            self.assertEqual(sorted(cell + 1), sorted(nodes_of[number]))
 
     def test_curved_triangles(self):
         """The body as meshio reads it from the mesh file."""

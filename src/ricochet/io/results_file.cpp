@@ -59,6 +59,15 @@ FixedDataset cells_of(const DisplacementSpace& space) {
   return connectivity(space, "/mesh/cells", parts);
 }
 
+/// The number of each cell in the mesh file.
+FixedDataset element_numbers(const DisplacementSpace& space) {
+  FixedDataset set{"/mesh/element", 0, 0, {}, {}};
+  for (const CellBlock& block : space.cells)
+    set.integers.insert(set.integers.end(), block.tags.begin(), block.tags.end());
+  set.rows = static_cast<Index>(set.integers.size());
+  return set;
+}
+
 FixedDataset contact_facets_of(const DisplacementSpace& space, const ContactBoundary& contact) {
   std::vector<Part> parts;
   for (const Index facet : contact.facets) {
@@ -151,6 +160,7 @@ ResultsWriter::Implementation::Implementation(const std::string& directory, cons
   const DisplacementSpace& space = *body.space;
   std::vector<FixedDataset> fixed{node_positions(space), cells_of(space)};
   mesh = topology_of(space, fixed.back()) + geometry_of(space);
+  fixed.push_back(element_numbers(space));
   if (!problem.contact.facets.empty()) fixed.push_back(contact_facets_of(space, problem.contact));
   if (snapshot == nullptr) {
     file.emplace(path, fixed, datasets_of(fields), options.file);
