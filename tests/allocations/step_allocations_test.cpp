@@ -37,6 +37,7 @@ struct Variant {
   std::string name, time, mass, contact;
   std::vector<std::string> overrides;
   bool is_steady = true;  ///< the contact stays as it is for many steps
+  bool moving = false;    ///< the obstacle drifts and, in 3D, turns
 };
 
 void PrintTo(const Variant& variant, std::ostream* stream) {
@@ -51,7 +52,27 @@ std::vector<Variant> variants() {
           {"NewmarkIterative", trapezoidal, "equivalent", "friction = 0.3\n", {"solver.method=iterative"}},
           {"KlrConserving", "scheme = \"klr-conserving\"\n", "consistent", "friction = 0.3\n", {}, false},
           {"Midpoint", "scheme = \"midpoint\"\n", "lumped", "", {}, false},
-          {"SemiExplicit", "scheme = \"semi-explicit\"\n", "equivalent-lumped", "friction = 0.3\n", {}}};
+          {"SemiExplicit", "scheme = \"semi-explicit\"\n", "equivalent-lumped", "friction = 0.3\n", {}},
+          {"MovingObstacle", trapezoidal, "equivalent", "friction = 0.3\n", {}, true, true},
+          {"MovingObstacleKlrConserving",
+           "scheme = \"klr-conserving\"\n",
+           "consistent",
+           "friction = 0.3\n",
+           {},
+           false,
+           true},
+          {"MovingObstacleMidpoint", "scheme = \"midpoint\"\n", "lumped", "friction = 0.3\n", {}, false, true},
+          {"MovingObstacleSemiExplicit",
+           "scheme = \"semi-explicit\"\n",
+           "equivalent-lumped",
+           "friction = 0.3\n",
+           {},
+           true,
+           true}};
+}
+
+std::string motion_of_obstacle(int dimension) {
+  return dimension == 2 ? "velocity = [0.2, 0.0]\n" : "velocity = [0.2, 0.1, 0.0]\nrotation_rate = 0.3\n";
 }
 
 class StepAllocations : public testing::TestWithParam<Variant> {};
@@ -75,7 +96,8 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
       set_thread_count(threads);
       std::vector<std::string> overrides = GetParam().overrides;
       overrides.push_back("time.end=3.0");
-      CaseRun run(thrown_case(bodies[body], GetParam().mass, GetParam().time, GetParam().contact), overrides);
+      const std::string motion = GetParam().moving ? motion_of_obstacle(bodies[body].dimension) : "";
+      CaseRun run(thrown_case(bodies[body], GetParam().mass, GetParam().time, GetParam().contact, motion), overrides);
       HistoryRecorder recorder(run.problem(), *run.model().rotation, run.model().sensors);
       const ConnectedBodies connected = find_connected_bodies(run.model().space);
       ImpactRecorder impacts(run.problem(), run.scheme(), run.state(), {"plane"}, connected.of_node, {0.1});

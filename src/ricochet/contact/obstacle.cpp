@@ -34,7 +34,7 @@ class Plane final : public Obstacle {
     return 8.0 * std::numeric_limits<double>::epsilon() * size;
   }
   [[nodiscard]] bool moves() const override { return rotation_rate_ != 0.0 || !velocity_.isZero(0.0); }
-  [[nodiscard]] Vector translation(double time) const override { return time * velocity_; }
+  [[nodiscard]] SpaceVector translation(double time) const override { return time * velocity_; }
   /// What moves along the plane is not seen, what turns is.
   [[nodiscard]] Points surface(const Vector& centre, double radius, double time) const override {
     const Vector lift = translation(time).dot(normal_) * normal_;
@@ -55,7 +55,7 @@ class Plane final : public Obstacle {
     }
     return corners;
   }
-  [[nodiscard]] Vector surface_velocity(const Vector& position, double time) const override {
+  [[nodiscard]] SpaceVector surface_velocity(const SpaceVector& position, double time) const override {
     if (rotation_rate_ == 0.0) return velocity_;
     const Eigen::Vector3d axis = normal_;
     const Eigen::Vector3d arm = position - point_ - translation(time);

@@ -9,6 +9,9 @@
 /// @file Rigid obstacles. To add one: a class here or in a file of its own, and one line in `make_obstacle`.
 namespace ricochet {
 
+/// A point or a displacement of space, of two or three components: making one allocates nothing.
+using SpaceVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
+
 /// A rigid body seen from a point of space: how far its surface is, which way is out, and how it moves. Gaps and
 /// normals are those at t = 0; an obstacle may translate, and turn in ways that leave its surface what it is.
 class Obstacle {
@@ -23,12 +26,12 @@ class Obstacle {
   /// Whether its material moves at all.
   [[nodiscard]] virtual bool moves() const = 0;
   /// Displacement of the obstacle as a whole since t = 0: the gap at t is that of position − translation(t) at 0.
-  [[nodiscard]] virtual Vector translation(double time) const = 0;
+  [[nodiscard]] virtual SpaceVector translation(double time) const = 0;
   /// For pictures: points of the surface at a time (d × count), in order along it in 2D, the corners of quadrilaterals
   /// in 3D (four after each other), as far as `radius` around the point of the surface nearest to `centre`.
   [[nodiscard]] virtual Points surface(const Vector& centre, double radius, double time) const = 0;
   /// Velocity of the obstacle's material at a position of its surface: v + ω × (position − its point at that time).
-  [[nodiscard]] virtual Vector surface_velocity(const Vector& position, double time) const = 0;
+  [[nodiscard]] virtual SpaceVector surface_velocity(const SpaceVector& position, double time) const = 0;
 };
 
 /// What a case says of an obstacle.

@@ -12,7 +12,7 @@ void subtract_translation(const std::vector<const Obstacle*>& obstacles, const s
                           const Points& normals, double time, Vector& gap) {
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (!obstacles[k]->moves()) continue;
-    const Vector translation = obstacles[k]->translation(time);
+    const SpaceVector translation = obstacles[k]->translation(time);
     for (Index i = 0; i < gap.size(); ++i) {
       if (pair[static_cast<std::size_t>(i)] == static_cast<int>(k)) gap[i] -= normals.col(i).dot(translation);
     }
@@ -45,7 +45,7 @@ void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double t
   const int tangents = dimension - 1;
   velocity.normal.setZero(contact.size());
   velocity.tangential.setZero(contact.size() * tangents);
-  Vector position(dimension);
+  SpaceVector position(dimension);
   for (Index i = 0; i < contact.size(); ++i) {
     const Obstacle& obstacle = *obstacle_of_point(i);
     if (!obstacle.moves()) continue;
@@ -53,7 +53,7 @@ void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double t
     for (SparseRowMatrix::InnerIterator entry(contact.trace, i); entry; ++entry) {
       position += entry.value() * (nodes.col(entry.col()) + displacement.segment(entry.col() * dimension, dimension));
     }
-    const Vector at = obstacle.surface_velocity(position, time);
+    const SpaceVector at = obstacle.surface_velocity(position, time);
     velocity.normal[i] = contact.normals.col(i).dot(at);
     for (int k = 0; k < tangents; ++k) {
       const Index row = i * tangents + k;

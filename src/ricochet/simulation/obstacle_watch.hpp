@@ -62,7 +62,7 @@ class ObstacleWatch {
   std::vector<RimFacet> rim_;
   std::vector<DeepestPoint> deepest_;
   std::vector<RimContact> rims_;
-  std::vector<Vector> translation_;  ///< of each obstacle at this time; empty: it is at rest
+  std::vector<SpaceVector> translation_;  ///< of each obstacle at this time; empty: it is at rest
   Vector position_;
 };
 
