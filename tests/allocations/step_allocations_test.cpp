@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
 #include <ostream>
 
@@ -21,8 +22,10 @@ namespace {
 
 using test_support::allocation_count;
 using test_support::CaseRun;
+using test_support::mesh_geometry;
 using test_support::thrown_bodies;
 using test_support::thrown_case;
+using test_support::ThrownBody;
 
 TEST(AllocationCount, CountsWhatIsAllocated) {
   const long before = allocation_count();
@@ -130,6 +133,30 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
     }
   }
   set_thread_count(1);
+}
+
+/// The report is rewritten while a run goes on, under a lock: finding the same takes the same work in a finer mesh.
+TEST(PenetrationReports, CostTheSameInAFinerMesh) {
+  std::vector<long> counts;
+  for (const double size : {0.3, 0.05}) {
+    const std::string disc = "Disk(1)={0,1.02,0,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};";
+    const ThrownBody body{"disc", 2, 1, mesh_geometry("disc", disc, size, 1)};
+    CaseRun run(thrown_case(body, "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
+    // The disc is about the middle of the wall, which no contact names.
+    ObstacleParameters wall{"plane", Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(1.0, 0.0)};
+    const std::unique_ptr<Obstacle> obstacle = make_obstacle(wall);
+    PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs, {{"wall", obstacle.get()}});
+    watch.look(run.state());
+    const long before = allocation_count();
+    const PenetrationReport report = watch.report();
+    counts.push_back(allocation_count() - before);
+    ASSERT_EQ(report.found.size(), 1u);
+    EXPECT_EQ(report.found[0].bodies, (std::vector<std::string>{"the body"}));
+    EXPECT_EQ(report.found[0].groups, (std::vector<std::string>{"contact"}));
+    EXPECT_NEAR(report.found[0].depth, 1.0, 0.02);
+    EXPECT_NEAR(report.found[0].relative_depth, report.found[0].depth / std::sqrt(8.0), 0.02);
+  }
+  EXPECT_EQ(counts[0], counts[1]);
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, StepAllocations, testing::ValuesIn(variants()),

@@ -131,11 +131,11 @@ void Run::finish() {
     summary_.status = "failed";
     summary_.message = failure_->what();
   }
-  if (summary_.status == "done") {
-    describe_progress(summary_);
-    judge_energy(summary_, model_->problem, simulation_->state());
-  }
   describe_progress(summary_);
+  if (summary_.status == "done") {
+    judge_energy(summary_, model_->problem, simulation_->state());
+    summary_.warnings = log::warnings();
+  }
   if (contact_export_) summary_.contact_export = contact_export_->report();
   if (summary_.status == "done")
     summary_.expectations = check_expectations(input_, options_.output_directory, to_json(summary_));

@@ -17,8 +17,8 @@ std::vector<const Obstacle*> obstacles_of(const std::vector<NamedObstacle>& name
   return result;
 }
 
-/// Diagonal of the box around the body that a node belongs to.
-std::vector<double> sizes(const Points& nodes, const ConnectedBodies& bodies) {
+/// Diagonal of the box around each body.
+std::vector<double> sizes_of_bodies(const Points& nodes, const ConnectedBodies& bodies) {
   std::vector<Eigen::AlignedBox3d> boxes(static_cast<std::size_t>(bodies.count));
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (Index node = 0; node < nodes.cols(); ++node) {
@@ -26,7 +26,33 @@ std::vector<double> sizes(const Points& nodes, const ConnectedBodies& bodies) {
     boxes[static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)])].extend(position);
   }
   std::vector<double> result;
-  for (const int body : bodies.of_node) result.push_back(boxes[static_cast<std::size_t>(body)].diagonal().norm());
+  for (const Eigen::AlignedBox3d& box : boxes) result.push_back(box.diagonal().norm());
+  return result;
+}
+
+/// Of the body that a node belongs to, per node.
+std::vector<double> sizes_at_nodes(const std::vector<double>& size_of_body, const ConnectedBodies& bodies) {
+  std::vector<double> result;
+  for (const int body : bodies.of_node) result.push_back(size_of_body[static_cast<std::size_t>(body)]);
+  return result;
+}
+
+/// By the groups of cells that they have a part in.
+std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies& bodies) {
+  if (bodies.count == 1) return {"the body"};
+  std::vector<std::vector<std::string>> groups(static_cast<std::size_t>(bodies.count));
+  for (const Group& group : mesh.groups) {
+    if (group.dimension != mesh.dimension) continue;
+    std::vector<char> has_part(groups.size(), 0);
+    for (const Index cell : group.members)
+      has_part[static_cast<std::size_t>(bodies.of_cell[static_cast<std::size_t>(cell)])] = 1;
+    for (std::size_t body = 0; body < groups.size(); ++body) {
+      if (has_part[body] != 0) groups[body].push_back(group.name);
+    }
+  }
+  std::vector<std::string> result;
+  for (std::size_t body = 0; body < groups.size(); ++body)
+    result.push_back(fmt::format("body {} ({})", body, join_names(groups[body])));
   return result;
 }
 
@@ -67,10 +93,17 @@ PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& 
       pairs_(pairs),
       named_(obstacles),
       bodies_(find_connected_bodies(*body.space)),
-      size_(sizes(problem.nodes, bodies_)),
+      size_of_body_(sizes_of_bodies(problem.nodes, bodies_)),
+      name_of_body_(names_of_bodies(*body.mesh, bodies_)),
+      size_(sizes_at_nodes(size_of_body_, bodies_)),
       obstacles_(problem, body.space->cells, boundary, obstacles_of(obstacles), size_),
       body_watch_(problem.nodes, body.space->cells, boundary, bodies_, size_),
-      told_obstacle_(obstacles.size(), 0) {}
+      told_obstacle_(obstacles.size(), 0) {
+  for (const Group& group : body.mesh->groups) {
+    if (group.dimension == body.mesh->dimension - 1)
+      boundary_groups_.push_back({group.name, facet_nodes(*body.space, group.members)});
+  }
+}
 
 void PenetrationWatch::look(const State& state) {
   ++looks_;
@@ -128,24 +161,10 @@ std::string PenetrationWatch::advice(std::size_t obstacle) const {
   return fmt::format("the [[contact]] group {} does not reach so far; extend it ({})", join_names(groups), place);
 }
 
-std::string PenetrationWatch::name_of_body(int body) const {
-  std::vector<std::string> names;
-  for (const Group& group : body_.mesh->groups) {
-    if (group.dimension != body_.mesh->dimension) continue;
-    if (std::any_of(group.members.begin(), group.members.end(),
-                    [&](Index cell) { return bodies_.of_cell[static_cast<std::size_t>(cell)] == body; }))
-      names.push_back(group.name);
-  }
-  if (bodies_.count == 1) return "the body";
-  return fmt::format("body {} ({})", body, join_names(names));
-}
-
 std::vector<std::string> PenetrationWatch::groups_of(Index node) const {
   std::vector<std::string> names;
-  for (const Group& group : body_.mesh->groups) {
-    if (group.dimension != body_.mesh->dimension - 1) continue;
-    const std::vector<Index> nodes = facet_nodes(*body_.space, group.members);
-    if (std::binary_search(nodes.begin(), nodes.end(), node)) names.push_back(group.name);
+  for (const BoundaryGroup& group : boundary_groups_) {
+    if (std::binary_search(group.nodes.begin(), group.nodes.end(), node)) names.push_back(group.name);
   }
   return names;
 }
@@ -156,11 +175,10 @@ std::vector<double> PenetrationWatch::place_of(const Eigen::Vector3d& place) con
 
 UnwatchedPenetration PenetrationWatch::describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const {
   UnwatchedPenetration result;
-  for (const int body : bodies) result.bodies.push_back(name_of_body(body));
   double size = size_[static_cast<std::size_t>(deepest.node)];
-  for (std::size_t node = 0; node < size_.size(); ++node) {
-    if (std::find(bodies.begin(), bodies.end(), bodies_.of_node[node]) != bodies.end())
-      size = std::min(size, size_[node]);
+  for (const int body : bodies) {
+    result.bodies.push_back(name_of_body_[static_cast<std::size_t>(body)]);
+    size = std::min(size, size_of_body_[static_cast<std::size_t>(body)]);
   }
   result.depth = deepest.depth;
   result.relative_depth = deepest.depth / size;

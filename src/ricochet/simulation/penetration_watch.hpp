@@ -60,12 +60,17 @@ class PenetrationWatch {
   /// Of the last state, besides: at bodies even if none has moved far.
   void look_at_end(const State& state);
 
+  /// For a run that goes on it is asked for again and again: what it costs does not grow with the mesh.
   [[nodiscard]] PenetrationReport report() const;
 
  private:
+  /// A group of facets of the mesh.
+  struct BoundaryGroup {
+    std::string name;
+    std::vector<Index> nodes;  ///< sorted
+  };
   PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
                    const std::vector<NamedObstacle>& obstacles, const std::vector<CellFacet>& boundary);
-  [[nodiscard]] std::string name_of_body(int body) const;
   [[nodiscard]] std::vector<std::string> groups_of(Index node) const;
   [[nodiscard]] std::vector<double> place_of(const Eigen::Vector3d& place) const;
   [[nodiscard]] UnwatchedPenetration describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const;
@@ -80,9 +85,12 @@ class PenetrationWatch {
   const std::vector<ContactPair>& pairs_;
   std::vector<NamedObstacle> named_;
   ConnectedBodies bodies_;
+  std::vector<double> size_of_body_;
+  std::vector<std::string> name_of_body_;
   std::vector<double> size_;  ///< of its body, per node
   ObstacleWatch obstacles_;
   BodyWatch body_watch_;
+  std::vector<BoundaryGroup> boundary_groups_;
   long looks_ = 0;
   // What was told.
   std::vector<char> told_obstacle_;
