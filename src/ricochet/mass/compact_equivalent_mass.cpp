@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/fem/cell_masses.hpp"
@@ -23,7 +22,7 @@ constexpr double small_weights = 4.0;
 constexpr std::size_t many_rings = 4;
 constexpr double fair_weights = 10.0;
 
-/// Cells in rings around one, by the facets that they share.
+/// Cells in rings around one, by the facets that they share. Each ring costs what it adds.
 class CellRings {
  public:
   CellRings(const CellMasses& cells, Index node_count) : at_node_(static_cast<std::size_t>(node_count)) {
@@ -33,29 +32,54 @@ class CellRings {
       nodes_.push_back(nodes);
     });
     facet_nodes_ = cells.least_facet_nodes();
+    common_.assign(nodes_.size(), 0);
+    stamp_.assign(nodes_.size(), 0);
   }
 
-  /// Adds the cells that share a facet with one of them.
-  void grow(std::vector<int>& cells) const {
-    std::map<int, int> common;
-    const std::vector<int> before = cells;
-    for (const int cell : before) {
-      common.clear();
-      for (const Index node : nodes_[static_cast<std::size_t>(cell)]) {
-        for (const int other : at_node_[static_cast<std::size_t>(node)]) ++common[other];
-      }
-      for (const auto& [other, count] : common) {
-        if (count >= facet_nodes_ && std::find(cells.begin(), cells.end(), other) == cells.end())
-          cells.push_back(other);
-      }
-    }
+  /// The cell alone.
+  void start(int cell) {
+    ++run_;
+    cells_.assign(1, cell);
+    stamp_[static_cast<std::size_t>(cell)] = run_;
+    frontier_ = 0;
   }
+  /// Adds the cells that share a facet with those of the outermost ring; false where there are none.
+  bool grow() {
+    const std::size_t before = cells_.size();
+    for (; frontier_ < before; ++frontier_) add_neighbours(cells_[frontier_]);
+    return cells_.size() > before;
+  }
+  [[nodiscard]] const std::vector<int>& cells() const { return cells_; }
   [[nodiscard]] const std::vector<Index>& nodes(int cell) const { return nodes_[static_cast<std::size_t>(cell)]; }
+  [[nodiscard]] std::size_t count() const { return nodes_.size(); }
 
  private:
+  void add_neighbours(int cell) {
+    met_.clear();
+    for (const Index node : nodes(cell)) {
+      for (const int other : at_node_[static_cast<std::size_t>(node)]) {
+        if (common_[static_cast<std::size_t>(other)]++ == 0) met_.push_back(other);
+      }
+    }
+    for (const int other : met_) {
+      const auto at = static_cast<std::size_t>(other);
+      if (common_[at] >= facet_nodes_ && stamp_[at] != run_) {
+        stamp_[at] = run_;
+        cells_.push_back(other);
+      }
+      common_[at] = 0;
+    }
+  }
+
   std::vector<std::vector<int>> at_node_;
   std::vector<std::vector<Index>> nodes_;
   int facet_nodes_ = 0;
+  std::vector<int> cells_;    ///< ring after ring
+  std::size_t frontier_ = 0;  ///< the first of the outermost ring
+  std::vector<int> stamp_;    ///< per cell: the run that added it last
+  int run_ = 0;
+  std::vector<int> common_;  ///< per cell: nodes in common with the one that is looked at, else 0
+  std::vector<int> met_;
 };
 
 /// The extension of a cell: its contact nodes follow free nodes of its own, or of it and its neighbours.
@@ -82,16 +106,19 @@ class Builder {
   void add_cell(const std::vector<Index>& nodes, const Matrix& mass);
   void add_value(Index row, Index column, double value);
   CellExtension extend(const std::vector<Index>& nodes);
+  [[nodiscard]] CellExtension extend_from(const std::vector<Index>& nodes, std::vector<Index> donors) const;
+  void require_free_nodes_of_body(const std::vector<Index>& nodes);
   [[nodiscard]] std::vector<Index> free_nodes_of(const std::vector<Index>& nodes) const;
   [[nodiscard]] std::vector<Index> free_nodes_around(const std::vector<int>& cells) const;
   void extrapolate(const std::vector<Index>& nodes, CellExtension& extension) const;
   [[nodiscard]] bool is_contact(Index node) const { return is_contact_[static_cast<std::size_t>(node)] != 0; }
-  [[noreturn]] void refuse(Index node, std::vector<Index> free) const;
+  [[noreturn]] void refuse(const std::vector<Index>& nodes, const std::vector<Index>& free) const;
 
   const MassInput& input_;
   std::vector<char> is_contact_;
   Vector trust_;  ///< m_jj
   std::unique_ptr<CellRings> rings_;
+  std::vector<char> is_checked_;                ///< per cell: the free nodes of its body span space
   SparseMatrix result_;                         ///< on the pattern of M
   std::vector<Eigen::Triplet<double>> beyond_;  ///< what is not in it
   int number_ = 0;                              ///< of the cell
@@ -172,23 +199,42 @@ void Builder::add_cell(const std::vector<Index>& nodes, const Matrix& mass) {
 
 /// From the cell's own free nodes if they are enough, else from more and more rings of cells.
 CellExtension Builder::extend(const std::vector<Index>& nodes) {
-  CellExtension best;
-  std::vector<int> cells{number_ - 1};
-  std::vector<Index> free;
-  std::size_t before = 0;
-  for (std::size_t ring = 0; cells.size() > before; ++ring) {
-    before = cells.size();
-    CellExtension extension;
-    extension.donors = ring == 0 ? free_nodes_of(nodes) : free_nodes_around(cells);
-    free = extension.donors;
-    extrapolate(nodes, extension);
+  CellExtension best = extend_from(nodes, free_nodes_of(nodes));
+  if (best.weights <= small_weights) return best;
+  if (!rings_) rings_ = std::make_unique<CellRings>(*input_.cells, input_.consistent->cols());
+  require_free_nodes_of_body(nodes);
+  rings_->start(number_ - 1);
+  for (std::size_t ring = 1; rings_->grow(); ++ring) {
+    CellExtension extension = extend_from(nodes, free_nodes_around(rings_->cells()));
     if (extension.weights < best.weights) std::swap(best, extension);
     if (best.weights <= (ring < many_rings ? small_weights : fair_weights)) return best;
-    if (!rings_) rings_ = std::make_unique<CellRings>(*input_.cells, input_.consistent->cols());
-    rings_->grow(cells);
   }
-  if (std::isfinite(best.weights)) return best;  // all free nodes of the body
-  refuse(*std::find_if(nodes.begin(), nodes.end(), [this](Index node) { return is_contact(node); }), free);
+  if (!std::isfinite(best.weights)) refuse(nodes, free_nodes_around(rings_->cells()));
+  return best;  // all free nodes of the body
+}
+
+/// Refuses, once per body, what no number of rings would mend: they would grow to the whole body, cell after cell.
+void Builder::require_free_nodes_of_body(const std::vector<Index>& nodes) {
+  if (is_checked_.empty()) is_checked_.assign(rings_->count(), 0);
+  if (is_checked_[static_cast<std::size_t>(number_ - 1)] != 0) return;
+  rings_->start(number_ - 1);
+  while (rings_->grow()) continue;
+  std::vector<Index> body;
+  for (const int cell : rings_->cells()) {
+    is_checked_[static_cast<std::size_t>(cell)] = 1;
+    body.insert(body.end(), rings_->nodes(cell).begin(), rings_->nodes(cell).end());
+  }
+  std::sort(body.begin(), body.end());
+  body.erase(std::unique(body.begin(), body.end()), body.end());
+  const std::vector<Index> free = free_nodes_of(body);
+  if (!span_space(*input_.nodes, body, free)) refuse(nodes, free);
+}
+
+CellExtension Builder::extend_from(const std::vector<Index>& nodes, std::vector<Index> donors) const {
+  CellExtension result;
+  result.donors = std::move(donors);
+  extrapolate(nodes, result);
+  return result;
 }
 
 std::vector<Index> Builder::free_nodes_of(const std::vector<Index>& nodes) const {
@@ -250,7 +296,8 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
   if (std::isfinite(largest)) extension.weights = largest;
 }
 
-void Builder::refuse(Index node, std::vector<Index> free) const {
+void Builder::refuse(const std::vector<Index>& nodes, const std::vector<Index>& free) const {
+  const Index node = *std::find_if(nodes.begin(), nodes.end(), [this](Index n) { return is_contact(n); });
   throw Error(
       ErrorKind::invalid_input,
       fmt::format("mass type \"equivalent-compact\": the inertia of the contact node at {} cannot be moved to other "

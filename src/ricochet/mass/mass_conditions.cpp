@@ -135,6 +135,28 @@ std::string degeneracy(const Points& nodes, const std::vector<Index>& points) {
   return factor.rank() < d ? words[factor.rank()] : "";
 }
 
+bool span_space(const Points& nodes, const std::vector<Index>& body, const std::vector<Index>& points) {
+  const Index d = nodes.rows();
+  if (static_cast<Index>(points.size()) <= d) return false;
+  const auto relative_to = [&](const Vector& centre, const std::vector<Index>& of) {
+    Matrix result(d, static_cast<Index>(of.size()));
+    for (Index k = 0; k < result.cols(); ++k) result.col(k) = nodes.col(of[static_cast<std::size_t>(k)]) - centre;
+    return result;
+  };
+  Vector centre = Vector::Zero(d);
+  for (const Index node : body) centre += nodes.col(node) / static_cast<double>(body.size());
+  // X Xᵀ = Rᵀ R: R⁻ᵀ makes the body round, without the squares that lose half of the digits of flat bodies.
+  const Eigen::HouseholderQR<Matrix> shape(relative_to(centre, body).transpose());
+  const Matrix axes = shape.matrixQR().topRows(d).triangularView<Eigen::Upper>();
+  if (axes.diagonal().cwiseAbs().minCoeff() == 0.0) return false;  // nor does the body
+  const Matrix relative =
+      axes.transpose().triangularView<Eigen::Lower>().solve(relative_to(nodes.col(points.front()), points));
+  Eigen::ColPivHouseholderQR<Matrix> factor(d, relative.cols());
+  factor.setThreshold(1e-6);
+  factor.compute(relative);
+  return factor.rank() == d;
+}
+
 std::string describe_free_nodes(const Points& nodes, const std::vector<Index>& points) {
   if (points.empty()) return "no node off the contact boundary";
   std::string text = points.size() == 1 ? "one node off the contact boundary, at "

@@ -37,6 +37,10 @@ struct MassFrames {
 [[nodiscard]] std::string text_of_point(const Points& nodes, Index node);
 /// How points lie: "at one point", "on one line", "in one plane", or "" where they span space, rounding apart.
 [[nodiscard]] std::string degeneracy(const Points& nodes, const std::vector<Index>& points);
+/// False where points of a body are in one plane (in 2D: on one line) or fewer, to 1e-6 of what they extend, in the
+/// frame in which the body is as wide in all directions: weights that extrapolate from them to the body's nodes have
+/// Σ|w| near 1e6, which keeps no moment.
+[[nodiscard]] bool span_space(const Points& nodes, const std::vector<Index>& body, const std::vector<Index>& points);
 /// "3 nodes off the contact boundary, at (0, 0), (1, 0) and (2, 0), all on one line": how many there are, where the
 /// first ones are, and how they lie.
 [[nodiscard]] std::string describe_free_nodes(const Points& nodes, const std::vector<Index>& points);
