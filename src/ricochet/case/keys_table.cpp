@@ -319,8 +319,8 @@ Section mass_section() {
                 .doc = "The equivalent masses have no inertia on contact nodes, and keep total mass, centre of gravity "
                        "and moments of inertia. \"equivalent-lumped\" is diagonal, for the scheme \"semi-explicit\". "
                        "\"equivalent-compact\" couples hardly more nodes than \"consistent\", so that its factors are "
-                       "small; \"equivalent\" is built like it where a body in space has more than 2,000 contact "
-                       "nodes."}}};
+                       "small; \"equivalent\" is built like it where a case in space has more than 2,000 contact "
+                       "nodes, those of all bodies together."}}};
 }
 
 Section time_section() {
