@@ -21,6 +21,8 @@ CENTIMETRE = 1 / 2.54
 # Okabe and Ito's, which people with any kind of colour vision tell apart; the same as in reports.
 ALONE = "#1b1f24"
 COLOURS = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6b4c9a", "#5b5b5b"]
+# More runs than colours: each time the colours come again the lines have another pattern.
+PATTERNS = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (7, 2, 1.5, 2, 1.5, 2)), (0, (12, 3)), (0, (3, 3)), (0, (1.5, 4))]
 
 # Settings that a user has for other figures change nothing.
 matplotlib.rcdefaults()
@@ -33,10 +35,13 @@ plt.rcParams.update({
 
 
 def widths(panel):
-    """Of smooth curves that may lie upon one another those below are wider; those that rattle are thin."""
+    """Of smooth curves that may lie upon one another those below are wider, and those that rattle are thin. More than
+    three are alike: no width tells which lies below, and one that differs would look as if it meant something."""
+    if len(panel["curves"]) > 3:
+        return [1.2] * len(panel["curves"])
     result, above = [], 0
     for curve in reversed(panel["curves"]):
-        result.append(0.6 if curve["rattles"] else 0.9 + 0.9 * min(above, 2))
+        result.append(0.6 if curve["rattles"] else 0.9 + 0.9 * above)
         above += not curve["rattles"]
     if panel["y_label"] == "total energy":
         return [1.4 if len(result) > 1 else 0.8] * len(result)  # and the one on top is dashed
@@ -60,9 +65,11 @@ def draw_curves(axes, panel, several):
     count = len(panel["curves"])
     for i, (curve, width) in enumerate(zip(panel["curves"], widths(panel))):
         # The one on top lets that below be seen, where they are the same.
-        dashed = i == count - 1 > 0 and panel["y_label"] == "total energy"
+        dashed = 1 < count <= 3 and i == count - 1 and panel["y_label"] == "total energy"
         colour = COLOURS[curve["run"] % len(COLOURS)] if several else ALONE
-        axes.plot(curve["x"], [math.nan if y is None else y for y in curve["y"]], color=colour, label=literal(curve["label"]), lw=width, ls=(0, (5, 4)) if dashed else "-")
+        pattern = PATTERNS[curve["run"] // len(COLOURS) % len(PATTERNS)]
+        axes.plot(curve["x"], [math.nan if y is None else y for y in curve["y"]], color=colour, label=literal(curve["label"]),
+                  lw=width, ls=(0, (5, 4)) if dashed else pattern)
     axes.set_xlabel(panel["x_label"])
     axes.set_ylabel(literal(panel["y_label"]))
     if panel["logarithmic"]:
@@ -81,7 +88,8 @@ def draw_curves(axes, panel, several):
     if several:
         handles, labels = axes.get_legend_handles_labels()
         order = sorted(range(count), key=lambda i: panel["curves"][i]["run"])
-        axes.legend([handles[i] for i in order], [labels[i] for i in order], frameon=False)
+        # Long enough for a pattern to be told from the others.
+        axes.legend([handles[i] for i in order], [labels[i] for i in order], frameon=False, handlelength=2.0 if count <= len(COLOURS) else 3.5)
 
 
 def borders(places):

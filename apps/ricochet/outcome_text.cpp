@@ -20,6 +20,13 @@ std::string spin_text(const Eigen::Vector3d& spin, int dimension) {
   return dimension == 2 ? fmt::format("{:.4g}", spin[2]) : vector_text({spin[0], spin[1], spin[2]});
 }
 
+/// That of the normal parts of the contact forces, and of all of them where friction makes another number of it.
+std::string impulse_text(const Impact& impact) {
+  const std::string normal = fmt::format("{:.4g}", impact.normal_impulse.norm());
+  const std::string whole = fmt::format("{:.4g}", impact.impulse.norm());
+  return "normal impulse " + normal + (whole == normal ? "" : " (with friction " + whole + ")");
+}
+
 std::string impact_text(const Impact& impact, const RunSummary& summary) {
   std::string text;
   if (summary.bodies.size() > 1) text += fmt::format("body {} ", impact.body);
@@ -31,7 +38,7 @@ std::string impact_text(const Impact& impact, const RunSummary& summary) {
     text += ", not ended";
   }
   if (const auto restitution = impact.restitution()) text += fmt::format(", restitution {:.4g}", *restitution);
-  text += fmt::format(", impulse {:.4g}, largest force {:.4g} at {:.6g}", impact.impulse.norm(), impact.largest_force,
+  text += fmt::format(", {}, largest force {:.4g} at {:.6g}", impulse_text(impact), impact.largest_force,
                       impact.largest_force_time);
   const double before = impact.before.spin.norm(), after = impact.ended ? impact.after.spin.norm() : 0.0;
   // A body that does not spin shows rounding.

@@ -55,6 +55,18 @@ class Outcome(TestCase):
         text = block_case().replace('[[contact]]\ngroup = "bottom"\nobstacle = "floor"\n', "")
         self.assertFalse(says(self.write("free.toml", text), "free"))
 
+    def test_impulses_say_whether_friction_is_in_them(self):
+        folder = self.simulate(SOURCE / "cases" / "oblique" / "oblique.toml", "oblique", {"time.step": 1e-4})
+        impact = summary(folder)["impacts"][0]
+        whole = sum(component**2 for component in impact["impulse"])**0.5
+        # Coulomb's cone holds in each step, so it holds for the sums.
+        self.assertLessEqual(whole, (1 + 0.3**2)**0.5 * impact["normal_impulse"] * (1 + 1e-9))
+        said = self.expect_status(0, run("info", folder)).stdout
+        self.assertIn(f"normal impulse {impact['normal_impulse']:.4g} (with friction {whole:.4g}),", said)
+        folder = self.simulate(DISC, "disc", {"time.end": 0.03})
+        said = self.expect_status(0, run("info", folder)).stdout
+        self.assertIn(f"normal impulse {summary(folder)['impacts'][0]['normal_impulse']:.4g}, largest force", said)
+
     def test_they_do_not_depend_on_what_else_is_written(self):
         often = summary(self.simulate(DISC, "often", {"time.end": 0.03}))
         rarely = summary(self.simulate(DISC, "rarely", {"time.end": 0.03, "output.history_every": 50}))

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import struct
 import unittest
 import xml.etree.ElementTree
@@ -124,6 +125,21 @@ class Plot(TestCase):
         (points,) = curves(self.folder / "figure.svg")
         self.assertLessEqual(len(points), 20_000)
         self.assertGreater(len(points), 10_000)
+
+    def test_more_runs_than_colours_are_told_apart(self):
+        results = self.simulate("run", **{"time.end": 0.012, "time.step": 2e-4})
+        others = [self.folder / f"run{i}" for i in range(17)]
+        for folder in others:
+            shutil.copytree(results, folder)
+        for what in ("force", "energy"):
+            self.plot(*others, "--what", what, "-o", "figure.svg")
+            lines = []
+            for element in xml.etree.ElementTree.parse(self.folder / "figure.svg").iter(f"{SVG}path"):
+                if "clip-path" in element.attrib and len(re.findall(r"[ML] ", element.get("d", ""))) > 50:
+                    lines.append(dict(entry.strip().split(": ", 1) for entry in element.get("style").split(";") if entry))
+            self.assertEqual(len(lines), 17)
+            self.assertEqual(len({(line["stroke"], line.get("stroke-dasharray")) for line in lines}), 17, what)
+            self.assertEqual(len({line["stroke-width"] for line in lines}), 1, "widths would mean nothing")
 
     def test_wrong_use(self):
         results = self.simulate("run")

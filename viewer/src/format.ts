@@ -14,6 +14,12 @@ export function number(value: number | string | null, digits = 4): string {
   return `${short}·10${superscript(Number(exponent))}`.replace("-", "−");
 }
 
+/** Numbers that are no numbers (words, nulls) as NaN or infinity. */
+export function toNumber(value: number | string | null | undefined): number {
+  if (typeof value === "number") return value;
+  return value === "inf" ? Infinity : value === "-inf" ? -Infinity : NaN;
+}
+
 function superscript(exponent: number): string {
   const digits = "⁰¹²³⁴⁵⁶⁷⁸⁹";
   return (exponent < 0 ? "⁻" : "") + [...String(Math.abs(exponent))].map((digit) => digits[Number(digit)]).join("");

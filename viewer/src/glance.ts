@@ -11,12 +11,14 @@ export interface Finding {
   what: string;
   grade: Grade;
   words: string;
+  /** For a table, whose tips tell the rest. */
+  short: string;
   detail: string;
 }
 
 const percent = (value: number) => `${number(100 * value, value >= 0.1 ? 3 : 2)} %`;
 
-const broken = (what: string, time: number): Finding => ({ what, grade: "poor", words: `no number from t = ${number(time)} on`, detail: "infinite, or not a number" });
+const broken = (what: string, time: number): Finding => ({ what, grade: "poor", words: `no number from t = ${number(time)} on`, short: "no number", detail: "infinite, or not a number" });
 
 export function energyFinding(j: Judgement): Finding {
   // Where loads or friction change the energy, what contact does to it is looked at.
@@ -24,65 +26,68 @@ export function energyFinding(j: Judgement): Finding {
   if (j.energy_broken_at !== null) return broken(what, j.energy_broken_at);
   const scale = j.energy_scale;
   const source = j.is_isolated ? "total energy against that of the start" : "work of the contact forces against the energy of the start";
-  if (!(scale > 0)) return { what, grade: "none", words: "there is none", detail: "" };
+  if (!(scale > 0)) return { what, grade: "none", words: "there is none", short: "none", detail: "" };
   const gain = j.energy_gain / scale;
   const loss = j.energy_loss / scale;
   const detail = `${source}: rises by ${number(gain, 3)}, falls by ${number(loss, 3)} of it; the account closes to ${number(j.energy_residual / scale, 2)}`;
   if (gain > 0.02) {
     const words = gain > 1 ? `created: ${number(1 + gain, 3)} times what there was` : `created: +${percent(gain)}`;
-    return { what, grade: "poor", words, detail };
+    return { what, grade: "poor", words, short: words, detail };
   }
-  if (Math.max(gain, loss) < 1e-8) return { what, grade: "good", words: "kept to rounding", detail };
-  if (gain > loss) return { what, grade: gain > 0.005 ? "fair" : "good", words: `kept, but for +${percent(gain)}`, detail };
+  if (Math.max(gain, loss) < 1e-8) return { what, grade: "good", words: "kept to rounding", short: "kept", detail };
+  if (gain > loss) return { what, grade: gain > 0.005 ? "fair" : "good", words: `kept, but for +${percent(gain)}`, short: `+${percent(gain)}`, detail };
   const words = loss < 0.01 ? `kept, but for ${percent(loss)}` : `contact takes ${percent(loss)}`;
-  return { what, grade: loss < 0.01 ? "good" : "fair", words, detail };
+  return { what, grade: loss < 0.01 ? "good" : "fair", words, short: `−${percent(loss)}`, detail };
 }
 
 export function forceFinding(j: Judgement): Finding {
   const what = "Contact force";
   if (j.force_broken_at !== null) return broken(what, j.force_broken_at);
-  if (!(j.force_largest > 0)) return { what, grade: "none", words: "none", detail: "nothing touched" };
+  if (!(j.force_largest > 0)) return { what, grade: "none", words: "none", short: "none", detail: "nothing touched" };
   const most = `up to ${number(j.force_largest, 3)}`;
   const detail = `all contacts together; largest at t = ${number(j.force_largest_at)}. ${columnName(j.force)}: its total variation is ${number(j.force_variation, 3)}, that of its mean over a hundredth of the run (11 rows at least) ${number(j.trend_variation, 3)}`;
-  if (!(j.roughness > 0)) return { what, grade: "none", words: `${most}; too few rows to tell whether it is smooth`, detail };
+  if (!(j.roughness > 0)) return { what, grade: "none", words: `${most}; too few rows to tell whether it is smooth`, short: "too few rows", detail };
   const ofNode = j.node_roughness >= 2 && j.node_roughness > 2 * j.roughness;
   const roughness = ofNode ? j.node_roughness : j.roughness;
   const place = ofNode ? `: at ${columnName(j.node_force).split(":")[0]} it` : ":";
-  if (roughness < 2) return { what, grade: "good", words: `${most}, smooth`, detail };
-  const words = `${roughness < 6 ? "ripples" : "rattles"}${place} varies ${number(roughness, 2)} times as much as its trend`;
-  return { what, grade: roughness < 6 ? "fair" : "poor", words: `${most}, ${words}`, detail };
+  if (roughness < 2) return { what, grade: "good", words: `${most}, smooth`, short: "smooth", detail };
+  const name = roughness < 6 ? "ripples" : "rattles";
+  const words = `${name}${place} varies ${number(roughness, 2)} times as much as its trend`;
+  return { what, grade: roughness < 6 ? "fair" : "poor", words: `${most}, ${words}`, short: `${name}, ${number(roughness, 2)} ×`, detail };
 }
 
 export function penetrationFinding(j: Judgement): Finding {
   const what = "Interpenetration";
   if (j.penetration_broken_at !== null) return broken(what, j.penetration_broken_at);
   const relative = j.relative_penetration;
+  const share = relative === null ? `${number(j.penetration, 3)} deep` : percent(relative);
   const size = relative === null ? `${number(j.penetration, 3)} deep` : `${percent(relative)} of the body's size`;
   if (j.unwatched_penetration !== "") {
-    return { what, grade: "poor", words: `${size}, where no contact prevents it`, detail: `${j.unwatched_penetration}: deepest ${number(j.penetration, 3)}; warnings say where and when` };
+    return { what, grade: "poor", words: `${size}, where no contact prevents it`, short: `${share}, unprevented`, detail: `${j.unwatched_penetration}: deepest ${number(j.penetration, 3)}; warnings say where and when` };
   }
   const detail = relative === null
     ? `deepest ${number(j.penetration, 3)}; the run wrote no fields: the body's size is not known`
     : `deepest ${number(j.penetration, 3)}, ${number(relative, 2)} of the body's size`;
   const none = relative === null ? j.penetration === 0 : relative < 1e-9;
   if (!j.penetration_checked) {
-    return { what, grade: "none", words: `${none ? "none" : size} at contact points, elsewhere not checked`, detail: `${detail}; results of a version that looked at contact points only` };
+    return { what, grade: "none", words: `${none ? "none" : size} at contact points, elsewhere not checked`, short: `${none ? "none" : share}, not all checked`, detail: `${detail}; results of a version that looked at contact points only` };
   }
-  if (j.contact_beyond_rim !== "") return { what, grade: "fair", words: "contact goes on beyond its group", detail: `group "${j.contact_beyond_rim}" is in contact at its rim; ${detail}` };
-  if (none) return { what, grade: "good", words: "none", detail };
-  if (relative === null) return { what, grade: "none", words: size, detail };
-  return { what, grade: relative < 1e-5 ? "good" : relative < 0.01 ? "fair" : "poor", words: size, detail };
+  if (j.contact_beyond_rim !== "") return { what, grade: "fair", words: "contact goes on beyond its group", short: "beyond its group", detail: `group "${j.contact_beyond_rim}" is in contact at its rim; ${detail}` };
+  if (none) return { what, grade: "good", words: "none", short: "none", detail };
+  if (relative === null) return { what, grade: "none", words: size, short: share, detail };
+  return { what, grade: relative < 1e-5 ? "good" : relative < 0.01 ? "fair" : "poor", words: size, short: share, detail };
 }
 
 /** In rad: above it small strain no longer holds. */
-const rotationLimit = 0.1;
+export const rotationLimit = 0.1;
 
 export function rotationFinding(j: Judgement): Finding {
   const what = "Rotation";
   const strain = 1 - Math.cos(Math.min(j.rotation, Math.PI));
   const detail = `largest of a cell; small strain takes a rotation θ for a strain of 1 − cos θ, here ${number(strain, 2)}, that is not there`;
-  if (!(j.rotation > rotationLimit)) return { what, grade: "good", words: `${number(j.rotation, 2)} rad`, detail };
-  return { what, grade: "poor", words: `${number(j.rotation, 2)} rad: small strain does not hold (a strain of ${percent(strain)} is not there)`, detail };
+  const short = `${number(j.rotation, 2)} rad`;
+  if (!(j.rotation > rotationLimit)) return { what, grade: "good", words: short, short, detail };
+  return { what, grade: "poor", words: `${short}: small strain does not hold (a strain of ${percent(strain)} is not there)`, short, detail };
 }
 
 export const findings = (run: Run): Finding[] => [
@@ -102,7 +107,7 @@ export const marks: Record<Grade, [string, string]> = {
 export function findingsElement(run: Run): HTMLElement {
   return el("dl.findings", {}, ...findings(run).flatMap(({ what, grade, words, detail }) => [
     el("dt", {}, what),
-    el("dd", { className: grade, title: detail }, el("span.mark", { role: "img", "aria-label": marks[grade][1] }, marks[grade][0]), words),
+    el("dd", { className: grade, title: detail }, markElement(grade), words),
   ]));
 }
 
@@ -113,6 +118,9 @@ const sameProblem = (runs: Run[]): boolean => {
   const keys = new Set(runs.flatMap((run) => Object.keys(run.summary.parameters)));
   return [...keys].every((key) => methods.test(key) || new Set(runs.map((run) => run.summary.parameters[key])).size === 1);
 };
+
+/** A mark that those who do not see it hear. */
+export const markElement = (grade: Grade) => el("span.mark", { role: "img", "aria-label": marks[grade][1] }, marks[grade][0]);
 
 /** The sentence that says which of several runs to trust. */
 export function conclusion(runs: Run[]): string {

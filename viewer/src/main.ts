@@ -180,16 +180,11 @@ function contactSection(store: Store, runs: Run[], maps: ContactMap[]): HTMLElem
     }, "maps"));
 }
 
-/** Where there is something to see: the time of the largest contact force, that of the run whose force is smoothest. */
+/** Where there is something to see: the time of the largest contact force of all runs. */
 function interestingTime(runs: Run[]): number {
-  const smooth = runs.filter((run) => run.data.judgement.roughness > 0).sort((a, b) => a.data.judgement.roughness - b.data.judgement.roughness)[0];
-  if (!smooth) return 0;
-  const force = smooth.column("@force");
-  let best = 0;
-  force.forEach((value, i) => {
-    if (Math.abs(value) > Math.abs(force[best])) best = i;
-  });
-  return smooth.timesOf("@force")[best] ?? 0;
+  const most = (run: Run) => run.data.judgement.force_largest;
+  const judged = runs.filter((run) => run.data.judgement.force_broken_at === null && most(run) > 0);
+  return judged.length === 0 ? 0 : judged.reduce((best, run) => (most(run) > most(best) ? run : best)).largestForceTime;
 }
 
 async function start(): Promise<void> {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { ballRun, closeBrowser, fingerprint, folder, frictionRun, open, painted, report, ricochet, settle, simulate, source } from "./support.mjs";
+import { assertNear, ballRun, closeBrowser, fingerprint, folder, frictionRun, open, painted, report, ricochet, settle, simulate, source } from "./support.mjs";
 
 after(closeBrowser);
 
@@ -62,6 +62,31 @@ test("stick and slip have colours of their own", async () => {
   for (const [name, count] of Object.entries(colours)) assert.ok(count > 200, `${name}: ${count} pixels`);
   assert.match(await page.textContent(".findings"), /Energy/);
   assert.deepEqual(view.complaints, []);
+  await view.close();
+});
+
+test("the card tells the impulse of normal forces from that with friction, and a restitution above 1 that may be", async () => {
+  const run = simulate("cases/oblique/oblique.toml", "coarse", { "time.step": 5e-4, "mass.type": "consistent" });
+  const [impact] = JSON.parse(readFileSync(join(run, "summary.json"), "utf8")).impacts;
+  assert.ok(impact.restitution > 1.001);
+  const view = await open(report("coarse", run));
+  const card = await view.page.textContent(".card");
+  const [, normal, whole] = /normal impulse ([\d.]+) \(with friction ([\d.]+)\)/.exec(card);
+  assertNear(Number(normal), impact.normal_impulse, 5e-3 * impact.normal_impulse);
+  assertNear(Number(whole), Math.hypot(...impact.impulse), 5e-3 * Math.hypot(...impact.impulse));
+  // Friction has taken energy from the motion along the plane, which was as fast as that towards it.
+  assert.match(card, /restitution 1\.00\d ~\(above 1: fed by sliding, spin or vibration, or newmark creates energy\)/);
+  await view.close();
+});
+
+test("an obstacle that moves may throw a body back faster", async () => {
+  const run = simulate("cases/disc/disc.toml", "driven", { "time.scheme": "midpoint", "mass.type": "consistent", "obstacle.foundation.velocity": "[0.0, 0.02]", "output.fields_every": 0 });
+  const [impact] = JSON.parse(readFileSync(join(run, "summary.json"), "utf8")).impacts;
+  assert.ok(impact.restitution > 1.001);
+  const view = await open(report("driven", run));
+  const card = await view.page.textContent(".card");
+  assert.match(card, /~\(above 1: driven\)/);
+  assert.doesNotMatch(card, /impossible/);
   await view.close();
 });
 

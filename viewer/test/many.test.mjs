@@ -1,5 +1,7 @@
 // A study of twelve runs: colours, a row for each run, results against what varies.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { assertNear, closeBrowser, download, open, painted, readHistory, report, settle, simulate } from "./support.mjs";
 
@@ -47,8 +49,25 @@ test("each run has a row with what varies and what came out", async () => {
     assert.equal(Number(row[2]), runs[i].mu);
     const { contact_force_x: x, contact_force_y: y } = readHistory(runs[i].directory);
     const most = Math.max(...y.map((value, k) => Math.hypot(value, x[k])));
-    assertNear(Number(/up to ([\d.]+)/.exec(row[head.indexOf("Contact force")])[1]), most, 6e-3 * most);
+    assertNear(Number(row[head.indexOf("largest force")]), most, 6e-4 * most);
+    const { impacts, peak_stress: peak } = JSON.parse(readFileSync(join(runs[i].directory, "summary.json"), "utf8"));
+    assert.equal(row[head.indexOf("restitution")], impacts[0]?.restitution?.toFixed(3) ?? "–");
+    const [, mantissa, powers = "⁰"] = /([\d.]+)(?:·10([⁰¹²³⁴-⁹]+))?$/.exec(row[head.indexOf("largest stress")]);
+    const power = [...powers].reduce((sum, digit) => 10 * sum + "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(digit), 0);
+    assertNear(Number(mantissa) * 10 ** power, peak.von_mises, 6e-4 * peak.von_mises);
   });
+});
+
+test("results are on the screen without scrolling", async () => {
+  await page.setViewportSize({ width: 1300, height: 900 });
+  await settle(page);
+  const { right, ends } = await page.evaluate(() => {
+    const heads = [...document.querySelectorAll(".runs thead th")].map((each) => [each.textContent, each.getBoundingClientRect().right]);
+    return { right: document.querySelector(".runs").getBoundingClientRect().right, ends: Object.fromEntries(heads) };
+  });
+  for (const name of ["restitution", "largest force", "largest stress", "Rotation"]) assert.ok(ends[name] < right, `${name} ends at ${ends[name]} of ${right}`);
+  await page.setViewportSize({ width: 1400, height: 900 });
+  await settle(page);
 });
 
 test("results stand against what varies, a line for each value of what else does", async () => {

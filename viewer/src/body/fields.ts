@@ -1,6 +1,6 @@
 import { valueAt, type Levels } from "../data/decode";
 import { indexAt, type Field, type Run } from "../data/run";
-import { toNumber } from "../results/outcomes";
+import { toNumber } from "../format";
 import type { Moving } from "./geometry";
 import { colourRange, type ColourRange, type ColourScale } from "../maps/colour_range";
 

@@ -87,7 +87,7 @@ export class Run {
   ) {
     this.name = data.name;
     // What older versions did not write.
-    this.summary = { ...{ checks: {}, expectations: [], parameters: {}, warnings: [], solver: "–", libraries: "–", factor_entries: 0, impacts: [], impacts_left_out: 0, peak_stress: null }, ...data.summary };
+    this.summary = { ...{ checks: {}, expectations: [], parameters: {}, warnings: [], solver: "–", libraries: "–", factor_entries: 0, bodies: [], impacts: [], impacts_left_out: 0, peak_stress: null }, ...data.summary };
   }
 
   /** The run's own name of a column: "@force" is what its contact force is judged by. */
@@ -117,6 +117,11 @@ export class Run {
   /** At the row nearest to a time. */
   resultantAt(time: number): number {
     return this.resultant[indexAt(this.timesOf("contact_force_x"), time)] ?? NaN;
+  }
+
+  /** When the contact force is largest, at the scheme's own instant. */
+  get largestForceTime(): number {
+    return this.data.judgement.force_largest_at + this.shiftOf(this.own("@force")) * this.summary.time_step;
   }
 
   has(name: string): boolean {

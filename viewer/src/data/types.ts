@@ -116,14 +116,19 @@ export interface Impact {
   ended: boolean;
   from_start: boolean;
   restitution: Value;
+  /** Of all contact forces; friction included. */
+  impulse: Value[];
   normal_impulse: Value;
   largest_force: Value;
   largest_force_time: number;
   normal_velocity_before: Value;
   normal_velocity_after: Value;
+  tangential_velocity_before: Value[] | null;
+  tangential_velocity_after: Value[] | null;
   /** In the plane one number, about z. */
   spin_before: Value | Value[];
   spin_after: Value | Value[];
+  kinetic_energy_before: Value;
   kinetic_energy_ratio: Value;
 }
 
@@ -171,6 +176,7 @@ export interface Summary {
   probes: { name: string; position: number[]; distance: number; in_contact_boundary: boolean }[];
   checks: Record<string, CheckOutcome>;
   warnings: string[];
+  bodies: { mass: Value }[];
   impacts: Impact[];
   impacts_left_out: number;
   peak_stress: PeakStress | null;

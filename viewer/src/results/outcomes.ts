@@ -2,15 +2,11 @@ import { runColour } from "../colours";
 import type { Run } from "../data/run";
 import type { Impact, PeakStress, Value } from "../data/types";
 import { el } from "../elements";
-import { number } from "../format";
+import { number, toNumber } from "../format";
+import { markElement } from "../glance";
+import { restitutionRemark } from "./restitution";
 
 /** What came of a run: its impacts and its largest stress. */
-
-/** Numbers that are no numbers (words, nulls) as NaN or infinity. */
-export function toNumber(value: Value | undefined): number {
-  if (typeof value === "number") return value;
-  return value === "inf" ? Infinity : value === "-inf" ? -Infinity : NaN;
-}
 
 /** In space its size. */
 export function spin(value: Value | Value[]): number {
@@ -22,18 +18,38 @@ const place = (peak: PeakStress, dimension: number) => `(${peak.place.slice(0, d
 /** It turns by more than a ten-thousandth of a radian while it touches: what is less says nothing. */
 const turns = ({ spin_before, spin_after, duration }: Impact) => Math.max(Math.abs(spin(spin_before)), Math.abs(spin(spin_after))) * duration > 1e-4;
 
+/** That of the normal parts of the contact forces, and of all of them where friction makes another number of it. */
+function impulseWords({ impulse, normal_impulse }: Impact): string {
+  const normal = number(normal_impulse, 3);
+  const whole = number(spin(impulse ?? null), 3);
+  return `normal impulse ${normal}${impulse && whole !== normal ? ` (with friction ${whole})` : ""}`;
+}
+
+/** "": there is none. */
+export function restitutionText({ restitution }: Impact): string {
+  const value = toNumber(restitution);
+  return Number.isFinite(value) ? value.toFixed(3).replace("-", "−") : "";
+}
+
+/** All but the restitution. */
 export function impactWords(impact: Impact): string {
   const parts: string[] = [];
-  const restitution = toNumber(impact.restitution);
-  if (Number.isFinite(restitution)) parts.push(`restitution ${restitution.toFixed(3).replace("-", "−")}`);
   if (!impact.ended) parts.push("still touches at the end");
-  parts.push(`${impact.ended ? "lasts" : "so far"} ${number(impact.duration, 3)}`, `impulse ${number(impact.normal_impulse, 3)}`, `force up to ${number(impact.largest_force, 3)}`);
+  parts.push(`${impact.ended ? "lasts" : "so far"} ${number(impact.duration, 3)}`, impulseWords(impact), `force up to ${number(impact.largest_force, 3)}`);
   if (impact.ended && turns(impact)) {
     const spins = [spin(impact.spin_before), spin(impact.spin_after)];
     const least = 1e-6 * Math.max(...spins.map(Math.abs)); // below is rounding
     parts.push(`spin ${spins.map((value) => (Math.abs(value) < least ? "0" : number(value, 3))).join(" → ")}`);
   }
   return parts.join(", ");
+}
+
+function restitutionParts(run: Run, impact: Impact): (HTMLElement | string)[] {
+  const text = restitutionText(impact);
+  if (text === "") return [];
+  const remark = restitutionRemark(run, impact);
+  if (!remark) return [`restitution ${text}, `];
+  return [`restitution ${text} `, el(`strong.${remark.grade}`, { title: remark.detail }, markElement(remark.grade), `(${remark.words})`), ", "];
 }
 
 const mostOnCard = 3;
@@ -46,7 +62,7 @@ export function outcomeElements(run: Run, show: { time: (time: number) => void; 
     const name = impacts.length > 1 ? `Impact ${i + 1}` : "Impact";
     const when = `t = ${number(impact.begin, 4)}${impact.from_start ? " (from the start)" : ""}`;
     result.push(el("dt", {}, name), el("dd.outcome", { title: `On ${impact.obstacle}, from ${when}: docs/results.md says how impacts are told apart` },
-      el("button.link", { type: "button", onclick: () => show.time(impact.largest_force_time) }, when), `: ${impactWords(impact)}`));
+      el("button.link", { type: "button", onclick: () => show.time(impact.largest_force_time) }, when), ": ", ...restitutionParts(run, impact), impactWords(impact)));
   });
   const more = impacts.length - mostOnCard + leftOut;
   if (more > 0) result.push(el("dt"), el("dd.outcome", {}, el("a", { href: "#impacts" }, `and ${more} more`)));
@@ -58,15 +74,19 @@ export function outcomeElements(run: Run, show: { time: (time: number) => void; 
   return result;
 }
 
-const columns: [string, (impact: Impact) => string][] = [
+const columns: [string, (impact: Impact, run: Run) => string | HTMLElement][] = [
   ["obstacle", ({ obstacle }) => obstacle],
   ["body", ({ body }) => String(body)],
   ["begin", ({ begin, from_start }) => `${number(begin, 5)}${from_start ? " (start)" : ""}`],
   ["duration", ({ duration, ended }) => `${number(duration, 4)}${ended ? "" : " so far"}`],
-  ["restitution", ({ restitution }) => number(restitution, 4)],
+  ["restitution", (impact, run) => {
+    const remark = restitutionRemark(run, impact);
+    const text = number(impact.restitution, 4);
+    return remark ? el(`span.${remark.grade}`, { title: `${remark.words}; ${remark.detail}` }, markElement(remark.grade), text) : text;
+  }],
   ["normal speed before", ({ normal_velocity_before }) => number(normal_velocity_before, 4)],
   ["after", ({ normal_velocity_after }) => number(normal_velocity_after, 4)],
-  ["impulse", ({ normal_impulse }) => number(normal_impulse, 4)],
+  ["normal impulse", ({ normal_impulse }) => number(normal_impulse, 4)],
   ["largest force", ({ largest_force }) => number(largest_force, 4)],
   ["at", ({ largest_force_time }) => number(largest_force_time, 5)],
   ["spin before", ({ spin_before }) => number(spin(spin_before), 4)],
@@ -78,7 +98,7 @@ const columns: [string, (impact: Impact) => string][] = [
 export function impactTable(runs: Run[]): HTMLElement | null {
   if (runs.every((run) => run.summary.impacts.length === 0)) return null;
   const rows = runs.flatMap((run) => run.summary.impacts.map((impact) =>
-    el("tr", {}, el("th", { scope: "row", style: `color:${runColour(run.number)}` }, run.name), ...columns.map(([, text]) => el("td", {}, text(impact))))));
+    el("tr", {}, el("th", { scope: "row", style: `color:${runColour(run.number)}` }, run.name), ...columns.map(([, text]) => el("td", {}, text(impact, run))))));
   const leftOut = runs.filter((run) => run.summary.impacts_left_out > 0).map((run) => `${run.name}: ${run.summary.impacts_left_out} later ones`);
   return el("div.table", { id: "impacts" },
     el("table", {}, el("thead", {}, el("tr", {}, el("th"), ...columns.map(([name]) => el("th", { scope: "col" }, name)))), el("tbody", {}, ...rows)),

@@ -1,8 +1,8 @@
 import { extentOf } from "../charts/scale";
 import type { Run } from "../data/run";
 import type { Impact, Value } from "../data/types";
-import { columnName } from "../format";
-import { spin, toNumber } from "./outcomes";
+import { columnName, toNumber } from "../format";
+import { spin } from "./outcomes";
 
 /** What a run came to, in one number. */
 export interface Quantity {
@@ -34,7 +34,7 @@ export function quantities(runs: Run[]): Quantity[] {
   const list: Quantity[] = [
     { id: "restitution", title: "restitution of the first impact", value: first(({ restitution }) => restitution) },
     { id: "duration", title: "duration of the first impact", value: first(({ duration, ended }) => (ended ? duration : null)) },
-    { id: "impulse", title: "impulse of the first impact", value: first(({ normal_impulse, ended }) => (ended ? normal_impulse : null)) },
+    { id: "impulse", title: "normal impulse of the first impact", value: first(({ normal_impulse, ended }) => (ended ? normal_impulse : null)) },
     { id: "impact-force", title: "largest force of the first impact", value: first(({ largest_force }) => largest_force) },
     { id: "spin", title: "spin after the first impact", value: first(({ spin_after }) => spin_after) },
     { id: "stress", title: "largest von Mises stress", value: (run) => toNumber(run.summary.peak_stress?.von_mises) },

@@ -1,19 +1,42 @@
 import { runColour } from "../colours";
 import type { Run } from "../data/run";
 import { el } from "../elements";
-import { findings, marks } from "../glance";
-import { number } from "../format";
+import { findings, markElement } from "../glance";
+import { number, toNumber } from "../format";
 import type { Store } from "../store";
-import { impactWords } from "./outcomes";
+import { impactWords, restitutionText } from "./outcomes";
 import { differingParameters } from "./parameters";
+import { restitutionRemark } from "./restitution";
 
-/** Many runs: a row for each instead of a card, with what varies and what came out. */
+function restitutionCell(run: Run): HTMLElement {
+  const impact = run.summary.impacts[0];
+  const remark = impact && restitutionRemark(run, impact);
+  const text = (impact && restitutionText(impact)) || "–";
+  return remark ? el(`td.${remark.grade}`, { title: `${remark.words}; ${remark.detail}` }, markElement(remark.grade), text) : el("td", {}, text);
+}
+
+const largestForce = (run: Run): string => {
+  const { force_broken_at: brokenAt, force_largest: most } = run.data.judgement;
+  return brokenAt === null ? number(most, 4) : "–";
+};
+
+/** "≥": not every step was looked at. */
+function stressCell(run: Run): HTMLElement {
+  const peak = run.summary.peak_stress;
+  if (!peak || !Number.isFinite(toNumber(peak.von_mises))) return el("td", {}, number(peak?.von_mises ?? null));
+  const all = peak.states_looked_at >= peak.states;
+  return el("td", { title: `von Mises; ${all ? "of all steps" : "not every step was looked at"}` }, `${all ? "" : "≥ "}${number(peak.von_mises, 4)}`);
+}
+
+/** Many runs: a row for each instead of a card, with what varies, what came out, and what is thought of it. */
 export function runTable(store: Store, runs: Run[]): HTMLElement {
   const parameters = differingParameters(runs).slice(0, 4);
   const impacts = runs.some((run) => run.summary.impacts.length > 0);
   const stress = runs.some((run) => run.summary.peak_stress);
   const titles = [...new Set(runs.flatMap((run) => findings(run).map(({ what }) => what)))];
-  const head = el("tr", {}, ...["run", ...parameters.map(({ name }) => name), ...titles, ...(impacts ? ["first impact"] : []), ...(stress ? ["largest stress"] : []), ""].map((text) => el("th", { scope: "col" }, text)));
+  // Results before words: a screen is not as wide as all of them.
+  const head = el("tr", {}, ...["run", ...parameters.map(({ name }) => name), ...(impacts ? ["restitution"] : []), "largest force", ...(stress ? ["largest stress"] : []), ...titles, ...(impacts ? ["first impact"] : []), ""]
+    .map((text) => el("th", { scope: "col", title: text === "restitution" ? "of the first impact" : "" }, text)));
   const rows = runs.map((run, i) => {
     const swatch = el("i");
     const button = el("button.toggle", { type: "button", title: `Show or hide ${run.name}; with shift this run alone`, onclick: (event: MouseEvent) => (event.shiftKey ? store.only(run.number) : store.toggle(run.number)) }, swatch, run.name);
@@ -21,14 +44,13 @@ export function runTable(store: Store, runs: Run[]): HTMLElement {
     const cells = titles.map((title) => {
       const finding = found.find(({ what }) => what === title);
       if (!finding) return el("td", {}, "–");
-      const [mark, meaning] = marks[finding.grade];
-      return el(`td.${finding.grade}`, { title: finding.detail }, el("span.mark", { role: "img", "aria-label": meaning }, mark), finding.words);
+      return el(`td.${finding.grade}`, { title: `${finding.words}; ${finding.detail}` }, markElement(finding.grade), finding.short);
     });
     const { status, warnings } = run.summary;
     const remarks = [status !== "done" && status, warnings.length > 0 && `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`].filter((each) => each !== false);
-    const row = el("tr.card", {}, el("td", {}, button), ...parameters.map(({ texts }) => el("td", {}, texts[i])), ...cells,
+    const row = el("tr.card", {}, el("td", {}, button), ...parameters.map(({ texts }) => el("td", {}, texts[i])),
+      impacts && restitutionCell(run), el("td", {}, largestForce(run)), stress && stressCell(run), ...cells,
       impacts && el("td", {}, run.summary.impacts[0] ? impactWords(run.summary.impacts[0]) : "–"),
-      stress && el("td", {}, number(run.summary.peak_stress?.von_mises ?? null, 4)),
       el("td", {}, remarks.length > 0 && el("a.warned", { href: "#messages" }, remarks.join(", "))));
     row.addEventListener("pointerenter", () => store.setHighlight(run.number));
     row.addEventListener("pointerleave", () => store.setHighlight(null));

@@ -1,0 +1,55 @@
+import { extentOf } from "../charts/scale";
+import { indexAt, type Run } from "../data/run";
+import type { Impact } from "../data/types";
+import { rotationLimit, type Grade } from "../glance";
+import { toNumber } from "../format";
+
+/** What a restitution above 1 means: whether it is possible, and what has made it. */
+export interface RestitutionRemark {
+  grade: Grade;
+  words: string;
+  detail: string;
+}
+
+/** Relative; what is nearer to 1, or to the energy that is there, is the error of the method. */
+const tolerance = 1e-3;
+
+const acts = (run: Run, work: string): boolean => {
+  const { low, high } = extentOf("", run.column(work));
+  return Math.max(Math.abs(low), Math.abs(high)) > 0;
+};
+
+const squared = (vector: Impact["tangential_velocity_before"]) => (vector ?? []).map(toNumber).reduce((sum, v) => sum + v * v, 0);
+
+/** Whether the body leaves faster than all energy allows that it has when it arrives. */
+function exceedsEnergy(run: Run, impact: Impact): boolean {
+  const mass = toNumber(run.summary.bodies[impact.body]?.mass);
+  const at = (column: string, time: number) => run.column(column)[indexAt(run.timesOf(column), time)] ?? NaN;
+  const end = impact.end ?? impact.begin;
+  let available = toNumber(impact.kinetic_energy_before) + at("elastic_energy", impact.begin)
+    + Math.max(at("load_potential", impact.begin) - at("load_potential", end), 0);
+  // Without friction nothing turns the motion along the obstacle into one away from it.
+  if (run.summary.contacts.every(({ friction, friction_bound }) => !(friction > 0) && !(friction_bound > 0)))
+    available -= 0.5 * mass * Math.min(squared(impact.tangential_velocity_before), squared(impact.tangential_velocity_after));
+  return 0.5 * mass * toNumber(impact.normal_velocity_after) ** 2 > (1 + tolerance) * available;
+}
+
+/** In words, each. */
+function reasons(run: Run): string[] {
+  const { energy_gain: gain, energy_scale: scale, rotation } = run.data.judgement;
+  const result: string[] = [];
+  if (gain > tolerance * scale) result.push(`${run.summary.scheme} creates energy`);
+  if (rotation > rotationLimit) result.push("small strain does not hold");
+  return result;
+}
+
+/** Null where there is nothing to remark. */
+export function restitutionRemark(run: Run, impact: Impact): RestitutionRemark | null {
+  if (!(toNumber(impact.restitution) > 1 + tolerance)) return null;
+  if (["load_work", "support_work", "obstacle_work"].some((work) => acts(run, work)))
+    return { grade: "fair", words: "above 1: driven", detail: "loads, supports or a moving obstacle do work on the body" };
+  const known = reasons(run);
+  if (exceedsEnergy(run, impact))
+    return { grade: "poor", words: `impossible: ${known.length > 0 ? known.join("; ") : "the results do not tell why"}`, detail: "nothing drives the body, and it leaves with more energy than it had" };
+  return { grade: "fair", words: `above 1: ${[`fed by ${acts(run, "load_potential") ? "loads, " : ""}sliding, spin or vibration`, ...known].join(", or ")}`, detail: "nothing drives the body, but the energy for it was there: in other motion, as strain, or in the potential of loads such as gravity" };
+}
