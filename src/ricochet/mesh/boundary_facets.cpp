@@ -26,6 +26,10 @@ Index smallest_vertex(const Key& key) {
   return *std::find_if(key.begin(), key.end(), [](Index vertex) { return vertex >= 0; });
 }
 
+bool comes_before(const CellFacet& a, const CellFacet& b) {
+  return std::tie(a.block, a.cell, a.local) < std::tie(b.block, b.cell, b.local);
+}
+
 /// Calls visit(facet, key) for every facet of every cell.
 template <class Visit>
 void for_each_facet(const std::vector<CellBlock>& cells, const Visit& visit) {
@@ -39,9 +43,9 @@ void for_each_facet(const std::vector<CellBlock>& cells, const Visit& visit) {
   }
 }
 
-}  // namespace
-
-std::vector<CellFacet> boundary_facets(const std::vector<CellBlock>& cells) {
+/// Calls visit(facets) for each facet of the set, with all those of cells that have its vertices.
+template <class Visit>
+void for_each_distinct_facet(const std::vector<CellBlock>& cells, const Visit& visit) {
   Index nodes = 0;
   for (const CellBlock& block : cells) {
     for (const Index node : block.nodes) nodes = std::max(nodes, node + 1);
@@ -57,9 +61,12 @@ std::vector<CellFacet> boundary_facets(const std::vector<CellBlock>& cells) {
     sorted[next[static_cast<std::size_t>(smallest_vertex(key))]++] = facet;
   });
 
-  std::vector<CellFacet> result;
-  std::vector<std::pair<Key, CellFacet>> bucket;
-  const auto by_key = [](const auto& a, const auto& b) { return a.first < b.first; };
+  using Entry = std::pair<Key, CellFacet>;
+  std::vector<Entry> bucket;
+  const auto by_key_and_cell = [](const Entry& a, const Entry& b) {
+    return a.first != b.first ? a.first < b.first : comes_before(a.second, b.second);
+  };
+  std::vector<CellFacet> equal;
   for (std::size_t node = 0; node + 1 < start.size(); ++node) {
     bucket.clear();
     for (std::size_t i = start[node]; i < start[node + 1]; ++i) {
@@ -67,15 +74,56 @@ std::vector<CellFacet> boundary_facets(const std::vector<CellBlock>& cells) {
       const std::vector<int>& local = facet_nodes(block.shape, 1)[sorted[i].local];
       bucket.emplace_back(key_of(block.cell(sorted[i].cell), block.shape, local), sorted[i]);
     }
-    std::sort(bucket.begin(), bucket.end(), by_key);
-    for (std::size_t i = 0; i < bucket.size(); ++i) {
-      const bool shared = (i > 0 && bucket[i - 1].first == bucket[i].first) ||
-                          (i + 1 < bucket.size() && bucket[i + 1].first == bucket[i].first);
-      if (!shared) result.push_back(bucket[i].second);
+    std::sort(bucket.begin(), bucket.end(), by_key_and_cell);
+    for (std::size_t i = 0; i < bucket.size();) {
+      equal.clear();
+      const Key& key = bucket[i].first;
+      for (; i < bucket.size() && bucket[i].first == key; ++i) equal.push_back(bucket[i].second);
+      visit(equal);
     }
   }
-  std::sort(result.begin(), result.end(), [](const CellFacet& a, const CellFacet& b) {
-    return std::tie(a.block, a.cell, a.local) < std::tie(b.block, b.cell, b.local);
+}
+
+/// Whether two cells lie on opposite sides of the facet they share: they go round it in opposite directions.
+bool are_opposite(const std::vector<CellBlock>& cells, const CellFacet& one, const CellFacet& other) {
+  const auto round = [&](const CellFacet& facet) {
+    const CellBlock& block = cells[facet.block];
+    std::vector<Index> vertices;
+    for (const int local : outward_facet_vertices(block.shape)[facet.local])
+      vertices.push_back(block.cell(facet.cell)[local]);
+    return vertices;
+  };
+  std::vector<Index> first = round(one);
+  std::vector<Index> second = round(other);
+  if (first.size() == 2) return first[0] == second[1];
+  std::reverse(second.begin(), second.end());
+  std::rotate(first.begin(), std::min_element(first.begin(), first.end()), first.end());
+  std::rotate(second.begin(), std::min_element(second.begin(), second.end()), second.end());
+  return first == second;
+}
+
+}  // namespace
+
+std::vector<CellFacet> boundary_facets(const std::vector<CellBlock>& cells) {
+  std::vector<CellFacet> result;
+  for_each_distinct_facet(cells, [&](const std::vector<CellFacet>& equal) {
+    if (equal.size() == 1) result.push_back(equal.front());
+  });
+  std::sort(result.begin(), result.end(), comes_before);
+  return result;
+}
+
+std::vector<SharedFacet> folds(const std::vector<CellBlock>& cells) {
+  std::vector<SharedFacet> result;
+  for_each_distinct_facet(cells, [&](const std::vector<CellFacet>& equal) {
+    for (std::size_t i = 0; i < equal.size(); ++i) {
+      for (std::size_t j = i + 1; j < equal.size(); ++j) {
+        if (!are_opposite(cells, equal[i], equal[j])) result.push_back({equal[i], equal[j]});
+      }
+    }
+  });
+  std::sort(result.begin(), result.end(), [](const SharedFacet& a, const SharedFacet& b) {
+    return comes_before(a.first, b.first) || (!comes_before(b.first, a.first) && comes_before(a.second, b.second));
   });
   return result;
 }

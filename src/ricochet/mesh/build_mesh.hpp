@@ -67,7 +67,8 @@ void check_facets(const Mesh& mesh);
 void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh);
 
 /// Turns cells round whose Jacobian is negative throughout, with a note that counts them: half of the programs that
-/// write meshes number the nodes of a cell so. No cell may be degenerate or tangled (the Jacobian changes sign).
+/// write meshes number the nodes of a cell so. No cell may be degenerate or tangled (the Jacobian changes sign), and
+/// none of those turned round may overlap a neighbour: such a mesh is folded.
 void orient_cells(Mesh& mesh);
 
 /// No two nodes may be at the same place.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/mesh/boundary_facets.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
 #include "ricochet/mesh/offenders.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
@@ -118,6 +119,37 @@ void turn_round(Index* cell, const std::vector<int>& mirrored, std::vector<Index
     cell[node] = nodes[static_cast<std::size_t>(mirrored[node])];
 }
 
+/// The middle of a facet's vertices.
+std::string place_of(const Mesh& mesh, const CellFacet& facet) {
+  const CellBlock& block = mesh.cells[facet.block];
+  const std::vector<int>& vertices = outward_facet_vertices(block.shape)[facet.local];
+  Vector middle = Vector::Zero(mesh.dimension);
+  for (const int vertex : vertices) middle += mesh.nodes.col(block.cell(facet.cell)[vertex]);
+  middle /= static_cast<double>(vertices.size());
+  return fmt::format("({:.6g})", fmt::join(middle.begin(), middle.end(), ", "));
+}
+
+/// Of a straight simplex that is turned inside out the Jacobian is negative throughout, as if its nodes were only
+/// numbered the other way round. Its neighbours tell the two from each other: they are on the wrong side of it.
+void check_folds(const Mesh& mesh) {
+  const std::vector<SharedFacet> found = folds(mesh.cells);
+  if (found.empty()) return;
+  const auto tag = [&](const CellFacet& facet) {
+    return mesh.cells[facet.block].tags[static_cast<std::size_t>(facet.cell)];
+  };
+  constexpr std::size_t most = 5;
+  std::string pairs;
+  for (std::size_t i = 0; i < std::min(found.size(), most); ++i) {
+    pairs += fmt::format("{}elements {} and {} at {}", i == 0 ? "" : ", ", tag(found[i].first), tag(found[i].second),
+                         place_of(mesh, found[i].first));
+  }
+  fail_mesh(mesh.source,
+            fmt::format("the mesh is folded, cells overlap: {} pair{} of cells on the same side of the facet that they "
+                        "share: {}{}; a node has probably been moved across its neighbours: put it back, or mesh the "
+                        "part anew",
+                        found.size(), found.size() == 1 ? "" : "s", pairs, found.size() > most ? ", …" : ""));
+}
+
 template <int Dimension>
 void orient_cells_of_dimension(Mesh& mesh) {
   Offenders reversed;
@@ -147,6 +179,7 @@ void orient_cells_of_dimension(Mesh& mesh) {
   }
   if (reversed.any()) {
     const bool all = reversed.count() == mesh.cell_count();
+    if (!all) check_folds(mesh);
     log::info(fmt::format(
         "{}: {} {} reversed (their Jacobian was negative) and were turned round; the mesh is the same", mesh.source,
         all ? fmt::format("all {} cells", reversed.count())

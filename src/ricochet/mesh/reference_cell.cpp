@@ -1,5 +1,6 @@
 #include "ricochet/mesh/reference_cell.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -75,6 +76,28 @@ VertexSets make_facet_nodes(CellShape shape, int degree) {
   return result;
 }
 
+Eigen::Vector3d vertex_position(CellShape shape, int vertex) {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < dimension(shape); ++axis) position(axis) = vertex_coordinate(shape, vertex, axis);
+  return position;
+}
+
+VertexSets make_outward_facet_vertices(CellShape shape) {
+  VertexSets result = facets(shape);
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (int vertex = 0; vertex < vertex_count(shape); ++vertex) centre += vertex_position(shape, vertex);
+  centre /= vertex_count(shape);
+  for (std::vector<int>& facet : result) {
+    if (facet.size() == 4) std::swap(facet[2], facet[3]);  // Basix numbers rows, here one goes round
+    const Eigen::Vector3d first = vertex_position(shape, facet[0]);
+    const Eigen::Vector3d along = vertex_position(shape, facet[1]) - first;
+    const Eigen::Vector3d across =
+        facet.size() == 2 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(vertex_position(shape, facet.back()) - first);
+    if (along.cross(across).dot(first - centre) < 0.0) std::reverse(facet.begin(), facet.end());
+  }
+  return result;
+}
+
 std::vector<int> make_mirrored_nodes(CellShape shape, int degree) {
   // The vertices at e₁ and e₂ are 1 and 2 in every shape; those above them in a hexahedron are 5 and 6.
   constexpr std::array<int, 8> mirrored_vertex{0, 2, 1, 3, 4, 6, 5, 7};
@@ -123,6 +146,11 @@ CellShape facet_shape(CellShape shape) {
 const VertexSets& facet_nodes(CellShape shape, int degree) {
   static const auto table = make_table(make_facet_nodes);
   return table[table_index(shape, degree)];
+}
+
+const VertexSets& outward_facet_vertices(CellShape shape) {
+  static const auto table = make_table([](CellShape of, int) { return make_outward_facet_vertices(of); });
+  return table[table_index(shape, 1)];
 }
 
 const std::vector<int>& mirrored_nodes(CellShape shape, int degree) {

@@ -19,6 +19,10 @@ namespace ricochet {
 /// nodes.
 [[nodiscard]] const std::vector<std::vector<int>>& facet_nodes(CellShape shape, int degree);
 
+/// For each facet of the cell, in Basix's order, its vertices as one passes them going round it: the cell on the left
+/// of an edge, and a face turning counterclockwise seen from outside. On cells of positive Jacobian.
+[[nodiscard]] const std::vector<std::vector<int>>& outward_facet_vertices(CellShape shape);
+
 /// For each node the one at its mirror image when the first two reference axes are exchanged: the order in which the
 /// nodes of a cell give it the opposite orientation. Not for intervals.
 [[nodiscard]] const std::vector<int>& mirrored_nodes(CellShape shape, int degree);

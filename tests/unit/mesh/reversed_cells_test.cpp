@@ -4,7 +4,9 @@
 #include <map>
 #include <set>
 
+#include "ricochet/mesh/boundary_facets.hpp"
 #include "ricochet/mesh/gmsh_elements.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
 #include "support.hpp"
 
 /// Cells whose nodes are numbered the other way round, as many programs write them.
@@ -80,6 +82,93 @@ TEST(ReversedCells, AreTurnedRound) {
         }
         for (const Group& group : reference.groups)
           EXPECT_EQ(mesh.find_group(group.name, group.dimension)->members, group.members);
+      }
+    }
+  }
+}
+
+/// Two cells of unit size that share the facet x = 1; those of the second have their other vertices at x = `far`.
+gmsh::RawMesh two_cells(int type, double far, bool second_reversed) {
+  gmsh::RawMesh raw;
+  std::vector<std::vector<double>> points;
+  std::vector<std::int64_t> first;
+  std::vector<std::int64_t> second;
+  switch (type) {
+    case 2:
+      points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {far, 0.3, 0}};
+      first = {1, 2, 3};
+      second = {4, 3, 2};
+      break;
+    case 3:
+      points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {far, 0, 0}, {far, 1, 0}};
+      first = {1, 2, 3, 4};
+      second = {2, 5, 6, 3};
+      break;
+    case 4:
+      points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0, 1}, {far, 0.2, 0.3}};
+      first = {1, 2, 3, 4};
+      second = {5, 2, 4, 3};
+      break;
+    default:
+      points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0},   {0, 1, 0},   {0, 0, 1},   {1, 0, 1},
+                {1, 1, 1}, {0, 1, 1}, {far, 0, 0}, {far, 1, 0}, {far, 0, 1}, {far, 1, 1}};
+      first = {1, 2, 3, 4, 5, 6, 7, 8};
+      second = {2, 9, 10, 3, 6, 11, 12, 7};
+  }
+  if (second_reversed) {
+    std::vector<std::int64_t> image;
+    for (const std::size_t k : mirror_images().at(type)) image.push_back(second[k]);
+    second = image;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    raw.node_tags.push_back(static_cast<std::int64_t>(i) + 1);
+    raw.coordinates.insert(raw.coordinates.end(), points[i].begin(), points[i].end());
+  }
+  gmsh::RawElements cells;
+  cells.type = type;
+  cells.groups = {1};
+  cells.tags = {41, 42};
+  cells.nodes = first;
+  cells.nodes.insert(cells.nodes.end(), second.begin(), second.end());
+  raw.elements.push_back(cells);
+  return raw;
+}
+
+TEST(ReversedCells, AreToldFromFoldedMeshes) {
+  for (const int type : {2, 3, 4, 5}) {
+    const auto refusal = [&](double far, bool second_reversed) {
+      return message_of([&] {
+        static_cast<void>(gmsh::build_mesh(two_cells(type, far, second_reversed), {"test.msh", 1.0, false, false}));
+      });
+    };
+    EXPECT_EQ(refusal(1.7, false), "") << type;
+    EXPECT_EQ(refusal(1.7, true), "") << type;
+    // The second cell lies on the first: its nodes are numbered as if it were beside it.
+    const std::string message = refusal(0.4, false);
+    EXPECT_NE(message.find("folded"), std::string::npos) << type << message;
+    EXPECT_NE(message.find("elements 41 and 42 at (1, "), std::string::npos) << type << message;
+  }
+}
+
+TEST(ReversedCells, EveryFacetInsideTellsOnWhichSideItsCellsLie) {
+  for (const std::string shape : {"triangle", "quadrilateral", "tetrahedron", "hexahedron", "mixed"}) {
+    for (const std::string order : {"_o1_", "_o2_"}) {
+      Mesh mesh = read_test_mesh(shape + order + "msh41_ascii.msh");
+      EXPECT_TRUE(folds(mesh.cells).empty()) << shape;
+      std::map<std::pair<std::size_t, Index>, std::size_t> inside;
+      for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
+        for (Index cell = 0; cell < mesh.cells[b].size(); ++cell)
+          inside[{b, cell}] = facet_nodes(mesh.cells[b].shape, 1).size();
+      }
+      for (const CellFacet& facet : boundary_facets(mesh.cells)) --inside[{facet.block, facet.cell}];
+      for (const auto& [place, count] : inside) {
+        CellBlock& block = mesh.cells[place.first];
+        Index* nodes = block.nodes.data() + place.second * block.nodes_per_cell;
+        const std::vector<Index> before(nodes, nodes + block.nodes_per_cell);
+        const std::vector<int>& mirrored = mirrored_nodes(block.shape, mesh.degree);
+        for (std::size_t k = 0; k < before.size(); ++k) nodes[k] = before[static_cast<std::size_t>(mirrored[k])];
+        EXPECT_EQ(folds(mesh.cells).size(), count) << shape;
+        std::copy(before.begin(), before.end(), nodes);
       }
     }
   }
