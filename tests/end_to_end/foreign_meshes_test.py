@@ -279,6 +279,10 @@ class ForeignMeshes(TestCase):
             "twice": (f"{nodes}{elements}{elements}", ("element 1 is there twice",)),
             "short element": (f"{nodes}*ELEMENT, TYPE=C3D4\n1, 1, 2, 3\n", ("has 4 nodes, this one has 3",)),
             "lost include": ("*INCLUDE, INPUT=gone.inp\n", ("gone.inp", "No such file")),
+            "device": ("*INCLUDE, INPUT=/dev/zero\n", ("device.inp:1", "/dev/zero", "no regular file")),
+            "long number": (f"{nodes}12345678901234567890123, 0., 0., 0.\n{elements}",
+                            (f"long_number.inp:{len(twin.points) + 2}: ", "more than 18 digits")),
+            "long member": (f"{nodes}{elements}*NSET, NSET=s\n12345678901234567890123\n", ("more than 18 digits",)),
             "nothing": ("*HEADING\n", ("there is no *NODE",)),
         }
         for name, (text, parts) in refused.items():
@@ -286,6 +290,16 @@ class ForeignMeshes(TestCase):
                 file = self.write(name.replace(" ", "_") + ".inp", text)
                 message = self.refusal(file, file.name, *parts)
                 self.assertNotIn("Traceback", message)
+
+    def test_generated_sets_may_go_beyond_the_mesh(self):
+        twin = Twin("tetrahedron_o1")
+        reference = self.history_of("msh", twin.path, 3, "top")
+        file = self.write("job.inp", f"*NODE\n{node_lines(twin)}*ELEMENT, TYPE=C3D4\n{element_lines(twin)}"
+                                     "*ELSET, ELSET=body, GENERATE\n1, 999999999999, 1\n"
+                                     f"*NSET, NSET=top\n{rows(node + 1 for node in nodes_of(twin, 'top'))}"
+                                     "*NSET, NSET=all, GENERATE\n1, 999999999999, 1\n"
+                                     f"{surface_lines(twin, 'bottom')}")
+        self.expect_same(self.history_of("inp", file, 3, "top"), reference)
 
     # --- what meshio reads
 

@@ -4,6 +4,7 @@ of included files, so it is not used here.
 
 import os
 import re
+import stat
 
 import numpy
 
@@ -16,6 +17,8 @@ LINES = {"2": "line", "3": "line3"}
 NODE_COUNTS = {"quad8": 8, "hexahedron20": 20, "wedge": 6, "wedge15": 15, "pyramid": 5, "pyramid13": 13}
 # Keywords that make nodes, elements or sets in ways that are not read: without them the mesh would be another one.
 GENERATORS = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBSTRUCTURE PATH", "SYMMETRIC MODEL GENERATION"}
+# A number of more digits could not be kept in 64 bits; Abaqus itself takes nine.
+LONGEST_NUMBER = 18
 
 
 def element_kind(name, fail):
@@ -57,6 +60,9 @@ class InpReader:
         if depth > 20:
             self.fail("*INCLUDE goes more than 20 files deep")
         try:
+            # The program has looked at the file itself. Of a device or a pipe there may be no end.
+            if depth > 0 and not stat.S_ISREG(os.stat(path).st_mode):
+                self.fail(f"*INCLUDE: {path}: it is no regular file")
             file = open(path, encoding="latin-1")
         except OSError as problem:
             if depth == 0:
@@ -136,11 +142,15 @@ class InpReader:
                       "part (in Abaqus/CAE: Assembly > Instance > Merge/Cut), or write a file for each")
 
     def refuse_placement(self, line):
-        if line is not None and any(float(word) != 0.0 for word in line.split(",") if word.strip()):
+        words = [] if line is None else [word for word in self.words(line) if word]
+        if any(number != 0.0 for number in self.numbers(words, float, "where an instance is placed")):
             self.fail("an instance that is moved or turned is not read; place the body by `move` and `turn` in [mesh] "
                       "and take out this line")
 
     def numbers(self, words, kind, what):
+        for word in words if kind is int else []:
+            if len(word) > LONGEST_NUMBER:
+                self.fail(f"{what} should be here; {word[:60]} has more than {LONGEST_NUMBER} digits")
         try:
             return [kind(word.replace("D", "E").replace("d", "e") if kind is float else word) for word in words]
         except ValueError:
@@ -209,7 +219,7 @@ class InpReader:
 
     def members(self, sets, word, what):
         last = word.split(".")[-1]
-        return [int(last)] if last.isdigit() else self.named(sets, word, what)
+        return self.numbers([last], int, f"a number or the name of a {what}") if last.isdecimal() else self.named(sets, word, what)
 
     def set_reader(self, keyword, parameters):
         sets, what = (self.nsets, "set of nodes") if keyword == "NSET" else (self.elsets, "set of elements")
@@ -239,7 +249,11 @@ class InpReader:
                 self.fail("a generated set needs first, last and a positive increment")
             known = self.nodes if keyword == "NSET" else self.element_ids
             numbers = range(values[0], values[1] + 1, values[2] if len(values) == 3 else 1)
-            sets[name.upper()].extend(number for number in numbers if number in known)
+            # The shorter of the two is gone through: a generated set may name far more numbers than there are.
+            if len(numbers) <= len(known):
+                sets[name.upper()].extend(number for number in numbers if number in known)
+            else:
+                sets[name.upper()].extend(sorted(number for number in known if number in numbers))
         return handle
 
     def surface_reader(self, parameters):
