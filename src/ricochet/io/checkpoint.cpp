@@ -180,6 +180,11 @@ void write_checkpoint(const std::string& directory, long step, const Snapshot& s
 
 Snapshot read_checkpoint(const std::string& path) {
   {
+    // Of a pipe the reading would wait for somebody who writes, for ever.
+    std::error_code problem;
+    const fs::file_status status = fs::status(path, problem);
+    if (fs::exists(status) && !fs::is_regular_file(status))
+      throw Error(ErrorKind::invalid_input, fmt::format("{}: it is no regular file", path));
     char head[magic.size()] = {};
     std::ifstream file(path, std::ios::binary);
     // Nothing that is no checkpoint is read to its end.

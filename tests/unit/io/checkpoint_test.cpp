@@ -1,6 +1,7 @@
 #include "ricochet/io/checkpoint.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <filesystem>
@@ -109,6 +110,19 @@ TEST(Checkpoint, TheLastTwoAreKept) {
   std::ofstream(files[0].path) << "";
   EXPECT_FALSE(newest_checkpoint(folder).has_value());
   EXPECT_EQ(log::warnings().size(), 3u);
+  log::clear_warnings();
+}
+
+TEST(Checkpoint, APipeInItsPlaceIsPassedOver) {
+  const std::string folder = folder_of_test();
+  Snapshot snapshot;
+  snapshot.save("step", std::int64_t{7});
+  write_checkpoint(folder, 7, snapshot);
+  ASSERT_EQ(mkfifo((folder + "/checkpoint-000000008.ckpt").c_str(), 0600), 0);
+  log::set_level(log::Level::off);
+  EXPECT_EQ(newest_checkpoint(folder)->integer("step"), 7);
+  ASSERT_EQ(log::warnings().size(), 1u);
+  EXPECT_NE(log::warnings().front().find("it is no regular file"), std::string::npos);
   log::clear_warnings();
 }
 
