@@ -7,6 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/model_parts.hpp"
+#include "ricochet/case/run_case.hpp"
 #include "ricochet/contact/multiplier_space.hpp"
 #include "ricochet/fem/cell_masses.hpp"
 #include "ricochet/mass/mass.hpp"
@@ -54,6 +55,41 @@ void warn_of_creep(const Case& input, const SemidiscreteProblem& problem) {
       "newmark with beta = 1/4, gamma = 1/2, friction and mass \"{}\": nodes that stick keep their velocity with "
       "alternating sign, their forces rattle and slips come out wrong; use mass \"equivalent\"",
       input.mass.type));
+}
+
+/// A prescribed displacement whose velocity jumps leaves a node with ±(half of the jump) from step to step where γ = ½
+/// damps nothing: under the trapezoidal rule, V₁ = 2ΔU/h − V₀ and A₁ = −4V₀/h − A₀ once the node is held, so that its
+/// acceleration and the force of the support grow with every step.
+void warn_of_jumping_supports(const Case& input) {
+  const TimeSection& time = input.time;
+  if (time.scheme != "newmark" || time.gamma != 0.5) return;
+  constexpr long most_instants = 200000;
+  constexpr double sharp = 0.25;  // of the largest velocity, within one step: smooth motions take many steps to turn
+  const long steps = std::min(step_count(time), most_instants);
+  for (std::size_t i = 0; i < input.supports.size(); ++i) {
+    const SupportSection& section = input.supports[i];
+    if (!section.value.depends_on_time()) continue;
+    const auto value = [&](long step) { return section.value(0.0, 0.0, 0.0, static_cast<double>(step) * time.step); };
+    double fastest = 0.0, jump = 0.0, before = value(1) - value(0);
+    long jumps_at = 0;
+    for (long step = 1; step < steps; ++step) {
+      const double increment = value(step + 1) - value(step);
+      fastest = std::max({fastest, std::abs(increment), std::abs(before)});
+      if (std::abs(increment - before) > jump) {
+        jump = std::abs(increment - before);
+        jumps_at = step;
+      }
+      before = increment;
+    }
+    if (!(jump > sharp * fastest)) continue;
+    log::warning(
+        fmt::format("{}: the velocity of this support jumps at t = {:.6g}. newmark with gamma = 1/2 keeps such a jump "
+                    "from step to step with "
+                    "alternating sign{}; make the motion smooth, for example with 0.5*(1-cos(pi*t/T)), or do not use "
+                    "the forces of this support",
+                    input.where(fmt::format("support.{}.value", i)).text(), static_cast<double>(jumps_at) * time.step,
+                    time.beta < 0.5 ? ", and the support's force grows with every step" : " in the support's force"));
+  }
 }
 
 /// Multipliers that do not go together with the displacement's degree on the facets of a group are refused, or warned
@@ -161,6 +197,7 @@ void assemble_operators(const Case& input, Model& model) {
   }
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
   warn_of_creep(input, model.problem);
+  warn_of_jumping_supports(input);
 }
 
 namespace {

@@ -14,6 +14,8 @@ namespace {
 
 /// Above this rotation, in rad, the run says again how large the error has become: it grows with the square.
 constexpr double large_rotation = 2.0 * rotation_limit;
+/// Above this equivalent strain small strain does not hold.
+constexpr double strain_limit = 0.1;
 
 }  // namespace
 
@@ -52,6 +54,23 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
         "{} rad; check the units, too",
         rotation, spurious_strain(rotation), rotation_limit));
   }
+}
+
+void judge_strain(const RunSummary& summary, const Body& body) {
+  if (!summary.peak_stress) return;
+  const auto material = std::find_if(body.materials.begin(), body.materials.end(), [&](const Material& candidate) {
+    return candidate.name == summary.peak_stress->material;
+  });
+  if (material == body.materials.end()) return;
+  const double strain = summary.peak_stress->peak.von_mises / (3.0 * material->mu);
+  if (!(strain > strain_limit)) return;
+  log::warning(
+      fmt::format("at t = {:.6g} the largest von Mises stress goes with an equivalent strain of {:.2g} %: small "
+                  "strain, which leaves out terms "
+                  "of that relative size, does not hold there, and stresses and forces are wrong by as much. A stiffer "
+                  "body or a slower impact "
+                  "keeps within {:g} %; check the units, too",
+                  summary.peak_stress->peak.time, 100.0 * strain, 100.0 * strain_limit));
 }
 
 }  // namespace ricochet

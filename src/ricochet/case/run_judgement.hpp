@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ricochet/fem/assembly.hpp"
 #include "ricochet/io/summary.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
@@ -9,6 +10,10 @@ namespace ricochet {
 
 /// Warns of what the account of energy says that a user should hear.
 void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state);
+
+/// Warns where the largest von Mises stress goes with an equivalent strain √(2/3 e:e) = σ/(3μ), e the deviatoric
+/// strain, that is not small.
+void judge_strain(const RunSummary& summary, const Body& body);
 
 /// Is an energy no more than what ½UᵀKU is rounded to? That of a body that is merely displaced is.
 [[nodiscard]] bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, const State& state);

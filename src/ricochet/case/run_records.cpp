@@ -134,6 +134,7 @@ void Run::finish() {
   describe_progress(summary_);
   if (summary_.status == "done") {
     judge_energy(summary_, model_->problem, simulation_->state());
+    judge_strain(summary_, model_->body);
     summary_.warnings = log::warnings();
   }
   if (contact_export_) summary_.contact_export = contact_export_->report();
