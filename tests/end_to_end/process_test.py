@@ -119,6 +119,11 @@ class Streams(TestCase):
                 if closed[1] and not closed[2]:
                     self.assertIn("standard output is closed", answer.stderr)
 
+    def test_a_full_standard_error_ends_no_run(self):
+        expected = self.simulate(self.case, "expected")
+        self.expect_status(0, redirected("2>/dev/full", "run", self.case, "-o", self.folder / "out"))
+        self.assertEqual((expected / "history.csv").read_bytes(), (self.folder / "out" / "history.csv").read_bytes())
+
     def test_full_standard_output(self):
         output = self.simulate(self.case)
         for command in (("schema",), ("schema", "--markdown"), ("info", output), ("info", self.case),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -13,12 +14,20 @@ namespace ricochet {
 
 namespace {
 
+/// Of a vector of any length: where the square of the length leaves the range of numbers, it is scaled first.
+Vector unit(const Vector& direction) {
+  const double length = direction.norm();
+  constexpr double smallest = 1e-150;
+  if (std::isfinite(length) && length > smallest) return direction / length;
+  return direction.stableNormalized();
+}
+
 /// The half-space below a plane: gap (x − p)·n.
 class Plane final : public Obstacle {
  public:
   explicit Plane(const ObstacleParameters& parameters)
       : point_(parameters.point),
-        normal_(parameters.normal / parameters.normal.norm()),
+        normal_(unit(parameters.normal)),
         velocity_(parameters.velocity.size() > 0 ? parameters.velocity : Vector::Zero(parameters.normal.size())),
         rotation_rate_(parameters.rotation_rate) {
     if (rotation_rate_ != 0.0 && normal_.size() != 3) {

@@ -21,6 +21,16 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
+namespace {
+
+/// Nobody's run should end because what is merely shown cannot be written.
+void show(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
+
 Progress::Progress(long steps, bool quiet, long first_step)
     : steps_(steps),
       first_step_(first_step),
@@ -56,13 +66,12 @@ void Progress::draw(long step, double time) {
   const std::string numbers = fmt::format("step {}/{}  t = {:.6g}  {} gone, {} left", step, steps_, time,
                                           duration_text(elapsed), duration_text(left));
   if (!terminal_) {
-    fmt::print(stderr, "{:3.0f} %  {}\n", 100.0 * done, numbers);
+    show(fmt::format("{:3.0f} %  {}\n", 100.0 * done, numbers));
     return;
   }
   constexpr int width = 30;
   const int filled = static_cast<int>(done * width);
-  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}\033[K", "", filled, "", width - filled, numbers);
-  std::fflush(stderr);
+  show(fmt::format("\r[{:#<{}}{:.<{}}] {}\033[K", "", filled, "", width - filled, numbers));
   open_ = true;
 }
 

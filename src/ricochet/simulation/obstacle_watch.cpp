@@ -44,13 +44,24 @@ void ObstacleWatch::find_nodes(const std::vector<CellBlock>& cells, const std::v
     for (const Index node : nodes_of_facet(cells, facet)) {
       const Index entry = contact_node[static_cast<std::size_t>(node)];
       if (entry >= 0) rim.inside.push_back(entry);
-      if (entry < 0) rim.outside.push_back(node);
+      if (entry >= 0) continue;
+      alone.push_back(node);
+      if (!is_held_by_supports(obstacle, node)) rim.outside.push_back(node);
     }
-    alone.insert(alone.end(), rim.outside.begin(), rim.outside.end());
     if (!rim.inside.empty() && !rim.outside.empty()) rim_.push_back(std::move(rim));
   }
   std::sort(alone.begin(), alone.end());
   alone.erase(std::unique(alone.begin(), alone.end()), alone.end());
+}
+
+/// Along the obstacle's normal: supports then do what contact would, and such a node is no contact node though its
+/// facets are.
+bool ObstacleWatch::is_held_by_supports(std::size_t obstacle, Index node) const {
+  const Vector normal = obstacles_[obstacle]->normal(problem_.nodes.col(node));
+  for (Index k = 0; k < normal.size(); ++k) {
+    if (normal[k] != 0.0 && !problem_.supports.contains(node * normal.size() + k)) return false;
+  }
+  return true;
 }
 
 void ObstacleWatch::look(const State& state) {

@@ -48,6 +48,7 @@ class ObstacleWatch {
     std::vector<Index> outside;  ///< nodes of the body
   };
   void find_nodes(const std::vector<CellBlock>& cells, const std::vector<CellFacet>& boundary, std::size_t obstacle);
+  [[nodiscard]] bool is_held_by_supports(std::size_t obstacle, Index node) const;
   /// Sets position_.
   [[nodiscard]] double gap(std::size_t obstacle, Index node, const Vector& displacement);
   void look_at_nodes(std::size_t obstacle, const State& state);
