@@ -152,7 +152,7 @@ class Files(TestCase):
         summary = output / "summary.json"
         summary.write_text(summary.read_text().replace('"status": "done"', '"status": "running"'))
         answer = self.expect_status(0, run("run", case, "-o", output, "--resume", "--set", "output.checkpoint_every=10"))
-        self.assertIn("it is a directory", answer.stderr)
+        self.assertIn("it is no regular file", answer.stderr)
 
     def test_files_without_end(self):
         hole = self.folder / "hole"
