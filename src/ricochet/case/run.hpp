@@ -44,6 +44,7 @@ class Run {
   void write_checkpoint();
   void write_failure_bundle(long step);
   void report_progress();
+  [[nodiscard]] RunTimes times_until_now() const;
   void describe_progress(RunSummary& summary) const;
   void finish();
   [[nodiscard]] std::string summary_path() const { return directory_.file("summary.json"); }

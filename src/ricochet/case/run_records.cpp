@@ -75,16 +75,20 @@ void Run::keep_state_before_step() {
   snapshot_seconds_ = timer.seconds();
 }
 
+RunTimes Run::times_until_now() const {
+  RunTimes times = times_;
+  times.contact += simulation_->contact_seconds() - contact_before_;
+  times.output += recording_->seconds();
+  times.watch += recording_->watch_seconds();
+  return times;
+}
+
 Snapshot Run::take_snapshot() {
   Snapshot snapshot;
   simulation_->save(snapshot);
   recording_->save(snapshot);
   save_identity(input_, *model_, snapshot);
-  RunTimes times = times_;
-  times.contact += simulation_->contact_seconds() - contact_before_;
-  times.output += recording_->seconds();
-  times.watch += recording_->watch_seconds();
-  times.save(snapshot, "run.times");
+  times_until_now().save(snapshot, "run.times");
   snapshot.save("run.warnings", log::warnings());
   snapshot.save("run.case_path", summary_.case_path);
   snapshot.save("run.settings", Snapshot::Texts(summary_.settings));
@@ -105,10 +109,7 @@ void Run::describe_progress(RunSummary& summary) const {
   recording_->describe(summary);
   summary.factor_entries = simulation_->factor_entries();
   summary.steps = simulation_->state().step;
-  RunTimes times = times_;
-  times.contact += simulation_->contact_seconds() - contact_before_;
-  times.output += recording_->seconds();
-  times.watch += recording_->watch_seconds();
+  const RunTimes times = times_until_now();
   summary.timings = times.phases();
   summary.time_per_step = summary.steps > 0 ? times.steps / static_cast<double>(summary.steps) : 0.0;
   summary.warnings = log::warnings();

@@ -12,6 +12,12 @@ namespace {
 /// Seconds between lines of a run that is not watched at a terminal; it says something at each tenth anyway.
 constexpr double longest_silence = 60.0;
 
+/// Nobody's run should end because what is merely shown cannot be written.
+void show(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
 }  // namespace
 
 std::string duration_text(double seconds) {
@@ -20,16 +26,6 @@ std::string duration_text(double seconds) {
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
-
-namespace {
-
-/// Nobody's run should end because what is merely shown cannot be written.
-void show(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stderr);
-  std::fflush(stderr);
-}
-
-}  // namespace
 
 Progress::Progress(long steps, bool quiet, long first_step)
     : steps_(steps),
