@@ -11,11 +11,11 @@
 #include <string_view>
 
 #include "commands.hpp"
+#include "ricochet/base/blas_threads.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/base/run_name.hpp"
-#include "ricochet/linear_algebra/blas_threads.hpp"
 #include "ricochet/version.hpp"
 #include "standard_streams.hpp"
 #include "stop_signal.hpp"

@@ -262,6 +262,24 @@ class CommandLine(TestCase):
                 found.add(tuple(pieces))
             self.assertEqual(len(found), 1, f"results.h5 of {case}")
 
+    def test_same_bits_with_any_number_of_blas_threads(self):
+        """Shape functions of degree 2 in space come from linear systems that are solved by OpenBLAS."""
+        text = block_case("tetrahedron_o1_msh41_ascii.msh").split("[[probe]]")[0]
+        for plane, space in (("[0.0, 0.0]", "[0.0, 0.0, 0.0]"), ("[0.0, 1.0]", "[0.0, 0.0, 1.0]"),
+                             ("[0.0, -10.0]", "[0.0, 0.0, -10.0]")):
+            text = text.replace(plane, space)
+        case = self.write("tetrahedra.toml", text)
+        contents = set()
+        for threads in (None, "1", "2", "3"):
+            environment = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
+            if threads is not None:
+                environment["OPENBLAS_NUM_THREADS"] = threads
+            output = self.folder / f"blas{threads}"
+            self.expect_status(0, run("run", case, "-o", output, "--quiet", "--set", "mesh.degree=2",
+                                      environment=environment))
+            contents.add((output / "history.csv").read_bytes())
+        self.assertEqual(len(contents), 1)
+
     def test_motion_beyond_all_bounds_is_status_3(self):
         """Newmark's scheme below γ = ½ is unstable at any step: it takes energy in until numbers run out."""
         output = self.folder / "out"

@@ -13,6 +13,8 @@
 #include <span>
 #include <utility>
 
+#include "ricochet/base/blas_threads.hpp"
+
 namespace ricochet {
 
 namespace {
@@ -40,6 +42,7 @@ const basix::FiniteElement& basix_element(CellShape shape, int degree) {
   const auto key = std::make_pair(shape, degree);
   const auto found = elements.find(key);
   if (found != elements.end()) return found->second;
+  use_one_blas_thread();  // Basix solves for the coefficients of its shape functions
   return elements
       .emplace(key, basix::create_element(basix::element::family::P, basix_cell(shape), degree,
                                           basix::element::lagrange_variant::gll_warped, false))
@@ -86,6 +89,7 @@ const ReferenceElement& ReferenceElement::get(CellShape shape, int degree) {
 }
 
 QuadratureRule quadrature(CellShape shape, int degree) {
+  use_one_blas_thread();
   const auto [points, weights] = basix::quadrature::make_quadrature(basix_cell(shape), degree);
   const auto count = static_cast<Index>(weights.size());
   QuadratureRule rule;

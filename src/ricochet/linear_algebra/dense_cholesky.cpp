@@ -1,6 +1,6 @@
 #include "ricochet/linear_algebra/dense_cholesky.hpp"
 
-#include "ricochet/linear_algebra/blas_threads.hpp"
+#include "ricochet/base/blas_threads.hpp"
 
 // Fortran interfaces of LAPACK, in OpenBLAS; matrices by columns.
 extern "C" {

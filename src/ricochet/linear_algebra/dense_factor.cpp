@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/linear_algebra/blas_threads.hpp"
+#include "ricochet/base/blas_threads.hpp"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>

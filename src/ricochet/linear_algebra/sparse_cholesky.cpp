@@ -8,10 +8,10 @@
 #include <new>
 #include <stdexcept>
 
+#include "ricochet/base/blas_threads.hpp"
 #include "ricochet/base/blocked_signals.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/memory.hpp"
-#include "ricochet/linear_algebra/blas_threads.hpp"
 
 namespace ricochet {
 

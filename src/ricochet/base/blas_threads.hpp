@@ -3,7 +3,8 @@
 /// @file OpenBLAS: its threads and its memory.
 namespace ricochet {
 
-/// With two threads its bits change and nothing is gained. Takes effect once; cheap to call again.
+/// With two threads its bits change and nothing is gained. To be called before anything that calls OpenBLAS, libraries
+/// of others (CHOLMOD, Basix) included: the first bits count. Takes effect once; cheap to call again.
 void use_one_blas_thread();
 
 /// OpenBLAS asks for some memory per thread that calls it, and asks for ever where it is refused: a limit (ulimit -v)

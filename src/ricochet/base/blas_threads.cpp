@@ -1,4 +1,4 @@
-#include "ricochet/linear_algebra/blas_threads.hpp"
+#include "ricochet/base/blas_threads.hpp"
 
 #include <fmt/format.h>
 #include <sys/mman.h>
