@@ -431,6 +431,20 @@ class Report(TestCase):
                 others = {"energy", "penetration", "force"} - {judged}
                 self.assertEqual([judgement[f"{other}_broken_at"] for other in others], [None, None])
 
+    def test_an_infinite_depth_is_not_left_out(self):
+        results = self.simulate(DISC, "disc", SHORT)
+        summary = json.loads((results / "summary.json").read_text())
+        summary["unwatched_penetration"]["found"] = [
+            {"obstacle": "floor", "bodies": ["body 0"], "depth": "inf", "relative_depth": "inf", "time": 0.005,
+             "place": [0.0, 0.0], "first_time": 0.005, "groups": []}]
+        (results / "summary.json").write_text(json.dumps(summary))
+        self.report(results)
+        judgement = Page(results / "report.html").runs[0]["judgement"]
+        self.assertEqual([judgement["penetration"], judgement["relative_penetration"]], ["inf", "inf"])
+        # What is not known is another thing.
+        self.report(self.simulate(DISC, "without", SHORT | {"output.fields_every": 0}))
+        self.assertIsNone(Page(self.folder / "without" / "report.html").runs[0]["judgement"]["relative_penetration"])
+
     def test_judgements(self):
         """A rattling force is found in short and in sparsely written histories, rounding is not one, an explosion is told
         by its size, and without fields nothing is said of the body's size."""

@@ -20,10 +20,15 @@ const percent = (value: number) => `${number(100 * value, value >= 0.1 ? 3 : 2)}
 
 const broken = (what: string, time: number): Finding => ({ what, grade: "poor", words: `no number from t = ${number(time)} on`, short: "no number", detail: "infinite, or not a number" });
 
+/** Sums and depths of numbers that are finite can still be infinite. */
+const unbounded = (what: string): Finding => ({ what, grade: "poor", words: "beyond all numbers", short: "infinite", detail: "infinite, or not a number" });
+const finite = (...values: (number | null)[]) => values.every((value) => value === null || Number.isFinite(value));
+
 export function energyFinding(j: Judgement): Finding {
   // Where loads or friction change the energy, what contact does to it is looked at.
   const what = j.is_isolated ? "Energy" : "Energy in contact";
   if (j.energy_broken_at !== null) return broken(what, j.energy_broken_at);
+  if (!finite(j.energy_scale, j.energy_gain, j.energy_loss)) return unbounded(what);
   const scale = j.energy_scale;
   const source = j.is_isolated ? "total energy against that of the start" : "work of the contact forces against the energy of the start";
   if (!(scale > 0)) return { what, grade: "none", words: "there is none", short: "none", detail: "" };
@@ -43,6 +48,7 @@ export function energyFinding(j: Judgement): Finding {
 export function forceFinding(j: Judgement): Finding {
   const what = "Contact force";
   if (j.force_broken_at !== null) return broken(what, j.force_broken_at);
+  if (!finite(j.force_largest, j.force_variation, j.trend_variation, j.node_roughness)) return unbounded(what);
   if (!(j.force_largest > 0)) return { what, grade: "none", words: "none", short: "none", detail: "nothing touched" };
   const most = `up to ${number(j.force_largest, 3)}`;
   const detail = `all contacts together; largest at t = ${number(j.force_largest_at)}. ${columnName(j.force)}: its total variation is ${number(j.force_variation, 3)}, that of its mean over a hundredth of the run (11 rows at least) ${number(j.trend_variation, 3)}`;
@@ -60,6 +66,10 @@ export function penetrationFinding(j: Judgement): Finding {
   const what = "Interpenetration";
   if (j.penetration_broken_at !== null) return broken(what, j.penetration_broken_at);
   const relative = j.relative_penetration;
+  if (!finite(j.penetration, relative)) {
+    const where = j.unwatched_penetration === "" ? "" : `${j.unwatched_penetration}, where no contact prevents it; `;
+    return { ...unbounded(what), words: "infinitely deep", detail: `${where}infinite, or not a number` };
+  }
   const share = relative === null ? `${number(j.penetration, 3)} deep` : percent(relative);
   const size = relative === null ? `${number(j.penetration, 3)} deep` : `${percent(relative)} of the body's size`;
   if (j.unwatched_penetration !== "") {
@@ -83,6 +93,7 @@ export const rotationLimit = 0.1;
 
 export function rotationFinding(j: Judgement): Finding {
   const what = "Rotation";
+  if (!finite(j.rotation)) return unbounded(what);
   const strain = 1 - Math.cos(Math.min(j.rotation, Math.PI));
   const detail = `largest of a cell; small strain takes a rotation θ for a strain of 1 − cos θ, here ${number(strain, 2)}, that is not there`;
   const short = `${number(j.rotation, 2)} rad`;

@@ -179,6 +179,22 @@ test("a run that failed is not recommended, nor one that nothing touched", async
   await view.close();
 });
 
+test("what is infinite is said to be, and is never none", async () => {
+  const run = shortDisc("infinite");
+  const file = join(run, "summary.json");
+  const summary = JSON.parse(readFileSync(file, "utf8"));
+  const found = { obstacle: "floor", bodies: ["body 0"], depth: "inf", relative_depth: "inf", time: 0.005, place: [0, 0], first_time: 0.005, groups: [] };
+  summary.unwatched_penetration = { ...summary.unwatched_penetration, depth: "inf", relative_depth: "inf", found: [found] };
+  writeFileSync(file, JSON.stringify(summary));
+  const view = await open(report("infinite", run));
+  const words = await view.page.$$eval(".findings dt", (all) => Object.fromEntries(all.map((dt) => [dt.textContent, dt.nextElementSibling])
+    .map(([what, dd]) => [what, `${dd.className}: ${dd.textContent} (${dd.title})`])));
+  assert.match(words.Interpenetration, /^poor: .*infinitely deep \(body 0 in "floor", where no contact prevents it; infinite/);
+  assert.match(words["Contact force"], /up to/);
+  assert.deepEqual(view.complaints, []);
+  await view.close();
+});
+
 test("a file that was cut off says so", async () => {
   const whole = readFileSync(report("whole", simulate("cases/disc/disc.toml", "plain2", { "time.end": 0.01 })), "utf8");
   const file = join(folder, "cut.html");

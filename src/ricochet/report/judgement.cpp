@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace ricochet {
 
@@ -156,7 +157,8 @@ Judgement judge(const RunData& run) {
   result.force_broken_at = broken_at(run, forces);
   result.penetration_broken_at = broken_at(run, {"max_penetration"});
   judge_penetration(run, result);
-  result.rotation = largest_magnitude(run.column("max_rotation"));
+  const bool turned = !broken_at(run, {"max_rotation"});
+  result.rotation = turned ? largest_magnitude(run.column("max_rotation")) : std::numeric_limits<double>::quiet_NaN();
   return result;
 }
 

@@ -11,6 +11,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/json_number.hpp"
 #include "ricochet/report/body_part.hpp"
 #include "ricochet/report/history_part.hpp"
 #include "ricochet/report/judgement.hpp"
@@ -48,34 +49,39 @@ Json to_json(const PackedArray& array) {
   return json;
 }
 
+/// What is not finite is a word: null is what there is nothing to say of.
+Json to_json(double value) {
+  return number_to_json<Json>(value);
+}
+
 Json to_json(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
+  return value ? to_json(*value) : Json(nullptr);
 }
 
 Json to_json(const Judgement& j) {
   return {{"energy_broken_at", to_json(j.energy_broken_at)},
           {"force_broken_at", to_json(j.force_broken_at)},
           {"penetration_broken_at", to_json(j.penetration_broken_at)},
-          {"energy_scale", j.energy_scale},
+          {"energy_scale", to_json(j.energy_scale)},
           {"is_isolated", j.is_isolated},
-          {"energy_gain", j.energy_gain},
-          {"energy_loss", j.energy_loss},
-          {"energy_change", j.energy_change},
-          {"energy_residual", j.energy_residual},
+          {"energy_gain", to_json(j.energy_gain)},
+          {"energy_loss", to_json(j.energy_loss)},
+          {"energy_change", to_json(j.energy_change)},
+          {"energy_residual", to_json(j.energy_residual)},
           {"force", j.force},
-          {"force_largest", j.force_largest},
-          {"force_largest_at", j.force_largest_at},
-          {"force_variation", j.force_variation},
-          {"trend_variation", j.trend_variation},
-          {"roughness", j.roughness},
+          {"force_largest", to_json(j.force_largest)},
+          {"force_largest_at", to_json(j.force_largest_at)},
+          {"force_variation", to_json(j.force_variation)},
+          {"trend_variation", to_json(j.trend_variation)},
+          {"roughness", to_json(j.roughness)},
           {"node_force", j.node_force},
-          {"node_roughness", j.node_roughness},
-          {"penetration", j.penetration},
+          {"node_roughness", to_json(j.node_roughness)},
+          {"penetration", to_json(j.penetration)},
           {"relative_penetration", to_json(j.relative_penetration)},
           {"penetration_checked", j.penetration_checked},
           {"unwatched_penetration", j.unwatched_penetration},
           {"contact_beyond_rim", j.contact_beyond_rim},
-          {"rotation", j.rotation}};
+          {"rotation", to_json(j.rotation)}};
 }
 
 Json times_of(const std::vector<int>& frames, const ResultsReader& results) {

@@ -1,5 +1,6 @@
 import { indices, inflated, levels, reals, type Levels } from "./decode";
-import type { BodyData, PackedArray, PageData, RunData, Summary, VolumeData } from "./types";
+import { toNumber } from "../format";
+import { judgementTexts, type BodyData, type Judgement, type PackedArray, type PageData, type RunData, type Summary, type VolumeData } from "./types";
 
 /** Bytes of the page's blobs, each unpacked once for all who ask. */
 class Blobs {
@@ -220,6 +221,10 @@ function lengths(components: Float64Array[]): Float64Array {
   return Float64Array.from({ length: components[0]?.length ?? 0 }, (_, i) => Math.hypot(...components.map((column) => column[i])));
 }
 
+/** The page has words for numbers that are not finite. */
+const withNumbers = (judgement: Judgement): Judgement =>
+  Object.fromEntries(Object.entries(judgement).map(([key, value]) => [key, typeof value === "string" && !judgementTexts.has(key) ? toNumber(value) : value])) as unknown as Judgement;
+
 export function readPage(): Run[] {
   if (!("DecompressionStream" in window))
     throw new Error("this browser is too old for it: Chrome 80, Firefox 113 or Safari 16.4 and later show it");
@@ -228,7 +233,7 @@ export function readPage(): Run[] {
   const page = JSON.parse(text) as PageData;
   if (page.format !== 3) throw new Error(`this viewer does not read format ${page.format}`);
   const blobs = new Blobs();
-  return page.runs.map((run, number) => new Run(number, run, blobs));
+  return page.runs.map((run, number) => new Run(number, { ...run, judgement: withNumbers(run.judgement) }, blobs));
 }
 
 /** The largest index whose entry is at most `value` plus a rounding; the nearest one when `nearest`. */

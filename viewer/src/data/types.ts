@@ -206,3 +206,6 @@ export interface PageData {
   version: string;
   runs: RunData[];
 }
+
+/** Of a judgement, what is text and no number. */
+export const judgementTexts = new Set(["force", "node_force", "unwatched_penetration", "contact_beyond_rim"]);
