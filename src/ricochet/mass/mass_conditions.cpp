@@ -8,28 +8,11 @@
 #include <cmath>
 #include <limits>
 
+#include "ricochet/linear_algebra/graph_components.hpp"
+
 namespace ricochet {
 
 namespace {
-
-std::vector<std::vector<Index>> connected_bodies(const SparseMatrix& matrix) {
-  std::vector<char> seen(static_cast<std::size_t>(matrix.cols()), 0);
-  std::vector<std::vector<Index>> bodies;
-  for (Index first = 0; first < matrix.cols(); ++first) {
-    if (seen[static_cast<std::size_t>(first)] != 0) continue;
-    seen[static_cast<std::size_t>(first)] = 1;
-    std::vector<Index> body{first};
-    for (std::size_t k = 0; k < body.size(); ++k) {
-      for (SparseMatrix::InnerIterator entry(matrix, body[k]); entry; ++entry) {
-        if (seen[static_cast<std::size_t>(entry.row())] != 0) continue;
-        seen[static_cast<std::size_t>(entry.row())] = 1;
-        body.push_back(entry.row());
-      }
-    }
-    bodies.push_back(std::move(body));
-  }
-  return bodies;
-}
 
 /// Size of the body in each direction, for numbers near one.
 void start_frame(const Points& nodes, MassFrames& frames, MassBody& body) {
@@ -69,7 +52,7 @@ void normalize(const SparseMatrix& mass, MassFrames& frames, MassBody& body) {
 MassFrames mass_frames(const SparseMatrix& mass, const Points& nodes) {
   MassFrames frames;
   frames.monomials.setZero(nodes.rows() + 1, nodes.cols());
-  for (std::vector<Index>& members : connected_bodies(mass)) {
+  for (std::vector<Index>& members : graph_components(mass, 1)) {
     MassBody body;
     body.nodes = std::move(members);
     start_frame(nodes, frames, body);

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/linear_algebra/graph_components.hpp"
 
 namespace ricochet {
 
@@ -53,37 +54,26 @@ RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
 
 /// Fills bodies_, positions_ and body_of_node_.
 void RigidMotion::find_bodies(const Points& nodes, const SparseMatrix& stiffness) {
-  const Index d = nodes.rows();
-  body_of_node_.assign(static_cast<std::size_t>(nodes.cols()), -1);
-  std::vector<int> members;
-  for (Index first = 0; first < nodes.cols(); ++first) {
-    if (body_of_node_[static_cast<std::size_t>(first)] >= 0) continue;
-    const int number = static_cast<int>(bodies_.size());
-    members.assign(1, static_cast<int>(first));
-    body_of_node_[static_cast<std::size_t>(first)] = number;
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      for (SparseMatrix::InnerIterator entry(stiffness, members[k] * d); entry; ++entry) {
-        const auto neighbour = static_cast<Index>(entry.row()) / d;
-        if (body_of_node_[static_cast<std::size_t>(neighbour)] >= 0) continue;
-        body_of_node_[static_cast<std::size_t>(neighbour)] = number;
-        members.push_back(static_cast<int>(neighbour));
-      }
-    }
+  std::vector<std::vector<Index>> components = graph_components(stiffness, nodes.rows());
+  if (components.size() > 1) body_of_node_.resize(static_cast<std::size_t>(nodes.cols()));
+  for (std::vector<Index>& members : components) {
     std::sort(members.begin(), members.end());
+    const auto number = static_cast<int>(bodies_.size());
     bodies_.push_back(make_body(nodes, members));
-    for (const int node : members) positions_.col(node) = nodes.col(node) - bodies_.back().centre;
+    for (const Index node : members) {
+      positions_.col(node) = nodes.col(node) - bodies_.back().centre;
+      if (components.size() > 1) body_of_node_[static_cast<std::size_t>(node)] = number;
+    }
   }
-  if (bodies_.size() == 1) body_of_node_ = {};
 }
 
-RigidMotion::Body RigidMotion::make_body(const Points& nodes, const std::vector<int>& members) {
+RigidMotion::Body RigidMotion::make_body(const Points& nodes, const std::vector<Index>& members) {
   const Index d = nodes.rows();
   Body body;
-  if (static_cast<Index>(members.size()) <= most_fitted) {
-    body.fitted = members;
-  } else {
-    for (std::uint64_t k = 0; k < most_fitted; ++k) body.fitted.push_back(members[scattered(k, members.size())]);
-  }
+  const bool all = static_cast<Index>(members.size()) <= most_fitted;
+  const std::size_t fitted = all ? members.size() : static_cast<std::size_t>(most_fitted);
+  for (std::size_t k = 0; k < fitted; ++k)
+    body.fitted.push_back(static_cast<int>(members[all ? k : scattered(k, members.size())]));
   const auto count = static_cast<Index>(body.fitted.size());
   body.positions.resize(d, count);
   for (Index i = 0; i < count; ++i) body.positions.col(i) = nodes.col(body.fitted[static_cast<std::size_t>(i)]);

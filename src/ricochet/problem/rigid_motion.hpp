@@ -38,7 +38,7 @@ class RigidMotion {
   };
   void find_bodies(const Points& nodes, const SparseMatrix& stiffness);
   void keep_rotations_that_strain(const SparseMatrix& stiffness);
-  static Body make_body(const Points& nodes, const std::vector<int>& members);
+  static Body make_body(const Points& nodes, const std::vector<Index>& members);
   template <int d>
   Motion fit(const Body& body, const Vector& displacement) const;
   template <int d>

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ricochet/linear_algebra/graph_components.hpp"
+
 namespace ricochet {
 
 namespace {
@@ -19,29 +21,6 @@ constexpr double settled = 1e-9;
 /// loads' square.
 constexpr double resolution = 1e-7;
 constexpr int column_limit = 2000;
-
-/// The connected components of the graph of K.
-std::vector<std::vector<Index>> find_bodies(const SemidiscreteProblem& problem) {
-  const SparseMatrix& stiffness = problem.internal_force->tangent();
-  const Index d = problem.dimension;
-  std::vector<char> seen(static_cast<std::size_t>(problem.nodes.cols()), 0);
-  std::vector<std::vector<Index>> bodies;
-  for (Index first = 0; first < problem.nodes.cols(); ++first) {
-    if (seen[static_cast<std::size_t>(first)] != 0) continue;
-    std::vector<Index> members{first};
-    seen[static_cast<std::size_t>(first)] = 1;
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      for (SparseMatrix::InnerIterator entry(stiffness, members[k] * d); entry; ++entry) {
-        const Index neighbour = entry.row() / d;
-        if (seen[static_cast<std::size_t>(neighbour)] != 0) continue;
-        seen[static_cast<std::size_t>(neighbour)] = 1;
-        members.push_back(neighbour);
-      }
-    }
-    bodies.push_back(std::move(members));
-  }
-  return bodies;
-}
 
 /// Rigid motions of a body that its supports leave free, as orthonormal combinations of translations and of rotations
 /// about its centre with speed one at its rim.
@@ -307,7 +286,7 @@ std::optional<UnheldMotion> find_unheld_motion(const SemidiscreteProblem& proble
   Vector load;
   problem.loads.total(0.0, load);
   std::optional<UnheldMotion> worst;
-  for (const std::vector<Index>& members : find_bodies(problem)) {
+  for (const std::vector<Index>& members : graph_components(problem.internal_force->tangent(), problem.dimension)) {
     const std::optional<UnheldMotion> found = find_in_body(problem, members, load, frictionless);
     if (found && (!worst || found->unbalanced > worst->unbalanced)) worst = found;
   }
