@@ -24,7 +24,7 @@ void add_pieces(const Points& positions, const std::vector<CellBlock>& cells, co
                                                               : Eigen::Vector3d(along.cross(at(nodes[2]) - origin));
   double side = 0.0;  // on which the cell is
   for (int v = 0; v < vertex_count(block.shape); ++v) side += normal.dot(at(block.cell(facet.cell)[v]) - origin);
-  const int degree = static_cast<int>(nodes.size()) == vertex_count(shape) ? 1 : 2;
+  const int degree = degree_of(shape, static_cast<int>(nodes.size()));
   for (const FlatPiece& local : flat_pieces(shape, degree)) {
     BodySurface::Piece piece{-1, -1, -1};
     for (std::size_t k = 0; k < 3; ++k) {

@@ -130,7 +130,7 @@ std::vector<SharedFacet> folds(const std::vector<CellBlock>& cells) {
 
 std::vector<Index> nodes_of_facet(const std::vector<CellBlock>& cells, const CellFacet& facet) {
   const CellBlock& block = cells[facet.block];
-  const int degree = block.nodes_per_cell == vertex_count(block.shape) ? 1 : 2;
+  const int degree = degree_of(block.shape, block.nodes_per_cell);
   std::vector<Index> nodes;
   for (const int local : facet_nodes(block.shape, degree)[facet.local]) nodes.push_back(block.cell(facet.cell)[local]);
   return nodes;

@@ -1,18 +1,10 @@
 #include "ricochet/mesh/flat_pieces.hpp"
 
-#include <algorithm>
-
 #include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
 
 namespace {
-
-/// The node at the mean of these vertices (ascending).
-int node_at(CellShape shape, const std::vector<int>& vertices) {
-  const std::vector<std::vector<int>>& all = node_vertices(shape, 2);
-  return static_cast<int>(std::find(all.begin(), all.end(), vertices) - all.begin());
-}
 
 std::vector<FlatPiece> pieces_of_interval(int degree) {
   if (degree == 1) return {{0, 1, -1}};
@@ -22,7 +14,7 @@ std::vector<FlatPiece> pieces_of_interval(int degree) {
 std::vector<FlatPiece> pieces_of_triangle(int degree) {
   if (degree == 1) return {{0, 1, 2}};
   const CellShape shape = CellShape::triangle;
-  const int a = node_at(shape, {0, 1}), b = node_at(shape, {1, 2}), c = node_at(shape, {0, 2});
+  const int a = node_at_mean(shape, {0, 1}), b = node_at_mean(shape, {1, 2}), c = node_at_mean(shape, {0, 2});
   return {{0, a, c}, {a, 1, b}, {c, b, 2}, {a, b, c}};
 }
 
@@ -30,8 +22,9 @@ std::vector<FlatPiece> pieces_of_triangle(int degree) {
 std::vector<FlatPiece> pieces_of_quadrilateral(int degree) {
   if (degree == 1) return {{0, 1, 3}, {0, 3, 2}};
   const CellShape shape = CellShape::quadrilateral;
-  const int lower = node_at(shape, {0, 1}), left = node_at(shape, {0, 2}), right = node_at(shape, {1, 3}),
-            upper = node_at(shape, {2, 3}), middle = node_at(shape, {0, 1, 2, 3});
+  const int lower = node_at_mean(shape, {0, 1}), left = node_at_mean(shape, {0, 2}),
+            right = node_at_mean(shape, {1, 3}), upper = node_at_mean(shape, {2, 3}),
+            middle = node_at_mean(shape, {0, 1, 2, 3});
   std::vector<FlatPiece> pieces;
   for (const std::array<int, 4>& quarter : {std::array{0, lower, middle, left}, std::array{lower, 1, right, middle},
                                             std::array{middle, right, 3, upper}, std::array{left, middle, upper, 2}}) {

@@ -132,6 +132,16 @@ const VertexSets& node_vertices(CellShape shape, int degree) {
   return table[table_index(shape, degree)];
 }
 
+int node_at_mean(CellShape shape, std::vector<int> vertices) {
+  const VertexSets& all = node_vertices(shape, 2);
+  std::sort(vertices.begin(), vertices.end());
+  return static_cast<int>(std::find(all.begin(), all.end(), vertices) - all.begin());
+}
+
+int degree_of(CellShape shape, int nodes) {
+  return nodes == vertex_count(shape) ? 1 : 2;
+}
+
 CellShape facet_shape(CellShape shape) {
   switch (shape) {
     case CellShape::tetrahedron:

@@ -12,6 +12,12 @@ namespace ricochet {
 /// hexahedron.
 [[nodiscard]] const std::vector<std::vector<int>>& node_vertices(CellShape shape, int degree);
 
+/// The node of the element of degree 2 at the mean of these vertices, which come in any order.
+[[nodiscard]] int node_at_mean(CellShape shape, std::vector<int> vertices);
+
+/// Degree of the Lagrange element with so many nodes, 1 or 2.
+[[nodiscard]] int degree_of(CellShape shape, int nodes);
+
 /// Shape of the facets; the shapes supported have facets of one shape only. Not for intervals.
 [[nodiscard]] CellShape facet_shape(CellShape shape);
 

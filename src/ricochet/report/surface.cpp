@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 
+#include "ricochet/mesh/boundary_facets.hpp"
+#include "ricochet/mesh/flat_pieces.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "ricochet/report/node_grid.hpp"
 
@@ -22,103 +23,56 @@ struct Triangle {
 
 /// A flat piece of a facet (or of a plane cell), by the element's own nodes.
 struct Pattern {
-  std::array<int, 3> corners;
+  FlatPiece corners;
   int edges;
 };
 
-/// The element's node in the middle of these vertices.
-int node_at(CellShape shape, std::vector<int> vertices) {
-  const auto& all = node_vertices(shape, 2);
-  return static_cast<int>(std::find(all.begin(), all.end(), vertices) - all.begin());
-}
-
-/// A triangle a b c, of degree 2 in four with its middles.
-std::vector<Pattern> triangle_patterns(int degree) {
-  if (degree == 1) return {{{0, 1, 2}, 0b111}};
-  const int ab = node_at(CellShape::triangle, {0, 1}), bc = node_at(CellShape::triangle, {1, 2}),
-            ca = node_at(CellShape::triangle, {0, 2});
-  return {{{0, ab, ca}, 0b101}, {{ab, 1, bc}, 0b011}, {{ca, bc, 2}, 0b110}, {{ab, bc, ca}, 0b000}};
-}
-
-/// A quadrilateral with the corners a b c d around it, in two triangles a b c and a c d; of degree 2 four such.
-std::vector<Pattern> quadrilateral_patterns(int degree) {
-  if (degree == 1) return {{{0, 1, 3}, 0b011}, {{0, 3, 2}, 0b110}};
-  const CellShape shape = CellShape::quadrilateral;
-  const int ab = node_at(shape, {0, 1}), ad = node_at(shape, {0, 2}), bc = node_at(shape, {1, 3}),
-            dc = node_at(shape, {2, 3}), middle = node_at(shape, {0, 1, 2, 3});
-  // Each quarter from its corner: the two sides that meet there are edges of the cell.
-  return {{{0, ab, middle}, 0b001}, {{0, middle, ad}, 0b100}, {{1, bc, middle}, 0b001}, {{1, middle, ab}, 0b100},
-          {{3, dc, middle}, 0b001}, {{3, middle, bc}, 0b100}, {{2, ad, middle}, 0b001}, {{2, middle, dc}, 0b100}};
+/// The side from a corner to the next lies in an edge of the cell where both of its nodes do.
+int edges_of(CellShape shape, int degree, const FlatPiece& corners) {
+  int edges = 0;
+  for (const std::vector<int>& edge : facet_nodes(shape, degree)) {
+    const auto contains = [&edge](int node) { return std::find(edge.begin(), edge.end(), node) != edge.end(); };
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (contains(corners[k]) && contains(corners[(k + 1) % 3])) edges |= 1 << k;
+    }
+  }
+  return edges;
 }
 
 std::vector<Pattern> patterns_of(CellShape shape, int degree) {
-  return shape == CellShape::triangle ? triangle_patterns(degree) : quadrilateral_patterns(degree);
-}
-
-int degree_of(const CellBlock& block) {
-  return block.nodes_per_cell == node_count(block.shape, 1) ? 1 : 2;
+  std::vector<Pattern> result;
+  for (const FlatPiece& corners : flat_pieces(shape, degree))
+    result.push_back({corners, edges_of(shape, degree, corners)});
+  return result;
 }
 
 std::vector<Triangle> plane_triangles(const std::vector<CellBlock>& blocks) {
   std::vector<Triangle> result;
   Index number = 0;
   for (const CellBlock& block : blocks) {
-    const std::vector<Pattern> patterns = patterns_of(block.shape, degree_of(block));
+    const std::vector<Pattern> patterns = patterns_of(block.shape, degree_of(block.shape, block.nodes_per_cell));
     for (Index i = 0; i < block.size(); ++i, ++number) {
       const Index* cell = block.cell(i);
-      for (const Pattern& p : patterns)
-        result.push_back({{cell[p.corners[0]], cell[p.corners[1]], cell[p.corners[2]]}, number, p.edges});
+      for (const auto& [corners, edges] : patterns)
+        result.push_back({{cell[corners[0]], cell[corners[1]], cell[corners[2]]}, number, edges});
     }
   }
   return result;
 }
 
-/// A facet by its vertices, ascending (−1 in front of three), and where it is.
-struct Facet {
-  std::array<Index, 4> vertices;
-  Index cell;  ///< through all blocks
-  int block, local;
-};
-
-std::vector<Facet> all_facets(const std::vector<CellBlock>& blocks) {
-  std::vector<Facet> result;
-  Index number = 0;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const CellBlock& block = blocks[b];
-    const auto& corners = facet_nodes(block.shape, 1);
-    for (Index i = 0; i < block.size(); ++i, ++number) {
-      for (std::size_t f = 0; f < corners.size(); ++f) {
-        Facet facet{{-1, -1, -1, -1}, number, static_cast<int>(b), static_cast<int>(f)};
-        for (std::size_t k = 0; k < corners[f].size(); ++k) facet.vertices[k] = block.cell(i)[corners[f][k]];
-        std::sort(facet.vertices.begin(), facet.vertices.end());
-        result.push_back(facet);
-      }
-    }
-  }
-  return result;
-}
-
-/// The facets that belong to one cell alone.
 std::vector<Triangle> boundary_triangles(const std::vector<CellBlock>& blocks) {
-  std::vector<Facet> facets = all_facets(blocks);
-  std::sort(facets.begin(), facets.end(), [](const Facet& a, const Facet& b) {
-    return std::tie(a.vertices, a.cell, a.local) < std::tie(b.vertices, b.cell, b.local);
-  });
   std::vector<Index> first_cell{0};
-  for (const CellBlock& block : blocks) first_cell.push_back(first_cell.back() + block.size());
+  std::vector<std::vector<Pattern>> patterns;
+  for (const CellBlock& block : blocks) {
+    first_cell.push_back(first_cell.back() + block.size());
+    patterns.push_back(patterns_of(facet_shape(block.shape), degree_of(block.shape, block.nodes_per_cell)));
+  }
   std::vector<Triangle> result;
-  for (std::size_t i = 0; i < facets.size(); ++i) {
-    const Facet& facet = facets[i];
-    const bool shared = (i > 0 && facets[i - 1].vertices == facet.vertices) ||
-                        (i + 1 < facets.size() && facets[i + 1].vertices == facet.vertices);
-    if (shared) continue;
-    const CellBlock& block = blocks[static_cast<std::size_t>(facet.block)];
-    const int degree = degree_of(block);
-    const Index* cell = block.cell(facet.cell - first_cell[static_cast<std::size_t>(facet.block)]);
-    const std::vector<int>& nodes = facet_nodes(block.shape, degree)[static_cast<std::size_t>(facet.local)];
-    for (const Pattern& p : patterns_of(facet_shape(block.shape), degree)) {
-      const auto corner = [&](std::size_t k) { return cell[nodes[static_cast<std::size_t>(p.corners[k])]]; };
-      result.push_back({{corner(0), corner(1), corner(2)}, facet.cell, p.edges});
+  for (const CellFacet& facet : boundary_facets(blocks)) {
+    const std::vector<Index> nodes = nodes_of_facet(blocks, facet);
+    for (const auto& [corners, edges] : patterns[facet.block]) {
+      const auto corner = [&](std::size_t k) { return nodes[static_cast<std::size_t>(corners[k])]; };
+      result.push_back({{corner(0), corner(1), corner(2)}, first_cell[facet.block] + facet.cell, edges});
     }
   }
   return result;

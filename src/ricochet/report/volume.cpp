@@ -23,12 +23,6 @@ struct Tetrahedron {
   int cell, faces;
 };
 
-int node_at(CellShape shape, std::vector<int> vertices) {
-  const auto& all = node_vertices(shape, 2);
-  std::sort(vertices.begin(), vertices.end());
-  return static_cast<int>(std::find(all.begin(), all.end(), vertices) - all.begin());
-}
-
 /// The face opposite to a corner lies in a facet of the cell where its three nodes do.
 int faces_of(CellShape shape, int degree, const std::array<int, 4>& corners) {
   int faces = 0;
@@ -46,7 +40,7 @@ int faces_of(CellShape shape, int degree, const std::array<int, 4>& corners) {
 
 /// Four at the corners, four in the octahedron between them around the line that joins two opposite edges' middles.
 std::vector<std::array<int, 4>> quadratic_tetrahedron() {
-  const auto middle = [](int a, int b) { return node_at(CellShape::tetrahedron, {a, b}); };
+  const auto middle = [](int a, int b) { return node_at_mean(CellShape::tetrahedron, {a, b}); };
   const int a = middle(0, 1), b = middle(0, 2), c = middle(0, 3), d = middle(1, 2), e = middle(1, 3), f = middle(2, 3);
   return {{0, a, b, c}, {1, a, d, e}, {2, b, d, f}, {3, c, e, f},
           {a, f, b, c}, {a, f, c, e}, {a, f, e, d}, {a, f, d, b}};
@@ -65,7 +59,7 @@ void add_box(const std::array<int, 3>& first, int degree, std::vector<std::array
       }
       if (takes_part) vertices.push_back(v);
     }
-    return degree == 1 ? vertices.front() : node_at(CellShape::hexahedron, vertices);
+    return degree == 1 ? vertices.front() : node_at_mean(CellShape::hexahedron, vertices);
   };
   std::array<std::size_t, 3> axes{0, 1, 2};
   do {
@@ -92,15 +86,11 @@ std::vector<Pattern> patterns_of(CellShape shape, int degree) {
   return result;
 }
 
-int degree_of(const CellBlock& block) {
-  return block.nodes_per_cell == node_count(block.shape, 1) ? 1 : 2;
-}
-
 /// How many there would be.
 Index count_of(const std::vector<CellBlock>& blocks, int most_degree) {
   Index count = 0;
   for (const CellBlock& block : blocks) {
-    const auto patterns = patterns_of(block.shape, std::min(degree_of(block), most_degree));
+    const auto patterns = patterns_of(block.shape, std::min(degree_of(block.shape, block.nodes_per_cell), most_degree));
     count += block.size() * static_cast<Index>(patterns.size());
   }
   return count;
@@ -110,7 +100,8 @@ std::vector<Tetrahedron> tetrahedra_of(const std::vector<CellBlock>& blocks, int
   std::vector<Tetrahedron> result;
   int number = 0;
   for (const CellBlock& block : blocks) {
-    const std::vector<Pattern> patterns = patterns_of(block.shape, std::min(degree_of(block), most_degree));
+    const std::vector<Pattern> patterns =
+        patterns_of(block.shape, std::min(degree_of(block.shape, block.nodes_per_cell), most_degree));
     for (Index i = 0; i < block.size(); ++i, ++number) {
       const Index* cell = block.cell(i);
       for (const auto& [corners, faces] : patterns)

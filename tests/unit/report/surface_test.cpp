@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "ricochet/contact/surface_pieces.hpp"
 #include "ricochet/report/contact_line.hpp"
 #include "support/box_mesh.hpp"
 
@@ -105,6 +106,38 @@ TEST_P(SurfaceOf, TrianglesBelongToTheirCells) {
       EXPECT_NE(std::find(cell, cell + block.nodes_per_cell, node), cell + block.nodes_per_cell);
     }
   }
+}
+
+/// What a page shows and what contact is looked for on are one surface: the same facets, cut at the same places. In the
+/// plane it is the outline of what is shown.
+TEST_P(SurfaceOf, ItIsTheOneThatContactSees) {
+  const ElementKind& kind = GetParam();
+  const BoxMesh box = box_of(kind.shape, std::vector<int>(static_cast<std::size_t>(kind.dimension()), 2));
+  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const DisplacementSpace& space = body->space;
+  std::multiset<BodySurface::Piece> seen, shown;
+  for (BodySurface::Piece piece : surface_pieces(space.nodes, space.cells, boundary_facets(space.cells))) {
+    std::sort(piece.begin(), piece.end());
+    seen.insert(piece);
+  }
+  const Surface surface = make_surface(in_space(space.nodes), space.cells, 1000000);
+  const auto number = [&](int local) { return surface.nodes[static_cast<std::size_t>(local)]; };
+  if (kind.dimension() == 2) {
+    for (const auto& [side, times] : Sides(surface).times) {
+      BodySurface::Piece piece{-1, number(side.first), number(side.second)};
+      std::sort(piece.begin(), piece.end());
+      if (times == 1) shown.insert(piece);
+    }
+  } else {
+    for (std::size_t t = 0; t < surface.cells.size(); ++t) {
+      BodySurface::Piece piece;
+      for (std::size_t k = 0; k < 3; ++k) piece[k] = number(surface.triangles[3 * t + k]);
+      std::sort(piece.begin(), piece.end());
+      shown.insert(piece);
+    }
+  }
+  EXPECT_FALSE(seen.empty());
+  EXPECT_EQ(shown, seen);
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, SurfaceOf, testing::ValuesIn(test_support::all_element_kinds()),

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 
+#include "ricochet/report/surface.hpp"
 #include "support/box_mesh.hpp"
 
 namespace ricochet {
@@ -75,6 +77,32 @@ TEST_P(VolumeOf, ACubeIsComplete) {
     EXPECT_EQ(faces.of_cells.at(face), 1);
   }
   EXPECT_NEAR(surface, 6.0, 1e-12);
+}
+
+/// Where nothing is cut away, the inside ends at the surface that is drawn: triangle for triangle.
+TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
+  const ElementKind& kind = GetParam();
+  BoxMesh box;
+  box.shape = kind.shape;
+  box.counts = {2, 2, 2};
+  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const Volume volume = make_volume(body->space.nodes, body->space.cells, 1000000);
+  const Surface surface = make_surface(body->space.nodes, body->space.cells, 1000000);
+  const auto in_body = [](std::array<int, 3> corners, const std::vector<Index>& nodes) {
+    std::array<Index, 3> result{};
+    for (std::size_t k = 0; k < 3; ++k) result[k] = nodes[static_cast<std::size_t>(corners[k])];
+    std::sort(result.begin(), result.end());
+    return result;
+  };
+  std::set<std::array<Index, 3>> outside, drawn;
+  for (const auto& [face, times] : Faces(volume).times) {
+    if (times == 1) outside.insert(in_body(face, volume.nodes));
+  }
+  for (std::size_t t = 0; t < surface.cells.size(); ++t) {
+    const int* corners = surface.triangles.data() + 3 * t;
+    drawn.insert(in_body({corners[0], corners[1], corners[2]}, surface.nodes));
+  }
+  EXPECT_EQ(outside, drawn);
 }
 
 /// Of too many there are fewer: first those of the vertices, which still fill the cube, then larger ones.
