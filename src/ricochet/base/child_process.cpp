@@ -3,7 +3,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -40,27 +41,50 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
   return result;
 }
 
-/// In a group of its own, so that it ends when this process says so, with all that it has started; and with none of the
-/// signals held back that this process may hold back.
-class Attributes {
+/// Tells this process why its child could not become the other program: memory that both see.
+class SharedErrno {
  public:
-  Attributes() {
-    posix_spawnattr_init(&attributes_);
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
-    posix_spawnattr_setpgroup(&attributes_, 0);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes_, &none);
+  SharedErrno() : number_(mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {}
+  ~SharedErrno() {
+    if (exists()) munmap(number_, sizeof(int));
   }
-  ~Attributes() { posix_spawnattr_destroy(&attributes_); }
-  Attributes(const Attributes&) = delete;
-  Attributes& operator=(const Attributes&) = delete;
+  SharedErrno(const SharedErrno&) = delete;
+  SharedErrno& operator=(const SharedErrno&) = delete;
 
-  [[nodiscard]] const posix_spawnattr_t* get() const { return &attributes_; }
+  [[nodiscard]] bool exists() const { return number_ != MAP_FAILED; }
+  [[nodiscard]] int& value() const { return *static_cast<int*>(number_); }
 
  private:
-  posix_spawnattr_t attributes_{};
+  void* number_;
 };
+
+bool redirect(const char* path, int flags, int stream) {
+  const int file = open(path, flags, 0600);
+  if (file < 0 || (file != stream && dup2(file, stream) < 0)) return false;
+  if (file != stream) close(file);
+  return true;
+}
+
+/// In the child, between fork and exec, where only the simplest functions may be called. The child is in a group of its
+/// own, so that it ends when its parent says so, with all that it has started; it ends by itself when the parent is
+/// killed; and it holds back none of the signals that the parent may hold back.
+[[noreturn]] void become(const ChildProcess& child, pid_t parent, char* const* arguments, char* const* variables,
+                         int& error) {
+  setpgid(0, 0);
+  // To be exact: when the thread ends that has started the child. It waits for the child.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);  // it was killed sooner
+  if (redirect(child.input.c_str(), O_RDONLY, STDIN_FILENO) &&
+      redirect(child.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO) &&
+      dup2(STDOUT_FILENO, STDERR_FILENO) >= 0) {
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    execvpe(arguments[0], arguments, variables);
+  }
+  error = errno;
+  _exit(127);
+}
 
 /// Until it has ended; its number stays its own until it is asked how.
 bool wait_for_end(pid_t process) {
@@ -93,26 +117,32 @@ std::string ChildOutcome::description() const {
 
 ChildOutcome run_child(ChildProcess child) {
   std::vector<std::string> variables = environment(child.variables);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, child.input.c_str(), O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, child.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  const std::vector<char*> arguments = pointers(child.arguments), all_variables = pointers(variables);
   ChildOutcome outcome;
-  pid_t process = 0;
-  outcome.spawn_error = posix_spawnp(&process, child.arguments.front().c_str(), &actions, Attributes().get(),
-                                     pointers(child.arguments).data(), pointers(variables).data());
-  posix_spawn_file_actions_destroy(&actions);
-  if (outcome.spawn_error != 0) return outcome;
+  const SharedErrno error;
+  if (!error.exists()) {
+    outcome.spawn_error = errno;
+    return outcome;
+  }
+  pid_t process = -1;
   {
-    const AtInterruption kill_child([process] {
-      if (kill(-process, SIGKILL) == 0) wait_for_end(process);
+    const auto start = [&] {
+      const pid_t parent = getpid();
+      process = _Fork();  // without what libraries do at a fork: they are not called in the child
+      if (process == 0) become(child, parent, arguments.data(), all_variables.data(), error.value());
+      if (process < 0) outcome.spawn_error = errno;
+      if (process > 0) setpgid(process, process);  // whoever is first
+    };
+    const AtInterruption kill_child(start, [&process] {
+      if (process > 0 && kill(-process, SIGKILL) == 0) wait_for_end(process);
     });
+    if (process < 0) return outcome;
     if (!wait_for_end(process)) outcome.spawn_error = errno;
   }
   while (outcome.spawn_error == 0 && waitpid(process, &outcome.status, 0) < 0) {
     if (errno != EINTR) outcome.spawn_error = errno;
   }
+  if (outcome.spawn_error == 0) outcome.spawn_error = error.value();
   return outcome;
 }
 

@@ -3,7 +3,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cstring>
 #include <exception>
 #include <iterator>
@@ -19,6 +18,7 @@ struct Registry {
   std::mutex mutex;
   std::list<std::function<void()>> actions;
   bool at_stopping_point = false;
+  int stopping_points = 0;
 };
 
 Registry& registry() {
@@ -26,12 +26,13 @@ Registry& registry() {
   return *instance;
 }
 
-std::atomic<int> stopping_points = 0;
-
 }  // namespace
 
-AtInterruption::AtInterruption(std::function<void()> action) {
+AtInterruption::AtInterruption(std::function<void()> action) : AtInterruption([] {}, std::move(action)) {}
+
+AtInterruption::AtInterruption(const std::function<void()>& begin, std::function<void()> action) {
   const std::lock_guard lock(registry().mutex);
+  begin();
   entry_ = registry().actions.insert(registry().actions.end(), std::move(action));
 }
 
@@ -41,11 +42,14 @@ AtInterruption::~AtInterruption() {
 }
 
 StoppingPoints::StoppingPoints() {
-  ++stopping_points;
+  const std::lock_guard lock(registry().mutex);
+  // What has stopped before was other work.
+  if (registry().stopping_points++ == 0) registry().at_stopping_point = false;
 }
 
 StoppingPoints::~StoppingPoints() {
-  --stopping_points;
+  const std::lock_guard lock(registry().mutex);
+  --registry().stopping_points;
 }
 
 namespace interruption {
@@ -56,7 +60,8 @@ void reach_stopping_point() {
 }
 
 bool has_stopping_points() {
-  return stopping_points > 0;
+  const std::lock_guard lock(registry().mutex);
+  return registry().stopping_points > 0;
 }
 
 bool take_actions() {

@@ -15,6 +15,9 @@ namespace ricochet {
 class AtInterruption {
  public:
   explicit AtInterruption(std::function<void()> action);
+  /// Calls `begin` first, which makes what the action will remove: there is no instant at which it is there and the
+  /// action would not be taken. What `begin` throws is thrown, and there is no action then.
+  AtInterruption(const std::function<void()>& begin, std::function<void()> action);
   ~AtInterruption();
   AtInterruption(const AtInterruption&) = delete;
   AtInterruption& operator=(const AtInterruption&) = delete;
@@ -34,7 +37,8 @@ class StoppingPoints {
 
 namespace interruption {
 
-/// The work has come to a point where it can stop and does so by itself: it may take the time it needs.
+/// The work has come to a point where it can stop and does so by itself: it may take the time it needs. That holds
+/// until other work begins to have stopping points.
 void reach_stopping_point();
 [[nodiscard]] bool has_stopping_points();
 

@@ -15,12 +15,14 @@ namespace fs = std::filesystem;
 
 TemporaryFolder::TemporaryFolder(const fs::path& parent, const std::string& prefix) {
   std::string pattern = (parent / (prefix + "-XXXXXX")).string();
-  if (mkdtemp(pattern.data()) == nullptr) {
-    throw Error(ErrorKind::file_access,
-                fmt::format("cannot make a directory in {}: {}", parent.string(), std::strerror(errno)));
-  }
-  path_ = pattern;
-  at_interruption_.emplace([this] {
+  const auto make = [&] {
+    if (mkdtemp(pattern.data()) == nullptr) {
+      throw Error(ErrorKind::file_access,
+                  fmt::format("cannot make a directory in {}: {}", parent.string(), std::strerror(errno)));
+    }
+    path_ = pattern;
+  };
+  at_interruption_.emplace(make, [this] {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
   });

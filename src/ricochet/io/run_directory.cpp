@@ -34,12 +34,14 @@ int open_directory(const std::string& path) {
 
 RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
   std::error_code problem;
-  is_new_ = fs::create_directories(path_, problem);
+  at_interruption_.emplace([&] { is_new_ = fs::create_directories(path_, problem); },
+                           [this] {
+                             if (is_new_) rmdir(path_.c_str());  // where it is empty
+                           });
   if (problem || !fs::is_directory(path_, problem)) {
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", path_,
                                                     problem ? problem.message() : "a file of that name is there"));
   }
-  if (is_new_) at_interruption_.emplace([this] { rmdir(path_.c_str()); });  // where it is empty
   if (access(path_.c_str(), W_OK | X_OK) != 0) throw_file_error(path_, "write into this directory", errno);
   lock_ = open_directory(path_);
   if (lock_ < 0) throw_file_error(path_, "read this directory", errno);

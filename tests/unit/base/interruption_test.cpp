@@ -1,0 +1,78 @@
+#include "ricochet/base/interruption.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+#include "ricochet/base/temporary_folder.hpp"
+
+namespace ricochet {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whoever takes the actions ends the process: each test does that in one of its own.
+
+/// Between making a thing and registering what removes it, nothing comes.
+TEST(Interruption, WaitsForWhatIsJustBeingMade) {
+  const auto scenario = [] {
+    std::thread other;
+    bool is_made = false;
+    const auto make = [&] {
+      other = std::thread([] { _exit(interruption::take_actions() ? 1 : 2); });  // 1: nothing was there to be removed
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      is_made = true;
+    };
+    const AtInterruption remove(make, [&] { _exit(is_made ? 0 : 3); });
+    other.join();
+  };
+  EXPECT_EXIT(scenario(), testing::ExitedWithCode(0), "");
+}
+
+TEST(Interruption, WhatCouldNotBeMadeIsNotRemoved) {
+  const auto fail = [] { throw std::runtime_error("no room"); };
+  const auto scenario = [&] {
+    try {
+      const AtInterruption remove(fail, [] { _exit(1); });
+    } catch (const std::runtime_error&) {
+      _exit(interruption::take_actions() ? 0 : 2);
+    }
+  };
+  EXPECT_EXIT(scenario(), testing::ExitedWithCode(0), "");
+}
+
+TEST(Interruption, TemporaryFoldersGo) {
+  const TemporaryFolder outer(fs::temp_directory_path(), "ricochet-test");
+  const auto scenario = [&] {
+    const TemporaryFolder inner(outer.path(), "inner");
+    std::ofstream(inner.file("file")) << "text";
+    if (fs::is_empty(outer.path())) _exit(1);
+    _exit(interruption::take_actions() ? 0 : 2);
+  };
+  // The child takes the actions of the outer folder, too.
+  EXPECT_EXIT(scenario(), testing::ExitedWithCode(0), "");
+  EXPECT_FALSE(fs::exists(outer.path()));
+}
+
+/// A run that has come to a stopping point is not ended in the middle; the next run of the same process may be.
+TEST(Interruption, AStoppingPointIsThatOfOneRun) {
+  const auto scenario = [] {
+    {
+      const StoppingPoints first;
+      interruption::reach_stopping_point();
+      if (interruption::take_actions()) _exit(1);
+    }
+    if (interruption::has_stopping_points() || interruption::take_actions()) _exit(2);  // it still writes its results
+    const StoppingPoints second;
+    _exit(interruption::take_actions() ? 0 : 3);
+  };
+  EXPECT_EXIT(scenario(), testing::ExitedWithCode(0), "");
+}
+
+}  // namespace
+}  // namespace ricochet
