@@ -88,8 +88,7 @@ export function penetrationFinding(j: Judgement): Finding {
   return { what, grade: relative < 1e-5 ? "good" : relative < 0.01 ? "fair" : "poor", words: size, short: share, detail };
 }
 
-/** In rad: above it small strain no longer holds. */
-export const rotationLimit = 0.1;
+export const turnsTooFar = (j: Judgement): boolean => j.rotation > j.rotation_limit;
 
 export function rotationFinding(j: Judgement): Finding {
   const what = "Rotation";
@@ -97,7 +96,7 @@ export function rotationFinding(j: Judgement): Finding {
   const strain = 1 - Math.cos(Math.min(j.rotation, Math.PI));
   const detail = `largest of a cell; small strain takes a rotation θ for a strain of 1 − cos θ, here ${number(strain, 2)}, that is not there`;
   const short = `${number(j.rotation, 2)} rad`;
-  if (!(j.rotation > rotationLimit)) return { what, grade: "good", words: short, short, detail };
+  if (!turnsTooFar(j)) return { what, grade: "good", words: short, short, detail };
   return { what, grade: "poor", words: `${short}: small strain does not hold (a strain of ${percent(strain)} is not there)`, short, detail };
 }
 
@@ -142,10 +141,10 @@ export function conclusion(runs: Run[]): string {
   // Nothing can be said of a run of which something is not known.
   if (all.some((each) => each.some(({ grade }) => grade === "none"))) return "";
   // Beyond small strain even the best method gives the answer to another question.
-  const turned = runs.filter((run) => run.data.judgement.rotation > rotationLimit);
+  const turned = runs.filter((run) => turnsTooFar(run.data.judgement));
   if (turned.length > 0) {
     const names = turned.length === runs.length ? "all of these runs" : turned.map((run) => run.name).join(", ");
-    return `No recommendation: in ${names} cells turn by more than ${rotationLimit} rad, and small strain does not hold.`;
+    return `No recommendation: in ${names} cells turn by more than ${number(turned[0].data.judgement.rotation_limit)} rad, and small strain does not hold.`;
   }
   const points = { good: 0, none: 0, fair: 1, poor: 3 };
   const scores = all.map((each) => each.reduce((sum, { grade }) => sum + points[grade], 0));

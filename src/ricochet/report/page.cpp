@@ -10,6 +10,7 @@
 #include <set>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/case/rotation_watch.hpp"
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/json_number.hpp"
 #include "ricochet/report/body_part.hpp"
@@ -26,7 +27,7 @@ using Json = nlohmann::ordered_json;
 /// Where the viewer wants the data, and what every report begins with.
 constexpr std::string_view data_begin = "<script type=\"application/json\" id=\"ricochet-runs\">";
 constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->",
-                           format_mark = "<!-- data format 3 -->";
+                           format_mark = "<!-- data format 4 -->";
 /// Of all bodies together, but for each as many as may be had at any rate.
 constexpr Index most_triangles = 200'000, always_triangles = 20'000;
 
@@ -81,7 +82,8 @@ Json to_json(const Judgement& j) {
           {"penetration_checked", j.penetration_checked},
           {"unwatched_penetration", j.unwatched_penetration},
           {"contact_beyond_rim", j.contact_beyond_rim},
-          {"rotation", to_json(j.rotation)}};
+          {"rotation", to_json(j.rotation)},
+          {"rotation_limit", rotation_limit}};
 }
 
 Json times_of(const std::vector<int>& frames, const ResultsReader& results) {

@@ -43,6 +43,8 @@ export interface Judgement {
   contact_beyond_rim: string;
   /** The largest of a cell, in rad. */
   rotation: number;
+  /** In rad: above it small strain no longer holds. */
+  rotation_limit: number;
 }
 
 export interface ContactData {
