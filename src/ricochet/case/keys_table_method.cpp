@@ -1,0 +1,116 @@
+#include "ricochet/case/keys_table.hpp"
+#include "ricochet/case/names.hpp"
+
+// The part of the table that is about how it is simulated: the mass, the time scheme, the solver of a step.
+namespace ricochet {
+
+namespace {
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const NewmarkPreset& preset : newmark_presets()) names.push_back(preset.name);
+  return names;
+}
+
+}  // namespace
+
+Section mass_section() {
+  return {
+      .name = "mass",
+      .doc = "The mass matrix.",
+      .keys = {{.name = "type",
+                .type = KeyType::choice,
+                .standard = "equivalent",
+                .choices = mass_names(),
+                .doc = "The equivalent masses have no inertia on contact nodes, and keep total mass, centre of gravity "
+                       "and moments of inertia. \"equivalent-lumped\" is diagonal, for the scheme \"semi-explicit\". "
+                       "\"equivalent-compact\" couples hardly more nodes than \"consistent\", so that its factors are "
+                       "small; \"equivalent\" is built like it where a case in space has more than 2,000 contact "
+                       "nodes, those of all bodies together."}}};
+}
+
+Section time_section() {
+  return {
+      .name = "time",
+      .required = true,
+      .doc = "The time scheme and its steps.",
+      .keys = {
+          {.name = "scheme",
+           .type = KeyType::choice,
+           .required = true,
+           .choices = scheme_names(),
+           .doc = "The time scheme."},
+          {.name = "beta",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = positive,
+           .doc = "Newmark's beta, textbook definition; for the scheme \"newmark\" only."},
+          {.name = "gamma",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = nonnegative,
+           .doc = "Newmark's gamma, textbook definition; unstable below 1/2; for the scheme \"newmark\" only."},
+          {.name = "preset",
+           .type = KeyType::choice,
+           .choices = preset_names(),
+           .doc = "Instead of beta and gamma: \"trapezoidal\" is beta = 1/4, gamma = 1/2; \"textbook-half\" is beta = "
+                  "gamma = 1/2."},
+          {.name = "step",
+           .type = KeyType::number,
+           .unit = "time",
+           .required = true,
+           .range = positive,
+           .doc = "Length of a time step; \"semi-explicit\" refuses one above its critical step, which `ricochet "
+                  "info` shows."},
+          {.name = "end",
+           .type = KeyType::number,
+           .unit = "time",
+           .required = true,
+           .range = positive,
+           .doc = "The run goes from t = 0 to here; at least one step and at most 1e9."},
+      }};
+}
+
+Section solver_section() {
+  return {
+      .name = "solver",
+      .doc = "How a step is solved. Every key has a default.",
+      .keys = {
+          {.name = "method",
+           .type = KeyType::choice,
+           .standard = "auto",
+           .choices = {"auto", "direct", "iterative"},
+           .doc = "\"direct\": a Cholesky factor, made once; exact to rounding. \"iterative\": conjugate gradients "
+                  "with a direct solve near the contact; takes little memory and no time to factorize, and a few "
+                  "times as long per step where a wave crosses a few cells in it, more where it crosses many. "
+                  "\"auto\": direct where the factor fits into memory and takes minutes, not hours, to make. A "
+                  "static start is solved as by \"auto\", the contact nodes of \"semi-explicit\" always directly."},
+          {.name = "tolerance",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "1e-10",
+           .range = {.above = 0.0, .at_most = 1e-3},
+           .doc =
+               "Allowed residual of the iterative method in a step, relative to the forces of the step, in the energy "
+               "norm. Contact and friction hold to rounding with any method."},
+          {.name = "memory",
+           .type = KeyType::number,
+           .unit = "GB",
+           .range = positive,
+           .doc = "Memory that factors may take when \"auto\" chooses. Default: half of the machine's memory."},
+          {.name = "contact_points",
+           .type = KeyType::choice,
+           .standard = "near",
+           .choices = {"near", "all"},
+           .doc = "\"near\": the points that may touch in a step take part in its contact problem; others are looked "
+                  "at after it, and where one has penetrated the step is solved again with it. \"all\": all do, which "
+                  "changes results by rounding only; for exported contact problems of one size."},
+      }};
+}
+
+const std::vector<NewmarkPreset>& newmark_presets() {
+  static const std::vector<NewmarkPreset> presets{{"trapezoidal", 0.25, 0.5}, {"textbook-half", 0.5, 0.5}};
+  return presets;
+}
+
+}  // namespace ricochet

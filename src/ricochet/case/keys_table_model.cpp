@@ -1,0 +1,299 @@
+#include <fmt/format.h>
+
+#include "ricochet/case/keys_table.hpp"
+#include "ricochet/case/names.hpp"
+
+// The part of the table that is about what is simulated: the body, its contact, what acts on it, where it starts.
+namespace ricochet {
+
+namespace {
+
+constexpr const char* position = "x, y and z";
+constexpr const char* position_and_time = "x, y, z and t";
+
+Key parameters_key() {
+  return {.name = "parameters",
+          .type = KeyType::parameters,
+          .doc = "Numbers by name, for use in the expressions of this section."};
+}
+
+Key group_key(const char* kind, const char* built_in) {
+  return {
+      .name = "group",
+      .type = KeyType::groups,
+      .required = true,
+      .doc = fmt::format("Group of {0} in the mesh, or several: [\"a\", \"b\"]. \"{1}\" stands for all {0}, unless the "
+                         "mesh has a group of that name.",
+                         kind, built_in)};
+}
+
+Key placement_key() {
+  return {
+      .name = "turn",
+      .type = KeyType::table,
+      .keys = {{.name = "angle",
+                .type = KeyType::number,
+                .unit = "degrees",
+                .required = true,
+                .doc = "Right-handed about the axis; in two dimensions counter-clockwise."},
+               {.name = "axis",
+                .type = KeyType::vector,
+                .unit = "1",
+                .doc = "Direction of the axis, of any length but zero; in three dimensions only, and required there."},
+               {.name = "about",
+                .type = KeyType::vector,
+                .unit = "length",
+                .doc = "A point of the axis, in the coordinates after `scale`; absent: the origin."}},
+      .doc =
+          "Turns the mesh, after `scale` and before `move`. Obstacles, probes and expressions see where it is "
+          "then."};
+}
+
+Key damping_key() {
+  return {.name = "damping",
+          .type = KeyType::table,
+          .keys = {{.name = "mass",
+                    .type = KeyType::number,
+                    .unit = "1/time",
+                    .standard = "0",
+                    .range = nonnegative,
+                    .doc = "Rayleigh damping proportional to the mass matrix."},
+                   {.name = "stiffness",
+                    .type = KeyType::number,
+                    .unit = "time",
+                    .standard = "0",
+                    .range = nonnegative,
+                    .doc = "Rayleigh damping proportional to the stiffness matrix."}},
+          .doc = "Rayleigh damping."};
+}
+
+}  // namespace
+
+Section mesh_section() {
+  return {
+      .name = "mesh",
+      .required = true,
+      .doc = "The body and how it is discretized.",
+      .keys = {
+          {.name = "file",
+           .required = true,
+           .doc = "Mesh file (.msh, .inp, .vtu, .med, …; see docs/meshes.md), or geometry for the gmsh program (.geo, "
+                  ".step, "
+                  "…). A relative path is relative to "
+                  "the "
+                  "folder of the case file, also when given by --set."},
+          {.name = "size",
+           .type = KeyType::number,
+           .unit = "length",
+           .range = positive,
+           .doc = "Target size of the cells; only for geometry that is still to be meshed, in the unit of that file."},
+          {.name = "scale",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "1",
+           .range = positive,
+           .doc = "Multiplies all coordinates of the mesh."},
+          placement_key(),
+          {.name = "move",
+           .type = KeyType::vector,
+           .unit = "length",
+           .doc = "Added to all coordinates, after `scale` and `turn`."},
+          {.name = "degree",
+           .type = KeyType::integer,
+           .unit = "1",
+           .standard = "1",
+           .choices = {"1", "2"},
+           .doc = "Polynomial degree of the displacement."},
+          {.name = "plane",
+           .type = KeyType::choice,
+           .standard = "strain",
+           .choices = {"strain", "stress"},
+           .doc = "In two dimensions: plane strain or plane stress."},
+      }};
+}
+
+Section material_section() {
+  return {
+      .name = "material",
+      .kind = SectionKind::list,
+      .required = true,
+      .alternatives = {{"lambda", "mu"}, {"young", "poisson"}},
+      .doc = "Isotropic linear elasticity of one physical group of cells.",
+      .keys = {
+          group_key("cells", "all"),
+          {.name = "density",
+           .type = KeyType::number,
+           .unit = "density",
+           .required = true,
+           .range = positive,
+           .doc = "Mass per volume."},
+          {.name = "lambda",
+           .type = KeyType::number,
+           .unit = "stress",
+           .doc = "First Lamé parameter; 3 lambda + 2 mu must be positive."},
+          {.name = "mu",
+           .type = KeyType::number,
+           .unit = "stress",
+           .range = positive,
+           .doc = "Second Lamé parameter, the shear modulus."},
+          {.name = "young", .type = KeyType::number, .unit = "stress", .range = positive, .doc = "Young's modulus."},
+          {.name = "poisson",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = {.above = -1.0, .below = 0.5},
+           .doc = "Poisson's ratio."},
+          damping_key(),
+      }};
+}
+
+Section obstacle_section() {
+  return {
+      .name = "obstacle",
+      .kind = SectionKind::named,
+      .doc = "A rigid obstacle, named so that [[contact]] can refer to it.",
+      .keys = {
+          {.name = "type",
+           .type = KeyType::choice,
+           .required = true,
+           .choices = obstacle_types(),
+           .decides = true,
+           .doc = "This version has planes only, each with a half-space behind it: curved obstacles are not "
+                  "supported."},
+          {.name = "point",
+           .type = KeyType::vector,
+           .unit = "length",
+           .required = true,
+           .doc = "A point of the plane."},
+          {.name = "normal",
+           .type = KeyType::vector,
+           .unit = "1",
+           .required = true,
+           .doc = "Normal of the plane, out of the obstacle; of any length but zero."},
+          {.name = "velocity",
+           .type = KeyType::vector,
+           .unit = "length/time",
+           .doc = "Constant velocity of the plane; without it the plane rests. Friction acts on the velocity of the "
+                  "body relative to it, and obstacle_work is what it puts into the body."},
+          {.name = "rotation_rate",
+           .type = KeyType::number,
+           .unit = "angle/time",
+           .standard = "0",
+           .doc = "Rate in rad per time at which the plane turns about its normal through `point`, right-handed: a "
+                  "turntable. In three dimensions only."},
+      }};
+}
+
+Section contact_section() {
+  return {
+      .name = "contact",
+      .kind = SectionKind::list,
+      .doc = "A part of the boundary that may touch an obstacle.",
+      .keys = {
+          group_key("boundary facets", "boundary"),
+          {.name = "obstacle", .required = true, .doc = "Name of the obstacle, a section [obstacle.NAME]."},
+          {.name = "friction",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "0",
+           .range = nonnegative,
+           .doc = "Coefficient F of Coulomb's law: the friction force is at most F times the normal force."},
+          {.name = "friction_bound",
+           .type = KeyType::number,
+           .unit = "stress",
+           .standard = "0",
+           .range = nonnegative,
+           .doc = "Largest friction traction; 0: no bound. With `friction`, Coulomb's law holds up to this bound. "
+                  "Alone it is Tresca's law: the friction traction is at most this wherever the body is pressed."},
+          {.name = "multipliers",
+           .type = KeyType::choice,
+           .standard = "nodal",
+           .choices = multiplier_space_names(),
+           .doc = "Space of the contact pressure and the friction traction: forces at the nodes, piecewise constant, "
+                  "continuous piecewise linear, or biorthogonal to the displacement. See docs/multipliers.md."},
+          {.name = "unstable_multipliers",
+           .type = KeyType::choice,
+           .standard = "refuse",
+           .choices = {"refuse", "allow"},
+           .doc = "What to do with multipliers that do not go together with the displacement's degree (the inf-sup "
+                  "condition fails, and pressures may oscillate). Allowed ones are warned of."},
+      }};
+}
+
+Section support_section() {
+  return {.name = "support",
+          .kind = SectionKind::list,
+          .doc = "Prescribed displacement components on a part of the boundary.",
+          .keys = {
+              group_key("boundary facets", "boundary"),
+              {.name = "components",
+               .type = KeyType::components,
+               .required = true,
+               .choices = {"x", "y", "z"},
+               .doc = "The components that are prescribed."},
+              {.name = "value",
+               .type = KeyType::formula,
+               .unit = "length",
+               .standard = "0",
+               .variables = "t",
+               .doc = "The displacement of these components."},
+              parameters_key(),
+          }};
+}
+
+Section traction_section() {
+  return {.name = "traction",
+          .kind = SectionKind::list,
+          .doc = "Force on a part of the boundary.",
+          .keys = {
+              group_key("boundary facets", "boundary"),
+              {.name = "value",
+               .type = KeyType::formulas,
+               .unit = "stress",
+               .required = true,
+               .variables = position_and_time,
+               .doc = "Force per area of the undeformed boundary."},
+              parameters_key(),
+          }};
+}
+
+Section load_section() {
+  return {.name = "load",
+          .doc = "Forces on the whole body.",
+          .keys = {
+              {.name = "gravity",
+               .type = KeyType::vector,
+               .unit = "acceleration",
+               .doc = "Acceleration of gravity; none if absent."},
+              {.name = "body_force",
+               .type = KeyType::formulas,
+               .unit = "force/volume",
+               .variables = position_and_time,
+               .doc = "Force per volume; none if absent."},
+              parameters_key(),
+          }};
+}
+
+Section initial_section() {
+  return {
+      .name = "initial",
+      .doc = "The state at t = 0.",
+      .keys = {
+          {.name = "displacement",
+           .type = KeyType::formulas,
+           .unit = "length",
+           .choices = {"static"},
+           .variables = position,
+           .doc =
+               "Displacement at t = 0; \"static\" is the equilibrium under the loads at t = 0, contact and friction "
+               "included. Where the velocity or a moving obstacle makes the body slide, friction has that direction if "
+               "such an equilibrium exists, and else acts from t = 0 on only. Zero if absent."},
+          {.name = "velocity",
+           .type = KeyType::formulas,
+           .unit = "length/time",
+           .variables = position,
+           .doc = "Velocity at t = 0. Zero if absent."},
+          parameters_key(),
+      }};
+}
+
+}  // namespace ricochet
