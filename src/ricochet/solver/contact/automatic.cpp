@@ -10,6 +10,7 @@
 
 #include "ricochet/solver/contact/active_set.hpp"
 #include "ricochet/solver/contact/cone_formulation.hpp"
+#include "ricochet/solver/contact/contact_costs.hpp"
 #include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/gauss_seidel.hpp"
 #include "ricochet/solver/contact/globalized_newton.hpp"
@@ -30,12 +31,6 @@ constexpr std::size_t outlook = 5;
 /// once if it costs no more than so many sweeps.
 constexpr double stall = 0.4;
 constexpr double affordable_newton = 1000.0;
-/// What a point of a sweep costs in entries of W.
-constexpr double point_work = 100.0;
-/// Part of a factorization that a step in time is charged before it is known how long a factor lasts.
-constexpr double amortized_factor = 0.125;
-/// Weight of the last step in the means of what steps have cost.
-constexpr double recent = 0.3;
 /// Plain sweeps between runs of Newton steps, the first time.
 constexpr int cold_sweeps = 20;
 /// Of sweeps and Newton in turn; the number of sweeps doubles every time.
@@ -72,10 +67,6 @@ bool is_nearly_closed(const ContactSystem& system, const ContactIterate& iterate
   return 10 * closed >= 9 * static_cast<std::ptrdiff_t>(system.points().size());
 }
 
-void learn(double& mean, double value) {
-  mean = mean > 0.0 ? (1.0 - recent) * mean + recent * value : value;
-}
-
 /// Non-smooth Newton after accelerated projected Gauss–Seidel.
 ///
 /// 0. Without friction and with the entries of W: the primal–dual active set, or the dual one where conditions depend
@@ -100,12 +91,12 @@ class AutomaticSolver final : public IterativeContactSolver {
     newton_.reset();
     others_.clear();
     frictionless_.reset();
-    history_ = {};
+    costs_ = {};
   }
   /// The costs, the size of the frictionless factor's base set and that set, then the unknowns of the other factor.
   void append_memory(std::vector<double>& memory) const override {
-    memory.push_back(history_.sweeps);
-    memory.push_back(history_.newton);
+    memory.push_back(costs_.of_sweeps);
+    memory.push_back(costs_.of_newton);
     memory.push_back(static_cast<double>(frictionless_.base().size()));
     for (const Index row : frictionless_.base()) memory.push_back(static_cast<double>(row));
     newton_.step().reused().append_memory(memory);
@@ -116,10 +107,6 @@ class AutomaticSolver final : public IterativeContactSolver {
   }
 
  private:
-  [[nodiscard]] static double sweep_work(const ContactWork& work);
-  [[nodiscard]] static double unknown_count(const ContactWork& work);
-  [[nodiscard]] bool prefers_newton(const ContactWork& work) const;
-  [[nodiscard]] static double newton_cost(const ContactWork& work, bool settled);
   bool accelerated(const ContactWork& work);
   bool sweep(const ContactWork& work, int sweeps, double damping);
   std::string iterate_with_products(const ContactWork& work);
@@ -144,16 +131,13 @@ class AutomaticSolver final : public IterativeContactSolver {
   BestIterate fallback_;  ///< of all
   Vector begin_;
   bool stalled_ = false;
-  /// What problems have cost, on the mean of recent ones: zero, not known yet.
-  struct History {
-    double sweeps = 0.0, newton = 0.0;
-  } history_;
+  ContactCosts costs_;
 };
 
 bool AutomaticSolver::take_memory(const std::vector<Index>& first, const std::vector<double>& memory) {
   constexpr std::size_t head = 3;
   if (memory.size() < head || !(memory[0] >= 0.0 && memory[1] >= 0.0)) return false;
-  history_ = {memory[0], memory[1]};
+  costs_ = {memory[0], memory[1]};
   std::vector<Index> base;
   Index last_point = -1;
   auto next = memory.begin() + head;
@@ -165,46 +149,6 @@ bool AutomaticSolver::take_memory(const std::vector<Index>& first, const std::ve
   }
   frictionless_.take_base(std::move(base));
   return newton_.take_memory(first, std::vector<double>(next, memory.end()));
-}
-
-/// Entries of matrices that a sweep reads, and what its points cost besides.
-double AutomaticSolver::sweep_work(const ContactWork& work) {
-  double closed_rows = 0.0;
-  for (const ContactPoint& point : work.system.points())
-    closed_rows += work.current.reaction[point.first] > 0.0 ? static_cast<double>(point.size) : 0.0;
-  return std::max(closed_rows, 1.0) * (static_cast<double>(work.system.rows()) + point_work);
-}
-
-double AutomaticSolver::unknown_count(const ContactWork& work) {
-  double unknowns = 0.0;
-  for (const ContactPoint& point : work.system.points()) {
-    const PaddedVector r = padded(point, work.current.reaction);
-    if (!(r[0] > 0.0)) continue;
-    const bool slips = point.has_friction() && r.tail<2>().norm() >= point.friction_limit(r[0]) * (1.0 - 1e-9);
-    unknowns += static_cast<double>(slips ? point.size - 1 : point.size);
-  }
-  return unknowns;
-}
-
-/// What Newton would cost from here, in sweeps.
-double AutomaticSolver::newton_cost(const ContactWork& work, bool settled) {
-  const double unknowns = unknown_count(work);
-  const double product = 4.0 * unknowns * static_cast<double>(work.system.rows());
-  return (settled ? 1.5 : 6.0) * (AlartCurnierStep::factor_work(unknowns) + product) / sweep_work(work);
-}
-
-/// From the last reactions: Newton with the factor of an earlier step, if that has cost less than sweeps (or promises
-/// to).
-bool AutomaticSolver::prefers_newton(const ContactWork& work) const {
-  if (work.system.dense() == nullptr || !(history_.sweeps > 0.0)) return false;
-  double expected = history_.newton;
-  if (!(expected > 0.0)) {
-    const double unknowns = unknown_count(work);
-    expected = amortized_factor * AlartCurnierStep::factor_work(unknowns) +
-               2.0 * (6.0 * unknowns * static_cast<double>(work.system.rows()) +
-                      4.0 * AlartCurnierStep::iteration_work(unknowns));
-  }
-  return expected < history_.sweeps;
 }
 
 /// Accelerated sweeps for as long as they promise to arrive sooner than Newton would.
@@ -315,7 +259,7 @@ bool AutomaticSolver::sweeps_and_newton(const ContactWork& work) {
   begin_ = work.current.reaction;
   const int before = work.solution.iterations;
   const bool solved = accelerated(work);
-  learn(history_.sweeps, static_cast<double>(work.solution.iterations - before) * sweep_work(work));
+  ContactCosts::learn(costs_.of_sweeps, static_cast<double>(work.solution.iterations - before) * sweep_work(work));
   if (solved) return true;
   if (is_nearly_closed(work.system, work.current) && stalled_) {
     // Newton knows better from the start than from what a few sweeps have made of it.
@@ -351,9 +295,9 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   }
   best_.restart(work);
   if (cold) best_.merit = std::numeric_limits<double>::infinity();
-  if (!cold && prefers_newton(work)) {
+  if (!cold && costs_.prefer_newton(work)) {
     const bool solved = newton_.run(work, true, best_);
-    learn(history_.newton, newton_.step().work());
+    ContactCosts::learn(costs_.of_newton, newton_.step().work());
     if (solved) return "";
     work.current = best_.iterate;
   }

@@ -1,0 +1,59 @@
+#include "ricochet/solver/contact/contact_costs.hpp"
+
+#include <algorithm>
+
+namespace ricochet {
+
+namespace {
+
+/// What a point of a sweep costs in entries of W.
+constexpr double point_work = 100.0;
+/// Part of a factorization that a step in time is charged before it is known how long a factor lasts.
+constexpr double amortized_factor = 0.125;
+/// Weight of the last step in the means of what steps have cost.
+constexpr double recent = 0.3;
+
+/// Of the Alart–Curnier equations.
+double unknown_count(const ContactWork& work) {
+  double unknowns = 0.0;
+  for (const ContactPoint& point : work.system.points()) {
+    const PaddedVector r = padded(point, work.current.reaction);
+    if (!(r[0] > 0.0)) continue;
+    const bool slips = point.has_friction() && r.tail<2>().norm() >= point.friction_limit(r[0]) * (1.0 - 1e-9);
+    unknowns += static_cast<double>(slips ? point.size - 1 : point.size);
+  }
+  return unknowns;
+}
+
+}  // namespace
+
+double sweep_work(const ContactWork& work) {
+  double closed_rows = 0.0;
+  for (const ContactPoint& point : work.system.points())
+    closed_rows += work.current.reaction[point.first] > 0.0 ? static_cast<double>(point.size) : 0.0;
+  return std::max(closed_rows, 1.0) * (static_cast<double>(work.system.rows()) + point_work);
+}
+
+double newton_cost(const ContactWork& work, bool settled) {
+  const double unknowns = unknown_count(work);
+  const double product = 4.0 * unknowns * static_cast<double>(work.system.rows());
+  return (settled ? 1.5 : 6.0) * (AlartCurnierStep::factor_work(unknowns) + product) / sweep_work(work);
+}
+
+void ContactCosts::learn(double& mean, double value) {
+  mean = mean > 0.0 ? (1.0 - recent) * mean + recent * value : value;
+}
+
+bool ContactCosts::prefer_newton(const ContactWork& work) const {
+  if (work.system.dense() == nullptr || !(of_sweeps > 0.0)) return false;
+  double expected = of_newton;
+  if (!(expected > 0.0)) {
+    const double unknowns = unknown_count(work);
+    expected = amortized_factor * AlartCurnierStep::factor_work(unknowns) +
+               2.0 * (6.0 * unknowns * static_cast<double>(work.system.rows()) +
+                      4.0 * AlartCurnierStep::iteration_work(unknowns));
+  }
+  return expected < of_sweeps;
+}
+
+}  // namespace ricochet

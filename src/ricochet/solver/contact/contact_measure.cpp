@@ -1,0 +1,90 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/solver/contact/contact_system.hpp"
+
+// How far an iterate is from solving a contact problem, and what of that is rounding: see the header.
+namespace ricochet {
+
+namespace {
+
+/// Rounding of sums that is more than this part of q excuses nothing: an iteration on a problem without a solution
+/// could increase its reactions until rounding hides what it is short of.
+constexpr double largest_excuse = 0.01;
+
+/// What an error of u of this size makes of the natural map: û = u + F |u_T|.
+double floor_of_map(const ContactPoint& point, const ContactSystem::Floor& floor) {
+  return (std::max(floor.normal, floor.tangential) + point.coefficient * floor.tangential) / std::sqrt(point.diagonal);
+}
+
+/// In units of u, and without the factor F that cone and floor have.
+double violation(const ContactPoint& point, const ContactIterate& iterate) {
+  return alart_curnier_residual(point, 1.0 / point.diagonal, padded(point, iterate.reaction),
+                                padded(point, iterate.motion));
+}
+
+}  // namespace
+
+double ContactSystem::residual(const ContactPoint& point, const PaddedVector& reaction, const PaddedVector& motion) {
+  const double value = natural_map(point, reaction, motion).norm() * std::sqrt(point.diagonal);
+  return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+}
+
+double ContactSystem::residual(const ContactIterate& iterate) const {
+  double largest = 0.0;
+  for (const ContactPoint& point : points_)
+    largest = std::max(largest, residual(point, padded(point, iterate.reaction), padded(point, iterate.motion)));
+  return largest;
+}
+
+ContactSystem::Floor ContactSystem::floor_of(const ContactPoint& point, const ContactIterate& iterate) const {
+  Floor floor;
+  for (Index k = 0; k < point.size; ++k) {
+    const Index row = point.first + k;
+    const double of_sum = sum_rounding * iterate.size[row];
+    double& of_row = k == 0 ? floor.normal : floor.tangential;
+    of_row = std::max(of_row, offset_rounding_[row] + of_sum);
+    floor.of_sums = std::max(floor.of_sums, of_sum);
+  }
+  return floor;
+}
+
+ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) const {
+  Measure result;
+  const double excused = largest_excuse * std::max(data_, largest_offset_);
+  for (const ContactPoint& point : points_) {
+    const double value = residual(point, padded(point, iterate.reaction), padded(point, iterate.motion));
+    const Floor of_motion = floor_of(point, iterate);
+    const double floor = floor_of_map(point, of_motion);
+    result.is_exact =
+        result.is_exact && value * std::sqrt(point.diagonal) <= (1.0 + point.coefficient) * of_motion.of_sums;
+    result.residual = std::max(result.residual, value);
+    result.rounding_floor = std::max(result.rounding_floor, floor);
+    const bool is_finite = std::isfinite(value) && std::isfinite(floor);
+    const bool is_hidden = is_finite && value <= floor && value > loosest_residual * data_;
+    const bool is_steep = point.coefficient > steep_coefficient;
+    const bool is_violated = (is_hidden || is_steep) && violation(point, iterate) > excused;
+    if (!is_finite) {
+      result.beyond_floor = std::numeric_limits<double>::infinity();
+    } else if (value > floor) {
+      result.beyond_floor = std::max(result.beyond_floor, value - floor);
+    } else if (is_hidden && is_violated) {
+      result.beyond_floor = std::max(result.beyond_floor, value);
+    }
+    if (is_steep && is_violated) result.beyond_floor = std::max(result.beyond_floor, data_);
+    // Where W has a zero block, r is in no sum.
+    const double of_reaction = sum_rounding * point.diagonal * iterate.reaction[point.first];
+    if (iterate.reaction[point.first] > 0.0 && std::max(of_motion.of_sums, of_reaction) > excused)
+      result.beyond_floor = std::max({result.beyond_floor, value, floor, of_reaction});
+  }
+  return result;
+}
+
+double ContactSystem::residual_of(const ContactProblem& problem, Index i, const Vector& reaction,
+                                  const Vector& motion) const {
+  const ContactPoint point = make_point(problem, i);
+  return residual(point, reaction_scale(i) * padded(point, reaction), motion_scale(i) * padded(point, motion));
+}
+
+}  // namespace ricochet
