@@ -23,13 +23,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json number(double value) {
-  return number_to_json<Json>(value);
-}
-
-double to_number(const Json& value) {
-  return number_from_json(value);
-}
+constexpr auto number = number_to_json<Json>;
+constexpr auto to_number = number_from_json<Json>;
 
 Json extrema_to_json(const RunSummary& summary) {
   Json result = Json::object();

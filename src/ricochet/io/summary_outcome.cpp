@@ -14,13 +14,8 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json number(double value) {
-  return number_to_json<Json>(value);
-}
-
-double to_number(const Json& value) {
-  return number_from_json(value);
-}
+constexpr auto number = number_to_json<Json>;
+constexpr auto to_number = number_from_json<Json>;
 
 Json numbers(const std::vector<double>& values) {
   Json result = Json::array();
