@@ -10,36 +10,7 @@ import unittest
 import meshio
 import numpy
 
-from harness import MESHES, History, TestCase, run
-
-CASE = """
-[mesh]
-file = "{file}"
-[[material]]
-group = "{body}"
-density = 1.0
-lambda = 100.0
-mu = 50.0
-[obstacle.floor]
-type = "plane"
-point = {point}
-normal = {up}
-[[contact]]
-group = "{bottom}"
-obstacle = "floor"
-[[support]]
-group = "{top}"
-components = ["x"]
-[initial]
-velocity = {velocity}
-[mass]
-type = "consistent"
-[time]
-scheme = "newmark"
-preset = "trapezoidal"
-step = 0.002
-end = 0.02
-"""
+from harness import MESHES, History, TestCase, body_case, initial_velocity, run
 
 # Faces S1, S2, … by the numbers of an element's nodes.
 FACES = {
@@ -164,10 +135,11 @@ class ForeignMeshes(TestCase):
     def case(self, name, file, dimension, top, body="body", bottom="bottom"):
         # The bodies' lowest points are 0.1 high in the plane; in space the prism's is 0, that of the hexahedra 0.05.
         floor = 0.09 if dimension == 2 else 0.04 if "hexahedron" in str(file) else -0.01
-        flat = dimension == 2
-        return self.write(f"{name}.toml", CASE.format(
-            file=file, body=body, bottom=bottom, top=top, point=f"[0.0, {floor}]" if flat else f"[0.0, 0.0, {floor}]",
-            up="[0.0, 1.0]" if flat else "[0.0, 0.0, 1.0]", velocity="[0.1, -1.0]" if flat else "[0.1, 0.0, -1.0]"))
+        up = [0.0] * (dimension - 1) + [1.0]
+        drive = (f'[[support]]\ngroup = "{top}"\ncomponents = ["x"]\n'
+                 + initial_velocity(0.1, *(-component for component in up[1:])))
+        return self.write(f"{name}.toml", body_case(file, [floor * component for component in up], up, drive, body=body,
+                                                    bottom=bottom, step=0.002, end=0.02))
 
     def history_of(self, name, *arguments, **more):
         return History(self.simulate(self.case(name, *arguments, **more), f"out-{name}") / "history.csv")

@@ -5,7 +5,7 @@ import json
 import meshio
 import numpy
 
-from harness import BLOCK_CASE, MESHES, History, TestCase, block_case, run
+from harness import MESHES, History, TestCase, block_case, run
 
 MIXED = MESHES / "mixed_o1_msh41_ascii.msh"
 
@@ -175,7 +175,7 @@ when = {{ "contact.0.group" = ["bottom", "sides"] }}
             reference = self.history_of(f"reference_{name}", block_case(name))
             for stride, note in ((1, "all 6 cells were reversed"), (2, "of 6 cells, 3 elements")):
                 mesh = self.reversed_mesh(name, orders, stride)
-                case = self.write(f"{stride}_{name}.toml", BLOCK_CASE.format(mesh=mesh))
+                case = self.write(f"{stride}_{name}.toml", block_case(mesh))
                 output = self.folder / f"{stride}_{name}"
                 process = self.expect_status(0, run("run", case, "-o", output))
                 self.assertEqual(process.stderr.count(note), 1, process.stderr)

@@ -20,39 +20,29 @@ DISC = SOURCE / "cases" / "disc" / "disc.toml"
 SCHEMES = {"midpoint": "consistent", "klr-conserving": "consistent", "newmark": "equivalent",
            "semi-explicit": "equivalent-lumped"}
 
-# A block of quadrilaterals (the parallelogram of quadrilateral.geo) that falls on a floor.
-BLOCK_CASE = """title = "A block falls"
-[mesh]
-file = "{mesh}"
-[[material]]
-group = "body"
-density = 1.0
-lambda = 100.0
-mu = 50.0
-[obstacle.floor]
-type = "plane"
-point = [0.0, 0.0]
-normal = [0.0, 1.0]
-[[contact]]
-group = "bottom"
-obstacle = "floor"
-[load]
-gravity = [0.0, -10.0]
-[mass]
-type = "consistent"
-[time]
-scheme = "newmark"
-preset = "trapezoidal"
-step = 0.01
-end = 0.3
-[[probe]]
-name = "foot"
-at = [1.3, 0.1]
-"""
+def body_case(mesh, point, up, drive, *, body="body", bottom="bottom", degree=None, lame=(100.0, 50.0), mass="consistent",
+              scheme="newmark", step=0.01, end=0.3):
+    """A body of one material and a floor; `drive` are the sections that make it move."""
+    return (f'[mesh]\nfile = "{mesh}"\n' + (f"degree = {degree}\n" if degree else "")
+            + f'[[material]]\ngroup = "{body}"\ndensity = 1.0\nlambda = {lame[0]}\nmu = {lame[1]}\n'
+            f'[obstacle.floor]\ntype = "plane"\npoint = {list(point)}\nnormal = {list(up)}\n'
+            f'[[contact]]\ngroup = "{bottom}"\nobstacle = "floor"\n'
+            f'{drive}[mass]\ntype = "{mass}"\n[time]\nscheme = "{scheme}"\n'
+            + ('preset = "trapezoidal"\n' if scheme == "newmark" else "") + f"step = {step}\nend = {end}\n")
+
+
+def gravity(*acceleration):
+    return f"[load]\ngravity = {list(acceleration)}\n"
+
+
+def initial_velocity(*velocity):
+    return f"[initial]\nvelocity = {list(velocity)}\n"
 
 
 def block_case(mesh="quadrilateral_o1_msh41_ascii.msh"):
-    return BLOCK_CASE.format(mesh=MESHES / mesh)
+    """A block of quadrilaterals (the parallelogram of quadrilateral.geo) that falls on a floor."""
+    return ('title = "A block falls"\n' + body_case(MESHES / mesh, [0.0, 0.0], [0.0, 1.0], gravity(0.0, -10.0))
+            + '[[probe]]\nname = "foot"\nat = [1.3, 0.1]\n')
 
 
 def with_more(path, text):

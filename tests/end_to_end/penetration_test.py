@@ -7,43 +7,16 @@ import shutil
 import unittest
 
 import meshio
-import numpy
 
-from harness import SOURCE, TestCase, run, settings
+from harness import SOURCE, TestCase, body_case, gravity, run, settings
 
 OBLIQUE = SOURCE / "cases" / "oblique" / "oblique.toml"
 # Faster than its contact group, 20 degrees about the lowest point, is wide enough for.
 FAST = {"initial.velocity": "[0.0, -3.0]", "time.step": 1e-5, "time.end": 6e-3, "contact.0.friction": 0.0}
 
-CASE = """[mesh]
-file = "blocks.msh"
-[[material]]
-group = "low"
-density = 1.0
-lambda = 1000.0
-mu = 1000.0
-[[material]]
-group = "high"
-density = 1.0
-lambda = 1000.0
-mu = 1000.0
-[obstacle.floor]
-type = "plane"
-point = [0.0, 0.0]
-normal = [0.0, 1.0]
-[[contact]]
-group = "base"
-obstacle = "floor"
-[load]
-gravity = [0.0, -10.0]
-[mass]
-type = "equivalent"
-[time]
-scheme = "newmark"
-preset = "trapezoidal"
-step = 0.001
-end = 0.2
-"""
+CASE = body_case("blocks.msh", [0.0, 0.0], [0.0, 1.0], gravity(0.0, -10.0), body="low", bottom="base", lame=(1000.0, 1000.0),
+                 mass="equivalent", step=0.001, end=0.2)
+CASE += '[[material]]\ngroup = "high"\ndensity = 1.0\nlambda = 1000.0\nmu = 1000.0\n'
 
 
 def blocks(path, gap=0.1):

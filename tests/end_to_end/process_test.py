@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from harness import PROGRAM, TestCase, block_case, run, settings
+from harness import PROGRAM, TestCase, block_case, body_case, gravity, run, settings
 
 # After a signal the process has ended within two seconds, the machine's own delays aside.
 AT_MOST = 2.0
@@ -57,32 +57,8 @@ def box(n):
             + "\n".join(elements) + "\n$EndElements\n")
 
 
-BOX_CASE = """title = "A large box falls"
-[mesh]
-file = "{mesh}"
-degree = {degree}
-[[material]]
-group = "body"
-density = 1.0
-lambda = 100.0
-mu = 50.0
-[obstacle.floor]
-type = "plane"
-point = [0.0, 0.0, 0.0]
-normal = [0.0, 0.0, 1.0]
-[[contact]]
-group = "bottom"
-obstacle = "floor"
-[load]
-gravity = [0.0, 0.0, -10.0]
-[mass]
-type = "consistent"
-[time]
-scheme = "newmark"
-preset = "trapezoidal"
-step = 0.01
-end = 10.0
-"""
+def box_case(mesh="box.msh", degree=2):
+    return body_case(mesh, [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], gravity(0.0, 0.0, -10.0), degree=degree, end=10.0)
 
 
 class Streams(TestCase):
@@ -221,7 +197,7 @@ class Signals(TestCase):
     def test_while_a_run_is_prepared(self):
         """A body whose factorization takes seconds: the signal comes in CHOLMOD, wherever that is."""
         self.write("box.msh", box(16))
-        case = self.write("box.toml", BOX_CASE.format(mesh="box.msh", degree=2))
+        case = self.write("box.toml", box_case())
         output = self.folder / "out"
         process = start("run", case, "-o", output, "--set", "solver.method=direct")
         said = ""
@@ -243,7 +219,7 @@ class Signals(TestCase):
     def test_while_a_step_takes_long(self):
         """One that comes to no end for long: contact and conjugate gradients disagree, as the step is far too large."""
         self.write("box.msh", box(8))
-        case = self.write("box.toml", BOX_CASE.format(mesh="box.msh", degree=2))
+        case = self.write("box.toml", box_case())
         output = self.folder / "out"
         process = start("run", case, "-o", output, *settings(
             {"solver.method": "iterative", "solver.tolerance": 1e-14, "initial.velocity": '["0", "0", "-1"]',
@@ -259,7 +235,7 @@ class Signals(TestCase):
 
     def test_the_state_before_a_long_step_is_kept(self):
         self.write("box.msh", box(9))
-        case = self.write("box.toml", BOX_CASE.format(mesh="box.msh", degree=2))
+        case = self.write("box.toml", box_case())
         # Conjugate gradients to the last digit.
         values = {"solver.method": "iterative", "solver.tolerance": 1e-14, "output.fields_every": 1,
                   "initial.velocity": '["0", "0", "-1"]'}
@@ -298,7 +274,7 @@ class Signals(TestCase):
         """It ends with the program, and its folder goes."""
         geometry = self.write("fine.geo", 'SetFactory("OpenCASCADE");\nSphere(1) = {0, 0, 0, 1};\n'
                               'Physical Volume("body") = {1};\nPhysical Surface("bottom") = {1};\n')
-        case = self.write("ball.toml", BOX_CASE.format(mesh=geometry.name, degree=1).replace(
+        case = self.write("ball.toml", box_case(geometry.name, degree=1).replace(
             "[mesh]\n", "[mesh]\nsize = 0.02\n"))
         cache = self.folder / "cache"
         cache.mkdir()

@@ -12,7 +12,7 @@ import h5py
 import meshio
 import numpy
 
-from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, run
+from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, body_case, initial_velocity, run
 from vtk_cells import middles, volumes
 
 # Four squares in a row, of two materials by turns, with numbers that go down.
@@ -48,39 +48,15 @@ $Elements
 $EndElements
 """
 
-CASE = """
-[mesh]
-file = "{mesh}"
-degree = {degree}
-[[material]]
-group = "{group}"
-density = 1.0
-lambda = 100.0
-mu = 50.0
-[obstacle.floor]
-type = "plane"
-point = {point}
-normal = {up}
-[[contact]]
-group = "{bottom}"
-obstacle = "floor"
-[initial]
-velocity = {down}
-[mass]
-type = "consistent"
-[time]
-scheme = "{scheme}"
-step = 0.002
-end = 0.06
-[[probe]]
-name = "lowest"
-at = {lowest}
-[[probe]]
-name = "highest"
-at = {highest}
-[output]
-fields_every = 1
-"""
+def falling(mesh, lowest, highest, *, group="body", bottom="bottom", degree=1, scheme="midpoint"):
+    """A body that moves down on a floor just below it, with probes at these points of it."""
+    up = [0] * (len(lowest) - 1) + [1]
+    point = [0.0] * (len(lowest) - 1) + [lowest[-1] - 0.01]
+    return body_case(mesh, point, up, initial_velocity(*(-x for x in up)), body=group, bottom=bottom, degree=degree,
+                     scheme=scheme, step=0.002, end=0.06) + (
+        f'[[probe]]\nname = "lowest"\nat = {lowest}\n[[probe]]\nname = "highest"\nat = {highest}\n'
+        "[output]\nfields_every = 1\n")
+
 
 # Bodies of tests/data/meshes: their volume from the corners written in the .geo files, two points to watch.
 SHAPES = {
@@ -107,12 +83,8 @@ def frames(results):
 class ResultsFiles(TestCase):
     def simulate_shape(self, shape, order, degree, scheme="klr-conserving"):
         about = SHAPES[shape]
-        dimension = len(about["lowest"])
-        up = [0] * (dimension - 1) + [1]
-        point = [0.0] * (dimension - 1) + [about["lowest"][-1] - 0.01]
-        text = CASE.format(mesh=MESHES / f"{shape}_o{order}_msh41_binary.msh", degree=degree, scheme=scheme, up=up,
-                           down=[-x for x in up], point=point, group=about.get("group", "body"),
-                           bottom=about.get("bottom", "bottom"), lowest=about["lowest"], highest=about["highest"])
+        shape_of = {key: value for key, value in about.items() if key != "volume"}
+        text = falling(MESHES / f"{shape}_o{order}_msh41_binary.msh", degree=degree, scheme=scheme, **shape_of)
         return self.simulate(self.write("case.toml", text))
 
     def check_probes(self, results, points, read):
@@ -215,8 +187,7 @@ class ResultsFiles(TestCase):
         self.check_probes(results, points, list(zip(times, read)))
 
     def test_cells_have_the_numbers_of_the_mesh_file(self):
-        text = CASE.format(mesh=self.write("strip.msh", STRIP), degree=1, scheme="midpoint", up=[0, 1], down=[0, -1],
-                           point=[0.0, -0.01], group="light", bottom="bottom", lowest=[0.0, 0.0], highest=[0.0, 1.0])
+        text = falling(self.write("strip.msh", STRIP), [0.0, 0.0], [0.0, 1.0], group="light")
         text += '[[material]]\ngroup = "heavy"\ndensity = 2.0\nlambda = 100.0\nmu = 50.0\n'
         results = self.simulate(self.write("case.toml", text))
         elements = [list(map(int, line.split())) for line in STRIP.split("$Elements")[1].splitlines()[2:-1]]
