@@ -1,0 +1,81 @@
+"""What the tests of interrupted runs share: a run worth interrupting, and when one that went on is the same."""
+
+import json
+import subprocess
+import time
+
+from harness import DISC, PROGRAM, SCHEMES, TestCase, settings, with_more
+
+RESULTS = {"history.csv", "results.h5", "results.xdmf", "obstacles.xdmf", "probes-3.csv"}
+
+PROBES = """
+[[probe]]
+name = "ground"
+contact = 0
+[[probe]]
+name = "body"
+group = "body"
+every = 3
+"""
+
+# What interrupted runs are made of: friction, a checkpoint often, a frame now and then.
+BUSY = {"contact.0.friction": 0.3, "initial.velocity": "[0.03,-0.1]", "output.checkpoint_every": 40,
+        "output.fields_every": 7, "time.end": 0.08}
+
+
+def busy(scheme):
+    values = dict(BUSY, **{"time.scheme": scheme, "mass.type": SCHEMES[scheme]})
+    if scheme == "newmark":
+        values["time.beta"] = 0.25
+    return values
+
+
+def start(case, output, values, *options, **more):
+    command = [str(PROGRAM), "run", str(case), "-o", str(output), "--quiet", *options, *settings(values)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+
+
+def wait_for(condition, seconds=60):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > deadline:
+            raise TimeoutError("nothing has happened")
+        time.sleep(0.002)
+
+
+def checkpoints(output):
+    return sorted(output.glob("checkpoint-*.ckpt"))
+
+
+def extrema(output):
+    return json.loads((output / "summary.json").read_text())["extrema"]
+
+
+class ResumeTestCase(TestCase):
+    def setUp(self):
+        super().setUp()
+        self.disc = self.write("disc.toml", with_more(DISC, PROBES))
+
+    def reference(self, values, case=None):
+        name = f"reference-{abs(hash(str(sorted(map(str, values.items())))))}"
+        if not (self.folder / name).exists():
+            self.simulate(case or self.disc, name, values)
+        return self.folder / name
+
+    def expect_same(self, expected, found):
+        for name in RESULTS & {path.name for path in expected.iterdir()}:
+            self.assertEqual((expected / name).read_bytes(), (found / name).read_bytes(), f"{found}: {name}")
+        self.assertEqual(extrema(expected), extrema(found))
+        self.assertEqual(json.loads((found / "summary.json").read_text())["status"], "done")
+        self.assertEqual(list(found.glob("*.new")) + list(found.glob("*.pattern")), [])
+
+    def interrupted(self, values, name):
+        """A run that was killed just before its end: what a complete one leaves but for its summary."""
+        output = self.folder / name
+        output.mkdir()
+        for path in self.reference(values).iterdir():
+            text = path.read_bytes()
+            if path.name == "summary.json":
+                text = text.replace(b'"status": "done"', b'"status": "running"')
+            (output / path.name).write_bytes(text)
+        return output
