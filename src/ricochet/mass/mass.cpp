@@ -60,13 +60,6 @@ bool prefers_compact(const MassInput& input) {
   return input.nodes->rows() == 3 && input.contact_nodes.size() > many_contact_nodes;
 }
 
-Matrix mass_moments(const SparseMatrix& mass, const Points& nodes) {
-  Matrix monomials(nodes.cols(), nodes.rows() + 1);
-  monomials.col(0).setOnes();
-  monomials.rightCols(nodes.rows()) = nodes.transpose();
-  return monomials.transpose() * (mass * monomials);
-}
-
 bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes) {
   std::vector<int> number(static_cast<std::size_t>(mass.cols()), 0);
   for (const Index node : excluded_nodes) number[static_cast<std::size_t>(node)] = -1;

@@ -56,10 +56,6 @@ class MassConstruction {
 /// the diagonal of the consistent mass, scaled to keep the total.
 [[nodiscard]] Vector lumped_diagonal(const SparseMatrix& consistent);
 
-/// Total mass, first and second moments: PᵃᵀmPᵇ with P = (1, x, y[, z]), (d+1) × (d+1). The conditions of an equivalent
-/// mass.
-[[nodiscard]] Matrix mass_moments(const SparseMatrix& mass, const Points& nodes);
-
 /// Proof by factorization that the block of the given nodes (all when empty) is positive definite.
 [[nodiscard]] bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes);
 

@@ -8,6 +8,7 @@
 #include "ricochet/mass/mass.hpp"
 #include "support/box_mesh.hpp"
 #include "support/convergence.hpp"
+#include "support/mass_moments.hpp"
 
 /// @file Total mass, centre of gravity and second moments, PᵀMP with P = (1, x, y[, z]), against exact values.
 namespace ricochet::test_support {

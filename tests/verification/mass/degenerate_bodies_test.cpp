@@ -9,6 +9,7 @@
 #include "ricochet/base/log.hpp"
 #include "support/box_mesh.hpp"
 #include "support/mass_bodies.hpp"
+#include "support/mass_moments.hpp"
 
 // Any set of a mesh's nodes may be its contact nodes. Whatever is left for the inertia: a mass that is handed out keeps
 // what it promises, or the warning says by how much it does not.
@@ -17,6 +18,7 @@ namespace ricochet {
 namespace {
 
 using test_support::AssembledBody;
+using test_support::mass_moments;
 
 constexpr const char* types[] = {"equivalent", "equivalent-compact", "equivalent-lumped", "equivalent-nearest"};
 constexpr const char* grid =

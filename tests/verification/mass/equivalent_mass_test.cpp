@@ -4,6 +4,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "support/mass_bodies.hpp"
+#include "support/mass_moments.hpp"
 
 // The equivalent masses on meshes of every kind.
 
@@ -12,6 +13,7 @@ namespace {
 
 using Assembled = test_support::AssembledBody;
 using Description = test_support::BodyDescription;
+using test_support::mass_moments;
 
 /// Largest eigenvalue of D⁻¹ m on the nodes with mass, D the diagonal of the consistent mass, by power iteration.
 double top_eigenvalue(const SparseMatrix& mass, const Vector& scale) {

@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "support/mass_bodies.hpp"
+#include "support/mass_moments.hpp"
 
 // An affine map of a mesh changes neither which nodes lie how to one another nor, but for one factor, its consistent
 // mass: the equivalent mass must be the same one, however flat the map makes the cells.
@@ -16,6 +17,7 @@ namespace ricochet {
 namespace {
 
 using test_support::AssembledBody;
+using test_support::mass_moments;
 
 double uniform(std::mt19937& random) {
   return static_cast<double>(random()) / 2147483648.0 - 1.0;

@@ -7,6 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "support/mass_bodies.hpp"
+#include "support/mass_moments.hpp"
 
 // The diagonal mass without inertia on contact nodes, on meshes of every kind.
 
@@ -15,6 +16,7 @@ namespace {
 
 using test_support::AssembledBody;
 using test_support::BodyDescription;
+using test_support::mass_moments;
 
 /// Largest relative difference of total mass and first moments; of second moments about the centre of gravity.
 struct Lack {
