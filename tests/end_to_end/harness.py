@@ -9,6 +9,7 @@ import pathlib
 import shutil
 import subprocess
 import tempfile
+import time
 import unittest
 
 PROGRAM = pathlib.Path(os.environ["RICOCHET_PROGRAM"])
@@ -89,6 +90,14 @@ class History:
 
     def largest_energy(self):
         return max(abs(value) for name in ("total_energy", "kinetic_energy", "elastic_energy") for value in self[name])
+
+
+def wait_for(condition, seconds=60):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > deadline:
+            raise TimeoutError("nothing has happened")
+        time.sleep(0.002)
 
 
 def total_variation(values):

@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-import time
 
 from harness import DISC, PROGRAM, SCHEMES, TestCase, settings, with_more
 
@@ -33,14 +32,6 @@ def busy(scheme):
 def start(case, output, values, *options, **more):
     command = [str(PROGRAM), "run", str(case), "-o", str(output), "--quiet", *options, *settings(values)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
-
-
-def wait_for(condition, seconds=60):
-    deadline = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > deadline:
-            raise TimeoutError("nothing has happened")
-        time.sleep(0.002)
 
 
 def checkpoints(output):

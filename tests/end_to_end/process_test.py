@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from harness import PROGRAM, TestCase, block_case, body_case, gravity, run, settings
+from harness import PROGRAM, TestCase, block_case, body_case, gravity, run, settings, wait_for
 
 # After a signal the process has ended within two seconds, the machine's own delays aside.
 AT_MOST = 2.0
@@ -26,14 +26,6 @@ def redirected(redirections, *arguments, **more):
 def start(*arguments, **more):
     return subprocess.Popen([str(PROGRAM), *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, text=True, **more)
-
-
-def wait_for(condition, seconds=60):
-    deadline = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > deadline:
-            raise TimeoutError("nothing has happened")
-        time.sleep(0.005)
 
 
 def box(n):

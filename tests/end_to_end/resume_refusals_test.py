@@ -7,8 +7,8 @@ import zlib
 
 import h5py
 
-from harness import MESHES, block_case, run, settings
-from interrupted_runs import ResumeTestCase, busy, checkpoints, start, wait_for
+from harness import MESHES, block_case, run, settings, wait_for
+from interrupted_runs import ResumeTestCase, busy, checkpoints, start
 
 
 class Refusals(ResumeTestCase):

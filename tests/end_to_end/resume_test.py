@@ -15,8 +15,8 @@ import unittest
 
 import h5py
 
-from harness import DISC, SCHEMES, run, settings
-from interrupted_runs import ResumeTestCase, busy, checkpoints, start, wait_for
+from harness import DISC, SCHEMES, run, settings, wait_for
+from interrupted_runs import ResumeTestCase, busy, checkpoints, start
 
 KILLS = 50
 
