@@ -80,6 +80,8 @@ bool is_nearly_closed(const ContactSystem& system, const ContactIterate& iterate
 /// 4. More sweeps from the best r so far, then Newton again, twice as many sweeps every time; the same from r = 0, with
 ///    sweeps that take a half, a quarter, an eighth of each point's correction.
 /// 5. The other solvers. At last whole sweeps for as long as they come closer.
+///
+/// Where points are nearly one (TwinPoints), 3 to 5 only come after the problem with one of them has been tried.
 class AutomaticSolver final : public IterativeContactSolver {
  public:
   std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
@@ -111,6 +113,7 @@ class AutomaticSolver final : public IterativeContactSolver {
   bool sweep(const ContactWork& work, int sweeps, double damping);
   std::string iterate_with_products(const ContactWork& work);
   bool newton(const ContactWork& work);
+  [[nodiscard]] bool is_loosely_solved(const ContactWork& work, const ContactIterate& iterate);
   bool sweeps_and_newton(const ContactWork& work);
   bool alternate(const ContactWork& work, int sweeps, double damping);
   std::string find_contradiction(const ContactWork& work);
@@ -129,6 +132,7 @@ class AutomaticSolver final : public IterativeContactSolver {
   DualActiveSet normals_;
   BestIterate best_;      ///< of a part of the iteration
   BestIterate fallback_;  ///< of all
+  ContactIterate on_law_;
   Vector begin_;
   bool stalled_ = false;
   ContactCosts costs_;
@@ -225,6 +229,11 @@ std::string AutomaticSolver::iterate_with_products(const ContactWork& work) {
       .iterate(work.system, work.options, work.current, work.solution);
 }
 
+/// Where rounding is asked for and nothing improves any more.
+bool AutomaticSolver::is_loosely_solved(const ContactWork& work, const ContactIterate& iterate) {
+  return work.options.tolerance == 0.0 && work.is_solved_on_law(iterate, loosest_residual, on_law_);
+}
+
 /// Newton from `current`, with the line search, then whole steps from the best r.
 bool AutomaticSolver::newton(const ContactWork& work) {
   best_.restart(work);
@@ -232,7 +241,7 @@ bool AutomaticSolver::newton(const ContactWork& work) {
   work.current = best_.iterate;
   if (newton_.run(work, false, best_)) return true;
   work.current = best_.iterate;
-  return work.options.tolerance == 0.0 && work.system.is_solved(best_.iterate, loosest_residual);
+  return is_loosely_solved(work, best_.iterate);
 }
 
 /// Sweeps and Newton in turn, from `current`.
@@ -248,7 +257,7 @@ bool AutomaticSolver::alternate(const ContactWork& work, int sweeps, double damp
       if (newton_.run(work, false, best_)) return true;
       work.current = best_.iterate;
     }
-    if (work.options.tolerance == 0.0 && work.system.is_solved(best_.iterate, loosest_residual)) return true;
+    if (is_loosely_solved(work, best_.iterate)) return true;
     sweeps = cold_sweeps << round;
   }
   return false;
@@ -304,6 +313,7 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   if (sweeps_and_newton(work)) return "";
   if (const std::string reason = find_contradiction(work); !reason.empty()) return reason;
   if (!std::isfinite(best_.merit)) return "the iteration diverged: the contact operator is not positive definite";
+  if (may_leave_out_twins()) return "some points are nearly one: it is not found which of them press";
   if (fall_back(work, cold)) return "";
   return "the conditions of contact and friction are not met after all that was tried: there may be no solution, or W "
          "is not positive semi-definite";
@@ -373,8 +383,8 @@ bool AutomaticSolver::ask_others(const ContactWork& work, const std::vector<Othe
       std::unique_ptr<ContactSolver>& solver = others_[other.name];
       if (solver == nullptr) solver = make_contact_solver(other.name);
       auto& iteration = dynamic_cast<IterativeContactSolver&>(*solver);
-      if (iteration.iterate(work.system, options, work.current, work.solution).empty()) return true;
-      if (work.options.tolerance == 0.0 && work.system.is_solved(work.current, loosest_residual)) return true;
+      const bool solved = iteration.iterate(work.system, options, work.current, work.solution).empty();
+      if ((solved && work.options.tolerance > 0.0) || is_loosely_solved(work, work.current)) return true;
       fallback_.keep(work);
     }
   }

@@ -18,6 +18,10 @@ constexpr int tightenings = 4;
 /// Points that do not penetrate at r = 0 by more than this part of the data are left out at first.
 constexpr double margin = 0.1;
 
+double accepted_residual(const ContactOptions& options) {
+  return options.tolerance > 0.0 ? options.tolerance : loosest_residual;
+}
+
 void refuse_data(const std::string& reason, ContactSolution& solution,
                  double residual = std::numeric_limits<double>::quiet_NaN()) {
   solution.outcome = ContactOutcome::invalid_data;
@@ -31,6 +35,7 @@ void IterativeContactSolver::analyse(const ContactProblem& problem) {
   system_.analyse(problem);
   analysed_ = problem.contact_operator;
   analysed_first_ = problem.first;
+  twins_.forget();
   set_warm_start({});
 }
 
@@ -262,6 +267,10 @@ void IterativeContactSolver::run(const ContactOptions& options, ContactSolution&
   system_.give_reaction(finished_.reaction, solution.reaction);
 }
 
+bool IterativeContactSolver::is_accepted(const ContactOptions& options) const {
+  return measure_.beyond_floor <= accepted_residual(options) * system_.data();
+}
+
 void IterativeContactSolver::judge(const ContactProblem& problem, const ContactOptions& options,
                                    ContactSolution& solution) {
   double largest = measure_.residual;
@@ -282,8 +291,7 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
         "reactions are beyond the range of numbers",
         solution, solution.residual);
   }
-  const double accepted = options.tolerance > 0.0 ? options.tolerance : loosest_residual;
-  if (measure_.beyond_floor <= accepted * system_.data()) {
+  if (is_accepted(options)) {
     solution.outcome = ContactOutcome::solved;
     solution.reason.clear();
     warm_reaction_ = solution.reaction;
@@ -291,6 +299,12 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
   }
   solution.outcome = ContactOutcome::not_converged;
   if (solution.reason.empty()) solution.reason = "the largest number of iterations was not enough";
+  if (largest <= accepted_residual(options) * system_.data()) {
+    solution.reason =
+        "the residual says nothing, for reactions have grown until their rounding hides what is left of it: where a "
+        "body "
+        "is jammed by friction there may be no solution";
+  }
 }
 
 void IterativeContactSolver::tell_states(const ContactProblem& problem, ContactSolution& solution) const {
@@ -307,6 +321,43 @@ void IterativeContactSolver::tell_states(const ContactProblem& problem, ContactS
     const double floor = system_.floor_of(point, finished_).tangential;
     if (finished_.motion.segment(point.first + 1, point.size - 1).norm() > floor) status = ContactStatus::slip;
   }
+}
+
+/// On the points that are wanted, from the solution's reactions, until no other penetrates. `exchanges`: of points that
+/// are nearly one only one is there, which others may take the place of.
+void IterativeContactSolver::solve_on_wanted(const ContactProblem& problem, const ContactOptions& options,
+                                             bool exchanges, ContactSolution& solution) {
+  while (true) {
+    system_.take_reaction(solution.reaction, current_.reaction);
+    if (!current_.reaction.allFinite()) current_.reaction.setZero();  // scaled beyond the range of numbers
+    start(current_.reaction);
+    if (options.record) count_states(system_, current_.reaction, solution);
+    run(options, solution);
+    find_motion(problem, solution);
+    if (!works_on_candidates()) return;
+    const bool exchanged = exchanges && twins_.exchange(problem, solution.motion, wanted_, solution.reaction);
+    if (!exchanged && !take_in_penetrating(problem, options, solution)) return;
+    system_.select(problem, wanted_);
+  }
+}
+
+/// Of points that are nearly one only one at a time, from the best r so far. Where that does not end with a solution,
+/// all of them again.
+void IterativeContactSolver::solve_without_twins(const ContactProblem& problem, const ContactOptions& options,
+                                                 ContactSolution& solution) {
+  has_all_points_ = false;
+  const std::vector<char> all = wanted_;
+  const Vector best = solution.reaction;
+  if (solution.motion.allFinite()) {
+    twins_.choose(problem, solution.motion, wanted_, solution.reaction);
+    system_.select(problem, wanted_);
+    solve_on_wanted(problem, options, true, solution);
+    if (is_accepted(options)) return;
+  }
+  wanted_ = all;
+  solution.reaction = best;
+  system_.select(problem, wanted_);
+  solve_on_wanted(problem, options, false, solution);
 }
 
 void IterativeContactSolver::solve(const ContactProblem& problem, const ContactOptions& options,
@@ -344,16 +395,10 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
     return;
   }
   if (warm_reaction_.size() == problem.rows() && warm_reaction_.allFinite()) solution.reaction = warm_reaction_;
-  do {
-    system_.take_reaction(solution.reaction, current_.reaction);
-    if (!current_.reaction.allFinite()) current_.reaction.setZero();  // scaled beyond the range of numbers
-    start(current_.reaction);
-    if (options.record) count_states(system_, current_.reaction, solution);
-    run(options, solution);
-    find_motion(problem, solution);
-    if (!works_on_candidates() || !take_in_penetrating(problem, options, solution)) break;
-    system_.select(problem, wanted_);
-  } while (true);
+  has_all_points_ = works_on_candidates();
+  solve_on_wanted(problem, options, false, solution);
+  if (has_all_points_ && !is_accepted(options) && contradiction_.empty() && twins_.any(*analysed_, analysed_first_))
+    solve_without_twins(problem, options, solution);
   judge(problem, options, solution);
   tell_states(problem, solution);
 }

@@ -5,6 +5,7 @@
 
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/contact/contact_system.hpp"
+#include "ricochet/solver/contact/twin_points.hpp"
 
 /// @file What all solvers share: scaling, warm start, the choice of points, the verdict.
 namespace ricochet {
@@ -35,6 +36,10 @@ class IterativeContactSolver : public ContactSolver {
   static void record(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
                      const Vector& reaction, ContactSolution& solution);
 
+  /// r on the law: signs and limits hold exactly; where friction is at its limit it is against the slip, to the last
+  /// digits where `exactly` is asked for. u does not follow.
+  static void put_on_law(const ContactSystem& system, const Vector& motion, bool exactly, Vector& reaction);
+
  protected:
   /// Why such a problem is not for this solver; empty: it is.
   [[nodiscard]] virtual std::string refuses(const ContactSystem&) const { return {}; }
@@ -53,12 +58,12 @@ class IterativeContactSolver : public ContactSolver {
   /// penetrate, instead of on all points.
   [[nodiscard]] virtual bool works_on_candidates() const { return false; }
 
+  /// Before something that costs much is tried: should rather end without a solution, for some points are nearly one,
+  /// and a system with only one of them is what `solve` tries next. It comes back with all of them if that fails.
+  [[nodiscard]] bool may_leave_out_twins() { return has_all_points_ && twins_.any(*analysed_, analysed_first_); }
+
   /// These contradict one another.
   void note_contradiction(const std::vector<Index>& points) { contradiction_ = points; }
-
-  /// r on the law: signs and limits hold exactly; where friction is at its limit it is against the slip, to the last
-  /// digits where `exactly` is asked for. u does not follow.
-  static void put_on_law(const ContactSystem& system, const Vector& motion, bool exactly, Vector& reaction);
 
  private:
   [[nodiscard]] bool is_open(const ContactProblem& problem) const;
@@ -69,6 +74,10 @@ class IterativeContactSolver : public ContactSolver {
   void find_motion(const ContactProblem& problem, ContactSolution& solution) const;
   bool take_in_penetrating(const ContactProblem& problem, const ContactOptions& options,
                            const ContactSolution& solution);
+  void solve_on_wanted(const ContactProblem& problem, const ContactOptions& options, bool exchanges,
+                       ContactSolution& solution);
+  void solve_without_twins(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution);
+  [[nodiscard]] bool is_accepted(const ContactOptions& options) const;
   void judge(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution);
   void tell_states(const ContactProblem& problem, ContactSolution& solution) const;
 
@@ -78,6 +87,8 @@ class IterativeContactSolver : public ContactSolver {
   Vector warm_reaction_;
   std::vector<char> wanted_;
   std::vector<Index> contradiction_;
+  TwinPoints twins_;
+  bool has_all_points_ = false;  ///< the system may have points that are nearly one, and nothing else was tried yet
   ContactIterate current_, finished_;
   ContactIterate closest_;          ///< of several passes
   ContactSystem::Measure measure_;  ///< of `finished_`

@@ -45,6 +45,14 @@ bool ContactWork::is_done(const ContactIterate& iterate) const {
   return measure.beyond_floor == 0.0 && measure.is_exact;
 }
 
+/// Where the rounding of q is larger than that of sums, friction may be beyond its limit by as much.
+bool ContactWork::is_solved_on_law(const ContactIterate& iterate, double tolerance, ContactIterate& on_law) const {
+  on_law = iterate;
+  IterativeContactSolver::put_on_law(system, iterate.motion, false, on_law.reaction);
+  if (on_law.reaction != iterate.reaction) system.evaluate(on_law);
+  return system.is_solved(on_law, tolerance);
+}
+
 void BestIterate::restart(const ContactWork& work) {
   iterate = work.current;
   merit = work.merit();
@@ -139,7 +147,11 @@ bool GlobalizedNewton::run(const ContactWork& work, bool line_search, BestIterat
                                  work.solution);
     if (system.is_solved(trial_, work.options.tolerance)) {
       std::swap(work.current, trial_);
-      if (work.is_done(work.current) || ++inexact == inexact_limit) return true;
+      if (work.is_done(work.current)) return true;
+      if (++inexact >= inexact_limit) {
+        if (work.is_solved_on_law(work.current, work.options.tolerance, cut_)) return true;
+        std::swap(work.current, cut_);  // there, points slip that stuck beyond their limit
+      }
       current_merit_ = work.merit();
       continue;
     }

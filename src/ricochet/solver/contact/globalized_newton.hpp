@@ -22,6 +22,8 @@ struct ContactWork {
 
   [[nodiscard]] double merit() const { return contact_merit(system, current); }
   [[nodiscard]] bool is_done(const ContactIterate& iterate) const;
+  /// Whether it is still solved when its reactions are put on their law, as it is handed over: then in `on_law`.
+  [[nodiscard]] bool is_solved_on_law(const ContactIterate& iterate, double tolerance, ContactIterate& on_law) const;
 };
 
 /// The iterate of least merit so far.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "support/contact_problems.hpp"
+#include "support/hard_contact_problems.hpp"
 
 /// @file The Coulomb solver in a time loop, and on operators that are not definite.
 namespace ricochet {
@@ -187,6 +188,46 @@ TEST(FrictionFailure, DoesNotSpoilTheNextProblem) {
   problem.q[7] = kept;
   solution = solver.solve(problem);
   expect_law(problem, solution);
+}
+
+/// Nodes in corners of three planes, whose gaps are known to `rounding` and whose slips are known much better: where a
+/// node sticks to one plane the slip there is the gap to another one, and the two disagree by what is rounding.
+FrictionProblem corners(Index nodes, double friction, double rounding, double digits, unsigned seed) {
+  std::mt19937 random(seed);
+  const Matrix w = test::random_operator(3 * nodes, digits, random);
+  const Vector q = test::uniform(3 * nodes, random);
+  FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(3 * nodes), 3), friction);
+  Matrix rows = Matrix::Zero(9 * nodes, 3 * nodes);
+  Vector gaps = Vector::Zero(rows.rows());
+  problem.rounding = Vector::Constant(rows.rows(), 1e-15);
+  for (Index plane = 0; plane < 3 * nodes; ++plane) {
+    const Index row = 3 * plane, node = plane / 3;
+    for (Index k = 0; k < 3; ++k) rows(row + k, 3 * node + (plane + k) % 3) = 1.0;
+    gaps[row] = rounding * test::uniform(random);
+    problem.rounding[row] = rounding;
+  }
+  problem.w = rows * w * rows.transpose();
+  problem.q = rows * q + gaps;
+  return problem;
+}
+
+TEST(FrictionInCorners, IsSolvedUpToTheRoundingOfGaps) {
+  for (const double rounding : {1e-9, 1e-11}) {
+    for (const double digits : {1.0, 4.0}) {
+      for (const double friction : {0.3, 0.6}) {
+        for (unsigned seed = 0; seed < test::seeds(20); ++seed) {
+          SCOPED_TRACE(testing::Message() << rounding << ", " << digits << " digits, F " << friction << ", " << seed);
+          const FrictionProblem problem = corners(8, friction, rounding, digits, seed);
+          const ContactSolution solution = solve(problem);
+          EXPECT_TRUE(solution.solved()) << solution.reason << ", residual " << solution.residual;
+          const test::Judgement judgement = test::judge(problem.contact(), solution.reaction);
+          EXPECT_LE(judgement.residual, 1e-12 + solution.rounding_floor);
+          EXPECT_LE(solution.rounding_floor, 100.0 * rounding);
+          EXPECT_LE(judgement.outside_cone, 1e-15);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "ricochet/solver/contact/twin_points.hpp"
+#include "support/contact_problems.hpp"
+#include "support/hard_contact_problems.hpp"
+
+/// @file Nodes that meet several planes which are parallel but for a tiny angle.
+namespace ricochet {
+namespace {
+
+using test::FrictionProblem;
+using test::uniform;
+
+/// Each node with `planes` of them, inclined by multiples of `angle`, each as far away as its inclination makes it at
+/// the node's place: gaps differ by the angle times a length.
+FrictionProblem inclined_planes(Index nodes, Index dimension, Index planes, double angle, double friction,
+                                unsigned seed) {
+  std::mt19937 random(seed);
+  const Matrix w = test::random_operator(nodes * dimension, 1.0, random);
+  Vector q(nodes * dimension);
+  for (Index node = 0; node < nodes; ++node) {
+    q.segment(node * dimension, dimension) = uniform(dimension, random);
+    q[node * dimension] *= 0.1;
+  }
+  FrictionProblem problem(std::vector<Index>(static_cast<std::size_t>(nodes * planes), dimension), friction);
+  Matrix rows = Matrix::Zero(nodes * planes * dimension, nodes * dimension);
+  Vector gaps = Vector::Zero(rows.rows());
+  for (Index node = 0; node < nodes; ++node) {
+    const double place = uniform(random);
+    for (Index plane = 0; plane < planes; ++plane) {
+      const Index row = (node * planes + plane) * dimension, column = node * dimension;
+      const double tilt = angle * static_cast<double>(plane % 2 == 0 ? plane : -plane);
+      rows.block(row, column, dimension, dimension).setIdentity();
+      rows(row, column + 1) = tilt;
+      rows(row + 1, column) = -tilt;
+      gaps[row] = tilt * place;
+    }
+  }
+  problem.w = rows * w * rows.transpose();
+  problem.q = rows * q + gaps;
+  problem.rounding = Vector::Constant(rows.rows(), 1e-15);
+  return problem;
+}
+
+TEST(TwinPoints, OneOfNearlyParallelPlanesPresses) {
+  int closed = 0;
+  for (const Index dimension : {2, 3}) {
+    for (const double angle : {1e-7, 1e-9, 1e-11, 1e-12, 1e-13}) {
+      for (const double friction : {0.1, 0.3, 0.8}) {
+        for (unsigned seed = 0; seed < test::seeds(8); ++seed) {
+          SCOPED_TRACE(testing::Message() << dimension << "D, angle " << angle << ", F " << friction << ", " << seed);
+          const FrictionProblem problem = inclined_planes(7, dimension, 3, angle, friction, seed);
+          const ContactSolution solution = test::solve(problem);
+          EXPECT_TRUE(solution.solved()) << solution.reason << ", residual " << solution.residual;
+          const test::Judgement judgement = test::judge(problem.contact(), solution.reaction);
+          EXPECT_LE(judgement.residual, 1e-12 + solution.rounding_floor);
+          EXPECT_LE(judgement.outside_cone, 1e-15);
+          closed += (solution.reaction.array() > 0.0).any() ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(closed, 0);
+}
+
+/// The free motion decides where there is no way to tell points apart by W; others are left alone.
+TEST(TwinPoints, AreFoundByW) {
+  TwinPoints twins;
+  FrictionProblem apart = test::random_problem(12, 3, 0.3, 1);
+  EXPECT_FALSE(twins.any(*apart.contact().contact_operator, apart.first));
+  const FrictionProblem near = inclined_planes(4, 3, 2, 1e-9, 0.3, 1);
+  twins.forget();
+  const ContactProblem problem = near.contact();
+  ASSERT_TRUE(twins.any(*problem.contact_operator, problem.first));
+  std::vector<char> wanted(8, 1);
+  Vector motion = near.q, reaction = Vector::Ones(24);
+  motion[3] = motion[0] - 1.0;
+  twins.choose(problem, motion, wanted, reaction);
+  EXPECT_EQ(wanted[0], 0);
+  EXPECT_EQ(wanted[1], 1);
+  EXPECT_EQ(std::count(wanted.begin(), wanted.end(), 1), 4);
+  EXPECT_EQ(reaction.segment(0, 6), (Vector(6) << 0, 0, 0, 2, 2, 2).finished());
+  // The other one is deeper now: it takes the place and the reaction.
+  motion[0] = -2.0;
+  motion[3] = -1.0;
+  EXPECT_TRUE(twins.exchange(problem, motion, wanted, reaction));
+  EXPECT_EQ(wanted[0], 1);
+  EXPECT_EQ(wanted[1], 0);
+  EXPECT_EQ(reaction.segment(0, 6), (Vector(6) << 2, 2, 2, 0, 0, 0).finished());
+  EXPECT_FALSE(twins.exchange(problem, motion, wanted, reaction));
+  // Not inclined, but under another law: not the same.
+  ContactProblem other = problem;
+  other.friction_coefficient[0] = 0.0;
+  wanted.assign(8, 1);
+  twins.choose(other, motion, wanted, reaction);
+  EXPECT_EQ(wanted[0] + wanted[1], 2);
+}
+
+}  // namespace
+}  // namespace ricochet
