@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,5 +16,12 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
 /// "a", "a or b", "a, b or c"; with quotes around each when `quoted`.
 std::string join_names(std::span<const std::string> names, std::string_view last_separator = " and ",
                        bool quoted = true);
+
+/// "1 node", "2 nodes"; `plural` where that is more than an s behind the noun.
+std::string counted(std::integral auto count, std::string_view noun, std::string_view plural = {}) {
+  std::string text = std::to_string(count) + " ";
+  text += count == 1 || plural.empty() ? noun : plural;
+  return count != 1 && plural.empty() ? text + "s" : text;
+}
 
 }  // namespace ricochet

@@ -32,7 +32,7 @@ double value_in_row(const std::vector<double>& column, const Quantity& quantity)
   const long row = quantity.row < 0 ? rows + quantity.row : quantity.row;
   if (row < 0 || row >= rows) {
     throw Error(ErrorKind::invalid_input,
-                fmt::format("history.{}[{}]: history.csv has {} rows", quantity.name, quantity.row, rows));
+                fmt::format("history.{}[{}]: history.csv has {}", quantity.name, quantity.row, counted(rows, "row")));
   }
   return column[static_cast<std::size_t>(row)];
 }

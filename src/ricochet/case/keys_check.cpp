@@ -279,10 +279,10 @@ void TreeChecker::check_dimension() {
   const VectorFound& first = vectors_.front();
   for (const VectorFound& vector : vectors_) {
     if (vector.size == first.size) continue;
-    problems_.add(vector.location,
-                  fmt::format("{} has {} entries, but {} at {} has {}: all vectors must have as many as the "
-                              "mesh has dimensions",
-                              vector.name, vector.size, first.name, first.location.text(), first.size));
+    problems_.add(vector.location, fmt::format("{} has {}, but {} at {} has {}: all vectors must have as many as the "
+                                               "mesh has dimensions",
+                                               vector.name, counted(vector.size, "entry", "entries"), first.name,
+                                               first.location.text(), first.size));
   }
   for (const SourceLocation& location : third_components_) {
     if (first.size == 2)

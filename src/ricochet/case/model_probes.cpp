@@ -100,7 +100,7 @@ class ProbeMaker {
     });
     for (std::size_t i = 0; i < found.size(); ++i)
       add_node(section, fmt::format("{}.{}", section.name, i), found[i].node, found[i].distance);
-    log::info(fmt::format("probe \"{}\": {} nodes along the segment", section.name, found.size()));
+    log::info(fmt::format("probe \"{}\": {} along the segment", section.name, counted(found.size(), "node")));
   }
 
   void add_boundary(const ProbeSection& section, const std::string& key) {

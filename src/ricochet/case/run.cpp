@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/case/old_run.hpp"
 #include "ricochet/case/run_description.hpp"
 #include "ricochet/case/run_identity.hpp"
@@ -111,8 +112,8 @@ void Run::begin() {
   times_.add_build(build);
   check_expected_columns(input_, *model_);
   if (model_->problem.dof_count() >= large_body) {
-    log::info(fmt::format("{} dofs, {} contact points; preparing the steps", model_->problem.dof_count(),
-                          model_->problem.contact.size()));
+    log::info(fmt::format("{}, {}; preparing the steps", counted(model_->problem.dof_count(), "dof"),
+                          counted(model_->problem.contact.size(), "contact point")));
   }
   std::string difference;
   if (snapshot_) difference = compare_model(input_, *model_, *snapshot_);

@@ -8,6 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/run_name.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/case/run.hpp"
 
 namespace ricochet {
@@ -27,8 +28,10 @@ void check_export(const Case& input, const RunOptions& options, long steps) {
   const auto& asked = options.export_contact;
   const bool some = std::any_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.first <= steps; });
   const bool all = std::all_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.last <= steps; });
-  if (!some) throw Error(ErrorKind::usage, fmt::format("--export-contact: the run has {} steps only", steps));
-  if (!all) log::warning(fmt::format("--export-contact: the run has {} steps; those after it are left out", steps));
+  if (!some)
+    throw Error(ErrorKind::usage, fmt::format("--export-contact: the run has {} only", counted(steps, "step")));
+  if (!all)
+    log::warning(fmt::format("--export-contact: the run has {}; those after it are left out", counted(steps, "step")));
 }
 
 }  // namespace

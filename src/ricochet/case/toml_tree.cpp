@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
 
 namespace ricochet {
 
@@ -165,7 +166,7 @@ std::string describe(const TomlNode& node) {
   }
   if (node.is_list_of_tables()) return "a list of tables";
   const std::size_t count = node.children.size();
-  return count == 0 ? "an empty list" : fmt::format("a list of {} value{}", count, count == 1 ? "" : "s");
+  return count == 0 ? "an empty list" : fmt::format("a list of {}", counted(count, "value"));
 }
 
 }  // namespace ricochet

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/io/fclib_file.hpp"
 
 namespace ricochet {
@@ -133,9 +134,8 @@ void ContactExport::write(const ContactProblem& problem, const ContactSolution& 
 std::string ContactExport::report() const {
   long last = 0;
   for (const StepRange& range : steps_) last = std::max(last, range.last);
-  std::string result =
-      fmt::format("contact problems of {} step{} in {}", steps_written_, steps_written_ == 1 ? "" : "s", directory_);
-  if (files_ > steps_written_) result += fmt::format(" ({} files)", files_);
+  std::string result = fmt::format("contact problems of {} in {}", counted(steps_written_, "step"), directory_);
+  if (files_ > steps_written_) result += fmt::format(" ({})", counted(files_, "file"));
   if (steps_seen_ > steps_written_)
     result += fmt::format("; {} had none (no point could touch)", steps_seen_ - steps_written_);
   if (last > step_) result += fmt::format("; steps after {} were not reached", step_);

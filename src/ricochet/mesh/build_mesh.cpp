@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/mesh/gmsh_elements.hpp"
 #include "ricochet/mesh/offenders.hpp"
 
@@ -81,8 +82,8 @@ class EntityNamer {
   static std::string kind(int dimension) { return dimension == 3 ? "volume" : dimension == 2 ? "surface" : "curve"; }
   static std::string name(int dimension, int entity) { return fmt::format("{} {}", kind(dimension), entity); }
   static std::string describe(int dimension, std::size_t count) {
-    return fmt::format("{} group{} \"{} N\", where N is Gmsh's number of the {}", count, count == 1 ? "" : "s",
-                       kind(dimension), kind(dimension));
+    return fmt::format("{} \"{} N\", where N is Gmsh's number of the {}", counted(count, "group"), kind(dimension),
+                       kind(dimension));
   }
 
   int dimension_;
@@ -165,7 +166,7 @@ void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh) {
   }
   if (mesh.dimension == 2) check_plane(raw, used, mesh.source);
   if (const std::size_t dropped = raw.node_tags.size() - used.size(); dropped > 0) {
-    log::info(fmt::format("{}: {} node{} no cell uses left out", mesh.source, dropped, dropped == 1 ? "" : "s"));
+    log::info(fmt::format("{}: {} no cell uses left out", mesh.source, counted(dropped, "node")));
   }
   for (auto* blocks : {&mesh.cells, &mesh.facets}) {
     for (CellBlock& block : *blocks) {

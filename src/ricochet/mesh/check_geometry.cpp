@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/mesh/boundary_facets.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
 #include "ricochet/mesh/offenders.hpp"
@@ -143,11 +144,12 @@ void check_folds(const Mesh& mesh) {
     pairs += fmt::format("{}elements {} and {} at {}", i == 0 ? "" : ", ", tag(found[i].first), tag(found[i].second),
                          place_of(mesh, found[i].first));
   }
-  fail_mesh(mesh.source,
-            fmt::format("the mesh is folded, cells overlap: {} pair{} of cells on the same side of the facet that they "
-                        "share: {}{}; a node has probably been moved across its neighbours: put it back, or mesh the "
-                        "part anew",
-                        found.size(), found.size() == 1 ? "" : "s", pairs, found.size() > most ? ", …" : ""));
+  fail_mesh(
+      mesh.source,
+      fmt::format("the mesh is folded, cells overlap: {} on the same side of the facet that they "
+                  "share: {}{}; a node has probably been moved across its neighbours: put it back, or mesh the "
+                  "part anew",
+                  counted(found.size(), "pair of cells", "pairs of cells"), pairs, found.size() > most ? ", …" : ""));
 }
 
 template <int Dimension>
@@ -181,10 +183,10 @@ void orient_cells_of_dimension(Mesh& mesh) {
     const bool all = reversed.count() == mesh.cell_count();
     if (!all) check_folds(mesh);
     log::info(fmt::format(
-        "{}: {} {} reversed (their Jacobian was negative) and were turned round; the mesh is the same", mesh.source,
-        all ? fmt::format("all {} cells", reversed.count())
+        "{0}: {1} {2} reversed (a negative Jacobian) and {2} turned round; the mesh is the same", mesh.source,
+        all ? (reversed.count() == 1 ? "its only cell" : fmt::format("all {} cells", reversed.count()))
             : fmt::format("of {} cells, {}", mesh.cell_count(), reversed.text("element")),
-        reversed.count() == 1 && !all ? "was" : "were"));
+        reversed.count() == 1 ? "was" : "were"));
   }
 }
 
@@ -268,10 +270,9 @@ void check_coincident_nodes(const Mesh& mesh) {
                          mesh.node_tags[static_cast<std::size_t>(node)]);
   }
   if (count == 0) return;
-  fail_mesh(mesh.source,
-            fmt::format("{} pair{} of nodes at the same place: {}{}; cells that should be joined are not (in Gmsh: "
-                        "Mesh > Remove duplicate nodes, or BooleanFragments on the geometry)",
-                        count, count == 1 ? "" : "s", pairs, count > 5 ? ", …" : ""));
+  fail_mesh(mesh.source, fmt::format("{} at the same place: {}{}; cells that should be joined are not (in Gmsh: "
+                                     "Mesh > Remove duplicate nodes, or BooleanFragments on the geometry)",
+                                     counted(count, "pair of nodes", "pairs of nodes"), pairs, count > 5 ? ", …" : ""));
 }
 
 }  // namespace ricochet::gmsh

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "ricochet/base/text.hpp"
 #include "ricochet/mesh/gmsh_elements.hpp"
 #include "ricochet/mesh/msh_sections.hpp"
 
@@ -136,7 +137,8 @@ void read_elements(Reader reader, const Entities& entities, RawMesh& mesh) {
     const std::size_t count = reader.count("the number of elements of a block", 2 * (nodes_each + 1),
                                            sizeof(std::uint64_t) * (nodes_each + 1));
     if (nodes_each == 0) {
-      reader.cursor().fail(fmt::format("{} elements of {} are not supported", count, describe_type(elements.type)));
+      reader.cursor().fail(fmt::format("{} of {} {} not supported", counted(count, "element"),
+                                       describe_type(elements.type), count == 1 ? "is" : "are"));
     }
     if (type->dimension != dimension) {
       reader.cursor().fail(

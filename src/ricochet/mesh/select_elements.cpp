@@ -31,8 +31,7 @@ void refuse_unsupported(const RawMesh& raw, int dimension, const std::string& so
   }
   std::string message;
   for (const auto& [number, count] : counts) {
-    message += fmt::format("{}{} element{} of {}", message.empty() ? "" : ", ", count, count == 1 ? "" : "s",
-                           describe_type(number));
+    message += fmt::format("{}{} of {}", message.empty() ? "" : ", ", counted(count, "element"), describe_type(number));
   }
   if (message.empty()) return;
   const int number = counts.begin()->first;
@@ -87,11 +86,10 @@ Selection select_elements(const RawMesh& raw, const std::string& source) {
   if (raw.node_tags.empty()) fail_mesh(source, "the mesh has no nodes");
   if (selection.dimension < 2) {
     fail_mesh(source,
-              count == 0
-                  ? std::string("the mesh has no elements")
-                  : fmt::format("none of the {} elements is of dimension 2 or 3; if the geometry has surfaces or "
-                                "volumes, are they meshed, and in a physical group?",
-                                count));
+              count == 0 ? std::string("the mesh has no elements")
+                         : fmt::format("the mesh has {}, but none of dimension 2 or 3; if the geometry has surfaces or "
+                                       "volumes, are they meshed, and in a physical group?",
+                                       counted(count, "element")));
   }
   check_element_tags(raw, source);
   refuse_unsupported(raw, selection.dimension, source);

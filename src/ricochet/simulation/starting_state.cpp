@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/scheme/contact_conditions.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
@@ -159,10 +160,10 @@ void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
   }
   if (inside == 0) return;
   log::warning(
-      fmt::format("at the start {} of {} contact points are inside their obstacle, the deepest by {:.3g}: they are "
+      fmt::format("at the start {} of {} {} inside their obstacle, the deepest by {:.3g}: they are "
                   "pushed out at once, which creates energy; check the obstacle's point and normal (which points "
                   "out of the obstacle), or start from initial.displacement = \"static\"",
-                  inside, gap.size(), deepest));
+                  inside, counted(gap.size(), "contact point"), inside == 1 ? "is" : "are", deepest));
 }
 
 }  // namespace

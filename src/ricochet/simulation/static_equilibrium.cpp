@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/fem/displacement_space.hpp"
 #include "ricochet/scheme/contact_conditions.hpp"
 #include "ricochet/simulation/rigid_equilibrium.hpp"
@@ -277,9 +278,9 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
     if (!found) refuse_static(problem, friction, left_over);
     if (friction.sliding_points() > 0) {
       log::info(
-          fmt::format("initial.displacement = \"static\": {} contact points slide at t = 0, and no equilibrium holds "
+          fmt::format("initial.displacement = \"static\": {} at t = 0, and no equilibrium holds "
                       "their friction: it is left out of the static start there and acts from t = 0 on",
-                      friction.sliding_points()));
+                      counted(friction.sliding_points(), "contact point slides", "contact points slide")));
     }
   }
   // A small ε leaves rounding of the size of weight/ε in the gaps of a body that only contact holds. A large one, from

@@ -87,7 +87,7 @@ const Case cases[] = {
     {square_22, "$Elements\n3\n1 1 2 1 1 1 2\n2 2 2 2 1 1 2 3\n3 2 2 2 1 1 3 4\n", "$Elements\n0\n",
      "the mesh has no elements"},
     {square_22, "$Elements\n3\n1 1 2 1 1 1 2\n2 2 2 2 1 1 2 3\n3 2 2 2 1 1 3 4\n", "$Elements\n1\n1 1 2 1 1 1 2\n",
-     "none of the 1 elements is of dimension 2 or 3"},
+     "the mesh has 1 element, but none of dimension 2 or 3"},
     {square_22, "2 2 2 2 1 1 2 3\n", "2 2 2 2 1 1 2\n",
      "test.msh:19: the line ends where a node of an element should be"},
     {square_22, "2 2 2 2 1 1 2 3\n", "2 2 2 2 1 1 2 3 4\n", "the line should end before \"4\""},
