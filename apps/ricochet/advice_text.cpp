@@ -7,10 +7,14 @@
 #include <cmath>
 #include <limits>
 
+#include "number_text.hpp"
+#include "place_text.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
 #include "ricochet/fem/stress.hpp"
 #include "ricochet/fem/wave_speed.hpp"
+#include "ricochet/mesh/derived_groups.hpp"
 #include "ricochet/scheme/critical_step.hpp"
 #include "ricochet/simulation/rigid_bodies.hpp"
 
@@ -21,23 +25,18 @@ namespace {
 /// Of a mean normal: below this length the facets are not flat.
 constexpr double flat = 1.0 - 1e-6;
 
-/// Components that are rounding of the others are zero.
-std::string vector_text(const Eigen::Vector3d& values, int dimension) {
-  std::string text;
-  for (int k = 0; k < dimension; ++k) {
-    const double value = std::abs(values[k]) > 1e-12 * values.norm() ? values[k] : 0.0;
-    text += fmt::format("{}{:.4g}", k == 0 ? "" : ", ", value);
-  }
-  return "(" + text + ")";
-}
-
 std::string normal_text(const MeshMeasure& measure, int dimension) {
   if (measure.inside > 0) return ", inside the body";
   const double length = measure.mean_normal.norm();
   if (length < 1e-6) return ", closed";
   const Eigen::Vector3d direction = measure.mean_normal / length;
   return fmt::format(", {} {}", length > flat ? "flat, normal" : "curved, mean normal",
-                     vector_text(direction, dimension));
+                     vector_text(direction.head(dimension)));
+}
+
+/// The largest coordinate: places are rounded to a part of it.
+double reach(const Mesh& mesh) {
+  return mesh.nodes.cwiseAbs().maxCoeff();
 }
 
 /// Rounded down to two digits.
@@ -66,15 +65,17 @@ void print_materials(const Body& body) {
 void print_bodies(const Model& model, const ConnectedBodies& connected) {
   const int d = model.mesh.dimension;
   const RigidBodies rigid(model.problem, connected.of_node, connected.count);
+  const std::vector<std::string> names = names_of_bodies(model.mesh, connected);
   constexpr std::size_t shown = 10;
   for (std::size_t i = 0; i < std::min(rigid.bodies().size(), shown); ++i) {
     const RigidBody& body = rigid.bodies()[i];
     const std::string inertia =
-        d == 2 ? fmt::format("{:.5g}", body.inertia(2, 2)) : vector_text(body.inertia.diagonal(), 3) + " (xx, yy, zz)";
-    fmt::print("  body {}: mass {:.6g}{}, centre {}, moment of inertia about it {}\n", i, body.mass,
-               d == 2 ? " per unit of thickness" : "", vector_text(body.centre, d), inertia);
+        d == 2 ? fmt::format("{:.5g}", body.inertia(2, 2)) : vector_text(body.inertia.diagonal()) + " (xx, yy, zz)";
+    fmt::print("  {}: mass {:.6g}{}, centre {}, moment of inertia about it {}\n", names[i], body.mass,
+               d == 2 ? " per unit of thickness" : "", vector_text(body.centre.head(d), reach(model.mesh)), inertia);
   }
-  if (rigid.bodies().size() > shown) fmt::print("  {} bodies more\n", rigid.bodies().size() - shown);
+  if (rigid.bodies().size() > shown)
+    fmt::print("  {}\n", counted(rigid.bodies().size() - shown, "more body", "more bodies"));
 }
 
 /// Times that a compression wave takes through cells, ascending.
@@ -129,12 +130,14 @@ void print_contact(const Case& input, const Model& model, std::size_t pair) {
   const ContactSection& section = input.contacts[pair];
   const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
                                      [&](const ObstacleSection& o) { return o.name == section.obstacle; });
-  double nearest = std::numeric_limits<double>::infinity(), meets = nearest;
+  const Obstacle& plane = *model.contact_pairs[pair].obstacle;
+  double nearest = std::numeric_limits<double>::infinity(), meets = nearest, rounding = 0.0;
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
     if (contact.node_pair[i] != static_cast<int>(pair)) continue;
     const auto row = static_cast<Index>(i);
     const Vector normal = contact.node_normals.col(row);
     const double gap = contact.node_initial_gap[row];
+    if (gap < nearest) rounding = plane.gap_rounding(model.space.nodes.col(contact.nodes[i]));
     nearest = std::min(nearest, gap);
     double velocity = normal.dot(model.initial.velocity.segment(contact.nodes[i] * d, d)), acceleration = 0.0;
     for (int k = 0; k < d; ++k) {
@@ -144,10 +147,10 @@ void print_contact(const Case& input, const Model& model, std::size_t pair) {
     meets = std::min(meets, time_of_contact(gap, velocity, acceleration));
   }
   if (!std::isfinite(nearest)) return;
-  fmt::print("  \"{}\" is {:.4g} away from \"{}\" at its nearest node", section.group, nearest, section.obstacle);
+  fmt::print("  \"{}\" {} \"{}\" at its nearest node", section.group, gap_text(nearest, rounding), section.obstacle);
   const bool falls_freely = input.supports.empty() && input.tractions.empty() && input.load.body_force.empty() &&
                             input.initial.displacement.empty() && !input.initial.static_equilibrium;
-  if (falls_freely) {
+  if (falls_freely && nearest > rounding) {
     fmt::print("{}", std::isfinite(meets)
                          ? fmt::format(" and meets it at t = {:.4g}, of the run's {:g}", meets, input.time.end)
                          : " and does not come nearer");
@@ -157,8 +160,12 @@ void print_contact(const Case& input, const Model& model, std::size_t pair) {
 
 }  // namespace
 
-void print_groups(const Mesh& mesh) {
+void print_groups(const Mesh& of_file) {
+  Mesh mesh = of_file;
   const int d = mesh.dimension;
+  add_built_in_group(mesh, all_cells_name, d);
+  add_built_in_group(mesh, whole_boundary_name, d - 1);
+  const double size = reach(mesh);
   constexpr std::array<const char*, 4> sizes{"", "length", "area", "volume"};
   for (const Group& group : mesh.groups) {
     if (group.dimension != d && group.dimension != d - 1) {
@@ -167,11 +174,11 @@ void print_groups(const Mesh& mesh) {
     }
     const MeshMeasure measure = measure_group(mesh, group);
     const bool are_cells = group.dimension == d;
-    fmt::print("  group \"{}\": {} {} of dimension {}, {} {:.5g}, centre {}, from {} to {}{}\n", group.name,
-               group.members.size(), are_cells ? "cells" : "facets", group.dimension,
-               sizes[static_cast<std::size_t>(group.dimension)], measure.size, vector_text(measure.centre, d),
-               vector_text(measure.lowest, d), vector_text(measure.highest, d),
-               are_cells ? "" : normal_text(measure, d));
+    fmt::print("  group \"{}\": {} of dimension {}, {} {:.5g}, centre {}, from {} to {}{}\n", group.name,
+               counted(group.members.size(), are_cells ? "cell" : "facet"), group.dimension,
+               sizes[static_cast<std::size_t>(group.dimension)], measure.size,
+               vector_text(measure.centre.head(d), size), vector_text(measure.lowest.head(d), size),
+               vector_text(measure.highest.head(d), size), are_cells ? "" : normal_text(measure, d));
   }
 }
 
@@ -184,6 +191,7 @@ void print_cell_sizes(const Mesh& mesh) {
 
 void print_advice(const Case& input, const Model& model) {
   const ConnectedBodies connected = find_connected_bodies(model.space);
+  print_place(input, model);
   print_materials(model.body);
   print_bodies(model, connected);
   print_groups(model.mesh);

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/io/fclib_file.hpp"
 
@@ -29,7 +30,8 @@ std::string friction_text(const Vector& mu) {
 
 std::string points_text(const FclibProblem& file) {
   std::string result = fmt::format("{} in {} dimensions", file.point_count(), file.dimension);
-  if (file.constraint_count() > 0) result += fmt::format(", {} equality constraints", file.constraint_count());
+  if (file.constraint_count() > 0)
+    result += fmt::format(", {}", counted(file.constraint_count(), "equality constraint"));
   return result;
 }
 
@@ -94,8 +96,7 @@ void describe_contact_problem(const std::string& path) {
   const FclibProblem file = read_fclib(path);
   print_problem(file);
   std::string found = file.solution ? "a solution" : "no solution";
-  if (!file.guesses.empty())
-    found += fmt::format(", {} guess{}", file.guesses.size(), file.guesses.size() == 1 ? "" : "es");
+  if (!file.guesses.empty()) found += fmt::format(", {}", counted(file.guesses.size(), "guess", "guesses"));
   print_row("holds", found);
   for (const std::string* text : {&file.description, &file.math_info}) {
     for (std::size_t begin = 0; begin < text->size();) {

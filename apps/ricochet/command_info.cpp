@@ -6,11 +6,14 @@
 
 #include "advice_text.hpp"
 #include "commands.hpp"
+#include "comparison_text.hpp"
 #include "contact_text.hpp"
 #include "outcome_text.hpp"
 #include "penetration_text.hpp"
+#include "probe_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/case/model.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
@@ -26,28 +29,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "triangles", "tetrahedra", …
-std::string plural(CellShape shape) {
-  const std::string singular = name(shape);
+/// "triangles", "tetrahedra", …; of one cell "triangle".
+std::string shape_text(const CellBlock& block) {
+  const std::string singular = name(block.shape);
+  if (block.size() == 1) return singular;
   return singular.ends_with("hedron") ? singular.substr(0, singular.size() - 2) + "a" : singular + "s";
 }
 
-/// A .geo file can run shell commands: only `run` hands one to gmsh. CAD files cannot.
-bool is_program(const std::string& path) {
-  return fs::path(path).extension() == ".geo";
+/// A .geo file can run shell commands: only `run` and `validate --mesh` hand one to gmsh. CAD files cannot.
+bool is_unmeshed_program(const MeshFile& file) {
+  return fs::path(file.path).extension() == ".geo" && !is_meshed(file);
 }
 
 void describe_mesh(const std::string& path) {
-  if (is_program(path)) {
-    fmt::print("{}: a geometry, meshed by the gmsh program when a case that names it is run\n", path);
-    return;
-  }
   MeshFile file;
   file.path = path;
+  if (is_unmeshed_program(file)) {
+    fmt::print(
+        "{}: a geometry that was not meshed yet: its groups and sizes are not known. The gmsh program meshes it when a "
+        "case that names it is run, or by `ricochet validate CASE.toml --mesh`; `ricochet info CASE.toml` then "
+        "describes the mesh\n",
+        path);
+    return;
+  }
   const Mesh mesh = read_mesh(file);
-  fmt::print("{}: mesh of dimension {}, degree {}, {} nodes\n", path, mesh.dimension, mesh.degree, mesh.node_count());
-  for (const CellBlock& block : mesh.cells) fmt::print("  cells   {:>9} {}\n", block.size(), plural(block.shape));
-  for (const CellBlock& block : mesh.facets) fmt::print("  facets  {:>9} {}\n", block.size(), plural(block.shape));
+  fmt::print("{}: mesh of dimension {}, degree {}, {}\n", path, mesh.dimension, mesh.degree,
+             counted(mesh.node_count(), "node"));
+  for (const CellBlock& block : mesh.cells) fmt::print("  cells   {:>9} {}\n", block.size(), shape_text(block));
+  for (const CellBlock& block : mesh.facets) fmt::print("  facets  {:>9} {}\n", block.size(), shape_text(block));
   print_groups(mesh);
   print_cell_sizes(mesh);
   for (int k = 0; k < mesh.dimension; ++k) {
@@ -67,10 +76,13 @@ void describe_case(const std::string& path) {
     fmt::print("  material \"{}\": density {:g}, lambda {:g}, mu {:g}\n", m.group, m.density, m.lambda, m.mu);
   }
   print_contacts(describe_contacts(input));
-  fmt::print("  scheme {}, mass {}, {} steps of {:g} to {:g}\n", input.time.scheme, input.mass.type,
-             step_count(input.time), input.time.step, input.time.end);
-  if (is_program(input.mesh.file)) {
-    fmt::print("  sizes and a suggested step are told of meshes: {} has to be meshed first\n", input.mesh.file);
+  fmt::print("  scheme {}, mass {}, {} of {:g} to {:g}\n", input.time.scheme, input.mass.type,
+             counted(step_count(input.time), "step"), input.time.step, input.time.end);
+  if (require_mesh_file(input); is_unmeshed_program(mesh_file(input))) {
+    fmt::print(
+        "  groups, sizes and a suggested step are told of meshes: {} has to be meshed first, by `ricochet validate {} "
+        "--mesh`\n",
+        input.mesh.file, path);
     return;
   }
   print_advice(input, *build_model(input));
@@ -112,8 +124,8 @@ void describe_result(const std::string& directory) {
   if (!s.message.empty()) fmt::print("  {}\n", indented(s.message));
   print_progress(directory, s);
   fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass, s.dimension, s.degree);
-  fmt::print("  {} nodes, {} cells, {} contact points, {} steps of {:g}, {} frames\n", s.nodes, s.cells,
-             s.contact_points, s.steps, s.step, s.frames);
+  fmt::print("  {}, {}, {}, {} of {:g}, {}\n", counted(s.nodes, "node"), counted(s.cells, "cell"),
+             counted(s.contact_points, "contact point"), counted(s.steps, "step"), s.step, counted(s.frames, "frame"));
   print_contacts(s.contacts);
   if (std::isfinite(s.critical_step)) print_critical_step(s.step, s.critical_step);
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
@@ -127,43 +139,10 @@ void describe_result(const std::string& directory) {
   print_impacts(s, 0);
   print_peak_stress(s);
   fmt::print("{}\n", deformation_text(s));
-  for (std::size_t i = 0; i < s.probes.size(); ++i) {
-    const Probe& probe = s.probes[i];
-    fmt::print("  probe \"{}\" {:.3g} from the point asked for", probe.name, probe.distance);
-    if (probe.contact_node >= 0) {
-      const ColumnDigest force = s.digest(probe.name + ".reaction_normal");
-      fmt::print(", largest contact force {:.6g}, total variation {:.4g}", force.maximum, force.total_variation);
-    }
-    fmt::print("\n");
-  }
+  print_probes(s);
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
              s.timings.empty() ? "" : duration_text(s.timings.back().second));
   for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
-}
-
-/// One line per run: what a reader needs to choose between them.
-void compare_results(const std::vector<std::string>& directories) {
-  fmt::print("{:<24} {:<15} {:<18} {:>11} {:>11} {:>11} {:>14} {:>14} {:>9}\n", "run", "scheme", "mass", "energy at",
-             "energy at", "largest", "variation of", "deepest inter-", "time per");
-  fmt::print("{:<24} {:<15} {:<18} {:>11} {:>11} {:>11} {:>14} {:>14} {:>9}\n", "", "", "", "the start", "the end",
-             "energy", "contact force", "penetration", "step, ms");
-  for (const std::string& directory : directories) {
-    const RunSummary s = read_summary(directory + "/summary.json");
-    const ColumnDigest energy = s.digest("total_energy");
-    // The first probe on a contact boundary; where there is none, the resultant in its largest direction.
-    double variation = 0.0;
-    const auto probe =
-        std::find_if(s.probes.begin(), s.probes.end(), [](const Probe& p) { return p.contact_node >= 0; });
-    if (probe != s.probes.end()) {
-      variation = s.digest(probe->name + ".reaction_normal").total_variation;
-    } else {
-      for (const char* axis : {"x", "y", "z"})
-        variation = std::max(variation, s.digest(fmt::format("contact_force_{}", axis)).total_variation);
-    }
-    fmt::print("{:<24} {:<15} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14.4g} {:>14} {:>9.3g}{}\n", directory, s.scheme,
-               s.mass, energy.first, energy.last, energy.maximum, variation, deepest_penetration_text(s),
-               1e3 * s.time_per_step, status_text(directory, s));
-  }
 }
 
 bool is_result(const std::string& path) {
@@ -174,7 +153,7 @@ bool is_result(const std::string& path) {
 
 int info(const std::vector<std::string>& paths) {
   if (paths.size() > 1 && std::all_of(paths.begin(), paths.end(), is_result)) {
-    compare_results(paths);
+    print_comparison(paths);
     return 0;
   }
   for (const std::string& path : paths) {

@@ -10,9 +10,11 @@
 #include "penetration_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/case/old_run.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
+#include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/progress.hpp"
 #include "stop_signal.hpp"
 
@@ -30,11 +32,13 @@ void print_expectations(const std::vector<ExpectationResult>& expectations) {
   const auto left_out =
       std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return !e.checked; });
   const auto checked = static_cast<long>(expectations.size()) - left_out;
-  const std::string others = fmt::format("{} do not apply to this run (summary.json says why)", left_out);
+  const std::string others = fmt::format("{} not apply to this run (summary.json says why)",
+                                         left_out == 1 ? "1 does" : fmt::format("{} do", left_out));
   if (checked == 0) {
     fmt::print("  expectations: {}\n", others);
   } else {
-    fmt::print("  {} of {} expectations hold{}\n", hold, checked, left_out > 0 ? "; " + others : "");
+    fmt::print("  {} of {}{}\n", hold, counted(checked, "expectation") + (checked == 1 ? " holds" : " hold"),
+               left_out > 0 ? "; " + others : "");
   }
   for (const ExpectationResult& e : expectations) {
     if (!e.checked || e.holds) continue;
@@ -46,8 +50,8 @@ void print_expectations(const std::vector<ExpectationResult>& expectations) {
 void print_summary(const RunSummary& s, const std::string& directory) {
   const ColumnDigest energy = s.digest("total_energy");
   fmt::print("{}\n", s.title.empty() ? s.case_file : s.title);
-  fmt::print("  scheme {}, mass {}, {} nodes, {} contact points, {} steps of {:g}\n", s.scheme, s.mass, s.nodes,
-             s.contact_points, s.steps, s.step);
+  fmt::print("  scheme {}, mass {}, {}, {}, {} of {:g}\n", s.scheme, s.mass, counted(s.nodes, "node"),
+             counted(s.contact_points, "contact point"), counted(s.steps, "step"), s.step);
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
              energy.maximum);
   fmt::print("  {}\n", energy_account_text(s));
@@ -72,6 +76,15 @@ namespace {
 RunArguments with_origin(RunArguments arguments) {
   std::error_code ignored;
   if (!arguments.resume) {
+    if (std::filesystem::exists(arguments.case_file + "/summary.json", ignored) ||
+        (std::filesystem::is_directory(arguments.case_file, ignored) &&
+         !checkpoint_files(arguments.case_file).empty())) {
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("run: {0} is a directory of results, not a case file; `ricochet run --resume {0}` goes on "
+                      "with the run in it",
+                      arguments.case_file));
+    }
     if (!arguments.case_file.empty()) return arguments;
     throw Error(ErrorKind::usage, "run: a case file is required (or --resume and the directory of a run)");
   }

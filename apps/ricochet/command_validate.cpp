@@ -1,6 +1,12 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "commands.hpp"
+#include "place_text.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/case/model.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
@@ -21,7 +27,8 @@ std::string short_duration_text(double seconds) {
 }
 
 void print_estimate(const StageEstimate& stage, std::size_t number, long steps) {
-  const std::string of = fmt::format("estimate, stage {} of a step, {} unknowns", number + 1, stage.unknowns);
+  const std::string of =
+      fmt::format("estimate, stage {} of a step, {}", number + 1, counted(stage.unknowns, "unknown"));
   if (stage.chosen.method == SolverMethod::iterative) {
     fmt::print(
         "{}: method iterative{}; its memory is a few times that of the matrices, its time per step is not "
@@ -35,10 +42,11 @@ void print_estimate(const StageEstimate& stage, std::size_t number, long steps) 
   }
   fmt::print(
       "{}: method direct; a factor of {:.3g} entries, {:.2g} GB, {:.2g} GB while it is made, in {}; {} per step, "
-      "{} for {} steps; {:.2g} GB for every 100 contact points that may touch at a time\n",
+      "{} for {}; {:.2g} GB for every 100 contact points that may touch at a time\n",
       of, stage.chosen.predicted_entries, 1e-9 * stage.factor_bytes, 1e-9 * stage.peak_bytes,
       short_duration_text(stage.factorization_seconds), short_duration_text(stage.step_seconds),
-      short_duration_text(static_cast<double>(steps) * stage.step_seconds), steps, 100e-9 * stage.bytes_per_point);
+      short_duration_text(static_cast<double>(steps) * stage.step_seconds), counted(steps, "step"),
+      100e-9 * stage.bytes_per_point);
 }
 
 /// What a run will take, and seconds until its first step.
@@ -57,15 +65,38 @@ double estimate(const Case& input, const SemidiscreteProblem& problem, const Sch
   return seconds;
 }
 
+bool is_program(const std::string& mesh) {
+  return std::filesystem::path(mesh).extension() == ".geo";
+}
+
+/// Whether there is one to be checked, or one may be made: a .geo file can run shell commands, and meshing may take
+/// long.
+bool has_mesh(const Case& input, const ValidateArguments& arguments) {
+  if (!needs_gmsh_program(input.mesh.file) || arguments.mesh) return true;
+  require_mesh_file(input);
+  try {
+    return is_meshed(mesh_file(input));
+  } catch (const Error& problem) {
+    if (problem.kind() != ErrorKind::invalid_input) throw;
+    log::warning(problem.what());  // the gmsh program is not there
+    return false;
+  }
+}
+
 }  // namespace
 
-int validate(const std::string& case_file, const std::vector<std::string>& overrides) {
-  const Case input = read_case(case_file, overrides);
+int validate(const ValidateArguments& arguments) {
+  const std::string& case_file = arguments.case_file;
+  const Case input = read_case(case_file, arguments.overrides);
   warn_of_end(input.time);
-  if (needs_gmsh_program(input.mesh.file)) {
-    require_mesh_file(input);
-    // A .geo file can run shell commands: only `run` hands one to gmsh.
-    fmt::print("{}: valid, as far as can be told without meshing {}\n", case_file, input.mesh.file);
+  if (!has_mesh(input, arguments)) {
+    fmt::print("{}: valid, as far as can be told without a mesh of {}\n", case_file, input.mesh.file);
+    fmt::print(
+        "{}: not checked: what needs the mesh: names of groups, numbers of components, materials, supports, contacts, "
+        "probes, columns of [[expect]], memory and time, and the start of the run; `ricochet validate {}{} --mesh` "
+        "meshes the file and checks them{}\n",
+        case_file, case_file, arguments.overrides.empty() ? "" : " --set …",
+        is_program(input.mesh.file) ? " (a .geo file can run shell commands: mesh one that you trust)" : "");
     return 0;
   }
   const std::unique_ptr<Model> model = build_model(input);
@@ -76,9 +107,10 @@ int validate(const std::string& case_file, const std::vector<std::string>& overr
   // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.
   const bool starts = start_seconds <= longest_start;
   if (starts) (void)Simulation(model->problem, *scheme, model->initial, step_solver_options(input));
-  fmt::print("{}: valid: {} nodes, {} cells, {} contact points, {} supported dofs, {} steps\n", case_file,
-             model->space.node_count(), model->mesh.cell_count(), model->problem.contact.size(),
-             model->problem.supports.size(), step_count(input.time));
+  fmt::print("{}: valid: {}, {}, {}, {}, {}\n", case_file, counted(model->space.node_count(), "node"),
+             counted(model->mesh.cell_count(), "cell"), counted(model->problem.contact.size(), "contact point"),
+             counted(model->problem.supports.size(), "supported dof"), counted(step_count(input.time), "step"));
+  print_place(input, *model);
   if (!starts) {
     fmt::print(
         "{}: not checked: the start of the run (whether its operators can be factorized, and its initial state), "

@@ -17,6 +17,12 @@ struct RunArguments {
   std::string export_contact_to;              ///< directory; empty: contact/ in the output directory
 };
 
+struct ValidateArguments {
+  std::string case_file;
+  std::vector<std::string> overrides;
+  bool mesh = false;  ///< also where that takes the gmsh program, and was not done before
+};
+
 struct ContactArguments {
   std::string problem;
   std::string solver = "automatic";
@@ -41,7 +47,7 @@ struct PlotArguments {
 };
 
 int run(const RunArguments& arguments);
-int validate(const std::string& case_file, const std::vector<std::string>& overrides);
+int validate(const ValidateArguments& arguments);
 int info(const std::vector<std::string>& paths);
 int schema(bool markdown);
 int contact(const ContactArguments& arguments);

@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/text.hpp"
 
 namespace ricochet::program {
 
@@ -38,9 +41,10 @@ void print_friction(const RunSummary& summary) {
            c.obstacle_rotation_rate != 0.0;
   });
   if (!any) return;
-  fmt::print("  friction work {:.6g}, obstacle work {:.6g}; at most {:.0f} points stick and {:.0f} slip at a time\n",
+  fmt::print("  friction work {:.6g}, obstacle work {:.6g}; at most {} stick and {} slip at a time\n",
              summary.digest("friction_work").last, summary.digest("obstacle_work").last,
-             summary.digest("sticking").maximum, summary.digest("slipping").maximum);
+             counted(std::lround(summary.digest("sticking").maximum), "point"),
+             std::lround(summary.digest("slipping").maximum));
 }
 
 }  // namespace ricochet::program

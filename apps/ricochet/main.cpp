@@ -26,11 +26,10 @@ using namespace ricochet;
 
 struct Arguments {
   program::RunArguments run;
+  program::ValidateArguments validate;
   program::ContactArguments contact;
   program::ReportArguments report;
   program::PlotArguments plot;
-  std::string validate_file;
-  std::vector<std::string> validate_overrides;
   std::vector<std::string> info_paths;
   bool markdown = false;
   std::string log_level = "info";
@@ -79,10 +78,12 @@ int dispatch(int argc, char** argv) {
   add_common(*run, arguments);
 
   CLI::App* validate = app.add_subcommand("validate", "Check everything that can be checked without running");
-  validate->add_option("case", arguments.validate_file, "case file")->required()->type_name("CASE.toml");
-  validate->add_option("--set", arguments.validate_overrides, "override an entry of the case")
+  validate->add_option("case", arguments.validate.case_file, "case file")->required()->type_name("CASE.toml");
+  validate->add_option("--set", arguments.validate.overrides, "override an entry of the case")
       ->type_name("key.path=value")
       ->allow_extra_args(false);
+  validate->add_flag("--mesh", arguments.validate.mesh,
+                     "mesh a .geo or CAD file by the gmsh program, as a run does (a .geo file can run shell commands)");
   add_common(*validate, arguments);
 
   CLI::App* info = app.add_subcommand(
@@ -169,7 +170,7 @@ int dispatch(int argc, char** argv) {
   set_thread_count(arguments.threads);
   if (!schema->parsed() && !plot->parsed() && !report->parsed()) reserve_blas_memory(arguments.threads);
   if (run->parsed()) return program::run(arguments.run);
-  if (validate->parsed()) return program::validate(arguments.validate_file, arguments.validate_overrides);
+  if (validate->parsed()) return program::validate(arguments.validate);
   if (info->parsed()) return program::info(arguments.info_paths);
   if (contact->parsed()) return program::contact(arguments.contact);
   if (plot->parsed()) return program::plot(arguments.plot);

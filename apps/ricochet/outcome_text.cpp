@@ -5,19 +5,46 @@
 #include <algorithm>
 #include <cmath>
 
+#include "number_text.hpp"
+#include "ricochet/base/text.hpp"
+
 namespace ricochet::program {
 
 namespace {
 
-std::string vector_text(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) text += fmt::format("{}{:.5g}", text.empty() ? "" : ", ", value);
-  return "(" + text + ")";
+/// Of gyration.
+double radius_of(const BodyDescription& body) {
+  return std::sqrt(body.rigid.inertia.diagonal().maxCoeff() / body.rigid.mass);
 }
 
-/// In the plane there is one number.
-std::string spin_text(const Eigen::Vector3d& spin, int dimension) {
-  return dimension == 2 ? fmt::format("{:.4g}", spin[2]) : vector_text({spin[0], spin[1], spin[2]});
+/// Of a place of the mesh in its reference configuration.
+std::string place_text(const std::vector<double>& place, const RunSummary& summary) {
+  double size = 0.0;
+  for (const BodyDescription& body : summary.bodies) size = std::max(size, body.rigid.centre.norm() + radius_of(body));
+  return vector_text(Eigen::Map<const Vector>(place.data(), static_cast<Index>(place.size())), size, 5);
+}
+
+/// In the plane there is one number. Components of less than `least` are 0.
+std::string spin_text(const Eigen::Vector3d& spin, int dimension, double least) {
+  const auto shown = [&](Index k) { return std::abs(spin[k]) > least ? spin[k] : 0.0; };
+  if (dimension == 2) return fmt::format("{:.4g}", shown(2));
+  return vector_text(Eigen::Vector3d(shown(0), shown(1), shown(2)), 0.0, 5);
+}
+
+/// A body that does not spin shows rounding: what moves its edge by less than this part of its speed, or of what the
+/// larger spin does, is none.
+constexpr double rounding_of_spin = 1e-6;
+
+/// Empty where the body does not spin.
+std::string spins_text(const Impact& impact, const RunSummary& summary) {
+  if (!impact.ended) return "";
+  const double largest = std::max(impact.before.spin.norm(), impact.after.spin.norm());
+  const double speed = std::max(impact.before.velocity.norm(), impact.after.velocity.norm());
+  const double radius = radius_of(summary.bodies[static_cast<std::size_t>(impact.body)]);
+  if (!(largest * radius > rounding_of_spin * speed)) return "";
+  const double least = rounding_of_spin * std::max(largest, speed / radius);
+  return fmt::format(", spin {} before and {} after", spin_text(impact.before.spin, summary.dimension, least),
+                     spin_text(impact.after.spin, summary.dimension, least));
 }
 
 /// That of the normal parts of the contact forces, and of all of them where friction makes another number of it.
@@ -27,9 +54,23 @@ std::string impulse_text(const Impact& impact) {
   return "normal impulse " + normal + (whole == normal ? "" : " (with friction " + whole + ")");
 }
 
+std::string body_text(int number, const RunSummary& summary) {
+  const std::string& name = summary.bodies[static_cast<std::size_t>(number)].name;
+  return name.empty() ? fmt::format("body {}", number) : name;
+}
+
+/// Of a run in which cells turn too far: whether they had when this impact ended.
+std::string rotation_text(std::size_t impact, const RunSummary& summary) {
+  if (!summary.rotation || !std::isfinite(summary.rotation->time_beyond)) return "";
+  if (impact >= summary.rotation->until_impact_end.size()) return "";
+  return fmt::format(", cells turned by up to {:.3g} rad until {}{}", summary.rotation->until_impact_end[impact],
+                     summary.impacts[impact].ended ? "its end" : "now",
+                     summary.small_strain_holds_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
+}
+
 std::string impact_text(const Impact& impact, const RunSummary& summary) {
   std::string text;
-  if (summary.bodies.size() > 1) text += fmt::format("body {} ", impact.body);
+  if (summary.bodies.size() > 1) text += body_text(impact.body, summary) + " ";
   text += fmt::format("on \"{}\" from t = {:.6g}", impact.obstacle, impact.begin);
   if (impact.from_start) text += " (the start)";
   if (impact.ended) {
@@ -40,16 +81,7 @@ std::string impact_text(const Impact& impact, const RunSummary& summary) {
   if (const auto restitution = impact.restitution()) text += fmt::format(", restitution {:.4g}", *restitution);
   text += fmt::format(", {}, largest force {:.4g} at {:.6g}", impulse_text(impact), impact.largest_force,
                       impact.largest_force_time);
-  const double before = impact.before.spin.norm(), after = impact.ended ? impact.after.spin.norm() : 0.0;
-  // A body that does not spin shows rounding.
-  const double speed = std::max(impact.before.velocity.norm(), impact.after.velocity.norm());
-  const RigidBody& body = summary.bodies[static_cast<std::size_t>(impact.body)].rigid;
-  const double radius = std::sqrt(body.inertia.diagonal().maxCoeff() / body.mass);
-  if (impact.ended && std::max(before, after) * radius > 1e-6 * speed) {
-    text += fmt::format(", spin {} before and {} after", spin_text(impact.before.spin, summary.dimension),
-                        spin_text(impact.after.spin, summary.dimension));
-  }
-  return text;
+  return text + spins_text(impact, summary);
 }
 
 void print_no_contact(const RunSummary& summary) {
@@ -67,18 +99,18 @@ void print_impacts(const RunSummary& summary, std::size_t most) {
   const std::size_t count = summary.impacts.size();
   const std::size_t shown = most == 0 ? count : std::min(most, count);
   for (std::size_t i = 0; i < shown; ++i)
-    fmt::print("  impact {}: {}\n", i + 1, impact_text(summary.impacts[i], summary));
+    fmt::print("  impact {}: {}{}\n", i + 1, impact_text(summary.impacts[i], summary), rotation_text(i, summary));
   const auto others = static_cast<long>(count - shown) + summary.impacts_left_out;
-  if (others > 0) fmt::print("  {} more impacts{}\n", others, most == 0 ? "" : ", see summary.json");
+  if (others > 0) fmt::print("  {}{}\n", counted(others, "more impact"), most == 0 ? "" : ", see summary.json");
 }
 
 void print_peak_stress(const RunSummary& summary) {
   if (!summary.peak_stress) return;
   const PeakStressDescription& d = *summary.peak_stress;
-  fmt::print("  largest von Mises stress {:.6g} at t = {:.6g}, in \"{}\" at {} (mean of a cell; {})\n",
-             d.peak.von_mises, d.peak.time, d.material, vector_text(d.place),
-             d.peak.looks == d.peak.states ? "looked at in every step"
-                                           : fmt::format("looked at in {} of {} steps", d.peak.looks, d.peak.states));
+  const bool all = d.peak.looks >= d.peak.states;
+  fmt::print("  largest von Mises stress {}{:.6g} at t = {:.6g}, in \"{}\" at {} (mean of a cell; {})\n",
+             all ? "" : "≥ ", d.peak.von_mises, d.peak.time, d.material, place_text(d.place, summary),
+             all ? "looked at in every step" : fmt::format("looked at in {} of {} steps", d.peak.looks, d.peak.states));
 }
 
 }  // namespace ricochet::program

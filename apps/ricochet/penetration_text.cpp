@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "ricochet/case/rotation_watch.hpp"
+#include "ricochet/fem/rotation_gauge.hpp"
 
 namespace ricochet::program {
 
@@ -16,6 +16,17 @@ std::string found_text(const UnwatchedPenetration& p) {
                      p.time, fmt::join(p.place, ", "));
 }
 
+/// Since when cells have turned too far. What comes after the last impact does not change what it came to.
+std::string beyond_text(const RunSummary& s) {
+  if (!s.rotation) return " (BEYOND SMALL STRAIN)";
+  const std::string since = fmt::format("t = {:.6g} on", s.rotation->time_beyond);
+  if (s.impacts.empty()) return fmt::format(" (BEYOND SMALL STRAIN from {})", since);
+  if (s.small_strain_holds_in_impacts())
+    return fmt::format(" (beyond small strain from {}, after the last impact had ended)", since);
+  return fmt::format(" (BEYOND SMALL STRAIN from {}, before the last impact {})", since,
+                     s.impacts.back().ended ? "ended" : "has ended");
+}
+
 }  // namespace
 
 std::string deformation_text(const RunSummary& s) {
@@ -24,7 +35,7 @@ std::string deformation_text(const RunSummary& s) {
       fmt::format("  deepest interpenetration {:.3g}{}, largest rotation of a cell {:.3g} rad{}",
                   s.digest("max_penetration").maximum,
                   s.penetration.checked ? " of contact points" : " of contact points (no others were looked at)",
-                  rotation, rotation > rotation_limit ? " (BEYOND SMALL STRAIN)" : "");
+                  rotation, rotation > rotation_limit ? beyond_text(s) : "");
   for (const UnwatchedPenetration& found : s.penetration.found) text += found_text(found);
   for (const ContactBeyondRim& rim : s.penetration.rims)
     text += fmt::format("\n  the contact of \"{}\" with \"{}\" goes on beyond its group", rim.group, rim.obstacle);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ricochet/base/text.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/failure_bundle.hpp"
 #include "ricochet/io/history_file.hpp"
@@ -80,9 +81,9 @@ void describe_checkpoint(const std::string& path) {
   const Vector& velocity = snapshot.reals("state.velocity");
   const Vector& reaction = snapshot.reals("state.normal_reaction");
   const auto largest = [](const Vector& values) { return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0.0; };
-  fmt::print("  {} dofs, largest displacement {:.6g}, largest velocity {:.6g}\n", displacement.size(),
+  fmt::print("  {}, largest displacement {:.6g}, largest velocity {:.6g}\n", counted(displacement.size(), "dof"),
              largest(displacement), largest(velocity));
-  fmt::print("  {} contact points, {} closed, largest normal reaction {:.6g}\n", reaction.size(),
+  fmt::print("  {}, {} closed, largest normal reaction {:.6g}\n", counted(reaction.size(), "contact point"),
              (reaction.array() > 0.0).count(), largest(reaction));
   const Snapshot::Texts& keys = snapshot.texts("identity.case.keys");
   const Snapshot::Texts& values = snapshot.texts("identity.case.values");

@@ -1,8 +1,12 @@
-"""`ricochet info` on meshes and cases: sizes, places, times, and a step to begin with."""
+"""`ricochet info` and `validate` on meshes and cases: sizes, places, times, a step to begin with, and what was not checked."""
 
 import math
+import os
 import re
 import unittest
+
+import meshio
+import numpy
 
 from harness import MESHES, TestCase, block_case, run
 
@@ -17,6 +21,79 @@ class Advice(TestCase):
         length = math.hypot(1.2, 0.1)
         self.assertIn(f"length {length:.5g}, centre (0.7, 0.15), from (0.1, 0.1) to (1.3, 0.2)", line)
         self.assertIn(f"flat, normal ({-0.1 / length:.4g}, {-1.2 / length:.4g})", line)
+
+    def test_the_built_in_groups_are_listed(self):
+        """All cells have the area of the whole, and the boundary closes: the sum over the groups that it consists of."""
+        text = self.said(MESHES / "quadrilateral_o1_msh41_ascii.msh")
+        def measure(name):
+            return float(re.search(rf'group "{name}": .*?, (?:area|length) ([^,]+),', text)[1])
+        self.assertEqual(measure("all"), measure("body"))
+        line = re.search(r'group "boundary": .*', text)[0]
+        self.assertTrue(line.endswith(", closed"), line)
+        points = meshio.read(MESHES / "quadrilateral_o1_msh41_ascii.msh").points[:, :2]
+        corners = [points[numpy.argmin(points @ direction)] for direction in ((1, 0.01), (-0.01, 1), (-1, -0.01), (0.01, -1))]
+        around = sum(math.dist(a, b) for a, b in zip(corners, corners[1:] + corners[:1]))
+        self.assertAlmostEqual(measure("boundary"), around, delta=1e-4 * around)
+        # A case lists them, too.
+        case = self.said(self.write("case.toml", block_case()))
+        self.assertIn('group "all": ', case)
+        self.assertIn('group "boundary": ', case)
+
+    def test_where_the_mesh_came_to_lie(self):
+        placement = "turn = { angle = 30.0, about = [0.1, 0.2] }\nmove = [2.0, 0.5]\n[[material]]"
+        case = self.write("case.toml", block_case().replace("[[material]]", placement, 1))
+        points = meshio.read(MESHES / "quadrilateral_o1_msh41_ascii.msh").points[:, :2]
+        angle = math.radians(30.0)
+        turn = numpy.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+        placed = (points - [0.1, 0.2]) @ turn.T + [0.1, 0.2] + [2.0, 0.5]
+        lowest, highest = placed.min(axis=0), placed.max(axis=0)
+        nearest = placed[placed[:, 1].argmin()]
+        wanted = [*lowest, *highest, nearest[1], *nearest]
+        for command in ("info", "validate"):
+            text = self.expect_status(0, run(command, case)).stdout
+            number = r"(\S+?)"
+            found = re.search(rf"the mesh lies from \({number}, {number}\) to \({number}, {number}\), turned by 30°, moved\n"
+                              rf'  at the start the mesh is {number} away from obstacle "floor", nearest at \({number}, {number}\)\n', text)
+            self.assertIsNotNone(found, text)
+            for value, exact in zip(map(float, found.groups()), wanted):
+                self.assertAlmostEqual(value, exact, delta=1e-3 * abs(exact))
+        for gap, said in ((0.0, "touches"), (-0.05, "is 0.05 inside of")):
+            low = self.write("low.toml", block_case().replace("[[material]]", f"move = [0.0, {gap - 0.1}]\n[[material]]", 1))
+            self.assertIn(f'at the start the mesh {said} obstacle "floor"', self.said(low))
+
+    def test_a_geometry_is_meshed_when_asked_for(self):
+        """Until then what needs the mesh is said not to be checked; later the mesh is there, and it is."""
+        cache = self.folder / "cache"
+        environment = dict(os.environ, RICOCHET_CACHE=str(cache))
+        for name in ("quadrilateral.geo", "box.step"):
+            with self.subTest(name):
+                sized = block_case(name).replace("[[material]]", "size = 0.4\n[[material]]", 1)
+                if name == "box.step":
+                    sized = (sized.replace("point = [0.0, 0.0]", "point = [0.0, 0.0, -9.0]").replace("[0.0, 1.0]", "[0.0, 0.0, 1.0]")
+                             .replace("[0.0, -10.0]", "[0.0, 0.0, -10.0]").replace("[1.3, 0.1]", "[0.0, 0.0, 0.0]")
+                             .replace('"bottom"', '"boundary"'))
+                case = self.write("case.toml", sized)
+                wrong = self.write("wrong.toml", sized.replace('group = "body"', 'group = "bodi"'))
+
+                def validate(*arguments, status=0):
+                    return self.expect_status(status, run("validate", *arguments, environment=environment))
+
+                before = validate(wrong).stdout
+                self.assertIn(f"valid, as far as can be told without a mesh of {MESHES / name}", before)
+                self.assertIn("not checked: what needs the mesh: names of groups", before)
+                self.assertIn(f"`ricochet validate {wrong} --mesh`", before)
+                self.assertEqual(list(cache.glob(f"{(MESHES / name).stem}-*.msh")), [])
+                self.assertIn("bodi", validate(wrong, "--mesh", status=2).stderr)
+                # From now on nothing has to be meshed.
+                self.assertIn("bodi", validate(wrong, status=2).stderr)
+                after = validate(case).stdout
+                self.assertRegex(after, r"valid: \d+ nodes")
+                self.assertNotIn("not checked", after)
+                self.assertIn('group "body": ', self.expect_status(0, run("info", case, environment=environment)).stdout)
+                # A mesh of another size is another one.
+                self.assertIn("not checked", validate(case, "--set", "mesh.size=0.3").stdout)
+        described = self.expect_status(0, run("info", MESHES / "quadrilateral.geo", environment=environment)).stdout
+        self.assertIn("validate CASE.toml --mesh", described)
 
     def test_a_case_is_advised(self):
         text = self.said(self.write("case.toml", block_case()))
@@ -33,7 +110,7 @@ class Advice(TestCase):
         self.assertLessEqual(step, median / fast * 1.001)
         self.assertGreater(step, 0.9 * median / fast)
         area = float(re.search(r"area ([^,]+), mass", text)[1])
-        self.assertIn(f"body 0: mass {area:.6g} per unit of thickness", text)
+        self.assertIn(f"the body: mass {area:.6g} per unit of thickness", text)
 
     def test_one_that_flies_away_meets_nothing(self):
         text = self.said(self.write("case.toml", block_case().replace("gravity = [0.0, -10.0]", "gravity = [0.0, 10.0]")))

@@ -119,6 +119,12 @@ class CommandLine(TestCase):
                          "nothing of the old run stays, and nothing else goes")
         self.assertEqual(History(output / "history.csv")["step"], list(range(11)))
 
+    def test_a_directory_of_results_is_no_case(self):
+        output = self.folder / "out"
+        self.expect_status(0, run("run", self.case, "-o", output, "--quiet"))
+        process = self.expect_status(1, run("run", output))
+        self.assertIn(f"`ricochet run --resume {output}` goes on", process.stderr)
+
     def test_the_default_output_directory(self):
         self.expect_status(0, run("run", "block.toml", directory=self.folder))
         self.assertTrue((self.folder / "out" / "block" / "summary.json").exists())
@@ -222,7 +228,10 @@ class CommandLine(TestCase):
         process = self.expect_status(0, run("info", output, other))
         self.assertRegex(process.stdout, rf"{re.escape(str(output))} +newmark +consistent")
         self.assertRegex(process.stdout, rf"{re.escape(str(other))} +midpoint +consistent")
-        self.assertEqual(len(process.stdout.splitlines()), 4)
+        methods, outcomes = process.stdout.split("\n\n")
+        self.assertEqual(len(methods.splitlines()), 4)
+        for directory, line in zip((output, other), outcomes.splitlines()[1:]):
+            self.assertTrue(line.startswith(f"{directory} "), line)
         self.assertIn("dimension 3", self.expect_status(0, run("info", self.case, mesh)).stdout)
 
     def test_info_on_garbage(self):

@@ -1,16 +1,17 @@
 """What came out of a run, in summary.json and in words: its impacts and its largest stress."""
 
 import json
+import math
 import unittest
 
 import h5py
 import numpy
 
-from harness import DISC, SOURCE, TestCase, block_case, run, settings, with_more
+from harness import DISC, History, SOURCE, TestCase, block_case, run, settings, with_more
 
 # The puck of the first case strikes a wall once and leaves.
 PUCK = SOURCE / "cases" / "puck" / "puck.toml"
-OUTCOME = ("bodies", "impacts", "impacts_left_out", "peak_stress")
+OUTCOME = ("bodies", "impacts", "impacts_left_out", "rotation", "peak_stress")
 
 
 def summary(folder):
@@ -36,7 +37,9 @@ class Outcome(TestCase):
         self.assertLess(impact["largest_force_time"], impact["end"])
         said = self.expect_status(0, run("info", folder)).stdout
         self.assertIn(f"restitution {impact['restitution']:.4g}", said)
-        self.assertIn(f"largest von Mises stress {found['peak_stress']['von_mises']:.6g}", said)
+        peak = found["peak_stress"]
+        least = "≥ " if peak["states_looked_at"] < peak["states"] else ""
+        self.assertIn(f"largest von Mises stress {least}{peak['von_mises']:.6g}", said)
 
     def test_a_run_without_contact_says_so(self):
         told = "  no contact: no contact force acted in this run\n"
@@ -83,9 +86,84 @@ class Outcome(TestCase):
             values = [float(numpy.max(frame["von_mises"])) for frame in file["frames"].values()]
         self.assertEqual(len(values), 201)
         self.assertEqual(max(values), peak["von_mises"])
-        few = summary(self.simulate(DISC, "few", {"time.end": 0.02, "output.fields_every": 100}))["peak_stress"]
+        sampled = self.simulate(DISC, "few", {"time.end": 0.02, "output.fields_every": 100})
+        few = summary(sampled)["peak_stress"]
         self.assertLess(few["states_looked_at"], 100)
         self.assertLessEqual(few["von_mises"], peak["von_mises"])
+        # What was not looked for in every step may have been higher.
+        said = [self.expect_status(0, run("info", folder)).stdout for folder in (every, sampled)]
+        self.assertIn(f"largest von Mises stress {peak['von_mises']:.6g} at", said[0])
+        self.assertIn(f"largest von Mises stress ≥ {few['von_mises']:.6g} at", said[1])
+
+    def test_several_runs_are_compared(self):
+        """In the second table; a mark stands where a number cannot be trusted, and only there."""
+        runs = {"puck": self.simulate(PUCK, "puck", {"time.end": 7e-4, "output.fields_every": 1}),
+                "block": self.simulate(self.write("block.toml", block_case()), "block"),
+                "disc": self.simulate(DISC, "disc", {"time.end": 0.02, "output.fields_every": 100})}
+        text = self.expect_status(0, run("info", *runs.values())).stdout
+        rows = {line.split()[0]: line for line in text.split("\n\n")[1].split("\n")[1:4]}
+        for name, folder in runs.items():
+            with self.subTest(name):
+                found = summary(folder)
+                impacts, peak = found["impacts"], found["peak_stress"]
+                history = History(folder / "history.csv")
+                turned_at = next((t for t, turned in zip(history["time"], history["max_rotation"]) if turned > 0.1), math.inf)
+                turned = lambda time: "?" if turned_at <= time else ""
+                ended = [each for each in impacts if each["restitution"] is not None]
+                restitution = "-"
+                if ended:
+                    more = "*" if len(impacts) > 1 else ""
+                    restitution = f"{ended[0]['restitution']:.4g}{more}{turned(ended[0]['end'])}"
+                hardest = max(impacts, key=lambda each: each["largest_force"])
+                force = f"{hardest['largest_force']:.4g}{turned(hardest['begin'] + hardest['duration'])}"
+                sampled = peak["states_looked_at"] < peak["states"]
+                stress = [f"{peak['von_mises']:.4g}{turned(peak['time'])}"]
+                self.assertEqual(rows[str(folder)].split()[1:],
+                                 [str(len(impacts)), restitution, force] + ["≥"] * sampled + stress)
+        self.assertIn("? cells turn by more than 0.1 rad", text)
+        self.assertIn("≥ not every step was looked at", text)
+        alone = self.expect_status(0, run("info", runs["puck"], runs["puck"])).stdout
+        for mark in "?≥*":
+            self.assertNotIn(f"  {mark} ", alone)
+
+    def test_turning_after_the_last_impact_is_told_from_turning_in_it(self):
+        """The puck leaves with a spin and turns in free flight."""
+        folder = self.simulate(PUCK, "puck", {"time.end": 6e-3, "time.step": 4e-6})
+        found = summary(folder)
+        [impact] = found["impacts"]
+        rotation = found["rotation"]
+        history = History(folder / "history.csv")
+        pairs = list(zip(history["time"], history["max_rotation"]))
+        self.assertEqual(rotation["time_beyond"], next(time for time, turned in pairs if turned > 0.1))
+        self.assertGreater(rotation["time_beyond"], impact["end"])
+        until = max(turned for time, turned in pairs if time <= impact["end"])
+        self.assertAlmostEqual(rotation["until_impact_end"][0], until, delta=0.01 * until)
+        said = self.expect_status(0, run("info", folder)).stdout
+        self.assertIn(f"(beyond small strain from t = {rotation['time_beyond']:.6g} on, after the last impact had ended)", said)
+        self.assertIn(f"cells turned by up to {rotation['until_impact_end'][0]:.3g} rad until its end", said)
+        self.assertNotIn("BEYOND SMALL STRAIN", said)
+        self.assertFalse(any("not those of a real body" in warning for warning in found["warnings"]), found["warnings"])
+        # It comes without a spin: what is printed of that is no rounding.
+        self.assertIn(f"spin 0 before and {impact['spin_after']:.4g} after", said)
+        self.expect_status(0, run("report", folder))
+        self.assertIn('"rotation_after_impacts":true', (folder / "report.html").read_text(encoding="utf-8"))
+        # The disc is pressed flat.
+        folder = self.simulate(DISC, "disc", {"time.end": 0.02})
+        said = self.expect_status(0, run("info", folder)).stdout
+        beyond = summary(folder)["rotation"]["time_beyond"]
+        self.assertIn(f"(BEYOND SMALL STRAIN from t = {beyond:.6g} on, before the last impact has ended)", said)
+        self.expect_status(0, run("report", folder))
+        self.assertIn('"rotation_after_impacts":false', (folder / "report.html").read_text(encoding="utf-8"))
+
+    def test_a_probe_along_a_segment_is_one_line(self):
+        more = '[[probe]]\nname = "foot-line"\nfrom = [0.1, 0.2]\nto = [1.3, 0.1]\n'
+        folder = self.simulate(self.write("block.toml", block_case() + more), "block")
+        lines = [line for line in self.expect_status(0, run("info", folder)).stdout.split("\n") if line.startswith("  probe")]
+        self.assertEqual(len(lines), 2, lines)
+        history = History(folder / "history.csv")
+        hardest = max(max(history[f"foot-line.{k}.reaction_normal"]) for k in range(4))
+        self.assertEqual(lines[1], '  probe "foot-line": 4 nodes from (0.1, 0.2) to (1.3, 0.1), largest contact force on a '
+                                   f"node {hardest:.6g}")
 
     def test_a_run_that_goes_on_ends_with_the_same(self):
         values = {"time.end": 0.03, "output.checkpoint_every": 130}

@@ -113,7 +113,7 @@ class Penetration(TestCase):
         output = self.two_blocks("out")
         entry = found_in(output)
         [found] = entry["found"]
-        self.assertEqual(found["bodies"], ['body 0 ("low")', 'body 1 ("high")'])
+        self.assertEqual(found["bodies"], ['body "low"', 'body "high"'])
         self.assertIsNone(found["obstacle"])
         # The lower one is pressed down a little by its own weight.
         self.assertAlmostEqual(found["depth"], 0.5 * 10.0 * 0.2**2 - 0.1, delta=0.003)
@@ -124,7 +124,11 @@ class Penetration(TestCase):
         self.assertLess(entry["looks_at_bodies"], 60)
         warnings = summary_of(output)["warnings"]
         self.assertEqual(len(warnings), 1, warnings)
-        self.assertIn('body 0 ("low") and body 1 ("high") overlap', warnings[0])
+        self.assertIn('body "low" and body "high" overlap', warnings[0])
+        # The same names wherever bodies are told apart.
+        self.assertEqual([body["name"] for body in summary_of(output)["bodies"]], ['body "low"', 'body "high"'])
+        self.assertIn('impact 1: body "low" on "floor"', self.expect_status(0, run("info", output)).stdout)
+        self.assertIn('  body "high": mass', self.expect_status(0, run("info", self.folder / "case.toml")).stdout)
 
     def test_an_overlap_of_the_start(self):
         """Also with an obstacle that no contact names: each is said once, at the start."""
@@ -133,7 +137,7 @@ class Penetration(TestCase):
         entry = found_in(output)
         self.assertEqual([found["first_time"] for found in entry["found"]], [0.0, 0.0])
         in_ceiling, overlap = entry["found"]
-        self.assertEqual((in_ceiling["obstacle"], in_ceiling["bodies"]), ("ceiling", ['body 1 ("high")']))
+        self.assertEqual((in_ceiling["obstacle"], in_ceiling["bodies"]), ("ceiling", ['body "high"']))
         self.assertAlmostEqual(in_ceiling["depth"], 0.07, delta=1e-9)
         self.assertGreaterEqual(overlap["depth"], 0.03 - 1e-9)
         warnings = summary_of(output)["warnings"]

@@ -88,7 +88,10 @@ export function penetrationFinding(j: Judgement): Finding {
   return { what, grade: relative < 1e-5 ? "good" : relative < 0.01 ? "fair" : "poor", words: size, short: share, detail };
 }
 
-export const turnsTooFar = (j: Judgement): boolean => j.rotation > j.rotation_limit;
+const turnsTooFar = (j: Judgement): boolean => j.rotation > j.rotation_limit;
+
+/** What turns after the last impact does not change what the impacts came to. */
+export const turnsInImpacts = (j: Judgement): boolean => turnsTooFar(j) && !j.rotation_after_impacts;
 
 export function rotationFinding(j: Judgement): Finding {
   const what = "Rotation";
@@ -97,6 +100,7 @@ export function rotationFinding(j: Judgement): Finding {
   const detail = `largest of a cell; small strain takes a rotation θ for a strain of 1 − cos θ, here ${number(strain, 2)}, that is not there`;
   const short = `${number(j.rotation, 2)} rad`;
   if (!turnsTooFar(j)) return { what, grade: "good", words: short, short, detail };
+  if (j.rotation_after_impacts) return { what, grade: "fair", words: `${short}, but within ${number(j.rotation_limit)} rad until the last impact had ended`, short, detail: `${detail}; what the impacts came to is not affected` };
   return { what, grade: "poor", words: `${short}: small strain does not hold (a strain of ${percent(strain)} is not there)`, short, detail };
 }
 
@@ -141,7 +145,7 @@ export function conclusion(runs: Run[]): string {
   // Nothing can be said of a run of which something is not known.
   if (all.some((each) => each.some(({ grade }) => grade === "none"))) return "";
   // Beyond small strain even the best method gives the answer to another question.
-  const turned = runs.filter((run) => turnsTooFar(run.data.judgement));
+  const turned = runs.filter((run) => turnsInImpacts(run.data.judgement));
   if (turned.length > 0) {
     const names = turned.length === runs.length ? "all of these runs" : turned.map((run) => run.name).join(", ");
     return `No recommendation: in ${names} cells turn by more than ${number(turned[0].data.judgement.rotation_limit)} rad, and small strain does not hold.`;

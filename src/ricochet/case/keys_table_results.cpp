@@ -120,14 +120,16 @@ Section output_section() {
            .unit = "steps",
            .standard = "0",
            .range = nonnegative,
-           .doc =
-               "Steps between checkpoints, from which an interrupted run goes on (`run --resume`); 0: by time only."},
+           .doc = "Steps between checkpoints, from which an interrupted run goes on (`run --resume`); 0: by time only. "
+                  "A run that a signal stops writes one in any case, and one that ends does so unless this and "
+                  "`checkpoint_seconds` are both 0."},
           {.name = "checkpoint_seconds",
            .type = KeyType::number,
            .unit = "seconds",
            .standard = "300",
            .range = nonnegative,
-           .doc = "Wall-clock time between checkpoints; 0: by steps only."},
+           .doc = "Wall-clock time between checkpoints; 0: by steps only. Of the end of a run and its interruption see "
+                  "`checkpoint_every`."},
       }};
 }
 

@@ -13,7 +13,6 @@
 #include "ricochet/case/model_parts.hpp"
 #include "ricochet/fem/exterior_facets.hpp"
 #include "ricochet/mesh/place_mesh.hpp"
-#include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
@@ -27,8 +26,8 @@ namespace {
 void check_length(const Case& input, const std::string& key_path, std::size_t length, int dimension) {
   if (length != 0 && static_cast<int>(length) != dimension) {
     refuse(input, key_path,
-           fmt::format("{} has {} entries, but the mesh has dimension {}: give {}", key_path, length, dimension,
-                       dimension));
+           fmt::format("{} has {}, but the mesh has dimension {}: give {}", key_path,
+                       counted(length, "entry", "entries"), dimension, dimension));
   }
 }
 
@@ -111,6 +110,10 @@ std::vector<Index> boundary_at(const Case& input, const std::string& key_path, c
   return group.members;
 }
 
+MeshFile mesh_file(const Case& input) {
+  return {input.mesh.file, input.mesh.size, input.mesh.scale, input.mesh.degree};
+}
+
 void require_mesh_file(const Case& input) {
   if (std::filesystem::exists(input.mesh.file)) return;
   throw Error(ErrorKind::file_access,
@@ -155,9 +158,10 @@ void assign_materials(const Case& input, Model& model) {
       if (group.dimension == mesh.dimension) names.push_back(group.name);
     }
     refuse(input, "material",
-           fmt::format("{} of {} cells of {} have no material: give a [[material]] for every group of cells "
+           fmt::format("{} of {} of {} {} no material: give a [[material]] for every group of cells "
                        "(the mesh has {}), and put every cell into a group",
-                       without, mesh.cell_count(), mesh.source, names.empty() ? "none" : join_names(names)));
+                       without, counted(mesh.cell_count(), "cell"), mesh.source, without == 1 ? "has" : "have",
+                       names.empty() ? "none" : join_names(names)));
   }
 }
 
@@ -236,7 +240,7 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   auto model = std::make_unique<Model>();
   Timer timer;
   require_mesh_file(input);
-  model->mesh = read_mesh({input.mesh.file, input.mesh.size, input.mesh.scale, input.mesh.degree});
+  model->mesh = read_mesh(mesh_file(input));
   const double read_seconds = timer.restart();
   check_dimensions(input, model->mesh.dimension);
   place_mesh(model->mesh, input.mesh.placement);

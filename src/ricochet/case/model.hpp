@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ricochet/case/case.hpp"
+#include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/starting_state.hpp"
 
@@ -34,6 +35,9 @@ struct Model {
 
 /// The scheme that [time] asks for.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const TimeSection& time);
+
+/// The mesh as the case asks for it.
+[[nodiscard]] MeshFile mesh_file(const Case& input);
 
 /// Throws Error(file_access), at its place in the case, where the mesh file is not there.
 void require_mesh_file(const Case& input);

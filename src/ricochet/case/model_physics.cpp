@@ -6,6 +6,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/case/model_parts.hpp"
 #include "ricochet/case/run_case.hpp"
 #include "ricochet/contact/multiplier_space.hpp"
@@ -28,10 +29,9 @@ void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
       std::set_intersection(pairs[i].facets.begin(), pairs[i].facets.end(), pairs[k].facets.begin(),
                             pairs[k].facets.end(), std::back_inserter(common));
       if (common.empty() || pairs[i].obstacle != pairs[k].obstacle) continue;
-      refuse(
-          input, fmt::format("contact.{}.group", i),
-          fmt::format("contact groups \"{}\" and \"{}\" overlap: they share {} facets against the same obstacle \"{}\"",
-                      pairs[k].group, pairs[i].group, common.size(), pairs[i].obstacle_name));
+      refuse(input, fmt::format("contact.{}.group", i),
+             fmt::format("contact groups \"{}\" and \"{}\" overlap: they share {} against the same obstacle \"{}\"",
+                         pairs[k].group, pairs[i].group, counted(common.size(), "facet"), pairs[i].obstacle_name));
     }
   }
 }
@@ -147,10 +147,9 @@ void add_contacts(const Case& input, Model& model) {
     refuse(input, "contact", problem.what());
   }
   if (held > 0) {
-    log::warning(
-        fmt::format("{} nodes of contact boundaries are held by supports in the direction of the obstacle's normal: "
-                    "they are no contact points",
-                    held));
+    log::warning(fmt::format("{} held by supports in the direction of the obstacle's normal: no contact {} there",
+                             counted(held, "node of contact boundaries is", "nodes of contact boundaries are"),
+                             held == 1 ? "point is" : "points are"));
   }
 }
 

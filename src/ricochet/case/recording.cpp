@@ -92,6 +92,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot, "history")),
       checks_(input, model, scheme, state, recorder_.columns(), snapshot),
       model_(model),
+      body_names_(names_of_bodies(model.mesh, find_connected_bodies(model.space))),
       impacts_(make_impact_recorder(model, scheme, state)),
       peak_stress_(model.body, step_work(model.body, factor_entries)),
       penetration_(make_penetration_watch(input, model)),
@@ -108,7 +109,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   impacts_.load(*snapshot, "impacts");
   peak_stress_.load(*snapshot, "peak_stress");
   penetration_.load(*snapshot, "penetration");
-  rotation_.load(*snapshot, "rotation_warned");
+  rotation_.load(*snapshot, "rotation");
 }
 
 void Recording::record(const State& state, EnergyAccount& account) {
@@ -182,7 +183,7 @@ void Recording::save(Snapshot& snapshot) {
   impacts_.save(snapshot, "impacts");
   peak_stress_.save(snapshot, "peak_stress");
   penetration_.save(snapshot, "penetration");
-  rotation_.save(snapshot, "rotation_warned");
+  rotation_.save(snapshot, "rotation");
 }
 
 void Recording::describe(RunSummary& summary) const {
@@ -193,14 +194,19 @@ void Recording::describe(RunSummary& summary) const {
   summary.impacts = impacts_.impacts();
   summary.impacts_left_out = impacts_.left_out();
   summary.penetration = penetration_.report();
+  summary.rotation = RotationReport{rotation_limit, rotation_.time_beyond_limit(), {}};
+  for (const Impact& impact : summary.impacts)
+    summary.rotation->until_impact_end.push_back(rotation_.largest_until(impact.end));
   describe_bodies(summary);
   describe_peak_stress(summary);
 }
 
 void Recording::describe_bodies(RunSummary& summary) const {
   summary.bodies.clear();
-  for (const RigidBody& body : impacts_.bodies())
-    summary.bodies.push_back({body, impacts_.separation(static_cast<int>(summary.bodies.size()))});
+  for (const RigidBody& body : impacts_.bodies()) {
+    const std::size_t number = summary.bodies.size();
+    summary.bodies.push_back({body, impacts_.separation(static_cast<int>(number)), body_names_[number]});
+  }
 }
 
 void Recording::describe_peak_stress(RunSummary& summary) const {

@@ -78,6 +78,7 @@ class Recording {
   HistoryDigest digest_;
   RunChecks checks_;
   const Model& model_;
+  std::vector<std::string> body_names_;
   ImpactRecorder impacts_;
   PeakStress peak_stress_;
   PenetrationWatch penetration_;

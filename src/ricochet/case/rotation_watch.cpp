@@ -4,25 +4,67 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/green_strain.hpp"
 
 namespace ricochet {
 
+namespace {
+
+/// Below the least rotation nothing is noted, above it what has grown by a hundredth.
+constexpr double least_noted = 1e-6, noted_growth = 1.01;
+
+}  // namespace
+
 std::string spurious_strain(double rotation) {
   return fmt::format("a strain of {:.2g} % that is not there (1 - cos of the angle)",
                      100.0 * (1.0 - std::cos(rotation)));
 }
 
+RotationWatch::RotationWatch(const Body& body, std::size_t column) : body_(body), column_(column) {
+  // No rotation is larger than pi.
+  const double most = std::log(std::numbers::pi / least_noted) / std::log(noted_growth);
+  growth_.reserve(static_cast<std::size_t>(most) + 3);
+}
+
+void RotationWatch::save(Snapshot& snapshot, const std::string& name) const {
+  Vector numbers(2 * static_cast<Index>(growth_.size()));
+  for (std::size_t i = 0; i < growth_.size(); ++i)
+    numbers.segment<2>(2 * static_cast<Index>(i)) << growth_[i].time, growth_[i].rotation;
+  snapshot.save(name, numbers);
+}
+
+void RotationWatch::load(const Snapshot& snapshot, const std::string& name) {
+  const Vector& numbers = snapshot.reals(name);
+  growth_.clear();
+  for (Index i = 0; i + 1 < numbers.size(); i += 2) growth_.push_back({numbers[i], numbers[i + 1]});
+}
+
+double RotationWatch::time_beyond_limit() const {
+  const auto first =
+      std::find_if(growth_.begin(), growth_.end(), [](const Noted& noted) { return noted.rotation > rotation_limit; });
+  return first == growth_.end() ? std::numeric_limits<double>::infinity() : first->time;
+}
+
+double RotationWatch::largest_until(double time) const {
+  const auto after =
+      std::find_if(growth_.begin(), growth_.end(), [time](const Noted& noted) { return noted.time > time; });
+  return after == growth_.begin() ? 0.0 : std::prev(after)->rotation;
+}
+
 void RotationWatch::watch(const std::vector<double>& row, const State& state) {
-  const double rotation = row[column_];
-  if (warned_ || !(rotation > rotation_limit)) return;
-  warned_ = true;
+  const double rotation = row[column_], before = growth_.empty() ? 0.0 : growth_.back().rotation;
+  const bool passes = before <= rotation_limit && rotation > rotation_limit;
+  if (passes || (rotation > least_noted && rotation > noted_growth * before)) growth_.push_back({row[1], rotation});
+  if (!passes) return;
   log::warning(fmt::format(
       "at t = {:.6g} a cell has rotated by {:.3g} rad: above {} rad small strain no longer holds; it takes this "
-      "rotation for {}, and the largest strain that is there is {:.2g} %. A body that turns inflates, and its "
-      "forces and its rebound are wrong: read what follows with care",
+      "rotation for {}, and the largest strain that is there is {:.2g} %. A body that turns inflates, and from "
+      "here on its forces and rebounds are wrong; an impact that had ended before is not affected",
       row[1], rotation, rotation_limit, spurious_strain(rotation),
       100.0 * largest_green_strain(body_, state.displacement)));
 }

@@ -4,14 +4,11 @@
 #include <vector>
 
 #include "ricochet/fem/assembly.hpp"
+#include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/scheme/state.hpp"
 
 /// @file Rotations beyond what small strain allows.
 namespace ricochet {
-
-/// Above this rotation of a cell, in rad, small strain no longer holds: it takes the rotation for a strain of half a
-/// per cent.
-inline constexpr double rotation_limit = 0.1;
 
 /// "a strain of 0.5 % that is not there (1 - cos of the angle)"
 [[nodiscard]] std::string spurious_strain(double rotation);
@@ -19,17 +16,24 @@ inline constexpr double rotation_limit = 0.1;
 class RotationWatch {
  public:
   /// `column`: of max_rotation in a row. Keeps a reference.
-  RotationWatch(const Body& body, std::size_t column) : body_(body), column_(column) {}
-  void save(Snapshot& snapshot, const std::string& name) const { snapshot.save(name, warned_); }
-  void load(const Snapshot& snapshot, const std::string& name) { warned_ = snapshot.flag(name); }
+  RotationWatch(const Body& body, std::size_t column);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
 
-  /// A row of history.csv. Warns the first time that a cell has turned too far.
+  /// A row of history.csv. Warns the first time that a cell has turned too far. Allocates nothing.
   void watch(const std::vector<double>& row, const State& state);
+  /// Of the first row in which a cell has turned too far; infinite: there is none.
+  [[nodiscard]] double time_beyond_limit() const;
+  /// The largest rotation in rows up to that time: to a hundredth, and on the right side of the limit.
+  [[nodiscard]] double largest_until(double time) const;
 
  private:
+  struct Noted {
+    double time, rotation;
+  };
   const Body& body_;
   std::size_t column_;
-  bool warned_ = false;
+  std::vector<Noted> growth_;
 };
 
 }  // namespace ricochet

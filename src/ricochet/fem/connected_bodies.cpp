@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "ricochet/base/text.hpp"
 #include "ricochet/fem/wave_speed.hpp"
 
 namespace ricochet {
@@ -45,6 +46,32 @@ ConnectedBodies find_connected_bodies(const DisplacementSpace& space) {
   result.of_node.reserve(parent.size());
   for (Index node = 0; node < space.node_count(); ++node)
     result.of_node.push_back(of_root[static_cast<std::size_t>(find_root(parent, node))]);
+  return result;
+}
+
+std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies& bodies) {
+  if (bodies.count == 1) return {"the body"};
+  const auto count = static_cast<std::size_t>(bodies.count);
+  const auto body_of = [&](Index cell) {
+    return static_cast<std::size_t>(bodies.of_cell[static_cast<std::size_t>(cell)]);
+  };
+  std::vector<std::size_t> cells(count, 0);
+  for (const int body : bodies.of_cell) ++cells[static_cast<std::size_t>(body)];
+  std::vector<std::string> whole(count);               // a group that is all of the body and nothing else
+  std::vector<std::vector<std::string>> parts(count);  // groups that are in this body alone
+  for (const Group& group : mesh.groups) {
+    if (group.dimension != mesh.dimension || group.members.empty()) continue;
+    const std::size_t body = body_of(group.members.front());
+    if (!std::all_of(group.members.begin(), group.members.end(), [&](Index cell) { return body_of(cell) == body; }))
+      continue;
+    parts[body].push_back(group.name);
+    if (whole[body].empty() && group.members.size() == cells[body]) whole[body] = group.name;
+  }
+  std::vector<std::string> result;
+  for (std::size_t body = 0; body < count; ++body) {
+    if (!whole[body].empty()) parts[body] = {whole[body]};
+    result.push_back("body " + (parts[body].empty() ? std::to_string(body) : join_names(parts[body])));
+  }
   return result;
 }
 

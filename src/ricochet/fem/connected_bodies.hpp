@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "ricochet/fem/assembly.hpp"
@@ -15,6 +16,10 @@ struct ConnectedBodies {
 };
 
 [[nodiscard]] ConnectedBodies find_connected_bodies(const DisplacementSpace& space);
+
+/// What messages call each: "the body" where there is one; else, by the groups of cells that no other body has a part
+/// in, body "left", or body "core" and "shell"; and body 0 where there is no such group.
+[[nodiscard]] std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies& bodies);
 
 /// Per body: the time in which a compression wave runs along the longest side of the box around it, at the speed of its
 /// slowest material. Nothing that happens at one end is known at the other one sooner.

@@ -7,6 +7,10 @@
 /// @file How far a displacement turns the cells of a body.
 namespace ricochet {
 
+/// Above this rotation of a cell, in rad, small strain no longer holds: it takes the rotation for a strain of half a
+/// per cent.
+inline constexpr double rotation_limit = 0.1;
+
 /// Largest rotation of any cell, in rad, from the displacement gradient at its centre: the angle of the rotation
 /// closest to I + ∇u in the sense of atan2(|axial part|, trace part), exact for a rigid rotation of any size below π.
 /// Keeps references to the body's mesh and space.

@@ -121,6 +121,18 @@ double RunSummary::energy_scale() const {
   return largest_size(*this, std::array{"total_energy", "kinetic_energy", "elastic_energy"});
 }
 
+bool RunSummary::small_strain_holds_in(std::size_t impact) const {
+  return rotation ? rotation->holds_in_impact(impact) : digest("max_rotation").maximum <= rotation_limit;
+}
+
+bool RunSummary::small_strain_holds_in_impacts() const {
+  if (impacts.empty() || impacts_left_out > 0) return digest("max_rotation").maximum <= rotation_limit;
+  for (std::size_t i = 0; i < impacts.size(); ++i) {
+    if (!small_strain_holds_in(i)) return false;
+  }
+  return true;
+}
+
 double RunSummary::deepest_penetration() const {
   double deepest = digest("max_penetration").maximum;
   for (const UnwatchedPenetration& found : penetration.found) deepest = std::max(deepest, found.depth);

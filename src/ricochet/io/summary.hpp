@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/impacts.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
@@ -45,6 +47,19 @@ struct ContactDescription {
 struct BodyDescription {
   RigidBody rigid;
   double separation = 0.0;
+  std::string name = {};  ///< what messages call it; empty: results of a version that did not name bodies
+};
+
+/// How far cells have turned, by the rows of the history.
+struct RotationReport {
+  double limit = 0.0;                                            ///< above it small strain does not hold
+  double time_beyond = std::numeric_limits<double>::infinity();  ///< of the first row above it; infinite: there is none
+  std::vector<double> until_impact_end;  ///< the largest so far when each impact ended, or so far
+
+  /// Whether it holds up to the end of an impact. Impacts that are not listed are later ones.
+  [[nodiscard]] bool holds_in_impact(std::size_t impact) const {
+    return impact < until_impact_end.size() ? until_impact_end[impact] <= limit : !std::isfinite(time_beyond);
+  }
 };
 
 /// The largest von Mises stress of a run, and where it was.
@@ -90,6 +105,7 @@ struct RunSummary {
   std::vector<Impact> impacts = {};
   long impacts_left_out = 0;  ///< that were only counted
   std::optional<PeakStressDescription> peak_stress;
+  std::optional<RotationReport> rotation = {};  ///< none: results of a version that did not tell
   PenetrationReport penetration = {};  ///< where no contact is; what the contact points do is a column of the history
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;
@@ -100,6 +116,10 @@ struct RunSummary {
   /// Largest |total_energy| + |algorithmic_energy| bound, the scale of the energy account: max of |first|, |min|, |max|
   /// of total energy and of kinetic and elastic energy.
   [[nodiscard]] double energy_scale() const;
+  /// False where cells had turned too far for small strain when an impact (numbered from 0) ended.
+  [[nodiscard]] bool small_strain_holds_in(std::size_t impact) const;
+  /// The same of all impacts; of a run without any at all times.
+  [[nodiscard]] bool small_strain_holds_in_impacts() const;
   /// The deepest interpenetration of all, at contact points and elsewhere; of results that did not look elsewhere
   /// (penetration.checked) it may be deeper.
   [[nodiscard]] double deepest_penetration() const;

@@ -49,7 +49,8 @@ Json bodies_to_json(const RunSummary& summary) {
       inertia = Json::array();
       for (int k = 0; k < 3; ++k) inertia.push_back(components(body.rigid.inertia.row(k), 3));
     }
-    result.push_back({{"mass", number(body.rigid.mass)},
+    result.push_back({{"name", body.name},
+                      {"mass", number(body.rigid.mass)},
                       {"centre", components(body.rigid.centre, summary.dimension)},
                       {"moment_of_inertia", inertia},
                       {"separation_time", number(body.separation)}});
@@ -133,6 +134,14 @@ Json penetration_to_json(const PenetrationReport& report) {
           {"contact_beyond_rim", rims}};
 }
 
+Json rotation_to_json(const RunSummary& summary) {
+  if (!summary.rotation) return {};
+  const RotationReport& rotation = *summary.rotation;
+  return {{"limit", number(rotation.limit)},
+          {"time_beyond", std::isfinite(rotation.time_beyond) ? number(rotation.time_beyond) : Json()},
+          {"until_impact_end", numbers(rotation.until_impact_end)}};
+}
+
 Json peak_stress_to_json(const RunSummary& summary) {
   if (!summary.peak_stress) return {};
   const PeakStressDescription& d = *summary.peak_stress;
@@ -194,6 +203,7 @@ BodyDescription body_from(const Json& json) {
   for (std::size_t k = 0; inertia.is_array() && k < 3; ++k)
     body.rigid.inertia.row(static_cast<Index>(k)) = vector_from(inertia.at(k));
   body.separation = to_number(json.at("separation_time"));
+  body.name = json.value("name", "");
   return body;
 }
 
@@ -208,6 +218,14 @@ PenetrationReport penetration_from(const Json& json) {
     report.rims.push_back({rim.at("group"), rim.at("obstacle"), to_number(rim.at("time")), to_numbers(rim.at("place")),
                            rim.at("groups")});
   return report;
+}
+
+RotationReport rotation_from(const Json& json) {
+  RotationReport result;
+  result.limit = to_number(json.at("limit"));
+  if (json.at("time_beyond").is_number()) result.time_beyond = to_number(json.at("time_beyond"));
+  result.until_impact_end = to_numbers(json.at("until_impact_end"));
+  return result;
 }
 
 PeakStressDescription peak_stress_from(const Json& json) {
@@ -227,6 +245,7 @@ std::string outcome_to_json(const RunSummary& summary) {
                      {"bodies", bodies_to_json(summary)},
                      {"impacts", impacts_to_json(summary)},
                      {"impacts_left_out", summary.impacts_left_out},
+                     {"rotation", rotation_to_json(summary)},
                      {"peak_stress", peak_stress_to_json(summary)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -240,6 +259,8 @@ void read_outcome(const std::string& text, const std::string& path, RunSummary& 
     for (const auto& impact : json.value("impacts", Json::array()))
       summary.impacts.push_back(impact_from(impact, summary.bodies, path));
     summary.impacts_left_out = json.value("impacts_left_out", 0L);
+    if (json.contains("rotation") && json.at("rotation").is_object())
+      summary.rotation = rotation_from(json.at("rotation"));
     if (json.contains("peak_stress") && json.at("peak_stress").is_object())
       summary.peak_stress = peak_stress_from(json.at("peak_stress"));
   } catch (const Json::exception& problem) {

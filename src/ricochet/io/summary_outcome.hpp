@@ -10,8 +10,8 @@
 namespace ricochet {
 
 /// The names of these entries, in their order.
-inline constexpr std::array outcome_entries{"unwatched_penetration", "bodies", "impacts", "impacts_left_out",
-                                            "peak_stress"};
+inline constexpr std::array outcome_entries{"unwatched_penetration", "bodies",   "impacts",
+                                            "impacts_left_out",      "rotation", "peak_stress"};
 
 /// A JSON object with these entries.
 [[nodiscard]] std::string outcome_to_json(const RunSummary& summary);

@@ -125,23 +125,35 @@ std::string gmsh_options(const MeshFile& file) {
   return options;
 }
 
+/// Where a file that is made from a source with such a key is kept.
+fs::path place_of(const std::string& source, const std::string& key) {
+  return cache_directory() / fmt::format("{}-{}.msh", fs::path(source).stem().string(), fnv1a_128(key));
+}
+
 /// The file that `make` writes, or wrote before with the same key.
 fs::path kept(const std::string& source, const std::string& key, const char* doing,
               const std::function<void(const fs::path& workspace, const fs::path& output)>& make) {
-  const fs::path directory = cache_directory();
-  const fs::path result = directory / fmt::format("{}-{}.msh", fs::path(source).stem().string(), fnv1a_128(key));
+  const fs::path result = place_of(source, key);
   if (fs::exists(result)) {
     log::debug(fmt::format("{}: made before, {}", source, result.string()));
     return result;
   }
   log::info(fmt::format("{}: {}", source, doing));
-  const TemporaryFolder workspace(directory, "meshing");
+  const TemporaryFolder workspace(result.parent_path(), "meshing");
   const fs::path output = workspace.path() / "mesh.msh";
   make(workspace.path(), output);
   std::error_code error;
   fs::rename(output, result, error);  // in one step, so that a cached mesh is always a whole one
   if (error) throw Error(ErrorKind::file_access, fmt::format("cannot write {}: {}", result.string(), error.message()));
   return result;
+}
+
+/// What decides on a mesh.
+std::string key_of(const MeshFile& file, const std::string& options) {
+  std::string key = "gmsh " + program_version(file.path) + "\n" + options;
+  std::set<fs::path> seen;
+  append_sources(file.path, seen, key);
+  return key;
 }
 
 }  // namespace
@@ -166,12 +178,14 @@ std::string extension_of(const std::string& path) {
 
 fs::path meshed_file(const MeshFile& file) {
   const std::string options = gmsh_options(file);
-  std::string key = "gmsh " + program_version(file.path) + "\n" + options;
-  std::set<fs::path> seen;
-  append_sources(file.path, seen, key);
-  return kept(file.path, key, "meshing with the gmsh program", [&](const fs::path& workspace, const fs::path& output) {
-    run_program(file.path, options, workspace, output);
-  });
+  return kept(
+      file.path, key_of(file, options), "meshing with the gmsh program",
+      [&](const fs::path& workspace, const fs::path& output) { run_program(file.path, options, workspace, output); });
+}
+
+std::optional<fs::path> meshed_before(const MeshFile& file) {
+  fs::path path = place_of(file.path, key_of(file, gmsh_options(file)));
+  return fs::exists(path) ? std::optional(std::move(path)) : std::nullopt;
 }
 
 fs::path converted_file(const std::string& path) {

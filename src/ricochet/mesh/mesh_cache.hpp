@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,10 @@ namespace ricochet::gmsh {
 
 /// The .msh file of a .geo or CAD file: made now, or before from the same content with the same parameters and program.
 [[nodiscard]] std::filesystem::path meshed_file(const MeshFile& file);
+
+/// The same where it was made before; none: it was not. Throws Error(invalid_input) where the gmsh program is not
+/// installed: meshes are kept by its version.
+[[nodiscard]] std::optional<std::filesystem::path> meshed_before(const MeshFile& file);
 
 /// The .msh file of a mesh in another program's format: converted now, or before from the same content.
 [[nodiscard]] std::filesystem::path converted_file(const std::string& path);

@@ -67,6 +67,12 @@ void check_request(const MeshFile& file, bool by_program) {
 
 }  // namespace
 
+bool is_meshed(const MeshFile& file) {
+  check_request(file, true);
+  (void)gmsh::read_whole_file(file.path);  // for the message of a file that cannot be read
+  return gmsh::meshed_before(file).has_value();
+}
+
 Mesh read_mesh(const MeshFile& file) {
   const bool by_program = needs_gmsh_program(file.path);
   check_request(file, by_program);

@@ -22,6 +22,10 @@ struct MeshFile {
 /// True for files that need the gmsh program (.geo, .step, .stp, .iges, .igs, .brep).
 [[nodiscard]] bool needs_gmsh_program(const std::string& path);
 
+/// Whether the mesh of such a file is kept from before, so that reading it does not run gmsh on it. Throws as
+/// read_mesh.
+[[nodiscard]] bool is_meshed(const MeshFile& file);
+
 /// True for meshes in the formats of other programs, by the extension of the file.
 [[nodiscard]] bool is_foreign_mesh(const std::string& path);
 

@@ -47,6 +47,8 @@ struct Judgement {
   std::string contact_beyond_rim;  ///< the group of a contact that goes on beyond it; empty: none was seen
 
   double rotation = 0.0;  ///< the largest of a cell, in rad
+  /// Whether cells turn too far for small strain only after the last impact, so that it does hold in the impacts.
+  bool rotation_after_impacts = false;
 };
 
 [[nodiscard]] Judgement judge(const RunData& run);

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/case/rotation_watch.hpp"
+#include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/json_number.hpp"
 #include "ricochet/report/body_part.hpp"
@@ -83,7 +83,8 @@ Json to_json(const Judgement& j) {
           {"unwatched_penetration", j.unwatched_penetration},
           {"contact_beyond_rim", j.contact_beyond_rim},
           {"rotation", to_json(j.rotation)},
-          {"rotation_limit", rotation_limit}};
+          {"rotation_limit", rotation_limit},
+          {"rotation_after_impacts", j.rotation_after_impacts}};
 }
 
 Json times_of(const std::vector<int>& frames, const ResultsReader& results) {

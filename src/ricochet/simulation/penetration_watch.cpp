@@ -37,25 +37,6 @@ std::vector<double> sizes_at_nodes(const std::vector<double>& size_of_body, cons
   return result;
 }
 
-/// By the groups of cells that they have a part in.
-std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies& bodies) {
-  if (bodies.count == 1) return {"the body"};
-  std::vector<std::vector<std::string>> groups(static_cast<std::size_t>(bodies.count));
-  for (const Group& group : mesh.groups) {
-    if (group.dimension != mesh.dimension) continue;
-    std::vector<char> has_part(groups.size(), 0);
-    for (const Index cell : group.members)
-      has_part[static_cast<std::size_t>(bodies.of_cell[static_cast<std::size_t>(cell)])] = 1;
-    for (std::size_t body = 0; body < groups.size(); ++body) {
-      if (has_part[body] != 0) groups[body].push_back(group.name);
-    }
-  }
-  std::vector<std::string> result;
-  for (std::size_t body = 0; body < groups.size(); ++body)
-    result.push_back(fmt::format("body {} ({})", body, join_names(groups[body])));
-  return result;
-}
-
 std::string coordinates(const std::vector<double>& place) {
   std::string text;
   for (const double value : place) text += fmt::format("{}{:.4g}", text.empty() ? "(" : ", ", value);

@@ -71,6 +71,28 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_EQ(back.peak_stress->element, 8);
 }
 
+TEST_F(SummaryTest, KnowsInWhichImpactsCellsHadTurnedTooFar) {
+  RunSummary summary;
+  EXPECT_TRUE(summary.small_strain_holds_in_impacts());
+  summary.bodies.push_back({{}, 0.1, "body \"left\""});
+  summary.impacts.resize(2);
+  summary.columns = {"max_rotation"};
+  summary.digests = {{0.0, 0.3, 0.0, 0.3, 0.3}};
+  EXPECT_FALSE(read_back(summary).small_strain_holds_in_impacts()) << "results that do not tell when";
+  summary.rotation = RotationReport{0.1, 0.5, {0.0625, 0.1}};
+  const RunSummary later = read_back(summary);
+  EXPECT_EQ(later.bodies[0].name, "body \"left\"");
+  ASSERT_TRUE(later.rotation.has_value());
+  EXPECT_EQ(later.rotation->time_beyond, 0.5);
+  EXPECT_TRUE(later.small_strain_holds_in_impacts());
+  summary.rotation->until_impact_end[1] = 0.125;
+  EXPECT_TRUE(read_back(summary).small_strain_holds_in(0));
+  EXPECT_FALSE(read_back(summary).small_strain_holds_in(1));
+  EXPECT_FALSE(read_back(summary).small_strain_holds_in_impacts());
+  summary.rotation->time_beyond = INFINITY;
+  EXPECT_EQ(read_back(summary).rotation->time_beyond, INFINITY);
+}
+
 TEST_F(SummaryTest, NamesTheFileThatListsAnImpactOfNoBody) {
   RunSummary summary;
   summary.impacts.emplace_back();

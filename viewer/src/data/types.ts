@@ -45,6 +45,8 @@ export interface Judgement {
   rotation: number;
   /** In rad: above it small strain no longer holds. */
   rotation_limit: number;
+  /** Whether cells turn too far for small strain only after the last impact. */
+  rotation_after_impacts: boolean;
 }
 
 export interface ContactData {
@@ -178,7 +180,7 @@ export interface Summary {
   probes: { name: string; position: number[]; distance: number; in_contact_boundary: boolean }[];
   checks: Record<string, CheckOutcome>;
   warnings: string[];
-  bodies: { mass: Value }[];
+  bodies: { mass: Value; name?: string }[];
   impacts: Impact[];
   impacts_left_out: number;
   peak_stress: PeakStress | null;

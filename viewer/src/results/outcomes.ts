@@ -76,7 +76,7 @@ export function outcomeElements(run: Run, show: { time: (time: number) => void; 
 
 const columns: [string, (impact: Impact, run: Run) => string | HTMLElement][] = [
   ["obstacle", ({ obstacle }) => obstacle],
-  ["body", ({ body }) => String(body)],
+  ["body", ({ body }, run) => run.summary.bodies[body]?.name ?? String(body)],
   ["begin", ({ begin, from_start }) => `${number(begin, 5)}${from_start ? " (start)" : ""}`],
   ["duration", ({ duration, ended }) => `${number(duration, 4)}${ended ? "" : " so far"}`],
   ["restitution", (impact, run) => {

@@ -1,7 +1,7 @@
 import { extentOf } from "../charts/scale";
 import { indexAt, type Run } from "../data/run";
 import type { Impact } from "../data/types";
-import { turnsTooFar, type Grade } from "../glance";
+import { turnsInImpacts, type Grade } from "../glance";
 import { toNumber } from "../format";
 
 /** What a restitution above 1 means: whether it is possible, and what has made it. */
@@ -39,7 +39,7 @@ function reasons(run: Run): string[] {
   const { energy_gain: gain, energy_scale: scale } = run.data.judgement;
   const result: string[] = [];
   if (gain > tolerance * scale) result.push(`${run.summary.scheme} creates energy`);
-  if (turnsTooFar(run.data.judgement)) result.push("small strain does not hold");
+  if (turnsInImpacts(run.data.judgement)) result.push("small strain does not hold");
   return result;
 }
 

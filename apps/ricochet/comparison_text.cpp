@@ -1,0 +1,130 @@
+#include "comparison_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "penetration_text.hpp"
+#include "progress_text.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/io/summary.hpp"
+
+namespace ricochet::program {
+
+namespace {
+
+struct Run {
+  std::string directory;
+  RunSummary summary;
+};
+
+/// Of the first probe on a contact boundary; where there is none, of the resultant in its largest direction.
+double force_variation(const RunSummary& s) {
+  const auto probe = std::find_if(s.probes.begin(), s.probes.end(), [](const Probe& p) { return p.contact_node >= 0; });
+  if (probe != s.probes.end()) return s.digest(probe->name + ".reaction_normal").total_variation;
+  double variation = 0.0;
+  for (const char* axis : {"x", "y", "z"})
+    variation = std::max(variation, s.digest(fmt::format("contact_force_{}", axis)).total_variation);
+  return variation;
+}
+
+void print_methods(const std::vector<Run>& runs, int width) {
+  constexpr const char* row = "{:<{}} {:<15} {:<18} {:>11} {:>11} {:>11} {:>14} {:>14} {:>9}\n";
+  fmt::print(row, "run", width, "scheme", "mass", "energy at", "energy at", "largest", "variation of", "deepest inter-",
+             "time per");
+  fmt::print(row, "", width, "", "", "the start", "the end", "energy", "contact force", "penetration", "step, ms");
+  for (const auto& [directory, s] : runs) {
+    const ColumnDigest energy = s.digest("total_energy");
+    fmt::print("{:<{}} {:<15} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14.4g} {:>14} {:>9.3g}{}\n", directory, width,
+               s.scheme, s.mass, energy.first, energy.last, energy.maximum, force_variation(s),
+               deepest_penetration_text(s), 1e3 * s.time_per_step, status_text(directory, s));
+  }
+}
+
+/// Marks, and what each means, in the order in which they are explained.
+constexpr std::array<std::pair<const char*, const char*>, 3> meanings{{
+    {"≥", "not every step was looked at: the stress may have been higher between two looks (output.fields_every)"},
+    {"?", "cells turn by more than 0.1 rad, which small strain takes for a strain that is not there"},
+    {"*", "of the first impact with a restitution; there are more, which `ricochet info` lists for one run"},
+}};
+
+/// Numbers of a run as the table shows them. Marks go into `marks`.
+class Outcome {
+ public:
+  Outcome(const RunSummary& summary, std::set<std::string>& marks) : s_(summary), marks_(marks) {}
+
+  [[nodiscard]] std::string restitution() const {
+    const auto first = std::find_if(s_.impacts.begin(), s_.impacts.end(),
+                                    [](const Impact& impact) { return impact.restitution().has_value(); });
+    if (first == s_.impacts.end()) return "-";
+    const bool more = s_.impacts.size() > 1 || s_.impacts_left_out > 0;
+    return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", turned_in(first));
+  }
+
+  /// Of a body on an obstacle; the whole resultant where the results tell no impacts.
+  [[nodiscard]] std::string largest_force() const {
+    const auto hardest = std::max_element(s_.impacts.begin(), s_.impacts.end(), [](const Impact& a, const Impact& b) {
+      return a.largest_force < b.largest_force;
+    });
+    if (hardest == s_.impacts.end()) return "-";
+    return fmt::format("{:.4g}", hardest->largest_force) + mark("?", turned_in(hardest));
+  }
+
+  [[nodiscard]] std::string peak_stress() const {
+    if (!s_.peak_stress) return "-";
+    const PeakStressResult& peak = s_.peak_stress->peak;
+    return mark("≥", peak.looks < peak.states) + (peak.looks < peak.states ? " " : "") +
+           fmt::format("{:.4g}", peak.von_mises) + mark("?", turned_until(peak.time));
+  }
+
+ private:
+  using Place = std::vector<Impact>::const_iterator;
+  /// Whether cells had turned too far for small strain when the impact ended.
+  [[nodiscard]] bool turned_in(Place impact) const {
+    return !s_.small_strain_holds_in(static_cast<std::size_t>(impact - s_.impacts.begin()));
+  }
+  [[nodiscard]] bool turned_until(double time) const {
+    return s_.rotation ? s_.rotation->time_beyond <= time : s_.digest("max_rotation").maximum > rotation_limit;
+  }
+  [[nodiscard]] std::string mark(const char* sign, bool applies) const {
+    if (!applies) return "";
+    marks_.insert(sign);
+    return sign;
+  }
+
+  const RunSummary& s_;
+  std::set<std::string>& marks_;
+};
+
+void print_outcomes(const std::vector<Run>& runs, int width) {
+  std::set<std::string> marks;
+  fmt::print("\n{:<{}} {:>12} {:>14} {:>14} {:>16}\n", "run", width, "impacts", "restitution", "largest force",
+             "largest stress");
+  for (const auto& [directory, summary] : runs) {
+    const Outcome outcome(summary, marks);
+    const std::size_t impacts = summary.impacts.size() + static_cast<std::size_t>(summary.impacts_left_out);
+    fmt::print("{:<{}} {:>12} {:>14} {:>14} {:>16}\n", directory, width, impacts, outcome.restitution(),
+               outcome.largest_force(), outcome.peak_stress());
+  }
+  for (const auto& [mark, meaning] : meanings) {
+    if (marks.contains(mark)) fmt::print("  {} {}\n", mark, meaning);
+  }
+}
+
+}  // namespace
+
+void print_comparison(const std::vector<std::string>& directories) {
+  std::vector<Run> runs;
+  std::size_t width = 24;
+  for (const std::string& directory : directories) {
+    runs.push_back({directory, read_summary(directory + "/summary.json")});
+    width = std::max(width, directory.size());
+  }
+  print_methods(runs, static_cast<int>(width));
+  print_outcomes(runs, static_cast<int>(width));
+}
+
+}  // namespace ricochet::program

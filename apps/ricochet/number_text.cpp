@@ -1,0 +1,30 @@
+#include "number_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ricochet::program {
+
+namespace {
+
+/// Sums over all nodes of a mesh are rounded to less than this part of their terms.
+constexpr double rounding = 1e-12;
+
+}  // namespace
+
+double without_rounding(double value, double size) {
+  return std::abs(value) > rounding * size ? value : 0.0;
+}
+
+std::string vector_text(const Vector& values, double size, int digits) {
+  std::string text;
+  for (const double value : values) {
+    const double shown = without_rounding(value, std::max(size, values.norm()));
+    text += fmt::format("{}{:.{}g}", text.empty() ? "" : ", ", shown, digits);
+  }
+  return "(" + text + ")";
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,58 @@
+#include "place_text.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "number_text.hpp"
+
+namespace ricochet::program {
+
+namespace {
+
+/// What has brought the mesh there.
+std::string placement_text(const MeshSection& mesh) {
+  std::string text;
+  if (mesh.scale != 1.0) text += fmt::format(", scaled by {:g}", mesh.scale);
+  if (mesh.placement.angle != 0.0) text += fmt::format(", turned by {:g}°", mesh.placement.angle);
+  if (!mesh.placement.move.empty()) text += fmt::format(", moved");
+  return text;
+}
+
+/// Positions of all nodes at t = 0, but for what a static equilibrium adds.
+Points starting_positions(const Model& model) {
+  const Points& nodes = model.space.nodes;
+  return nodes + Eigen::Map<const Points>(model.initial.displacement.data(), nodes.rows(), nodes.cols());
+}
+
+}  // namespace
+
+std::string gap_text(double gap, double rounding) {
+  if (std::abs(gap) <= rounding) return "touches";
+  return gap > 0.0 ? fmt::format("is {:.4g} away from", gap) : fmt::format("is {:.4g} inside of", -gap);
+}
+
+void print_place(const Case& input, const Model& model) {
+  const Points& nodes = model.mesh.nodes;
+  const Vector lowest = nodes.rowwise().minCoeff(), highest = nodes.rowwise().maxCoeff();
+  const double size = std::max(lowest.norm(), highest.norm());
+  fmt::print("  the mesh lies from {} to {}{}\n", vector_text(lowest, size, 6), vector_text(highest, size, 6),
+             placement_text(input.mesh));
+  const Points positions = starting_positions(model);
+  for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
+    double nearest = std::numeric_limits<double>::infinity();
+    Index at = 0;
+    for (Index node = 0; node < positions.cols(); ++node) {
+      const double gap = model.obstacles[k]->gap(positions.col(node));
+      if (gap >= nearest) continue;
+      nearest = gap;
+      at = node;
+    }
+    fmt::print("  at the start{} the mesh {} obstacle \"{}\", nearest at {}\n",
+               model.initial.static_equilibrium ? ", before its static equilibrium," : "",
+               gap_text(nearest, model.obstacles[k]->gap_rounding(positions.col(at))), input.obstacles[k].name,
+               vector_text(positions.col(at), size));
+  }
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "ricochet/case/model.hpp"
+
+/// @file Where a mesh lies when a run starts.
+namespace ricochet::program {
+
+/// "is 0.1 away from", "touches" or "is 0.1 inside of": what lies before the obstacle's name. Gaps up to the rounding
+/// are none.
+[[nodiscard]] std::string gap_text(double gap, double rounding);
+
+/// The box around the mesh, after it was scaled, turned and moved, and a line per obstacle: how far it is from the
+/// nearest node at the start.
+void print_place(const Case& input, const Model& model);
+
+}  // namespace ricochet::program
