@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/green_strain.hpp"
 
@@ -40,8 +41,11 @@ void RotationWatch::save(Snapshot& snapshot, const std::string& name) const {
 
 void RotationWatch::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name);
+  const auto most = static_cast<Index>(2 * growth_.capacity());
+  if (numbers.size() % 2 != 0 || numbers.size() > most || !numbers.allFinite())
+    throw Error(ErrorKind::invalid_input, "the checkpoint's record of rotations is damaged");
   growth_.clear();
-  for (Index i = 0; i + 1 < numbers.size(); i += 2) growth_.push_back({numbers[i], numbers[i + 1]});
+  for (Index i = 0; i < numbers.size(); i += 2) growth_.push_back({numbers[i], numbers[i + 1]});
 }
 
 double RotationWatch::time_beyond_limit() const {
