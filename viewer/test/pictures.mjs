@@ -21,7 +21,7 @@ const disc = report("disc", ...discRuns());
 const friction = report("friction", frictionRun());
 const ball = report("ball", ballRun());
 
-await picture(disc, "report-disc.png", { width: 1300, height: 1440 }, () => window.ricochet.store.setTime(0.05));
+await picture(disc, "report-disc.png", { width: 1300, height: 1660 }, () => window.ricochet.store.setTime(0.05));
 await picture(friction, "report-friction-dark.png", { width: 1300, height: 1130, colorScheme: "dark" }, () => {
   const { store } = window.ricochet;
   store.setTime(0.0104);
