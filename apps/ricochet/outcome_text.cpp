@@ -7,6 +7,7 @@
 
 #include "number_text.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/simulation/restitution.hpp"
 
 namespace ricochet::program {
 
@@ -78,7 +79,11 @@ std::string impact_text(const Impact& impact, const RunSummary& summary) {
   } else {
     text += ", not ended";
   }
-  if (const auto restitution = impact.restitution()) text += fmt::format(", restitution {:.4g}", *restitution);
+  if (const auto restitution = impact.restitution()) {
+    text += fmt::format(", restitution {:.4g}", *restitution);
+  } else if (impact.ended) {
+    text += fmt::format(", no restitution ({})", why_no_restitution(impact));
+  }
   text += fmt::format(", {}, largest force {:.4g} at {:.6g}", impulse_text(impact), impact.largest_force,
                       impact.largest_force_time);
   return text + spins_text(impact, summary);

@@ -32,6 +32,7 @@ class Outcome(TestCase):
         for k, component in enumerate(change):
             self.assertAlmostEqual(component, impact["impulse"][k] + impact["other_impulse"][k], delta=1e-12 * scale)
         self.assertGreater(impact["restitution"], 0.5)
+        self.assertIsNone(impact["why_no_restitution"])
         self.assertLess(impact["kinetic_energy_ratio"], 1.0)
         self.assertLess(impact["begin"], impact["largest_force_time"])
         self.assertLess(impact["largest_force_time"], impact["end"])
@@ -76,6 +77,18 @@ class Outcome(TestCase):
         self.assertEqual(often["impacts"], rarely["impacts"])
         self.assertFalse(often["impacts"][0]["ended"])
         self.assertIsNone(often["impacts"][0]["restitution"])
+        self.assertEqual(often["impacts"][0]["why_no_restitution"], "the body still touches")
+
+    def test_a_grazing_impact_has_no_restitution(self):
+        values = {"initial.velocity": "[200.0, -0.3]", "load.gravity": "[0.0, 0.0]", "time.end": 0.2}
+        folder = self.simulate(DISC, "grazing", values)
+        impact = summary(folder)["impacts"][0]
+        self.assertTrue(impact["ended"])
+        self.assertAlmostEqual(impact["normal_velocity_before"], -0.3, delta=1e-9)
+        self.assertIsNone(impact["restitution"])
+        self.assertIn("less than 1 % of its speed along the obstacle", impact["why_no_restitution"])
+        said = self.expect_status(0, run("info", folder)).stdout
+        self.assertIn(f"no restitution ({impact['why_no_restitution']})", said)
 
     def test_the_largest_stress_is_that_of_the_fields_and_more(self):
         every = self.simulate(DISC, "every", {"time.end": 0.02, "output.fields_every": 1})

@@ -7,6 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/json_number.hpp"
+#include "ricochet/simulation/restitution.hpp"
 
 namespace ricochet {
 
@@ -78,6 +79,7 @@ Json impact_to_json(const Impact& impact, int dimension) {
           {"largest_force", number(impact.largest_force)},
           {"largest_force_time", number(impact.largest_force_time)},
           {"restitution", restitution ? number(*restitution) : Json()},
+          {"why_no_restitution", restitution ? Json() : Json(why_no_restitution(impact))},
           {"normal_velocity_before", number(impact.normal_velocity_before())},
           {"normal_velocity_after", if_ended(number(impact.normal_velocity_after()))},
           {"obstacle_normal_velocity", number(impact.obstacle_velocity)},

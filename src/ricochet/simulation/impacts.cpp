@@ -6,14 +6,12 @@
 #include <type_traits>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/simulation/restitution.hpp"
 #include "ricochet/simulation/sensor.hpp"
 
 namespace ricochet {
 
 namespace {
-
-/// A body whose centre comes nearer by less than this, relative to what the impulse changes, does so to rounding.
-constexpr double rounding_of_velocity = 1e-9;
 
 Eigen::Vector3d vector_of(const std::array<double, 3>& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
@@ -67,9 +65,8 @@ Eigen::Vector3d Impact::tangential_velocity_after() const {
 }
 
 std::optional<double> Impact::restitution() const {
-  const double approach = -normal_velocity_before();
-  if (!ended || !(approach > rounding_of_velocity * normal_impulse.norm() / mass)) return {};
-  return normal_velocity_after() / approach;
+  if (!why_no_restitution(*this).empty()) return {};
+  return normal_velocity_after() / -normal_velocity_before();
 }
 
 Eigen::Vector3d Impact::other_impulse() const {

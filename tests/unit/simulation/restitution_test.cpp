@@ -1,0 +1,77 @@
+#include "ricochet/simulation/restitution.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace ricochet {
+namespace {
+
+/// A body of mass 2 that came to a floor with this velocity (along x, and down), and goes up at half its approach plus
+/// `more`; no other force acted.
+Impact impact(double along, double down, double more = 0.0) {
+  Impact result;
+  result.mass = 2.0;
+  result.before.velocity = {along, -down, 0.0};
+  result.after.velocity = {along, 0.5 * down + more, 0.0};
+  result.impulse = result.normal_impulse = result.mass * (result.after.velocity - result.before.velocity);
+  result.before.kinetic_energy = result.before.rigid_kinetic_energy =
+      0.5 * result.mass * result.before.velocity.squaredNorm();
+  return result;
+}
+
+void expect_none(const Impact& given, const std::string& why) {
+  EXPECT_FALSE(given.restitution().has_value());
+  EXPECT_NE(why_no_restitution(given).find(why), std::string::npos) << why_no_restitution(given);
+}
+
+TEST(Restitution, IsTheRatioOfAClearApproach) {
+  for (const double along : {0.0, 1.0, 20.0}) {
+    const Impact clear = impact(along, 1.0);
+    EXPECT_EQ(why_no_restitution(clear), "");
+    ASSERT_TRUE(clear.restitution().has_value());
+    EXPECT_NEAR(*clear.restitution(), 0.5, 1e-15);
+  }
+}
+
+TEST(Restitution, IsNoneOfABodyThatStaysOrDidNotCome) {
+  Impact stays = impact(0.0, 1.0);
+  stays.ended = false;
+  expect_none(stays, "still touches");
+  expect_none(impact(1.0, 0.0, 1.0), "did not come nearer");
+  expect_none(impact(1.0, -0.5, 1.0), "did not come nearer");
+}
+
+/// What friction, vibrations or gravity make of a hardly approaching body would be 1000 of its approach.
+TEST(Restitution, IsNoneWhereOtherThingsMakeTheVelocityAfter) {
+  expect_none(impact(1.0, 1e-4, 0.1), "along the obstacle");
+  Impact vibrating = impact(0.0, 1e-4, 0.1);
+  vibrating.before.kinetic_energy += 1.0;
+  expect_none(vibrating, "spin and vibrations");
+  Impact spinning = vibrating;
+  spinning.before.rigid_kinetic_energy += 1.0;
+  expect_none(spinning, "spin and vibrations");
+  Impact pushed = impact(0.0, 1e-4, 0.1);
+  pushed.impulse *= 0.5;
+  expect_none(pushed, "other forces");
+}
+
+/// Units do not matter, nor does an obstacle that moves along with the body.
+TEST(Restitution, LooksAtRatiosOnly) {
+  for (const double unit : {1e-12, 1.0, 1e12}) {
+    for (const double along : {50.0, 200.0}) {
+      EXPECT_EQ(impact(along * unit, unit).restitution().has_value(), along < 100.0) << unit;
+    }
+  }
+  Impact moving = impact(0.0, 1.0);
+  moving.before.velocity[1] -= 1.0;
+  moving.after.velocity[1] -= 1.0;
+  moving.obstacle_velocity = -1.0;
+  moving.before.kinetic_energy = moving.before.rigid_kinetic_energy =
+      0.5 * moving.mass * moving.before.velocity.squaredNorm();
+  ASSERT_TRUE(moving.restitution().has_value());
+  EXPECT_NEAR(*moving.restitution(), 0.5, 1e-15);
+}
+
+}  // namespace
+}  // namespace ricochet
