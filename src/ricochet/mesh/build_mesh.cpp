@@ -7,6 +7,7 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/mesh/check_overlaps.hpp"
 #include "ricochet/mesh/gmsh_elements.hpp"
 #include "ricochet/mesh/offenders.hpp"
 
@@ -204,6 +205,7 @@ Mesh build_mesh(RawMesh raw, const BuildOptions& options) {
   check_facets(mesh);
   keep_used_nodes(raw, options.scale, mesh);
   orient_cells(mesh);
+  warn_of_overlaps(mesh);
   if (!options.allow_coincident_nodes) check_coincident_nodes(mesh);
   return mesh;
 }

@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/mesh/check_overlaps.hpp"
+#include "support.hpp"
+#include "support/box_mesh.hpp"
+
+/// @file Cells that overlap though no Jacobian is negative.
+namespace ricochet::test {
+namespace {
+
+/// Triangles of a quarter each around node 1 at (3, 4), so many that they close after `turns`; in space each with a
+/// tetrahedron above and below. Radii differ, so that no nodes are at the same place.
+std::string fan(int turns, bool in_space) {
+  const int count = 4 * turns;
+  std::string nodes = "1 3 4 0\n", cells;
+  int number = 0;
+  for (int k = 0; k < count; ++k) {
+    const double angle = 0.5 * std::numbers::pi * k, radius = 1.0 + 0.1 * k;
+    nodes +=
+        fmt::format("{} {:.17g} {:.17g} 0\n", k + 2, 3.0 + radius * std::cos(angle), 4.0 + radius * std::sin(angle));
+    const int one = k + 2, other = (k + 1) % count + 2;
+    if (in_space) {
+      cells += fmt::format("{} 4 2 1 1 1 {} {} {}\n", ++number, one, other, count + 2);
+      cells += fmt::format("{} 4 2 1 1 1 {} {} {}\n", ++number, other, one, count + 3);
+    } else {
+      cells += fmt::format("{} 2 2 1 1 1 {} {}\n", ++number, one, other);
+    }
+  }
+  if (in_space) nodes += fmt::format("{} 3 4 1\n{} 3 4 -1\n", count + 2, count + 3);
+  return fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n",
+                     count + (in_space ? 3 : 1), nodes, number, cells);
+}
+
+std::string warnings_of(const std::string& content) {
+  log::clear_warnings();
+  static_cast<void>(mesh_of(content));
+  std::string text;
+  for (const std::string& warning : log::warnings()) text += warning + "\n";
+  log::clear_warnings();
+  return text;
+}
+
+TEST(Overlaps, AroundANodeAreWarnedOf) {
+  for (const bool in_space : {false, true}) {
+    EXPECT_EQ(warnings_of(fan(1, in_space)), "");
+    const std::string twice = warnings_of(fan(2, in_space));
+    EXPECT_NE(
+        twice.find(fmt::format("around node 1 at (3, 4{}) they take up 2 times the whole", in_space ? ", 0" : "")),
+        std::string::npos)
+        << twice;
+    EXPECT_NE(warnings_of(fan(3, in_space)).find("take up 3 times"), std::string::npos);
+  }
+}
+
+/// Angles around the nodes inside add up exactly, also where cells are distorted and curved.
+TEST(Overlaps, AreNotSeenWhereThereAreNone) {
+  for (const CellShape shape : test_support::all_cell_shapes) {
+    for (const int degree : {1, 2}) {
+      test_support::BoxMesh box;
+      box.shape = shape;
+      box.counts.assign(static_cast<std::size_t>(dimension(shape)), 4);
+      box.geometry_degree = degree;
+      box.map = test_support::swirl_map(0.05);
+      const Mesh mesh = test_support::make_checked_box_mesh(box);
+      log::clear_warnings();
+      gmsh::warn_of_overlaps(mesh);
+      EXPECT_TRUE(log::warnings().empty()) << log::warnings().front();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ricochet::test
