@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/json_number.hpp"
 #include "ricochet/io/summary_outcome.hpp"
 

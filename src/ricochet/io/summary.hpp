@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "ricochet/fem/rotation_gauge.hpp"
-#include "ricochet/simulation/history.hpp"
-#include "ricochet/simulation/impacts.hpp"
-#include "ricochet/simulation/peak_stress.hpp"
-#include "ricochet/simulation/penetration_watch.hpp"
+#include "ricochet/simulation/column_digest.hpp"
+#include "ricochet/simulation/impact.hpp"
+#include "ricochet/simulation/peak_stress_result.hpp"
+#include "ricochet/simulation/penetration_report.hpp"
+#include "ricochet/simulation/probe.hpp"
 
 /// @file summary.json: what ran, sizes, timings, extrema, warnings.
 namespace ricochet {

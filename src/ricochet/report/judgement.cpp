@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ricochet/fem/rotation_gauge.hpp"
+
 namespace ricochet {
 
 namespace {

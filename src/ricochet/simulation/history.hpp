@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "ricochet/fem/rotation_gauge.hpp"
+#include "ricochet/simulation/column_digest.hpp"
 #include "ricochet/simulation/energy_account.hpp"
 #include "ricochet/simulation/sensor.hpp"
 
@@ -39,10 +39,6 @@ class SensorRecorder {
   std::vector<double> row_;
 };
 
-/// The columns that are works, cumulative.
-inline constexpr std::array work_columns{"load_work",    "contact_work",  "friction_work",
-                                         "support_work", "obstacle_work", "damping_work"};
-
 class HistoryRecorder {
  public:
   HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
@@ -72,12 +68,6 @@ class HistoryRecorder {
   /// M times the rigid velocities: translations along the axes, and rotations about the axes through the origin (in 2D
   /// about z). Products of the velocity with them are the momenta, since M is symmetric. dofs × 3 or 6.
   Matrix momentum_of_;
-};
-
-/// What a column did over a run.
-struct ColumnDigest {
-  double first = 0.0, last = 0.0, minimum = 0.0, maximum = 0.0;
-  double total_variation = 0.0;  ///< Σ |difference of consecutive rows|
 };
 
 /// Digests of all columns, row by row.

@@ -3,6 +3,7 @@
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/fem/stress.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/simulation/peak_stress_result.hpp"
 
 /// @file The largest von Mises stress of a run: means of cells, as in the field of that name.
 ///
@@ -11,13 +12,6 @@
 /// in any state looked at before, for which what other times save is spent. How many were looked at is told. Which ones
 /// depends on the case alone, never on the clock.
 namespace ricochet {
-
-struct PeakStressResult {
-  double von_mises = 0.0, time = 0.0;
-  long step = 0;
-  Index cell = -1;             ///< numbered through all blocks; −1: no look yet
-  long looks = 0, states = 0;  ///< that were looked at, of so many
-};
 
 class PeakStress {
  public:

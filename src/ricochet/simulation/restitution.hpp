@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "ricochet/simulation/impacts.hpp"
+#include "ricochet/simulation/impact.hpp"
 
 /// @file When the ratio of an impact's normal velocities says something of the impact.
 namespace ricochet {

@@ -3,25 +3,10 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/simulation/rigid_body.hpp"
 
 /// @file The bodies of a mesh as rigid bodies: what their mass matrix says of mass, centre, inertia and mean motion.
 namespace ricochet {
-
-/// Reference configuration; in the plane z = 0, and per unit of thickness.
-struct RigidBody {
-  double mass = 0.0;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre; in the plane only its zz entry is used
-};
-
-/// Mean motion of a body and its energies.
-struct RigidMotionState {
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the centre of mass: momentum / mass
-  /// Angular momentum about the centre of mass, solved with the inertia about it; reference positions.
-  Eigen::Vector3d spin = Eigen::Vector3d::Zero();
-  double kinetic_energy = 0.0;        ///< of the whole motion, ½VᵀMV
-  double rigid_kinetic_energy = 0.0;  ///< of velocity and spin alone; the rest is that of vibrations
-};
 
 class RigidBodies {
  public:

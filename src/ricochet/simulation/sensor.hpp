@@ -7,18 +7,11 @@
 #include "ricochet/fem/assembly.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/simulation/probe.hpp"
 
 /// @file What is watched besides the whole body: points, boundaries, groups, contacts. To add a kind: a file in
 /// sensors/ with a class, its function here, and its keys in the section [[probe]] of a case.
 namespace ricochet {
-
-/// A node that is watched.
-struct Probe {
-  std::string name;
-  Index node = 0;
-  double distance = 0.0;    ///< from the point (or the segment) asked for
-  Index contact_node = -1;  ///< its (first) entry among the nodes of the contact boundary, or −1
-};
 
 /// A state, and what several sensors want to know of it.
 struct Observation {

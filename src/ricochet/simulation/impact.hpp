@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ricochet/simulation/rigid_body.hpp"
+
+/// @file What one impact came to. When there is one, and of which instants its numbers are: impacts.hpp.
+namespace ricochet {
+
+struct Impact {
+  int body = 0;
+  std::string obstacle;
+  double begin = 0.0, end = 0.0;  ///< where it has not ended: so far
+  bool ended = true;
+  bool from_start = false;                                   ///< in contact when the run begins
+  long intervals = 1;                                        ///< of contact that were taken together
+  double contact_time = 0.0;                                 ///< of these alone
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< of all contact forces on the body
+  Eigen::Vector3d normal_impulse = Eigen::Vector3d::Zero();  ///< of their normal parts
+  double largest_force = 0.0, largest_force_time = 0.0;      ///< size of the resultant
+  double obstacle_velocity = 0.0;                            ///< along the normal, mean over the normal impulse
+  double mass = 0.0;                                         ///< of the body
+  RigidMotionState before, after;                            ///< `after`: zero where it has not ended
+
+  /// Mean direction of the normal impulse, out of the obstacle; zero without one.
+  [[nodiscard]] Eigen::Vector3d normal() const;
+  /// Of the centre of mass along the normal, relative to the obstacle; negative: it comes nearer.
+  [[nodiscard]] double normal_velocity_before() const;
+  [[nodiscard]] double normal_velocity_after() const;
+  /// Of the centre of mass, across the normal.
+  [[nodiscard]] Eigen::Vector3d tangential_velocity_before() const;
+  [[nodiscard]] Eigen::Vector3d tangential_velocity_after() const;
+  /// −(normal velocity after)/(normal velocity before); none where it has not ended or the body did not come nearer.
+  [[nodiscard]] std::optional<double> restitution() const;
+  /// Of loads, supports, damping and other obstacles, in the same steps.
+  [[nodiscard]] Eigen::Vector3d other_impulse() const;
+};
+
+}  // namespace ricochet

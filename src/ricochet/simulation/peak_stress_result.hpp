@@ -1,0 +1,15 @@
+#pragma once
+
+#include "ricochet/base/types.hpp"
+
+/// @file The largest von Mises stress of a run, and what it was looked for in.
+namespace ricochet {
+
+struct PeakStressResult {
+  double von_mises = 0.0, time = 0.0;
+  long step = 0;
+  Index cell = -1;             ///< numbered through all blocks; −1: no look yet
+  long looks = 0, states = 0;  ///< that were looked at, of so many
+};
+
+}  // namespace ricochet

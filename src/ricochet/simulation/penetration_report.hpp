@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// @file Penetration that no contact prevented, as it was found.
+namespace ricochet {
+
+/// A body that was found inside of an obstacle, or two bodies that were found inside of each other.
+struct UnwatchedPenetration {
+  std::string obstacle;             ///< empty: bodies
+  std::vector<std::string> bodies;  ///< one, or two
+  double depth = 0.0;
+  double relative_depth = 0.0;  ///< to the size of the (smaller) body, the diagonal of the box around it
+  double time = 0.0;
+  std::vector<double> place;        ///< of the node, at that time
+  double first_time = 0.0;          ///< when it was found
+  std::vector<std::string> groups;  ///< boundary groups of the mesh that the node belongs to
+};
+
+/// A contact that goes on beyond its group.
+struct ContactBeyondRim {
+  std::string group, obstacle;
+  double time = 0.0;
+  std::vector<double> place;
+  std::vector<std::string> groups;  ///< boundary groups of the facets beyond
+};
+
+struct PenetrationReport {
+  bool checked = false;  ///< false: results of a version that did not look
+  long looks_at_obstacles = 0, looks_at_bodies = 0;
+  std::vector<UnwatchedPenetration> found = {};
+  std::vector<ContactBeyondRim> rims = {};
+
+  /// The deepest of what was found; nullptr: nothing was.
+  [[nodiscard]] const UnwatchedPenetration* deepest() const;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "ricochet/base/types.hpp"
+
+/// @file What a body is and how it moves, as a rigid one.
+namespace ricochet {
+
+/// Reference configuration; in the plane z = 0, and per unit of thickness.
+struct RigidBody {
+  double mass = 0.0;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre; in the plane only its zz entry is used
+};
+
+/// Mean motion of a body and its energies.
+struct RigidMotionState {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the centre of mass: momentum / mass
+  /// Angular momentum about the centre of mass, solved with the inertia about it; reference positions.
+  Eigen::Vector3d spin = Eigen::Vector3d::Zero();
+  double kinetic_energy = 0.0;        ///< of the whole motion, ½VᵀMV
+  double rigid_kinetic_energy = 0.0;  ///< of velocity and spin alone; the rest is that of vibrations
+};
+
+}  // namespace ricochet
