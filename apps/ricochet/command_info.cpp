@@ -123,7 +123,7 @@ void describe_result(const std::string& directory) {
   fmt::print("{}: {}{}\n", directory, s.title.empty() ? s.case_file : s.title, status_text(directory, s));
   if (!s.message.empty()) fmt::print("  {}\n", indented(s.message));
   print_progress(directory, s);
-  fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass, s.dimension, s.degree);
+  fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass_text(), s.dimension, s.degree);
   fmt::print("  {}, {}, {}, {} of {:g}, {}\n", counted(s.nodes, "node"), counted(s.cells, "cell"),
              counted(s.contact_points, "contact point"), counted(s.steps, "step"), s.step, counted(s.frames, "frame"));
   print_contacts(s.contacts);

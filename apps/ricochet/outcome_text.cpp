@@ -69,10 +69,21 @@ std::string rotation_text(std::size_t impact, const RunSummary& summary) {
                      summary.small_strain_holds_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
 }
 
+/// How much of the mesh the impact has seen.
+std::string resolution_text(const Impact& impact) {
+  if (impact.contact_points == 0) return "";
+  const std::string points =
+      fmt::format(", at most {} of {} contact points at once", impact.contact_points, impact.all_contact_points);
+  if (!impact.is_coarse()) return points;
+  return points + ": the contact zone is too coarse to trust the largest force and the duration; refine the mesh there";
+}
+
 std::string impact_text(const Impact& impact, const RunSummary& summary) {
   std::string text;
   if (summary.bodies.size() > 1) text += body_text(impact.body, summary) + " ";
-  text += fmt::format("on \"{}\" from t = {:.6g}", impact.obstacle, impact.begin);
+  text += fmt::format("on \"{}\" ", impact.obstacle);
+  if (!impact.first_place.empty()) text += fmt::format("first at {} ", vector_text(impact.first_place));
+  text += fmt::format("from t = {:.6g}", impact.begin);
   if (impact.from_start) text += " (the start)";
   if (impact.ended) {
     text += fmt::format(" to {:.6g} (duration {:.4g})", impact.end, impact.end - impact.begin);
@@ -86,7 +97,7 @@ std::string impact_text(const Impact& impact, const RunSummary& summary) {
   }
   text += fmt::format(", {}, largest force {:.4g} at {:.6g}", impulse_text(impact), impact.largest_force,
                       impact.largest_force_time);
-  return text + spins_text(impact, summary);
+  return text + spins_text(impact, summary) + resolution_text(impact);
 }
 
 void print_no_contact(const RunSummary& summary) {

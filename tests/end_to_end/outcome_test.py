@@ -18,7 +18,49 @@ def summary(folder):
     return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 
+def cube_mesh(cells):
+    """A unit cube of cells³ hexahedra of order 1, in Gmsh's format 2.2."""
+    n = cells + 1
+    nodes = [f"{1 + i + n * (j + n * k)} {i / cells} {j / cells} {k / cells}"
+             for k in range(n) for j in range(n) for i in range(n)]
+    corners = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
+    elements = [" ".join(str(1 + i + a + n * (j + b + n * (k + c))) for a, b, c in corners)
+                for k in range(cells) for j in range(cells) for i in range(cells)]
+    return "\n".join(["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "1", '3 1 "body"', "$EndPhysicalNames",
+                      "$Nodes", str(len(nodes)), *nodes, "$EndNodes", "$Elements", str(len(elements)),
+                      *(f"{number} 5 2 1 1 {of}" for number, of in enumerate(elements, 1)), "$EndElements", ""])
+
+
 class Outcome(TestCase):
+    def test_the_mass_that_was_built_is_named(self):
+        case = """[mesh]
+file = "cube.msh"
+[[material]]
+group = "body"
+density = 1.0
+lambda = 1.0
+mu = 1.0
+[obstacle.floor]
+type = "plane"
+point = [0.0, 0.0, -0.001]
+normal = [0.0, 0.0, 1.0]
+[[contact]]
+group = "boundary"
+obstacle = "floor"
+[time]
+step = 0.001
+end = 0.001
+"""
+        for cells, built in ((17, "equivalent"), (20, "equivalent-compact")):  # 1,736 and 2,402 nodes on the surface
+            self.write("cube.msh", cube_mesh(cells))
+            folder = self.simulate(self.write("cube.toml", case), f"cube-{cells}")
+            found = summary(folder)
+            self.assertEqual(found["mass"], "equivalent")
+            self.assertEqual(found["mass_built"], built)
+            self.assertEqual(found["contact_points"], 6 * cells**2 + 2)
+            said = self.expect_status(0, run("info", folder)).stdout
+            self.assertEqual(", built as equivalent-compact" in said, built != "equivalent")
+
     def test_impacts_balance_momentum_and_are_told(self):
         folder = self.simulate(PUCK, "puck")
         found = summary(folder)
@@ -41,6 +83,29 @@ class Outcome(TestCase):
         peak = found["peak_stress"]
         least = "≥ " if peak["states_looked_at"] < peak["states"] else ""
         self.assertIn(f"largest von Mises stress {least}{peak['von_mises']:.6g}", said)
+
+    def test_they_tell_where_and_on_how_many_points(self):
+        folder = self.simulate(PUCK, "puck", {"time.end": 7e-4, "output.history_every": 1})
+        impact = summary(folder)["impacts"][0]
+        header, *rows = (folder / "history.csv").read_text(encoding="ascii").splitlines()
+        column = header.split(",").index("active_contacts")
+        self.assertEqual(impact["contact_points"], max(float(row.split(",")[column]) for row in rows))
+        with h5py.File(folder / "results.h5") as file:
+            nodes = file["/mesh/nodes"][()]
+        lowest = nodes[numpy.argmin(nodes[:, 1])]  # it flies without turning
+        self.assertEqual(impact["first_place"], list(lowest[:2]))
+        said = self.expect_status(0, run("info", folder)).stdout
+        self.assertFalse(impact["coarse"])
+        self.assertIn(f", at most {impact['contact_points']} of {impact['all_contact_points']} contact points at once\n", said)
+
+    def test_a_coarse_contact_zone_is_told(self):
+        folder = self.simulate(self.write("block.toml", block_case()), "block")
+        impact = summary(folder)["impacts"][0]
+        self.assertIn(impact["contact_points"], (1, 2, 3))
+        self.assertLess(impact["contact_points"], impact["all_contact_points"])
+        self.assertTrue(impact["coarse"])
+        said = self.expect_status(0, run("info", folder)).stdout
+        self.assertIn("at once: the contact zone is too coarse to trust the largest force and the duration", said)
 
     def test_a_run_without_contact_says_so(self):
         told = "  no contact: no contact force acted in this run\n"

@@ -66,6 +66,12 @@ TEST(Impacts, OfABarAgainstAWall) {
     EXPECT_NEAR(impact.mass, mass, 1e-12 * mass);
     EXPECT_NEAR(impact.normal_velocity_before(), -10.0, 1e-10);
     EXPECT_NEAR(impact.normal()[0], 1.0, 1e-14);
+    // The whole end of the strip, which has two nodes.
+    EXPECT_EQ(impact.contact_points, 2);
+    EXPECT_EQ(impact.all_contact_points, 2);
+    EXPECT_FALSE(impact.is_coarse());
+    ASSERT_EQ(impact.first_place.size(), 2u);
+    EXPECT_EQ(impact.first_place[0], 5.0);
     ASSERT_TRUE(impact.restitution().has_value());
     // What is lost stays in the mesh as oscillation.
     const double error = std::abs(*impact.restitution() - 1.0);

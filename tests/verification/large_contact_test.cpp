@@ -87,9 +87,10 @@ TEST(LargeContact, ChoosesTheCompactMassForManyContactNodesInSpace) {
   Points in_space(3, 1), in_plane(2, 1);
   MassInput few{nullptr, &in_space, std::vector<Index>(500)}, many{nullptr, &in_space, std::vector<Index>(10000)},
       plane{nullptr, &in_plane, std::vector<Index>(10000)};
-  EXPECT_FALSE(prefers_compact(few));
-  EXPECT_TRUE(prefers_compact(many));
-  EXPECT_FALSE(prefers_compact(plane));
+  EXPECT_EQ(mass_to_build("equivalent", few), "equivalent");
+  EXPECT_EQ(mass_to_build("equivalent", many), "equivalent-compact");
+  EXPECT_EQ(mass_to_build("equivalent", plane), "equivalent");
+  EXPECT_EQ(mass_to_build("consistent", many), "consistent");
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ Section mass_section() {
                        "and moments of inertia. \"equivalent-lumped\" is diagonal, for the scheme \"semi-explicit\". "
                        "\"equivalent-compact\" couples hardly more nodes than \"consistent\", so that its factors are "
                        "small; \"equivalent\" is built like it where a case in space has more than 2,000 contact "
-                       "nodes, those of all bodies together."}}};
+                       "nodes, those of all bodies together; `mass_built` in summary.json says so."}}};
 }
 
 Section time_section() {

@@ -158,14 +158,12 @@ void assemble_operators(const Case& input, Model& model) {
   const int d = model.mesh.dimension;
   const SparseMatrix consistent = assemble_scalar_mass(model.body, graph);
   MassInput mass_input{&consistent, &model.space.nodes, model.problem.contact.unique_nodes(), &consistent};
-  const bool compact = input.mass.type == "equivalent" && prefers_compact(mass_input);
-  if (compact) {
-    log::info(
-        fmt::format("the mass \"equivalent\" of {} contact nodes is built as \"equivalent-compact\", which keeps "
-                    "the factor small",
-                    mass_input.contact_nodes.size()));
+  model.mass_built = mass_to_build(input.mass.type, mass_input);
+  if (model.mass_built != input.mass.type) {
+    log::info(fmt::format("the mass \"{}\" of {} contact nodes is built as \"{}\", which keeps the factor small",
+                          input.mass.type, mass_input.contact_nodes.size(), model.mass_built));
   }
-  const std::unique_ptr<MassConstruction> construction = make_mass(compact ? "equivalent-compact" : input.mass.type);
+  const std::unique_ptr<MassConstruction> construction = make_mass(model.mass_built);
   const auto build = [&](const SparseMatrix& from, const std::vector<double>& weight = {}) {
     const CellMasses cells(model.body, weight);
     mass_input.consistent = &from;

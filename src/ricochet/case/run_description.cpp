@@ -29,6 +29,7 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.version = version;
   summary.scheme = input.time.scheme;
   summary.mass = input.mass.type;
+  summary.mass_built = model.mass_built;
   summary.libraries = library_versions();
   summary.overrides = input.overridden;
   summary.parameters = input.values;
@@ -75,7 +76,7 @@ ContactProvenance describe_provenance(const Case& input, const RunSummary& summa
                               overrides.empty() ? "" : " with --set", overrides, summary.scheme);
   if (summary.scheme == "newmark")
     result.origin += fmt::format(" (beta {:g}, gamma {:g})", input.time.beta, input.time.gamma);
-  result.origin += fmt::format(", step size {:g}, mass {}, multipliers", summary.step, summary.mass);
+  result.origin += fmt::format(", step size {:g}, mass {}, multipliers", summary.step, summary.mass_text());
   std::vector<std::string> spaces;
   for (const ContactSection& contact : input.contacts) {
     if (std::find(spaces.begin(), spaces.end(), contact.multipliers) == spaces.end())

@@ -90,6 +90,10 @@ Json expectations_to_json(const RunSummary& summary) {
 
 }  // namespace
 
+std::string RunSummary::mass_text() const {
+  return mass_built.empty() || mass_built == mass ? mass : fmt::format("{}, built as {}", mass, mass_built);
+}
+
 ColumnDigest RunSummary::digest(const std::string& column) const {
   const auto at = std::find(columns.begin(), columns.end(), column);
   const auto i = static_cast<std::size_t>(at - columns.begin());
@@ -158,6 +162,7 @@ std::string to_json(const RunSummary& s) {
                {"libraries", s.libraries},
                {"scheme", s.scheme},
                {"mass", s.mass},
+               {"mass_built", s.mass_built},
                {"dimension", s.dimension},
                {"degree", s.degree},
                {"nodes", s.nodes},
@@ -220,6 +225,7 @@ RunSummary read_summary(const std::string& path) {
     s.version = json.at("ricochet_version");
     s.scheme = json.at("scheme");
     s.mass = json.at("mass");
+    s.mass_built = json.value("mass_built", "");
     s.dimension = json.at("dimension");
     s.degree = json.at("degree");
     s.nodes = json.at("nodes");

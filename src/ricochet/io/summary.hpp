@@ -74,6 +74,7 @@ struct RunSummary {
   std::string status = "done";  ///< "running", "done", "failed" or "interrupted"
   std::string message;          ///< of the failure or the interruption
   std::string case_file, title, version, scheme, mass;
+  std::string mass_built;  ///< the construction that was used for `mass`; empty in results that do not say it
   std::string libraries;
   std::vector<std::string> overrides;                  ///< key paths given by --set
   std::string case_path;                               ///< absolute: with `settings` what --resume needs to know
@@ -111,6 +112,8 @@ struct RunSummary {
   std::vector<ExpectationResult> expectations;
   std::string contact_export;  ///< what became of contact problems to be exported, in words; not in the file
 
+  /// "equivalent", or "equivalent, built as equivalent-compact".
+  [[nodiscard]] std::string mass_text() const;
   /// Digest of a column; zeros when there is no such column.
   [[nodiscard]] ColumnDigest digest(const std::string& column) const;
   /// Largest |total_energy| + |algorithmic_energy| bound, the scale of the energy account: max of |first|, |min|, |max|

@@ -78,6 +78,10 @@ Json impact_to_json(const Impact& impact, int dimension) {
           {"other_impulse", if_ended(components(impact.other_impulse(), dimension))},
           {"largest_force", number(impact.largest_force)},
           {"largest_force_time", number(impact.largest_force_time)},
+          {"contact_points", impact.contact_points},
+          {"all_contact_points", impact.all_contact_points},
+          {"coarse", impact.is_coarse()},
+          {"first_place", numbers(impact.first_place)},
           {"restitution", restitution ? number(*restitution) : Json()},
           {"why_no_restitution", restitution ? Json() : Json(why_no_restitution(impact))},
           {"normal_velocity_before", number(impact.normal_velocity_before())},
@@ -185,6 +189,9 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies,
   impact.normal_impulse = to_number(json.at("normal_impulse")) * vector_from(json.at("normal"));
   impact.largest_force = to_number(json.at("largest_force"));
   impact.largest_force_time = to_number(json.at("largest_force_time"));
+  impact.contact_points = json.value("contact_points", 0L);
+  impact.all_contact_points = json.value("all_contact_points", 0L);
+  impact.first_place = to_numbers(json.value("first_place", Json::array()));
   impact.obstacle_velocity = to_number(json.at("obstacle_normal_velocity"));
   if (impact.body < 0 || impact.body >= static_cast<int>(bodies.size()))
     throw Error(

@@ -55,9 +55,10 @@ std::unique_ptr<MassConstruction> make_mass(const std::string& name) {
 }
 
 /// On a ball of degree 2 with 9,054 contact nodes the factor is 4.7 times as large (docs/equivalent-mass.md).
-bool prefers_compact(const MassInput& input) {
+std::string mass_to_build(const std::string& asked, const MassInput& input) {
   constexpr std::size_t many_contact_nodes = 2000;
-  return input.nodes->rows() == 3 && input.contact_nodes.size() > many_contact_nodes;
+  const bool couples_many = input.nodes->rows() == 3 && input.contact_nodes.size() > many_contact_nodes;
+  return asked == "equivalent" && couples_many ? "equivalent-compact" : asked;
 }
 
 bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes) {

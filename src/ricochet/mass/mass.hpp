@@ -40,9 +40,10 @@ class MassConstruction {
 /// By the name used in a case file; throws Error(invalid_input) that lists the names.
 [[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name);
 [[nodiscard]] std::vector<std::string> mass_names();
-/// True where "equivalent" would couple so many nodes in space that a factor of the stage's operator is several times
-/// as large as with "equivalent-compact".
-[[nodiscard]] bool prefers_compact(const MassInput& input);
+/// The name of the mass that is built for the one asked for: "equivalent-compact" where "equivalent" would couple so
+/// many nodes in space that a factor of the stage's operator is several times as large. Contact nodes of all bodies
+/// count together, as the factor is one; else what is asked for.
+[[nodiscard]] std::string mass_to_build(const std::string& asked, const MassInput& input);
 
 /// One constructor per file.
 [[nodiscard]] std::unique_ptr<MassConstruction> make_consistent_mass();

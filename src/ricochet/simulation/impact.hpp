@@ -20,6 +20,9 @@ struct Impact {
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< of all contact forces on the body
   Eigen::Vector3d normal_impulse = Eigen::Vector3d::Zero();  ///< of their normal parts
   double largest_force = 0.0, largest_force_time = 0.0;      ///< size of the resultant
+  long contact_points = 0;                                   ///< most that carried a force at once; 0: not known
+  long all_contact_points = 0;                               ///< of this body with this obstacle
+  std::vector<double> first_place = {};                      ///< reference position of the first contact, if known
   double obstacle_velocity = 0.0;                            ///< along the normal, mean over the normal impulse
   double mass = 0.0;                                         ///< of the body
   RigidMotionState before, after;                            ///< `after`: zero where it has not ended
@@ -34,6 +37,11 @@ struct Impact {
   [[nodiscard]] Eigen::Vector3d tangential_velocity_after() const;
   /// −(normal velocity after)/(normal velocity before); none where it has not ended or the body did not come nearer.
   [[nodiscard]] std::optional<double> restitution() const;
+  /// So few of many points carry it that one more or less changes the largest force and the duration. A flat end that
+  /// strikes with all points it has is not meant.
+  [[nodiscard]] bool is_coarse() const {
+    return contact_points >= 1 && contact_points <= 3 && contact_points < all_contact_points;
+  }
   /// Of loads, supports, damping and other obstacles, in the same steps.
   [[nodiscard]] Eigen::Vector3d other_impulse() const;
 };

@@ -100,7 +100,11 @@ void ImpactRecorder::find_places(const std::vector<std::string>& obstacles) {
       return place.body == body && place.obstacle == obstacle;
     });
     place_of_point_.push_back(static_cast<int>(found - places_.begin()));
-    if (found == places_.end()) places_.push_back({body, obstacle});
+    if (found == places_.end()) {
+      places_.push_back({body, obstacle, 1});
+    } else {
+      ++found->points;
+    }
   }
 }
 
@@ -121,8 +125,13 @@ void ImpactRecorder::find_forces(const State& state, std::vector<Force>& forces)
     if (!carries_force(state.forces, point)) continue;
     Force& force = forces[static_cast<std::size_t>(place_of_point_[static_cast<std::size_t>(point)])];
     const double pressing = state.forces.normal_reaction[point];
-    force.any = true;
-    force.all.head(d) += contact_force(problem_.contact, state.forces, point);
+    const SpaceVector own = contact_force(problem_.contact, state.forces, point);
+    ++force.points;
+    if (const double size = own.norm(); force.leading < 0 || size > force.leading_size) {
+      force.leading = point;
+      force.leading_size = size;
+    }
+    force.all.head(d) += own;
     force.normal.head(d) += pressing * problem_.contact.normals.col(point);
     force.pressing += pressing;
     if (travel.size() > 0) force.travel += pressing * travel[point];
@@ -144,8 +153,8 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
   const Force &previous = previous_[place], &current = current_[place];
   const WorkRule rule = scheme_.work_rule();
   const double h = scheme_.step();
-  const bool acts_before = rule.previous_weight != 0.0 && previous.any;
-  const bool touches = acts_before || current.any;
+  const bool acts_before = rule.previous_weight != 0.0 && previous.any();
+  const bool touches = acts_before || current.any();
   const bool touched = interval.phase == touching;
   if (touches != touched && motion_ == nullptr) motion_ = &rigid_.motion(velocity_before_);
   const auto motion = [&] { return (*motion_)[static_cast<std::size_t>(places_[place].body)]; };
@@ -164,7 +173,7 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
       interval.intervals += 1.0;
     } else {
       if (interval.phase == apart) file(interval);
-      begin(interval, time, motion());
+      begin(interval, time, acts_before ? previous : current, motion());
     }
     interval.phase = touching;
     if (acts_before) {
@@ -179,7 +188,7 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
     add(interval.impulse, h * weight, force->all);
     add(interval.normal_impulse, h * weight, force->normal);
   }
-  if (!current.any) return;
+  if (!current.any()) return;
   interval.end = instant + 0.5 * h;
   interval.contact_time += h;
   interval.pressing += current.pressing;
@@ -188,19 +197,32 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
 }
 
 void ImpactRecorder::take_largest(Interval& interval, const Force& force, double instant) {
+  interval.most_points = std::max(interval.most_points, static_cast<double>(force.points));
   const double size = force.all.norm();
   if (!(size > interval.largest)) return;
   interval.largest = size;
   interval.largest_time = instant;
 }
 
-void ImpactRecorder::begin(Interval& interval, double time, const RigidMotionState& motion) const {
+/// In the reference configuration.
+ImpactRecorder::Three ImpactRecorder::place_of(Index point) const {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  for (SparseRowMatrix::InnerIterator entry(problem_.contact.trace, point); entry; ++entry) {
+    place.head(problem_.dimension) += entry.value() * problem_.nodes.col(entry.col());
+    sum += entry.value();
+  }
+  return numbers_of(place / sum);
+}
+
+void ImpactRecorder::begin(Interval& interval, double time, const Force& first, const RigidMotionState& motion) const {
   const double place = interval.place;
   interval = {};
   interval.place = place;
   interval.begin = interval.end = time;
   interval.from_start = time > 0.0 ? 0.0 : 1.0;
   interval.intervals = 1.0;
+  interval.first_place = place_of(first.leading);
   interval.before = {numbers_of(motion.velocity), numbers_of(motion.spin), motion.kinetic_energy,
                      motion.rigid_kinetic_energy};
 }
@@ -232,6 +254,9 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
   result.normal_impulse = vector_of(interval.normal_impulse);
   result.largest_force = interval.largest;
   result.largest_force_time = interval.largest_time;
+  result.contact_points = std::lround(interval.most_points);
+  result.all_contact_points = place.points;
+  result.first_place.assign(interval.first_place.begin(), interval.first_place.begin() + problem_.dimension);
   if (interval.pressing > 0.0) result.obstacle_velocity = interval.travel / (interval.pressing * scheme_.step());
   result.mass = rigid_.bodies()[static_cast<std::size_t>(place.body)].mass;
   result.before = motion(interval.before);

@@ -56,6 +56,8 @@ class ImpactRecorder {
     Three impulse, normal_impulse;
     double pressing, travel;  ///< Σ r_N, and Σ r_N times the obstacle's motion along the normal, over instants
     double largest, largest_time;
+    double most_points;
+    Three first_place;
     Motion before, after;
   };
   /// Of an interval: numbers, too.
@@ -64,18 +66,23 @@ class ImpactRecorder {
   struct Place {
     int body;
     std::string obstacle;
+    long points;
   };
   /// Resultants of the points of a place at an instant.
   struct Force {
     Eigen::Vector3d all = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
     double pressing = 0.0, travel = 0.0;
-    bool any = false;
+    long points = 0;            ///< that carry a force
+    Index leading = -1;         ///< the point of the largest force, the first of equals
+    double leading_size = 0.0;  ///< of that force
+    [[nodiscard]] bool any() const { return points > 0; }
   };
   void find_places(const std::vector<std::string>& obstacles);
   void find_forces(const State& state, std::vector<Force>& forces) const;
   void take_velocity(const State& state, Vector& velocity);
   void enter_place(std::size_t place, double instant);
-  void begin(Interval& interval, double time, const RigidMotionState& motion) const;
+  void begin(Interval& interval, double time, const Force& first, const RigidMotionState& motion) const;
+  [[nodiscard]] Three place_of(Index point) const;
   static void take_largest(Interval& interval, const Force& force, double instant);
   void file(const Interval& interval);
   [[nodiscard]] Impact describe(const Interval& interval) const;

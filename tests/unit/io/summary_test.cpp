@@ -40,6 +40,9 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   impact.contact_time = 0.25;
   impact.largest_force = INFINITY;
   impact.largest_force_time = 0.375;
+  impact.contact_points = 5;
+  impact.all_contact_points = 9;
+  impact.first_place = {1.5, -INFINITY};
   impact.before.velocity = {INFINITY, -INFINITY, 0.0};
   summary.impacts.push_back(impact);
   summary.peak_stress = PeakStressDescription{{INFINITY, 0.5, 3, 7, 2, 4}, {1.5, 2.5}, 8, "steel"};
@@ -64,6 +67,9 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_EQ(back.impacts[0].contact_time, 0.25);
   EXPECT_EQ(back.impacts[0].largest_force, INFINITY);
   EXPECT_EQ(back.impacts[0].largest_force_time, 0.375);
+  EXPECT_EQ(back.impacts[0].contact_points, 5);
+  EXPECT_EQ(back.impacts[0].all_contact_points, 9);
+  EXPECT_EQ(back.impacts[0].first_place, (std::vector<double>{1.5, -INFINITY}));
   EXPECT_EQ(back.impacts[0].before.velocity[1], -INFINITY);
   ASSERT_TRUE(back.peak_stress.has_value());
   EXPECT_EQ(back.peak_stress->peak.von_mises, INFINITY);
