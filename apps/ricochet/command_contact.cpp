@@ -55,7 +55,7 @@ std::string outcome_text(const ContactSolution& solution) {
   return "";
 }
 
-std::string status_text(const std::vector<ContactStatus>& status) {
+std::string contact_states_text(const std::vector<ContactStatus>& status) {
   const auto count = [&](ContactStatus which) { return std::count(status.begin(), status.end(), which); };
   return fmt::format("{} open, {} stick, {} slip, {} closed without friction", count(ContactStatus::open),
                      count(ContactStatus::stick), count(ContactStatus::slip), count(ContactStatus::closed));
@@ -86,7 +86,7 @@ void print_solution(const ContactArguments& arguments, const ContactSolution& so
   print_row("iterations", fmt::format("{}, {} of them with a linear system, {} factorizations", solution.iterations,
                                       solution.newton_steps, solution.factorizations));
   print_row("time", fmt::format("{:.4g} ms", 1e3 * seconds));
-  if (!solution.status.empty()) print_row("status", status_text(solution.status));
+  if (!solution.status.empty()) print_row("status", contact_states_text(solution.status));
   if (arguments.record) print_record(solution);
 }
 

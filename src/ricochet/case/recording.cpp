@@ -44,10 +44,6 @@ std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const M
   return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options);
 }
 
-std::size_t column_of(const std::vector<std::string>& columns, const std::string& name) {
-  return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
-}
-
 PenetrationWatch make_penetration_watch(const Case& input, const Model& model) {
   std::vector<NamedObstacle> obstacles;
   for (std::size_t i = 0; i < input.obstacles.size(); ++i)
@@ -96,7 +92,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       impacts_(make_impact_recorder(model, scheme, state)),
       peak_stress_(model.body, step_work(model.body, factor_entries)),
       penetration_(make_penetration_watch(input, model)),
-      rotation_(model.body, column_of(recorder_.columns(), "max_rotation")),
+      rotation_(model.body, column_index(recorder_.columns(), "max_rotation")),
       history_every_(input.output.history_every) {
   for (const auto& [every, sensors] : model.sampled_sensors) {
     SensorRecorder recorder(model.problem, sensors);

@@ -8,6 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/run_judgement.hpp"
+#include "ricochet/simulation/history.hpp"
 
 namespace ricochet {
 
@@ -16,10 +17,6 @@ namespace {
 /// What a sum of works is rounded to, relative to the largest.
 constexpr double rounding_of_works = 1e-12;
 
-std::size_t column_of(const std::vector<std::string>& columns, const std::string& name) {
-  return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
-}
-
 }  // namespace
 
 RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme, const State& state,
@@ -27,13 +24,14 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
     : model_(model),
       stops_(input.check.stops),
       momentum_(model.problem, scheme, state),
-      kinetic_(column_of(columns, "kinetic_energy")),
-      elastic_(column_of(columns, "elastic_energy")),
-      total_(column_of(columns, "total_energy")),
-      residual_(column_of(columns, "energy_residual")),
-      momentum_column_(column_of(columns, "momentum_x")),
-      angular_column_(column_of(columns, model.problem.dimension == 2 ? "angular_momentum_z" : "angular_momentum_x")) {
-  for (const char* work : work_columns) works_.push_back(column_of(columns, work));
+      kinetic_(column_index(columns, "kinetic_energy")),
+      elastic_(column_index(columns, "elastic_energy")),
+      total_(column_index(columns, "total_energy")),
+      residual_(column_index(columns, "energy_residual")),
+      momentum_column_(column_index(columns, "momentum_x")),
+      angular_column_(
+          column_index(columns, model.problem.dimension == 2 ? "angular_momentum_z" : "angular_momentum_x")) {
+  for (const char* work : work_columns) works_.push_back(column_index(columns, work));
   const std::string solver =
       input.solver.method == "direct" ? "" : ", or solver.tolerance where steps are solved by iterations";
   energy_.result.name = "energy_residual";

@@ -15,15 +15,15 @@ namespace ricochet {
 
 namespace {
 
-struct Registration {
+struct SpaceRegistration {
   std::string name;
   std::function<std::unique_ptr<MultiplierSpace>(const ContactPatch&)> make;
   MultiplierAnchor anchor = MultiplierAnchor::node;
   std::function<std::string(CellShape, int)> instability = {};  ///< as the function of that name; empty: stable
 };
 
-const std::vector<Registration>& registrations() {
-  static const std::vector<Registration> all{
+const std::vector<SpaceRegistration>& space_registrations() {
+  static const std::vector<SpaceRegistration> all{
       {"nodal", make_nodal_multipliers},
       {"p0", make_p0_multipliers, MultiplierAnchor::facet, p0_instability},
       {"p1", make_p1_multipliers},
@@ -32,8 +32,8 @@ const std::vector<Registration>& registrations() {
   return all;
 }
 
-const Registration& registration(const std::string& name) {
-  for (const Registration& entry : registrations()) {
+const SpaceRegistration& registration(const std::string& name) {
+  for (const SpaceRegistration& entry : space_registrations()) {
     if (entry.name == name) return entry;
   }
   throw Error(ErrorKind::invalid_input,
@@ -44,7 +44,7 @@ const Registration& registration(const std::string& name) {
 
 std::vector<std::string> multiplier_space_names() {
   std::vector<std::string> names;
-  for (const Registration& entry : registrations()) names.push_back(entry.name);
+  for (const SpaceRegistration& entry : space_registrations()) names.push_back(entry.name);
   return names;
 }
 
@@ -57,7 +57,7 @@ MultiplierAnchor anchor_of(const std::string& multipliers) {
 }
 
 std::string instability(const std::string& multipliers, CellShape facet, int displacement_degree) {
-  const Registration& space = registration(multipliers);
+  const SpaceRegistration& space = registration(multipliers);
   return space.instability ? space.instability(facet, displacement_degree) : std::string();
 }
 

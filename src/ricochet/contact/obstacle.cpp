@@ -78,13 +78,13 @@ class Plane final : public Obstacle {
   double rotation_rate_;
 };
 
-struct Registration {
+struct ObstacleRegistration {
   std::string type;
   std::function<std::unique_ptr<Obstacle>(const ObstacleParameters&)> make;
 };
 
-const std::vector<Registration>& registrations() {
-  static const std::vector<Registration> all{
+const std::vector<ObstacleRegistration>& obstacle_registrations() {
+  static const std::vector<ObstacleRegistration> all{
       {"plane", [](const ObstacleParameters& p) { return std::make_unique<Plane>(p); }},
   };
   return all;
@@ -94,12 +94,12 @@ const std::vector<Registration>& registrations() {
 
 std::vector<std::string> obstacle_types() {
   std::vector<std::string> names;
-  for (const Registration& entry : registrations()) names.push_back(entry.type);
+  for (const ObstacleRegistration& entry : obstacle_registrations()) names.push_back(entry.type);
   return names;
 }
 
 std::unique_ptr<Obstacle> make_obstacle(const ObstacleParameters& parameters) {
-  for (const Registration& entry : registrations()) {
+  for (const ObstacleRegistration& entry : obstacle_registrations()) {
     if (entry.type == parameters.type) return entry.make(parameters);
   }
   throw Error(ErrorKind::invalid_input,

@@ -9,12 +9,12 @@ namespace ricochet {
 namespace {
 
 /// The block and the number in it of a facet numbered through all blocks.
-struct FacetPlace {
+struct PlaceInBlock {
   const CellBlock* block = nullptr;
   Index local = 0;
 };
 
-FacetPlace place_of(const Mesh& mesh, Index facet) {
+PlaceInBlock place_of(const Mesh& mesh, Index facet) {
   for (const CellBlock& block : mesh.facets) {
     if (facet < block.size()) return {&block, facet};
     facet -= block.size();
@@ -29,7 +29,7 @@ std::vector<Index> interior_facets(const Mesh& mesh, const std::vector<Index>& f
   std::vector<std::vector<Index>> cells_of_vertex(static_cast<std::size_t>(mesh.node_count()));
   std::vector<char> wanted(static_cast<std::size_t>(mesh.node_count()), 0);
   for (const Index facet : facets) {
-    const FacetPlace at = place_of(mesh, facet);
+    const PlaceInBlock at = place_of(mesh, facet);
     for (int v = 0; v < vertex_count(at.block->shape); ++v)
       wanted[static_cast<std::size_t>(at.block->cell(at.local)[v])] = 1;
   }
@@ -44,7 +44,7 @@ std::vector<Index> interior_facets(const Mesh& mesh, const std::vector<Index>& f
   }
   std::vector<Index> interior;
   for (const Index facet : facets) {
-    const FacetPlace at = place_of(mesh, facet);
+    const PlaceInBlock at = place_of(mesh, facet);
     std::vector<Index> common = cells_of_vertex[static_cast<std::size_t>(at.block->cell(at.local)[0])];
     for (int v = 1; v < vertex_count(at.block->shape); ++v) {
       const std::vector<Index>& others = cells_of_vertex[static_cast<std::size_t>(at.block->cell(at.local)[v])];
@@ -59,7 +59,7 @@ std::string facet_tags(const Mesh& mesh, const std::vector<Index>& facets) {
   std::string text;
   constexpr std::size_t shown = 5;
   for (std::size_t i = 0; i < std::min(facets.size(), shown); ++i) {
-    const FacetPlace at = place_of(mesh, facets[i]);
+    const PlaceInBlock at = place_of(mesh, facets[i]);
     text += fmt::format("{}{}", i == 0 ? "" : ", ", at.block->tags[static_cast<std::size_t>(at.local)]);
   }
   if (facets.size() > shown) text += fmt::format(", … ({} in all)", facets.size());

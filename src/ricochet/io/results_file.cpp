@@ -110,12 +110,14 @@ const char* xdmf_type(int components) {
 }
 
 /// Who looks at the frames does that for a moment; who does not let go does not stop the run.
-constexpr double longest_wait = 2.0;
+constexpr double longest_wait_of_the_writer = 2.0;
 
 /// Nobody opens the files while they change.
 class LockedFrames {
  public:
-  explicit LockedFrames(FileLock& lock) : lock_(lock) { lock_.acquire(FileLock::Kind::exclusive, longest_wait); }
+  explicit LockedFrames(FileLock& lock) : lock_(lock) {
+    lock_.acquire(FileLock::Kind::exclusive, longest_wait_of_the_writer);
+  }
   ~LockedFrames() { lock_.release(); }
   LockedFrames(const LockedFrames&) = delete;
   LockedFrames& operator=(const LockedFrames&) = delete;

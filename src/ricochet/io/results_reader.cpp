@@ -20,7 +20,7 @@ struct ResultsReader::File {
 
 namespace {
 
-constexpr double longest_wait = 10.0;
+constexpr double longest_wait_of_a_reader = 10.0;
 
 std::vector<CellShape> shapes_of(int dimension) {
   if (dimension == 1) return {CellShape::interval};
@@ -96,7 +96,7 @@ ResultsReader::ResultsReader(const std::string& directory, int dimension, int de
     : dimension_(dimension), degree_(degree) {
   // A run that goes on waits with its next frame. What is known then does not change any more.
   FileLock lock(directory + "/results.xdmf");
-  lock.acquire(FileLock::Kind::shared, longest_wait);
+  lock.acquire(FileLock::Kind::shared, longest_wait_of_a_reader);
   frames_ = read_xdmf_frames(directory + "/results.xdmf");
   file_ = std::make_unique<File>(directory + "/results.h5");
   const Hdf5Reader& file = file_->reader;

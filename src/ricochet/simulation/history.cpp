@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "ricochet/base/parallel.hpp"
 
@@ -40,6 +41,12 @@ Matrix momenta_of_rigid_velocities(const SemidiscreteProblem& problem) {
 }
 
 }  // namespace
+
+std::size_t column_index(const std::vector<std::string>& columns, const std::string& name) {
+  const auto found = std::find(columns.begin(), columns.end(), name);
+  if (found == columns.end()) throw std::logic_error("no column " + name);
+  return static_cast<std::size_t>(found - columns.begin());
+}
 
 std::vector<std::string> HistoryRecorder::standard_columns(int dimension) {
   std::vector<std::string> columns{

@@ -39,6 +39,9 @@ class SensorRecorder {
   std::vector<double> row_;
 };
 
+/// The place of a column that must be there; throws std::logic_error where it is not.
+[[nodiscard]] std::size_t column_index(const std::vector<std::string>& columns, const std::string& name);
+
 class HistoryRecorder {
  public:
   HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,

@@ -9,13 +9,14 @@
 namespace ricochet {
 namespace {
 
-Matrix random_matrix(Index rows, Index columns, unsigned seed) {
+Matrix random_dense_matrix(Index rows, Index columns, unsigned seed) {
   std::mt19937 random(seed);
   return Matrix::NullaryExpr(rows, columns, [&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; });
 }
 
 TEST(DenseFactor, MultipliesPartsOfMatrices) {
-  const Matrix left = random_matrix(40, 9, 1), right = random_matrix(30, 8, 2), start = random_matrix(12, 12, 3);
+  const Matrix left = random_dense_matrix(40, 9, 1), right = random_dense_matrix(30, 8, 2),
+               start = random_dense_matrix(12, 12, 3);
   Matrix found = start, expected = start;
   add_transposed_product(20, 5, 6, &left(10, 2), left.rows(), &right(4, 1), right.rows(), &found(3, 2), found.rows());
   expected.block(3, 2, 5, 6) += left.block(10, 2, 20, 5).transpose() * right.block(4, 1, 20, 6);
@@ -23,8 +24,8 @@ TEST(DenseFactor, MultipliesPartsOfMatrices) {
 }
 
 TEST(DenseFactor, MultipliesByTheTranspose) {
-  const Matrix matrix = random_matrix(40, 9, 1);
-  const Vector x = random_matrix(40, 1, 2);
+  const Matrix matrix = random_dense_matrix(40, 9, 1);
+  const Vector x = random_dense_matrix(40, 1, 2);
   Vector y(9);
   multiply_transposed(matrix, x, y.data());
   EXPECT_LE((y - matrix.transpose() * x).cwiseAbs().maxCoeff(), 1e-14);
@@ -36,8 +37,8 @@ TEST(DenseFactor, LuSolvesAndShowsSingularity) {
   DenseLu factor;
   Vector x;
   for (const Index size : {1, 6, 150}) {
-    const Matrix matrix = random_matrix(size, size, 4);
-    const Vector right = random_matrix(size, 1, 5);
+    const Matrix matrix = random_dense_matrix(size, size, 4);
+    const Vector right = random_dense_matrix(size, 1, 5);
     factor.compute(matrix);
     factor.solve(right, x);
     EXPECT_LE((matrix * x - right).cwiseAbs().maxCoeff(), 1e-11) << size;
@@ -51,8 +52,8 @@ TEST(DenseFactor, LuSolvesAndShowsSingularity) {
 }
 
 TEST(DenseFactor, PowersOfTwoScaleTheResultExactly) {
-  const Matrix matrix = random_matrix(90, 90, 6);
-  const Vector right = random_matrix(90, 1, 7);
+  const Matrix matrix = random_dense_matrix(90, 90, 6);
+  const Vector right = random_dense_matrix(90, 1, 7);
   DenseLu factor;
   Vector a, b;
   factor.compute(matrix);

@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-Matrix random_matrix(Index size, std::mt19937& random) {
+Matrix near_identity(Index size, std::mt19937& random) {
   Matrix matrix = Matrix::Identity(size, size);
   for (double& value : matrix.reshaped()) value += 0.3 * test::uniform(random);
   return matrix;
@@ -21,9 +21,9 @@ Matrix random_matrix(Index size, std::mt19937& random) {
 TEST(Gmres, NeedsAsManyIterationsAsThereAreDifferences) {
   std::mt19937 random(4);
   const Index size = 60;
-  const Matrix earlier = random_matrix(size, random);
+  const Matrix earlier = near_identity(size, random);
   Matrix matrix = earlier;
-  for (const Index column : {3, 17, 40}) matrix.col(column) = random_matrix(size, random).col(column);
+  for (const Index column : {3, 17, 40}) matrix.col(column) = near_identity(size, random).col(column);
   const Eigen::PartialPivLU<Matrix> factor(earlier);
   const Vector right = test::uniform(size, random);
   Gmres gmres;
@@ -39,7 +39,7 @@ TEST(Gmres, NeedsAsManyIterationsAsThereAreDifferences) {
 TEST(Gmres, KnowsItsResidual) {
   std::mt19937 random(5);
   const Index size = 40;
-  const Matrix matrix = random_matrix(size, random);
+  const Matrix matrix = near_identity(size, random);
   const Vector right = test::uniform(size, random);
   Gmres gmres;
   Vector x;
@@ -58,7 +58,7 @@ TEST(Gmres, KnowsItsResidual) {
 TEST(SingleLu, SolvesToSixDigits) {
   std::mt19937 random(6);
   const Index size = 100;
-  Matrix matrix = random_matrix(size, random) + 20.0 * Matrix::Identity(size, size);
+  Matrix matrix = near_identity(size, random) + 20.0 * Matrix::Identity(size, size);
   for (Index j = 0; j < size; ++j) {
     for (Index i = 0; i < size; ++i) matrix(i, j) *= std::pow(10.0, -1.5 * static_cast<double>(std::abs(i - j)));
   }

@@ -8,7 +8,7 @@ namespace ricochet {
 namespace {
 
 /// About a third of the entries, column 2 empty.
-SparseMatrix random_matrix(Index size, unsigned seed) {
+SparseMatrix random_sparse_matrix(Index size, unsigned seed) {
   std::mt19937 random(seed);
   Matrix dense = Matrix::Zero(size, size);
   for (Index i = 0; i < size; ++i) {
@@ -20,7 +20,7 @@ SparseMatrix random_matrix(Index size, unsigned seed) {
 }
 
 TEST(SparseMatrix, ExtractTakesTheNumberedRowsAndColumns) {
-  const SparseMatrix matrix = random_matrix(6, 61);
+  const SparseMatrix matrix = random_sparse_matrix(6, 61);
   const std::vector<int> rows{1, -1, 0, -1, 2, -1};
   const std::vector<int> columns{-1, 0, -1, 1, -1, -1};
   const Matrix found = extract(matrix, rows, 3, columns, 2);
@@ -32,7 +32,7 @@ TEST(SparseMatrix, ExtractTakesTheNumberedRowsAndColumns) {
 
 TEST(SparseMatrix, SumsHaveTheEntriesOfBoth) {
   for (const Index size : {0, 1, 7, 40}) {
-    const SparseMatrix a = random_matrix(size, 1), b = random_matrix(size, 2);
+    const SparseMatrix a = random_sparse_matrix(size, 1), b = random_sparse_matrix(size, 2);
     const SparseMatrix sum = add_sparse(a, b), expected = a + b;
     EXPECT_TRUE(sum.isCompressed());
     EXPECT_EQ(sum.nonZeros(), expected.nonZeros());

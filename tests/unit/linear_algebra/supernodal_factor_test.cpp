@@ -14,14 +14,14 @@
 namespace ricochet {
 namespace {
 
-double uniform(std::mt19937& random) {
+double uniform_entry(std::mt19937& random) {
   return static_cast<double>(random()) / 2147483648.0 - 1.0;
 }
 
-Vector random_vector(Index size, unsigned seed) {
+Vector random_right_side(Index size, unsigned seed) {
   std::mt19937 random(seed);
   Vector result(size);
-  for (double& value : result) value = uniform(random);
+  for (double& value : result) value = uniform_entry(random);
   return result;
 }
 
@@ -32,7 +32,7 @@ SparseMatrix grid_matrix(int side, unsigned seed = 1) {
   const auto couple = [&](int a, int b) {
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 2; ++j) {
-        const double value = uniform(random);
+        const double value = uniform_entry(random);
         entries.emplace_back(2 * a + i, 2 * b + j, value);
         entries.emplace_back(2 * b + j, 2 * a + i, value);
         entries.emplace_back(2 * a + i, 2 * a + i, std::abs(value) + 0.02);
@@ -59,7 +59,7 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
     for (Index below = 0; below <= 19; ++below) {
       const Index rows = columns + below;
       std::mt19937 random(static_cast<unsigned>(31 * columns + below));
-      Matrix factor = Matrix::NullaryExpr(rows, columns, [&] { return uniform(random); });
+      Matrix factor = Matrix::NullaryExpr(rows, columns, [&] { return uniform_entry(random); });
       for (Index j = 0; j < columns; ++j) {
         factor(j, j) = 2.0 + std::abs(factor(j, j));
         for (Index i = 0; i < j; ++i) factor(i, j) = std::nan("");  // not to be read
@@ -69,7 +69,7 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
       std::vector<double> stream(static_cast<std::size_t>(supernode_stream_size(columns, rows)));
       ASSERT_EQ(write_supernode(factor.data(), columns, rows, stream.data()), stream.data() + stream.size());
 
-      const Vector right = random_vector(rows, 5);
+      const Vector right = random_right_side(rows, 5);
       Vector expected = right, found(rows + 1);
       triangle.triangularView<Eigen::Lower>().solveInPlace(expected.head(columns));
       expected.tail(below) -= beneath * expected.head(columns);
@@ -106,7 +106,7 @@ class LargeFactor : public testing::Test {
 
 TEST_F(LargeFactor, SolvesAsTheLibraryDoes) {
   SparseCholesky library(matrix_, SparseCholesky::TriangularSolve::library);
-  const Vector right = random_vector(size_, 3);
+  const Vector right = random_right_side(size_, 3);
   EXPECT_GT(own_.work_size(), size_) << "not divided: nothing to test";
   EXPECT_LT(own_.factor_bytes(), 1.1 * static_cast<double>(library.factor_bytes()));
   Vector y, z, x, expected;
@@ -120,7 +120,7 @@ TEST_F(LargeFactor, SolvesAsTheLibraryDoes) {
 }
 
 TEST_F(LargeFactor, GivesTheSameBitsForAnyNumberOfThreads) {
-  const Vector right = random_vector(size_, 4);
+  const Vector right = random_right_side(size_, 4);
   Vector expected, x;
   own_.solve(right, expected);
   for (const int threads : {2, 3, 7}) {
@@ -135,7 +135,7 @@ TEST_F(LargeFactor, SolvesSparseColumnsOnTheirPaths) {
   const SupernodalFactor& factor = own_.supernodal();
   const std::vector<std::vector<Index>> places{{0}, {7, 8}, {size_ - 1}, {100, 15000}, {size_ / 2, 3}};
   Vector y;
-  own_.forward(random_vector(size_, 5), y);
+  own_.forward(random_right_side(size_, 5), y);
   for (const auto& at : places) {
     const FactorPath path = factor.path(at);
     Matrix column = Matrix::Zero(path.rows(), 1);

@@ -10,7 +10,7 @@ namespace ricochet {
 
 namespace {
 /// Block steps without fewer violations before single ones are taken.
-constexpr int patience = 8;
+constexpr int block_patience = 8;
 /// Rounding of u, as a part of the data, above which reactions are so large that they may balance nothing but the
 /// rounding of a singular W.
 constexpr double trusted = 1e-9;
@@ -99,7 +99,7 @@ std::string PrimalDualActiveSet::pivot(const ContactSystem& system, ContactItera
   }
   const int limit = 1000 + 20 * static_cast<int>(points.size());
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  int blocks_left = patience;
+  int blocks_left = block_patience;
   for (int k = 0; k < limit; ++k) {
     indices_.clear();
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -118,7 +118,7 @@ std::string PrimalDualActiveSet::pivot(const ContactSystem& system, ContactItera
     if (violations_.empty()) return "";
     if (violations_.size() < fewest) {
       fewest = violations_.size();
-      blocks_left = patience;
+      blocks_left = block_patience;
     } else if (blocks_left > 0) {
       --blocks_left;
     }

@@ -14,7 +14,7 @@ namespace ricochet {
 
 namespace {
 
-constexpr int iteration_limit = 20000;
+constexpr int admm_iterations = 20000;
 constexpr double relaxation = 1.6;
 /// Iterations between verdicts where the residuals of the iteration itself do not ask for one.
 constexpr int verdict_interval = 16;
@@ -226,7 +226,7 @@ bool Admm::adapt(const ContactSystem& system, ContactSolution& solution) {
 std::string Admm::iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
                           ContactSolution& solution) {
   if (system.is_solved(current, options.tolerance)) return "";
-  const int limit = options.iteration_limit > 0 ? options.iteration_limit : iteration_limit;
+  const int limit = options.iteration_limit > 0 ? options.iteration_limit : admm_iterations;
   const std::string indefinite = "W is not positive semi-definite";
   if (!start(system, current, solution)) return indefinite;
   double best = system.residual(current);

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ricochet {
 
 namespace {
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Relative to W's diagonal; small enough to leave a few steps, large enough to hide what is rounding in W.
 constexpr double proximal_size = 0x1p-30;
 /// A diagonal of this many W leaves p = 0 to rounding.
@@ -93,7 +91,7 @@ double AlartCurnierStep::iteration_work(double unknowns) {
 void AlartCurnierStep::add_proximal_term() {
   factored_proximal_ = 0.0;
   const double count = static_cast<double>(unknowns_.size());
-  if (factor_.smallest_pivot() > 4.0 * count * epsilon) return;
+  if (factor_.smallest_pivot() > 4.0 * count * machine_epsilon) return;
   factored_proximal_ = proximal_size;
   matrix_.diagonal().array() += factored_proximal_;
   factor_.compute(matrix_);
@@ -209,7 +207,7 @@ bool AlartCurnierStep::refine(const ContactIterate& full, Vector& reaction) {
     left_[i] = -(test_motion(unknown, full.motion.data()) + held);
     double size = std::abs(held);
     for (Index k = 0; k < unknown.size; ++k) size += full.size[unknown.first + k];
-    rounding_only = rounding_only && std::abs(left_[i]) <= 4.0 * epsilon * size;
+    rounding_only = rounding_only && std::abs(left_[i]) <= 4.0 * machine_epsilon * size;
   }
   if (rounding_only) return false;
   if (is_iterative_) {

@@ -12,7 +12,6 @@
 namespace ricochet {
 
 namespace {
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Where a solver stops just inside the tolerance, putting r on its law may leave it just outside: once more, closer.
 constexpr int tightenings = 4;
 /// Points that do not penetrate at r = 0 by more than this part of the data are left out at first.
@@ -176,7 +175,7 @@ void IterativeContactSolver::put_on_law(const ContactSystem& system, const Vecto
     auto friction = r.tail(point.size - 1);
     const double limit = point.friction_limit(r[0]);
     // The measure knows of its direction, but weighs it by a force that may be small.
-    if (!exactly && std::abs(friction.norm() - limit) <= 4.0 * epsilon * limit) continue;
+    if (!exactly && std::abs(friction.norm() - limit) <= 4.0 * machine_epsilon * limit) continue;
     const PointVector u = motion.segment(point.first + 1, point.size - 1);
     const PointVector tau = friction - u / point.diagonal;
     const double length = tau.norm();
@@ -316,7 +315,7 @@ void IterativeContactSolver::tell_states(const ContactProblem& problem, ContactS
     status = ContactStatus::closed;
     if (!point.has_friction()) continue;
     status = ContactStatus::stick;
-    const double limit = point.friction_limit(r[0]) * (1.0 - 8.0 * epsilon);
+    const double limit = point.friction_limit(r[0]) * (1.0 - 8.0 * machine_epsilon);
     if (r.tail(point.size - 1).norm() < limit) continue;
     const double floor = system_.floor_of(point, finished_).tangential;
     if (finished_.motion.segment(point.first + 1, point.size - 1).norm() > floor) status = ContactStatus::slip;

@@ -8,7 +8,6 @@ namespace ricochet {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 using Tangent = Eigen::Vector2d;  ///< the second component is zero in two dimensions
 
 Tangent to_point(const PointOperator& block, const Tangent& t) {
@@ -44,7 +43,7 @@ ReducedPoint reduce(const PointOperator& block, const PaddedVector& q) {
   ReducedPoint reduced{block, Tangent::Zero(), normal};
   reduced.right = to_axes(block, -(q.tail<2>() + block.coupling * normal));
   // A direction without stiffness: what is rounding there asks for no friction.
-  const double negligible = 16.0 * epsilon * q.lpNorm<Eigen::Infinity>();
+  const double negligible = 16.0 * machine_epsilon * q.lpNorm<Eigen::Infinity>();
   for (Index k = 0; k < 2; ++k) {
     if (block.stiffness[k] == 0.0 && std::abs(reduced.right[k]) <= negligible) reduced.right[k] = 0.0;
   }
@@ -66,7 +65,7 @@ double find_root(const Function& function, double start) {
     value_high = function(high);
   }
   int side = 0;
-  for (int k = 0; k < 300 && value_high != 0.0 && high - low > 2.0 * epsilon * high; ++k) {
+  for (int k = 0; k < 300 && value_high != 0.0 && high - low > 2.0 * machine_epsilon * high; ++k) {
     const double secant = low - value_low * ((high - low) / (value_high - value_low));
     const bool usable = k % 16 != 15 && secant > low && secant < high;
     const double middle = usable ? secant : low + 0.5 * (high - low);
@@ -233,13 +232,13 @@ PointOperator make_point_operator(const PointMatrix& w) {
   const double mean = 0.5 * (rest(0, 0) + rest(1, 1));
   const double radius = std::sqrt(half_difference * half_difference + rest(0, 1) * rest(0, 1));
   result.stiffness = Tangent(rest(0, 0), rest(1, 1));
-  if (std::abs(rest(0, 1)) > epsilon * std::abs(mean)) {
+  if (std::abs(rest(0, 1)) > machine_epsilon * std::abs(mean)) {
     const Tangent direction = half_difference >= 0.0 ? Tangent(half_difference + radius, rest(0, 1))
                                                      : Tangent(rest(0, 1), radius - half_difference);
     result.axis = direction / direction.norm();
     result.stiffness = Tangent(mean + radius, mean - radius);
   }
-  const double negligible = 16.0 * epsilon * w.trace();
+  const double negligible = 16.0 * machine_epsilon * w.trace();
   for (double& stiffness : result.stiffness) {
     if (!(stiffness > negligible)) stiffness = 0.0;
   }

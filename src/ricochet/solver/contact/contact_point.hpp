@@ -1,11 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "ricochet/base/types.hpp"
 
 /// @file Contact and friction at one point: the law, its exact solution and its residuals.
 namespace ricochet {
+
+inline constexpr double machine_epsilon = std::numeric_limits<double>::epsilon();
 
 /// Up to three rows: a normal and its tangents. Never on the heap.
 using PointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;

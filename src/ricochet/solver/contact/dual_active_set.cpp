@@ -7,7 +7,6 @@
 namespace ricochet {
 
 namespace {
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// A curvature of so many roundings of its terms is zero. It need not be sharp: a smaller one makes a long step, and
 /// the reaction that vanishes first ends it.
 constexpr double vanishing = 8.0;
@@ -34,7 +33,7 @@ DualActiveSet::Entry DualActiveSet::look_at(Index entering) {
     const Index at = rows_[static_cast<std::size_t>(i)];
     terms += std::abs(direction_[i]) * std::sqrt(w(at, at));
   }
-  return {w(entering, entering) - forward_.squaredNorm(), epsilon * terms * terms};
+  return {w(entering, entering) - forward_.squaredNorm(), machine_epsilon * terms * terms};
 }
 
 /// After look_at.

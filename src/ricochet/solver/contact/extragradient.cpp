@@ -8,7 +8,7 @@ namespace ricochet {
 
 namespace {
 
-constexpr int iteration_limit = 50000;
+constexpr int extragradient_iterations = 50000;
 /// Bounds of ρ |û(r̄) − û(r)|/|r̄ − r|: above the first the step is repeated, shorter; below the other the next is
 /// longer.
 constexpr double longest = 0.9, shortest = 0.3;
@@ -74,7 +74,7 @@ void Extragradient::advance(const ContactSystem& system, ContactIterate& current
 std::string Extragradient::iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
                                    ContactSolution& solution) {
   if (system.is_solved(current, options.tolerance)) return "";
-  const int limit = options.iteration_limit > 0 ? options.iteration_limit : iteration_limit;
+  const int limit = options.iteration_limit > 0 ? options.iteration_limit : extragradient_iterations;
   verdict_.start(system, options.tolerance, current);
   step_ = 1.0;
   for (int k = 1; k <= limit; ++k) {

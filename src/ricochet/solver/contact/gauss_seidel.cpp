@@ -1,7 +1,6 @@
 #include "ricochet/solver/contact/gauss_seidel.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "ricochet/solver/contact/contact_iteration.hpp"
 
@@ -9,7 +8,6 @@ namespace ricochet {
 
 bool GaussSeidel::sweep(const ContactSystem& system, double damping, ContactIterate& iterate, bool roughly) {
   roughly = roughly && system.has_rough_entries();
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const std::vector<ContactPoint>& points = system.points();
   bool changed = states_.size() != points.size();
   if (changed) {
@@ -29,7 +27,7 @@ bool GaussSeidel::sweep(const ContactSystem& system, double damping, ContactIter
     const PaddedVector found = solve_point(point, block, u - block.multiply(r), r[0] > 0.0, slip_stiffness_[k]);
     char state = found[0] > 0.0 ? 1 : 0;
     if (state != 0 && point.has_friction()) {
-      const double limit = point.friction_limit(found[0]) * (1.0 - 8.0 * epsilon);
+      const double limit = point.friction_limit(found[0]) * (1.0 - 8.0 * machine_epsilon);
       if (found.tail<2>().squaredNorm() < limit * limit) state = 2;
     }
     changed = changed || state != states_[k];

@@ -18,7 +18,7 @@ constexpr int newton_limit = 30;
 constexpr int smoothing_sweeps = 8;
 constexpr double good_step = 1e-4;
 /// Halvings of a Newton step.
-constexpr int cut_limit = 8;
+constexpr int newton_step_cuts = 8;
 /// Part of the step's length by which the merit has to decrease.
 constexpr double sufficient_decrease = 1e-4;
 /// Of the residual of a linear system while the points still change their states.
@@ -111,7 +111,7 @@ bool GlobalizedNewton::sparse_step(const ContactWork& work) {
 /// current one.
 bool GlobalizedNewton::search_line(const ContactWork& work) {
   double length = 1.0;
-  for (int k = 0; k <= cut_limit; ++k, length *= 0.5) {
+  for (int k = 0; k <= newton_step_cuts; ++k, length *= 0.5) {
     if (k > 0) {
       cut_.reaction = work.current.reaction + length * (trial_.reaction - work.current.reaction);
       cut_.motion = work.current.motion + length * (trial_.motion - work.current.motion);

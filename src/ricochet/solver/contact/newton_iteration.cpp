@@ -8,7 +8,6 @@
 namespace ricochet {
 
 namespace {
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int step_limit = 200;
 /// Halvings of a step.
 constexpr int cut_limit = 12;
@@ -78,7 +77,7 @@ bool NewtonSystem::solve_dense(const ContactSystem& system, const std::vector<Po
   }
   assemble_dense(system, equations);
   factor_.compute(matrix_);
-  if (!(factor_.smallest_pivot() > 4.0 * static_cast<double>(start_.back()) * epsilon)) {
+  if (!(factor_.smallest_pivot() > 4.0 * static_cast<double>(start_.back()) * machine_epsilon)) {
     for (std::size_t a = 0; a < active_.size(); ++a) {
       const ContactPoint& point = points[active_[a]];
       matrix_.block(start_[a], start_[a], point.size, point.size) +=

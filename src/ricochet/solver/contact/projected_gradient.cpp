@@ -8,9 +8,9 @@ namespace ricochet {
 
 namespace {
 
-constexpr int iteration_limit = 50000;
+constexpr int gradient_iterations = 50000;
 /// Iterations in which the residual must halve if the correction is to follow every iteration.
-constexpr int patience = 400;
+constexpr int halving_patience = 400;
 /// Part of its residual to which a problem with the correction held is solved before the correction follows.
 constexpr double held_accuracy = 0.1;
 /// By which the estimate of W's largest eigenvalue falls after an iteration and rises where it was too small.
@@ -117,14 +117,14 @@ void AcceleratedGradient::accelerate(const ContactSystem& system, const ContactI
 std::string AcceleratedGradient::iterate(const ContactSystem& system, const ContactOptions& options,
                                          ContactIterate& current, ContactSolution& solution) {
   if (system.is_solved(current, options.tolerance)) return "";
-  const int limit = options.iteration_limit > 0 ? options.iteration_limit : iteration_limit;
+  const int limit = options.iteration_limit > 0 ? options.iteration_limit : gradient_iterations;
   verdict_.start(system, options.tolerance, current);
   start_reaction_ = current.reaction;
   start_motion_ = current.motion;
   eigenvalue_ = theta_ = 1.0;
   holds_ = false;
   double compared = verdict_.best();
-  int next_comparison = patience;
+  int next_comparison = halving_patience;
   for (int k = 1; k <= limit; ++k) {
     advance(system, current);
     std::swap(current.reaction, next_.reaction);
@@ -136,7 +136,7 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
     if (!holds_ && k == next_comparison) {
       if (!(verdict_.best() < 0.5 * compared)) hold(system, current, residual);
       compared = verdict_.best();
-      next_comparison += patience;
+      next_comparison += halving_patience;
     }
     if (verdict_.is_solved(system, k, residual, current)) return "";
   }

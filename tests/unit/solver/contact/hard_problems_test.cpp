@@ -27,7 +27,6 @@ using test::twice;
 using test::unequal_bodies;
 using test::wedged_body;
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double degree = std::numbers::pi / 180.0;
 
 ContactSolution solve(const ContactProblem& problem, double tolerance) {
@@ -44,7 +43,7 @@ Judgement expect_truth(const ContactProblem& problem, const ContactSolution& sol
   EXPECT_TRUE(solution.reaction.allFinite());
   const Judgement judgement = judge(problem, solution.reaction);
   EXPECT_NEAR(solution.residual, judgement.residual, 1e-6 * judgement.residual + solution.rounding_floor);
-  EXPECT_LE(judgement.outside_cone, 8.0 * epsilon);
+  EXPECT_LE(judgement.outside_cone, 8.0 * machine_epsilon);
   EXPECT_EQ(solution.solved(), solution.reason.empty());
   if (solution.solved()) {
     EXPECT_LE(judgement.beyond_rounding, tolerance + 0.5 * solution.rounding_floor);
