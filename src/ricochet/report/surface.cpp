@@ -22,7 +22,7 @@ struct Triangle {
 };
 
 /// A flat piece of a facet (or of a plane cell), by the element's own nodes.
-struct Pattern {
+struct FacetPattern {
   FlatPiece corners;
   int edges;
 };
@@ -39,8 +39,8 @@ int edges_of(CellShape shape, int degree, const FlatPiece& corners) {
   return edges;
 }
 
-std::vector<Pattern> patterns_of(CellShape shape, int degree) {
-  std::vector<Pattern> result;
+std::vector<FacetPattern> facet_patterns(CellShape shape, int degree) {
+  std::vector<FacetPattern> result;
   for (const FlatPiece& corners : flat_pieces(shape, degree))
     result.push_back({corners, edges_of(shape, degree, corners)});
   return result;
@@ -50,7 +50,8 @@ std::vector<Triangle> plane_triangles(const std::vector<CellBlock>& blocks) {
   std::vector<Triangle> result;
   Index number = 0;
   for (const CellBlock& block : blocks) {
-    const std::vector<Pattern> patterns = patterns_of(block.shape, degree_of(block.shape, block.nodes_per_cell));
+    const std::vector<FacetPattern> patterns =
+        facet_patterns(block.shape, degree_of(block.shape, block.nodes_per_cell));
     for (Index i = 0; i < block.size(); ++i, ++number) {
       const Index* cell = block.cell(i);
       for (const auto& [corners, edges] : patterns)
@@ -62,10 +63,10 @@ std::vector<Triangle> plane_triangles(const std::vector<CellBlock>& blocks) {
 
 std::vector<Triangle> boundary_triangles(const std::vector<CellBlock>& blocks) {
   std::vector<Index> first_cell{0};
-  std::vector<std::vector<Pattern>> patterns;
+  std::vector<std::vector<FacetPattern>> patterns;
   for (const CellBlock& block : blocks) {
     first_cell.push_back(first_cell.back() + block.size());
-    patterns.push_back(patterns_of(facet_shape(block.shape), degree_of(block.shape, block.nodes_per_cell)));
+    patterns.push_back(facet_patterns(facet_shape(block.shape), degree_of(block.shape, block.nodes_per_cell)));
   }
   std::vector<Triangle> result;
   for (const CellFacet& facet : boundary_facets(blocks)) {

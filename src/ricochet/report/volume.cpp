@@ -13,7 +13,7 @@ namespace ricochet {
 namespace {
 
 /// A tetrahedron inside a cell, by the element's own nodes.
-struct Pattern {
+struct CellPattern {
   std::array<int, 4> corners;
   int faces;
 };
@@ -73,7 +73,7 @@ void add_box(const std::array<int, 3>& first, int degree, std::vector<std::array
   } while (std::next_permutation(axes.begin(), axes.end()));
 }
 
-std::vector<Pattern> patterns_of(CellShape shape, int degree) {
+std::vector<CellPattern> cell_patterns(CellShape shape, int degree) {
   std::vector<std::array<int, 4>> all;
   if (shape == CellShape::tetrahedron) {
     if (degree == 1) all = {{0, 1, 2, 3}};
@@ -81,7 +81,7 @@ std::vector<Pattern> patterns_of(CellShape shape, int degree) {
   } else {
     for (int box = 0; box < (degree == 1 ? 1 : 8); ++box) add_box({box & 1, box >> 1 & 1, box >> 2 & 1}, degree, all);
   }
-  std::vector<Pattern> result;
+  std::vector<CellPattern> result;
   for (const std::array<int, 4>& corners : all) result.push_back({corners, faces_of(shape, degree, corners)});
   return result;
 }
@@ -90,7 +90,8 @@ std::vector<Pattern> patterns_of(CellShape shape, int degree) {
 Index count_of(const std::vector<CellBlock>& blocks, int most_degree) {
   Index count = 0;
   for (const CellBlock& block : blocks) {
-    const auto patterns = patterns_of(block.shape, std::min(degree_of(block.shape, block.nodes_per_cell), most_degree));
+    const auto patterns =
+        cell_patterns(block.shape, std::min(degree_of(block.shape, block.nodes_per_cell), most_degree));
     count += block.size() * static_cast<Index>(patterns.size());
   }
   return count;
@@ -100,8 +101,8 @@ std::vector<Tetrahedron> tetrahedra_of(const std::vector<CellBlock>& blocks, int
   std::vector<Tetrahedron> result;
   int number = 0;
   for (const CellBlock& block : blocks) {
-    const std::vector<Pattern> patterns =
-        patterns_of(block.shape, std::min(degree_of(block.shape, block.nodes_per_cell), most_degree));
+    const std::vector<CellPattern> patterns =
+        cell_patterns(block.shape, std::min(degree_of(block.shape, block.nodes_per_cell), most_degree));
     for (Index i = 0; i < block.size(); ++i, ++number) {
       const Index* cell = block.cell(i);
       for (const auto& [corners, faces] : patterns)
