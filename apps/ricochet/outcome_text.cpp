@@ -97,7 +97,7 @@ std::string impact_text(const Impact& impact, const RunSummary& summary) {
   }
   text += fmt::format(", {}, largest force {:.4g} at {:.6g}", impulse_text(impact), impact.largest_force,
                       impact.largest_force_time);
-  return text + spins_text(impact, summary) + resolution_text(impact);
+  return text + spins_text(impact, summary);
 }
 
 void print_no_contact(const RunSummary& summary) {
@@ -115,7 +115,8 @@ void print_impacts(const RunSummary& summary, std::size_t most) {
   const std::size_t count = summary.impacts.size();
   const std::size_t shown = most == 0 ? count : std::min(most, count);
   for (std::size_t i = 0; i < shown; ++i)
-    fmt::print("  impact {}: {}{}\n", i + 1, impact_text(summary.impacts[i], summary), rotation_text(i, summary));
+    fmt::print("  impact {}: {}{}{}\n", i + 1, impact_text(summary.impacts[i], summary), rotation_text(i, summary),
+               resolution_text(summary.impacts[i]));
   const auto others = static_cast<long>(count - shown) + summary.impacts_left_out;
   if (others > 0) fmt::print("  {}{}\n", counted(others, "more impact"), most == 0 ? "" : ", see summary.json");
 }
