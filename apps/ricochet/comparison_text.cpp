@@ -45,8 +45,9 @@ void print_methods(const std::vector<Run>& runs, int width) {
 }
 
 /// Marks, and what each means, in the order in which they are explained.
-constexpr std::array<std::pair<const char*, const char*>, 3> meanings{{
+constexpr std::array<std::pair<const char*, const char*>, 4> meanings{{
     {"≥", "not every step was looked at: the stress may have been higher between two looks (output.fields_every)"},
+    {"~", "the contact zone is too coarse to trust the force: refine the mesh there"},
     {"?", "cells turn by more than 0.1 rad, which small strain takes for a strain that is not there"},
     {"*", "of the first impact with a restitution; there are more, which `ricochet info` lists for one run"},
 }};
@@ -70,7 +71,8 @@ class Outcome {
       return a.largest_force < b.largest_force;
     });
     if (hardest == s_.impacts.end()) return "-";
-    return fmt::format("{:.4g}", hardest->largest_force) + mark("?", turned_in(hardest));
+    return fmt::format("{:.4g}", hardest->largest_force) + mark("~", hardest->is_coarse()) +
+           mark("?", turned_in(hardest));
   }
 
   [[nodiscard]] std::string peak_stress() const {

@@ -193,15 +193,17 @@ end = 0.001
                     more = "*" if len(impacts) > 1 else ""
                     restitution = f"{ended[0]['restitution']:.4g}{more}{turned(ended[0]['end'])}"
                 hardest = max(impacts, key=lambda each: each["largest_force"])
-                force = f"{hardest['largest_force']:.4g}{turned(hardest['begin'] + hardest['duration'])}"
+                coarse = "~" if hardest["coarse"] else ""
+                force = f"{hardest['largest_force']:.4g}{coarse}{turned(hardest['begin'] + hardest['duration'])}"
                 sampled = peak["states_looked_at"] < peak["states"]
                 stress = [f"{peak['von_mises']:.4g}{turned(peak['time'])}"]
                 self.assertEqual(rows[str(folder)].split()[1:],
                                  [str(len(impacts)), restitution, force] + ["≥"] * sampled + stress)
+        self.assertIn("~ the contact zone is too coarse", text)
         self.assertIn("? cells turn by more than 0.1 rad", text)
         self.assertIn("≥ not every step was looked at", text)
         alone = self.expect_status(0, run("info", runs["puck"], runs["puck"])).stdout
-        for mark in "?≥*":
+        for mark in "~?≥*":
             self.assertNotIn(f"  {mark} ", alone)
 
     def test_turning_after_the_last_impact_is_told_from_turning_in_it(self):
