@@ -55,6 +55,15 @@ std::string impulse_text(const Impact& impact) {
   return "normal impulse " + normal + (whole == normal ? "" : " (with friction " + whole + ")");
 }
 
+/// How much of the mesh the impact has seen.
+std::string resolution_text(const Impact& impact) {
+  if (impact.contact_points == 0) return "";
+  const std::string points = fmt::format(", at most {} of {} at once", impact.contact_points,
+                                         counted(impact.all_contact_points, "contact point"));
+  if (!impact.is_coarse()) return points;
+  return points + ": the contact zone is too coarse to trust the largest force and the duration; refine the mesh there";
+}
+
 std::string body_text(int number, const RunSummary& summary) {
   const std::string& name = summary.bodies[static_cast<std::size_t>(number)].name;
   return name.empty() ? fmt::format("body {}", number) : name;
@@ -69,20 +78,12 @@ std::string rotation_text(std::size_t impact, const RunSummary& summary) {
                      summary.small_strain_holds_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
 }
 
-/// How much of the mesh the impact has seen.
-std::string resolution_text(const Impact& impact) {
-  if (impact.contact_points == 0) return "";
-  const std::string points =
-      fmt::format(", at most {} of {} contact points at once", impact.contact_points, impact.all_contact_points);
-  if (!impact.is_coarse()) return points;
-  return points + ": the contact zone is too coarse to trust the largest force and the duration; refine the mesh there";
-}
-
-std::string impact_text(const Impact& impact, const RunSummary& summary) {
+std::string impact_text(std::size_t number, const RunSummary& summary) {
+  const Impact& impact = summary.impacts[number];
   std::string text;
   if (summary.bodies.size() > 1) text += body_text(impact.body, summary) + " ";
   text += fmt::format("on \"{}\" ", impact.obstacle);
-  if (!impact.first_place.empty()) text += fmt::format("first at {} ", vector_text(impact.first_place));
+  if (!impact.first_place.empty()) text += fmt::format("first at {} ", place_text(impact.first_place, summary));
   text += fmt::format("from t = {:.6g}", impact.begin);
   if (impact.from_start) text += " (the start)";
   if (impact.ended) {
@@ -97,7 +98,7 @@ std::string impact_text(const Impact& impact, const RunSummary& summary) {
   }
   text += fmt::format(", {}, largest force {:.4g} at {:.6g}", impulse_text(impact), impact.largest_force,
                       impact.largest_force_time);
-  return text + spins_text(impact, summary);
+  return text + spins_text(impact, summary) + rotation_text(number, summary) + resolution_text(impact);
 }
 
 void print_no_contact(const RunSummary& summary) {
@@ -114,9 +115,7 @@ void print_impacts(const RunSummary& summary, std::size_t most) {
   print_no_contact(summary);
   const std::size_t count = summary.impacts.size();
   const std::size_t shown = most == 0 ? count : std::min(most, count);
-  for (std::size_t i = 0; i < shown; ++i)
-    fmt::print("  impact {}: {}{}{}\n", i + 1, impact_text(summary.impacts[i], summary), rotation_text(i, summary),
-               resolution_text(summary.impacts[i]));
+  for (std::size_t i = 0; i < shown; ++i) fmt::print("  impact {}: {}\n", i + 1, impact_text(i, summary));
   const auto others = static_cast<long>(count - shown) + summary.impacts_left_out;
   if (others > 0) fmt::print("  {}{}\n", counted(others, "more impact"), most == 0 ? "" : ", see summary.json");
 }

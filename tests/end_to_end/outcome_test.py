@@ -48,6 +48,8 @@ normal = [0.0, 0.0, 1.0]
 group = "boundary"
 obstacle = "floor"
 [time]
+scheme = "newmark"
+preset = "trapezoidal"
 step = 0.001
 end = 0.001
 """
