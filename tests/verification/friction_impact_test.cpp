@@ -52,7 +52,7 @@ Vector force(const CaseRun& run) {
 }
 
 /// γ of a Newmark scheme; midpoint and klr-conserving take the force of the step itself.
-struct ImpactMethod {
+struct Method {
   std::string time, mass;
   double current_weight;
 };
@@ -61,16 +61,16 @@ struct ImpactMethod {
 // elasticity has no say in it, and neither has friction but by its force.
 TEST(ObliqueImpact, MomentumAndAngularMomentumBalanceInEveryStep) {
   for (const test_support::ThrownBody& body : test_support::thrown_bodies()) {
-    for (const ImpactMethod& method :
-         std::vector<ImpactMethod>{{"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "equivalent", 0.5},
-                                   {"scheme = \"newmark\"\npreset = \"textbook-half\"\n", "equivalent", 0.5},
-                                   {"scheme = \"newmark\"\nbeta = 0.3025\ngamma = 0.6\n", "consistent", 0.6},
-                                   {"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "lumped", 0.5},
-                                   {"scheme = \"midpoint\"\n", "equivalent", 1.0},
-                                   {"scheme = \"midpoint\"\n", "consistent", 1.0},
-                                   {"scheme = \"klr-conserving\"\n", "consistent", 1.0},
-                                   {"scheme = \"klr-conserving\"\n", "lumped", 1.0},
-                                   {"scheme = \"semi-explicit\"\n", "equivalent-lumped", 0.5}}) {
+    for (const Method& method :
+         std::vector<Method>{{"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "equivalent", 0.5},
+                             {"scheme = \"newmark\"\npreset = \"textbook-half\"\n", "equivalent", 0.5},
+                             {"scheme = \"newmark\"\nbeta = 0.3025\ngamma = 0.6\n", "consistent", 0.6},
+                             {"scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "lumped", 0.5},
+                             {"scheme = \"midpoint\"\n", "equivalent", 1.0},
+                             {"scheme = \"midpoint\"\n", "consistent", 1.0},
+                             {"scheme = \"klr-conserving\"\n", "consistent", 1.0},
+                             {"scheme = \"klr-conserving\"\n", "lumped", 1.0},
+                             {"scheme = \"semi-explicit\"\n", "equivalent-lumped", 0.5}}) {
       CaseRun run(test_support::thrown_case(body, method.mass, method.time, "friction = 0.3\n"));
       Balance before(run.problem(), momentum(run));
       const double linear_size = before.linear.norm(), angular_size = linear_size;  // radius and height are 1

@@ -21,14 +21,14 @@ using test_support::ThrownBody;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-struct LawMethod {
+struct Method {
   std::string scheme;  ///< lines of [time]
   std::string mass;
   double gamma;  ///< forces enter the step with weights 1 − γ and γ; 1: the law is at the step's own instant
 };
 
-std::vector<LawMethod> law_methods() {
-  std::vector<LawMethod> all;
+std::vector<Method> methods() {
+  std::vector<Method> all;
   for (const char* mass : {"consistent", "lumped", "equivalent"}) {
     all.push_back({"scheme = \"midpoint\"\n", mass, 1.0});
     if (std::string(mass) != "equivalent") all.push_back({"scheme = \"klr-conserving\"\n", mass, 1.0});
@@ -97,7 +97,7 @@ void check_law(CaseRun& run, const Vector& increment, double coefficient, const 
   }
 }
 
-void expect_law(const ThrownBody& body, const LawMethod& method, const std::string& contact, double coefficient,
+void expect_law(const ThrownBody& body, const Method& method, const std::string& contact, double coefficient,
                 bool tresca) {
   CaseRun run(thrown_case(body, method.mass, method.scheme, contact));
   const std::string name = body.name + ", " + method.mass + ", " + method.scheme + contact;
@@ -125,7 +125,7 @@ void expect_law(const ThrownBody& body, const LawMethod& method, const std::stri
 
 TEST(FrictionLaw, CoulombsLawHoldsInEveryStep) {
   for (const ThrownBody& body : thrown_bodies()) {
-    for (const LawMethod& method : law_methods()) {
+    for (const Method& method : methods()) {
       expect_law(body, method, "friction = 0.2\n", 0.2, false);
       if (body.degree == 1) expect_law(body, method, "friction = 1.5\n", 1.5, false);
     }
@@ -135,13 +135,13 @@ TEST(FrictionLaw, CoulombsLawHoldsInEveryStep) {
 TEST(FrictionLaw, TrescasLawHoldsInEveryStep) {
   for (const ThrownBody& body : thrown_bodies()) {
     if (body.degree == 2) continue;  // the bound of a point is friction_bound times its weight: positive on degree 1
-    for (const LawMethod& method : law_methods()) expect_law(body, method, "friction_bound = 0.5\n", 0.0, true);
+    for (const Method& method : methods()) expect_law(body, method, "friction_bound = 0.5\n", 0.0, true);
   }
 }
 
 TEST(FrictionLaw, HoldsWithEveryMultiplierSpace) {
   for (const ThrownBody& body : thrown_bodies()) {
-    for (const LawMethod& method : law_methods()) {
+    for (const Method& method : methods()) {
       if (method.mass == "lumped" || method.gamma == 0.6) continue;
       for (const char* space : {"p0", "p1", "dual"}) {
         const bool stable =
@@ -209,7 +209,7 @@ TEST(FrictionLaw, HoldsInACornerBetweenTwoObstacles) {
 // For semi-explicit, Newmark's with β = 0, the energy is J − (h²/8)AᵀMA.
 TEST(FrictionEnergy, MidpointAndNewmarkIdentitiesWithFriction) {
   for (const ThrownBody& body : thrown_bodies()) {
-    for (const LawMethod& method : law_methods()) {
+    for (const Method& method : methods()) {
       if (method.scheme.find("klr") != std::string::npos || method.gamma == 0.6) continue;
       const bool midpoint = method.gamma == 1.0;
       CaseRun run(thrown_case(body, method.mass, method.scheme, "friction = 0.3\n"));
@@ -300,7 +300,7 @@ Vector resultants(const SemidiscreteProblem& problem, const Vector& nodal) {
 // Linear and angular momentum change by the impulses of gravity and contact, friction included, and by nothing else.
 TEST(FrictionMomentum, BalancesCloseToRounding) {
   for (const ThrownBody& body : thrown_bodies()) {
-    for (const LawMethod& method : law_methods()) {
+    for (const Method& method : methods()) {
       CaseRun run(thrown_case(body, method.mass, method.scheme, "friction = 0.3\n"));
       const SemidiscreteProblem& problem = run.problem();
       const bool klr = method.scheme.find("klr") != std::string::npos;
@@ -337,7 +337,7 @@ TEST(FrictionMomentum, BalancesCloseToRounding) {
 // With friction and an obstacle that moves along and across its plane, and turns.
 TEST(FrictionEnergy, AccountClosesWithMovingObstacles) {
   for (const ThrownBody& body : thrown_bodies()) {
-    for (const LawMethod& method : law_methods()) {
+    for (const Method& method : methods()) {
       const std::string obstacle =
           body.dimension == 2 ? "velocity = [0.4, 0.1]\n" : "velocity = [0.4, -0.1, 0.1]\nrotation_rate = 0.7\n";
       CaseRun run(thrown_case(body, method.mass, method.scheme, "friction = 0.4\n", obstacle));

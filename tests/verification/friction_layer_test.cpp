@@ -54,16 +54,16 @@ TEST(SlidingLayer, ClosedFormAgreesWithTheFormulasOfTheWaves) {
   }
 }
 
-struct LayerMethod {
+struct Method {
   std::string name;
   std::string time;  ///< lines of [time]
   std::string mass;
 };
 
-const LayerMethod newmark{"newmark trapezoidal, equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
-                          "equivalent"};
+const Method newmark{"newmark trapezoidal, equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
+                     "equivalent"};
 
-struct LayerErrors {
+struct Errors {
   double velocity = 0.0, traction = 0.0;             ///< relative, in L²(0, T)
   double slip = 0.0;                                 ///< at the end, relative
   double sticking = 0.0;                             ///< of the time of sticking, in units of time
@@ -140,7 +140,7 @@ double sticking_time(const Layer& layer, const std::vector<std::pair<double, dou
 }
 
 /// Runs the layer on `cells` cells with Δt = h/2.
-LayerErrors solve(const Layer& layer, const LayerMethod& method, int cells) {
+Errors solve(const Layer& layer, const Method& method, int cells) {
   const double step = 0.5 / cells;
   const std::string contact = fmt::format("friction = {:.17g}", layer.a);  // pressure 1
   CaseRun run(test_support::column_case(test_support::column_mesh(width, cells), 1.0, contact) +
@@ -186,15 +186,15 @@ std::string list(const std::vector<double>& values) {
 }
 
 /// Prints the table of a layer and a method and returns the errors by refinement.
-std::vector<LayerErrors> table(const Layer& layer, const LayerMethod& method, const std::vector<int>& cells) {
+std::vector<Errors> table(const Layer& layer, const Method& method, const std::vector<int>& cells) {
   std::printf("a = %.2f, %s, dt = h/2c\n", layer.a, method.name.c_str());
   std::printf("%6s %9s %6s %9s %6s %10s %10s %10s %10s\n", "cells", "velocity", "order", "traction", "order", "slip",
               "sticking", "late slip", "work");
-  std::vector<LayerErrors> all;
+  std::vector<Errors> all;
   for (const int n : cells) {
     all.push_back(solve(layer, method, n));
-    const LayerErrors& e = all.back();
-    const LayerErrors& before = all[all.size() > 1 ? all.size() - 2 : 0];
+    const Errors& e = all.back();
+    const Errors& before = all[all.size() > 1 ? all.size() - 2 : 0];
     std::printf("%6d %9.2e %6.2f %9.2e %6.2f %10.2e %10.2e %10.2e %10.2e\n", n, e.velocity,
                 std::log2(before.velocity / e.velocity), e.traction, std::log2(before.traction / e.traction), e.slip,
                 e.sticking, e.late_slip, e.friction_work);
@@ -203,13 +203,13 @@ std::vector<LayerErrors> table(const Layer& layer, const LayerMethod& method, co
   return all;
 }
 
-double mean_layer_order(const std::vector<LayerErrors>& all, double LayerErrors::*part) {
+double mean_order(const std::vector<Errors>& all, double Errors::*part) {
   return std::log2(std::abs(all.front().*part / all.back().*part)) / static_cast<double>(all.size() - 1);
 }
 
 /// The means over the middle of each phase, away from the fronts: velocities V − (1 + 2k) a, then none; traction −a,
 /// then alternating.
-void expect_phases(const Layer& layer, const LayerErrors& e, double tolerance, const std::string& name) {
+void expect_phases(const Layer& layer, const Errors& e, double tolerance, const std::string& name) {
   for (std::size_t k = 0; k < e.mean_velocity.size(); ++k) {
     const double t = 2.0 * static_cast<double>(k) + 1.0;
     EXPECT_NEAR(e.mean_velocity[k], layer.velocity(t), tolerance) << name << ", phase " << k;
@@ -223,11 +223,11 @@ TEST(SlidingLayer, ThreeSlidingPhasesTwoAndOne) {
   for (const double a : {0.15, 0.3, 0.45}) {
     const Layer layer{a};
     const std::string name = fmt::format("a = {}", a);
-    const std::vector<LayerErrors> all = table(layer, newmark, refinements);
-    EXPECT_GT(mean_layer_order(all, &LayerErrors::velocity), 0.4) << name;
-    EXPECT_GT(mean_layer_order(all, &LayerErrors::traction), 0.35) << name;
-    EXPECT_GT(mean_layer_order(all, &LayerErrors::slip), 0.7) << name;
-    EXPECT_GT(mean_layer_order(all, &LayerErrors::friction_work), 0.7) << name;
+    const std::vector<Errors> all = table(layer, newmark, refinements);
+    EXPECT_GT(mean_order(all, &Errors::velocity), 0.4) << name;
+    EXPECT_GT(mean_order(all, &Errors::traction), 0.35) << name;
+    EXPECT_GT(mean_order(all, &Errors::slip), 0.7) << name;
+    EXPECT_GT(mean_order(all, &Errors::friction_work), 0.7) << name;
     EXPECT_LT(std::abs(all.back().slip), 5e-3) << name;
     EXPECT_LT(std::abs(all.back().sticking), 0.02) << name;
     EXPECT_LT(all.back().late_slip, 5e-4) << name;
@@ -240,10 +240,10 @@ TEST(SlidingLayer, ThreeSlidingPhasesTwoAndOne) {
 TEST(SlidingLayer, NeutralBetweenStickAndSlip) {
   const Layer layer{0.2};
   EXPECT_EQ(layer.phases(), 2);
-  const std::vector<LayerErrors> all = table(layer, newmark, refinements);
-  EXPECT_GT(mean_layer_order(all, &LayerErrors::velocity), 0.4);
-  EXPECT_GT(mean_layer_order(all, &LayerErrors::traction), 0.45);
-  EXPECT_GT(mean_layer_order(all, &LayerErrors::slip), 0.45);
+  const std::vector<Errors> all = table(layer, newmark, refinements);
+  EXPECT_GT(mean_order(all, &Errors::velocity), 0.4);
+  EXPECT_GT(mean_order(all, &Errors::traction), 0.45);
+  EXPECT_GT(mean_order(all, &Errors::slip), 0.45);
   EXPECT_LT(std::abs(all.back().slip), 5e-3);
   expect_phases(layer, all.back(), 4e-3, "neutral");
 }
@@ -277,21 +277,21 @@ TEST(SlidingLayer, OtherSchemesAndMasses) {
   const Layer layer{0.3};
   const std::string half = "scheme = \"newmark\"\npreset = \"textbook-half\"\n";
   const std::string damped = "scheme = \"newmark\"\nbeta = 0.3025\ngamma = 0.6\n";
-  for (const LayerMethod& method :
-       std::vector<LayerMethod>{{"newmark beta = gamma = 1/2, equivalent", half, "equivalent"},
-                                {"newmark beta = gamma = 1/2, consistent", half, "consistent"},
-                                {"newmark 0.3025, 0.6, equivalent", damped, "equivalent"},
-                                {"newmark 0.3025, 0.6, consistent", damped, "consistent"},
-                                {"newmark 0.3025, 0.6, lumped", damped, "lumped"},
-                                {"midpoint, equivalent", "scheme = \"midpoint\"\n", "equivalent"},
-                                {"midpoint, consistent", "scheme = \"midpoint\"\n", "consistent"},
-                                {"midpoint, lumped", "scheme = \"midpoint\"\n", "lumped"},
-                                {"klr-conserving, consistent", "scheme = \"klr-conserving\"\n", "consistent"},
-                                {"klr-conserving, lumped", "scheme = \"klr-conserving\"\n", "lumped"},
-                                {"semi-explicit", "scheme = \"semi-explicit\"\n", "equivalent-lumped"}}) {
-    const std::vector<LayerErrors> all = table(layer, method, refinements);
-    EXPECT_GT(mean_layer_order(all, &LayerErrors::velocity), 0.25) << method.name;
-    EXPECT_GT(mean_layer_order(all, &LayerErrors::traction), 0.25) << method.name;
+  for (const Method& method :
+       std::vector<Method>{{"newmark beta = gamma = 1/2, equivalent", half, "equivalent"},
+                           {"newmark beta = gamma = 1/2, consistent", half, "consistent"},
+                           {"newmark 0.3025, 0.6, equivalent", damped, "equivalent"},
+                           {"newmark 0.3025, 0.6, consistent", damped, "consistent"},
+                           {"newmark 0.3025, 0.6, lumped", damped, "lumped"},
+                           {"midpoint, equivalent", "scheme = \"midpoint\"\n", "equivalent"},
+                           {"midpoint, consistent", "scheme = \"midpoint\"\n", "consistent"},
+                           {"midpoint, lumped", "scheme = \"midpoint\"\n", "lumped"},
+                           {"klr-conserving, consistent", "scheme = \"klr-conserving\"\n", "consistent"},
+                           {"klr-conserving, lumped", "scheme = \"klr-conserving\"\n", "lumped"},
+                           {"semi-explicit", "scheme = \"semi-explicit\"\n", "equivalent-lumped"}}) {
+    const std::vector<Errors> all = table(layer, method, refinements);
+    EXPECT_GT(mean_order(all, &Errors::velocity), 0.25) << method.name;
+    EXPECT_GT(mean_order(all, &Errors::traction), 0.25) << method.name;
     EXPECT_LT(std::abs(all.back().slip), 5e-3) << method.name;
     EXPECT_LT(all.back().late_slip, 1e-3) << method.name;
     expect_phases(layer, all.back(), 1e-3, method.name);
@@ -302,8 +302,8 @@ TEST(SlidingLayer, OtherSchemesAndMasses) {
 // the speed it came with, and the friction force alternates by 2 m V/h until it reaches the cone. So this pair slides
 // on where it should stick, on every mesh.
 TEST(SlidingLayer, TrapezoidalRuleWithInertiaOnContactNodesDoesNotStick) {
-  const LayerMethod method{"newmark trapezoidal, consistent", newmark.time, "consistent"};
-  for (const LayerErrors& e : table({0.3}, method, {25, 50, 100})) {
+  const Method method{"newmark trapezoidal, consistent", newmark.time, "consistent"};
+  for (const Errors& e : table({0.3}, method, {25, 50, 100})) {
     EXPECT_GT(e.late_slip, 0.05);
     EXPECT_NEAR(e.mean_velocity[0], 0.7, 2e-3);  // sliding is right
     EXPECT_NEAR(e.mean_velocity[1], 0.1, 2e-3);

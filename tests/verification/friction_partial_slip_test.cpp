@@ -35,7 +35,7 @@ std::string half_disc(double fine) {
       0.1, 2);
 }
 
-constexpr double friction = 0.3, young = 3.0, poisson = 0.49;
+constexpr double coefficient = 0.3, young = 3.0, poisson = 0.49;
 
 /// Pressed until t = 40 and pushed from 60 on, slowly beside the waves (10 time units through the body and back), which
 /// damping and γ > ½ take away.
@@ -48,7 +48,7 @@ std::string pressed_case(double fine) {
       "[[support]]\ngroup = \"top\"\ncomponents = [\"y\"]\nvalue = \"-0.008*(t < 40 ? sin(pi*t/80)^2 : 1)\"\n"
       "[[support]]\ngroup = \"top\"\ncomponents = [\"x\"]\nvalue = \"t < 60 ? 0 : 0.0026*sin(pi*(t-60)/160)^2\"\n"
       "[time]\nscheme = \"newmark\"\nbeta = 0.3025\ngamma = 0.6\nstep = 0.5\nend = 140.0\n",
-      half_disc(fine), young, poisson, friction);
+      half_disc(fine), young, poisson, coefficient);
 }
 
 struct ContactNode {
@@ -93,7 +93,7 @@ double traction_error(const std::vector<ContactNode>& nodes, double a, double c,
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const double x = nodes[i].x;
     const double even = 0.5 * (nodes[i].traction + nodes[nodes.size() - 1 - i].traction);
-    const double exact = friction * peak * (ellipse(x / a) - c / a * ellipse(x / c));
+    const double exact = coefficient * peak * (ellipse(x / a) - c / a * ellipse(x / c));
     error += (even - exact) * (even - exact);
     size += exact * exact;
   }
@@ -118,11 +118,11 @@ TEST(PartialSlip, CylinderPushedAlongThePlane) {
                  run.state().forces.tangential_reaction[i];
       }
       const double a = std::sqrt(4.0 * load * (1.0 - poisson * poisson) / (M_PI * young));  // Hertz
-      const double ratio = std::sqrt(1.0 - shear / (friction * load));
+      const double ratio = std::sqrt(1.0 - shear / (coefficient * load));
       const double width_error = stick_half_width(nodes) / a / ratio - 1.0;
       errors.emplace_back(width_error, traction_error(nodes, a, ratio * a, 2.0 * load / (M_PI * a)));
       std::printf("cells of %.3f: Q/FP %.4f, c/a %.4f to %+.1f %%, traction to %.1f %%\n", fine,
-                  shear / (friction * load), ratio, 100.0 * width_error, 100.0 * errors.back().second);
+                  shear / (coefficient * load), ratio, 100.0 * width_error, 100.0 * errors.back().second);
     });
     ASSERT_EQ(errors.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i) {

@@ -28,7 +28,7 @@ std::string block_case(double gap, const std::string& mass, const std::string& r
          mass + "\"\n" + rest;
 }
 
-const std::string newmark_time = "[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 1e-3\nend = 0.2\n";
+const std::string newmark = "[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\nstep = 1e-3\nend = 0.2\n";
 constexpr double weight = 2.0 * 2.0 * 10.0;
 
 TEST(StartingState, StaticEquilibriumStaysAtRestWithEveryMassAndScheme) {
@@ -73,7 +73,7 @@ TEST(StartingState, StaticEquilibriumUnderItsOwnWeightIsThatOfTheColumn) {
               "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\"]\nvalue = 0.0\n[load]\nbody_force = [0.0, "
               "-20.0]\n[mass]\ntype = \"consistent\"\n"
               "[initial]\ndisplacement = \"static\"\n" +
-              newmark_time);
+              newmark);
   const Vector& u = run.state().displacement;
   const double modulus = 1000.0 * (1.0 - 0.3) / ((1.0 + 0.3) * (1.0 - 0.6));
   for (Index i = 0; i < run.problem().nodes.cols(); ++i) {
@@ -90,7 +90,7 @@ TEST(StartingState, SaysWhenThereIsNoEquilibrium) {
   try {
     CaseRun run(block_case(
         0.01, "equivalent",
-        "[[traction]]\ngroup = \"top\"\nvalue = [1.0, 0.0]\n[initial]\ndisplacement = \"static\"\n" + newmark_time));
+        "[[traction]]\ngroup = \"top\"\nvalue = [1.0, 0.0]\n[initial]\ndisplacement = \"static\"\n" + newmark));
     FAIL() << "no error";
   } catch (const Error& problem) {
     EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
@@ -119,7 +119,7 @@ TEST(StartingState, SatisfiesTheMomentumEquationWithEveryMass) {
     CaseRun run(block_case(0.0, mass,
                            "[[support]]\ngroup = \"left\"\ncomponents = [\"x\"]\nvalue = \"0.1*t*t\"\n[initial]\n"
                            "displacement = [\"0.01*x*y\", \"0.02*x*x\"]\nvelocity = [\"0.1*y\", \"0\"]\n" +
-                               newmark_time));
+                               newmark));
     EXPECT_LT(momentum_residual(run), 1e-12) << mass;
     EXPECT_GE(run.state().forces.normal_reaction.minCoeff(), 0.0);
     for (const Index dof : run.problem().massless_dofs) EXPECT_EQ(run.state().acceleration[dof], 0.0);
@@ -134,7 +134,7 @@ TEST(StartingState, SatisfiesTheMomentumEquationWithEveryMass) {
 
 TEST(StartingState, RestingNodesCarryTheWeightFromTheStart) {
   for (const char* mass : {"consistent", "lumped"}) {
-    CaseRun run(block_case(0.0, mass, newmark_time));  // undeformed, at rest on the floor, gravity starts to act
+    CaseRun run(block_case(0.0, mass, newmark));  // undeformed, at rest on the floor, gravity starts to act
     const Vector acceleration = run.problem().contact.gap_operator * run.state().acceleration;
     EXPECT_GE(acceleration.minCoeff(), -1e-12 * 10.0) << "nothing accelerates into the floor";
     EXPECT_GT(run.state().forces.normal_reaction.sum(), 0.0);
@@ -142,7 +142,7 @@ TEST(StartingState, RestingNodesCarryTheWeightFromTheStart) {
 }
 
 TEST(StartingState, ABodyThatIsStruckAtOnceHasNoReactionYet) {
-  CaseRun run(block_case(0.0, "consistent", "[initial]\nvelocity = [0.0, -1.0]\n" + newmark_time));
+  CaseRun run(block_case(0.0, "consistent", "[initial]\nvelocity = [0.0, -1.0]\n" + newmark));
   EXPECT_EQ(run.state().forces.normal_reaction.sum(), 0.0);
   run.simulation().advance();
   EXPECT_GT(run.state().forces.normal_reaction.sum(), 0.0);
@@ -175,7 +175,7 @@ double static_tip(double length, double thickness, double young, double stiff_yo
               material("far", stiff_young) +
               "[[support]]\ngroup = \"left\"\ncomponents = [\"x\", \"y\"]\nvalue = 0.0\n[load]\ngravity = [0.0, -1.0]\n"
               "[initial]\ndisplacement = \"static\"\n[mass]\ntype = \"consistent\"\n" +
-              newmark_time);
+              newmark);
   return run.state().displacement.minCoeff();
 }
 
@@ -198,7 +198,7 @@ TEST(StartingState, StaticEquilibriumWithoutAnyForceIsFound) {
               "\"\n[[material]]\ngroup = \"body\"\ndensity = 2.0\nyoung = 1000.0\npoisson = 0.3\n"
               "[[support]]\ngroup = \"left\"\ncomponents = [\"x\", \"y\"]\nvalue = 0.3\n[initial]\ndisplacement = "
               "\"static\"\n[mass]\ntype = \"consistent\"\n" +
-              newmark_time);
+              newmark);
   EXPECT_LT((run.state().displacement.array() - 0.3).abs().maxCoeff(), 1e-12);
 }
 
@@ -224,7 +224,7 @@ TEST(StiffBody, EnergyAccountClosesThoughTheBodyMovesFar) {
 
 TEST(FreeFall, LeavesTheBodyUndeformedWithEveryMass) {
   for (const char* mass : {"consistent", "lumped", "equivalent", "equivalent-lumped"}) {
-    CaseRun run(block_case(100.0, mass, newmark_time));
+    CaseRun run(block_case(100.0, mass, newmark));
     double elastic = 0.0;
     run.run([&] { elastic = std::max(elastic, run.simulation().account().energies(run.state()).elastic); });
     const double fallen = 0.5 * 10.0 * 0.2 * 0.2;

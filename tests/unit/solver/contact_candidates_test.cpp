@@ -22,14 +22,14 @@ Vector gaps(std::initializer_list<double> values) {
   return Eigen::Map<const Vector>(values.begin(), static_cast<Index>(values.size()));
 }
 
-using Points = std::vector<Index>;
+using PointNumbers = std::vector<Index>;
 
 TEST(ContactCandidates, AreNoneFarFromTheObstacle) {
   ContactCandidates candidates(3);
   const Stage stage = stage_with_gaps(gaps({1.0, 2.0, 3.0}));
   EXPECT_FALSE(candidates.some_may_touch(stage));
-  EXPECT_EQ(candidates.approaching(stage), Points{});
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-0.9, -1.9, -2.9}), false), Points{});
+  EXPECT_EQ(candidates.approaching(stage), PointNumbers{});
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-0.9, -1.9, -2.9}), false), PointNumbers{});
 }
 
 TEST(ContactCandidates, TakeUpPointsInsideTheObstacleAndThoseWithinReachOfThem) {
@@ -37,9 +37,9 @@ TEST(ContactCandidates, TakeUpPointsInsideTheObstacleAndThoseWithinReachOfThem) 
   // Inside by 1: the stage moves points by that, and by twice that at most; eight times that are taken up together.
   const Stage stage = stage_with_gaps(gaps({20.0, -1.0, 15.9, 0.5, 1.9}));
   EXPECT_TRUE(candidates.some_may_touch(stage));
-  EXPECT_EQ(candidates.approaching(stage), (Points{1, 2, 3, 4}));
+  EXPECT_EQ(candidates.approaching(stage), (PointNumbers{1, 2, 3, 4}));
   candidates.take_up({1, 2, 3, 4});
-  EXPECT_EQ(candidates.approaching(stage), Points{});
+  EXPECT_EQ(candidates.approaching(stage), PointNumbers{});
   EXPECT_EQ(candidates.number(1), 0);
   EXPECT_EQ(candidates.number(4), 3);
   EXPECT_EQ(candidates.number(0), -1);
@@ -51,7 +51,7 @@ TEST(ContactCandidates, ReachIsWhatTheLastStageMovedPointsBy) {
   EXPECT_FALSE(candidates.some_may_touch(stage));
   candidates.learn(stage, gaps({-1.0, 0.2}), 0);
   EXPECT_TRUE(candidates.some_may_touch(stage));
-  EXPECT_EQ(candidates.approaching(stage), (Points{0}));
+  EXPECT_EQ(candidates.approaching(stage), (PointNumbers{0}));
   stage.gap_factor = 0.5;  // y = q + s G δ
   EXPECT_FALSE(candidates.some_may_touch(stage));
 }
@@ -60,11 +60,11 @@ TEST(ContactCandidates, NeverAreWhatMayNotTouch) {
   ContactCandidates candidates(2);
   Stage stage = stage_with_gaps(gaps({-1.0, -1.0}));
   stage.eligible = {0, 1};
-  EXPECT_EQ(candidates.approaching(stage), (Points{1}));
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-1.0, -1.0}), false), (Points{1}));
+  EXPECT_EQ(candidates.approaching(stage), (PointNumbers{1}));
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-1.0, -1.0}), false), (PointNumbers{1}));
   stage.eligible = {0, 0};
   EXPECT_FALSE(candidates.some_may_touch(stage));
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-1.0, -1.0}), false), Points{});
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-1.0, -1.0}), false), PointNumbers{});
 }
 
 TEST(ContactCandidates, AreAskedForWhereOthersPenetrate) {
@@ -72,10 +72,10 @@ TEST(ContactCandidates, AreAskedForWhereOthersPenetrate) {
   const Stage stage = stage_with_gaps(gaps({1.0, 1.0, 1.0, 1.0}));
   candidates.take_up({0});
   // 0 is a candidate: its gap is the solver's business. 2 is deepest, 1 less than half as deep, 3 only rounding inside.
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, -1.4, -2.0, -1.0 - 5e-16}), false), (Points{2}));
-  EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, -1.6, -2.0, 0.0}), false), (Points{2, 1}));
-  EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, 0.0, 0.0, -1.0 - 5e-16}), false), Points{});
-  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, 0.0, 0.0, 0.0}), true), (Points{0})) << "nobody asked it";
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, -1.4, -2.0, -1.0 - 5e-16}), false), (PointNumbers{2}));
+  EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, -1.6, -2.0, 0.0}), false), (PointNumbers{2, 1}));
+  EXPECT_EQ(candidates.penetrating(stage, gaps({0.0, 0.0, 0.0, -1.0 - 5e-16}), false), PointNumbers{});
+  EXPECT_EQ(candidates.penetrating(stage, gaps({-9.0, 0.0, 0.0, 0.0}), true), (PointNumbers{0})) << "nobody asked it";
 }
 
 /// A body that nothing held falls through its obstacle with all points; they are not all taken up at once.
@@ -85,7 +85,7 @@ TEST(ContactCandidates, DoubleAtMost) {
   const Stage stage = stage_with_gaps(Vector::LinSpaced(count, 0.0, 1.0));
   const Vector fallen = Vector::Constant(count, -1e6);
   std::size_t rounds = 0;
-  for (Points found = candidates.penetrating(stage, fallen, false); !found.empty();
+  for (PointNumbers found = candidates.penetrating(stage, fallen, false); !found.empty();
        found = candidates.penetrating(stage, fallen, false), ++rounds) {
     EXPECT_LE(found.size(), std::max<std::size_t>(32, candidates.points().size()));
     EXPECT_EQ(found.front(), static_cast<Index>(candidates.points().size())) << "the deepest first";
@@ -103,13 +103,13 @@ TEST(ContactCandidates, AreDroppedWhenTheyHaveBeenFarForLong) {
   ASSERT_EQ(candidates.points().size(), 200U);
   distance.tail(count - 3).setConstant(50.0);
   distance[0] = -0.01;
-  Points kept;
+  PointNumbers kept;
   int stages = 0;
   while (kept.empty() && stages < 1000) {
     kept = candidates.worth_keeping(stage_with_gaps(distance));
     ++stages;
   }
-  EXPECT_EQ(kept, (Points{0, 1, 2}));
+  EXPECT_EQ(kept, (PointNumbers{0, 1, 2}));
   EXPECT_GT(stages, 20) << "not at once: a body that bounces comes back";
   EXPECT_LT(stages, 1000);
   candidates.clear();
@@ -125,12 +125,12 @@ TEST(ContactCandidates, AreTheNearestOfManyThatMayTouch) {
   for (Index i = 0; i < count; ++i) distance[i] = static_cast<double>(i * 7919 % count + 1);
   const Stage stage = stage_with_gaps(distance);
   candidates.learn(stage, Vector::Constant(count, -1e5), 0);
-  const Points taken = candidates.approaching(stage);
+  const PointNumbers taken = candidates.approaching(stage);
   ASSERT_GE(taken.size(), 100U);
   EXPECT_LE(taken.size(), 600U);
   for (const Index point : taken) EXPECT_LE(distance[point], static_cast<double>(taken.size()));
   candidates.take_up(taken);
-  EXPECT_EQ(candidates.approaching(stage), Points{}) << "the others are asked for where they penetrate";
+  EXPECT_EQ(candidates.approaching(stage), PointNumbers{}) << "the others are asked for where they penetrate";
   // Many that carry a force have many around them.
   candidates.learn(stage, Vector::Constant(count, -1e5), 1000);
   const std::size_t all = taken.size() + candidates.approaching(stage).size();
@@ -155,7 +155,7 @@ TEST(ContactCandidates, StayFewOnAWheelThatRolls) {
   for (int step = 0; step < steps; ++step) {
     const Vector now = height(static_cast<double>(step) / steps);
     const Stage stage = stage_with_gaps(now);
-    if (const Points kept = candidates.worth_keeping(stage); !kept.empty()) {
+    if (const PointNumbers kept = candidates.worth_keeping(stage); !kept.empty()) {
       candidates.clear();
       candidates.take_up(kept);
     }

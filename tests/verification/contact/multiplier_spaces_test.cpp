@@ -28,7 +28,7 @@ std::vector<SpaceCase> space_cases(const ElementKind& kind) {
   return cases;
 }
 
-const FreeComponent every_component_free = [](Index, int) { return true; };
+const FreeComponent all_free = [](Index, int) { return true; };
 
 std::unique_ptr<Obstacle> tilted_plane(int dimension) {
   const Vector point = Vector::Constant(dimension, -0.3);
@@ -56,8 +56,7 @@ class SpaceTest : public testing::TestWithParam<ElementKind> {
     patch_ = {&test_->body, {{0, side("y0")}, {1, side("x1")}}, {}};
     space_ = make_multiplier_space(given.multipliers, patch_);
     boundary_ = make_contact_boundary(
-        test_->body, {pair("y0", side("y0"), given.multipliers), pair("x1", side("x1"), given.multipliers)},
-        every_component_free);
+        test_->body, {pair("y0", side("y0"), given.multipliers), pair("x1", side("x1"), given.multipliers)}, all_free);
   }
   [[nodiscard]] std::vector<Index> side(const std::string& name) const {
     return test_->mesh.group(name, test_->mesh.dimension - 1).members;
@@ -251,7 +250,7 @@ TEST(DualMultipliers, OfDegreeOneAreNodalForces) {
       const auto build = [&](const std::string& multipliers) {
         const std::vector<Index> facets = test->mesh.group("boundary", d - 1).members;
         return make_contact_boundary(test->body, {{"boundary", facets, "plane", obstacle.get(), {}, multipliers}},
-                                     every_component_free);
+                                     all_free);
       };
       const ContactBoundary nodal = build("nodal");
       const ContactBoundary dual = build("dual");
@@ -305,8 +304,7 @@ TEST(DualMultipliers, HavePositiveWeightsWhereNodalForcesHaveNone) {
   const auto obstacle = tilted_plane(3);
   const auto build = [&](const std::string& multipliers) {
     const std::vector<Index> facets = test->mesh.group("z0", 2).members;
-    return make_contact_boundary(test->body, {{"z0", facets, "plane", obstacle.get(), {}, multipliers}},
-                                 every_component_free);
+    return make_contact_boundary(test->body, {{"z0", facets, "plane", obstacle.get(), {}, multipliers}}, all_free);
   };
   EXPECT_LE(build("nodal").weights.minCoeff(), 1e-16);
   // A corner vertex of one triangle of area 1/18: (2/5 of its sixth part of each of two edges' A/3) = 2A/15.
