@@ -79,6 +79,19 @@ test("the card tells the impulse of normal forces from that with friction, and a
   await view.close();
 });
 
+test("the card says why there is no restitution, and that a contact zone is too coarse", async () => {
+  const run = simulate("cases/disc/disc.toml", "grazing", { "initial.velocity": "[200.0, -0.02]", "load.gravity": "[0.0, 0.0]", "time.end": 0.15, "output.fields_every": 0 });
+  const [impact] = JSON.parse(readFileSync(join(run, "summary.json"), "utf8")).impacts;
+  assert.equal(impact.restitution, null);
+  assert.equal(impact.coarse, true);
+  const view = await open(report("grazing", run));
+  const card = await view.page.textContent(".card");
+  assert.ok(card.includes(`no restitution (${impact.why_no_restitution})`), card);
+  assert.ok(card.includes(`(only ${impact.contact_points} of ${impact.all_contact_points} contact points at once: too coarse)`), card);
+  assert.deepEqual(view.complaints, []);
+  await view.close();
+});
+
 test("an obstacle that moves may throw a body back faster", async () => {
   const run = simulate("cases/disc/disc.toml", "driven", { "time.scheme": "midpoint", "mass.type": "consistent", "obstacle.foundation.velocity": "[0.0, 0.02]", "output.fields_every": 0 });
   const [impact] = JSON.parse(readFileSync(join(run, "summary.json"), "utf8")).impacts;

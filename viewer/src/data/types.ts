@@ -120,6 +120,13 @@ export interface Impact {
   ended: boolean;
   from_start: boolean;
   restitution: Value;
+  /** A sentence, where the restitution is null. */
+  why_no_restitution?: string | null;
+  /** That carried a force at once, at most, and how many there are; not in results of older versions. */
+  contact_points?: number;
+  all_contact_points?: number;
+  /** So few of them that the largest force and the duration cannot be trusted. */
+  coarse?: boolean;
   /** Of all contact forces; friction included. */
   impulse: Value[];
   normal_impulse: Value;

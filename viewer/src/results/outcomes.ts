@@ -31,6 +31,10 @@ export function restitutionText({ restitution }: Impact): string {
   return Number.isFinite(value) ? value.toFixed(3).replace("-", "−") : "";
 }
 
+const coarseZone = "The contact zone is too coarse to trust the largest force and the duration: refine the mesh there.";
+
+const pointWords = ({ contact_points: carrying, all_contact_points: all }: Impact): string => (carrying ? `${carrying} of ${all}` : "");
+
 /** All but the restitution. */
 export function impactWords(impact: Impact): string {
   const parts: string[] = [];
@@ -46,7 +50,7 @@ export function impactWords(impact: Impact): string {
 
 function restitutionParts(run: Run, impact: Impact): (HTMLElement | string)[] {
   const text = restitutionText(impact);
-  if (text === "") return [];
+  if (text === "") return impact.ended && impact.why_no_restitution ? [`no restitution (${impact.why_no_restitution}), `] : [];
   const remark = restitutionRemark(run, impact);
   if (!remark) return [`restitution ${text}, `];
   return [`restitution ${text} `, el(`strong.${remark.grade}`, { title: remark.detail }, markElement(remark.grade), `(${remark.words})`), ", "];
@@ -62,7 +66,8 @@ export function outcomeElements(run: Run, show: { time: (time: number) => void; 
     const name = impacts.length > 1 ? `Impact ${i + 1}` : "Impact";
     const when = `t = ${number(impact.begin, 4)}${impact.from_start ? " (from the start)" : ""}`;
     result.push(el("dt", {}, name), el("dd.outcome", { title: `On ${impact.obstacle}, from ${when}: docs/results.md says how impacts are told apart` },
-      el("button.link", { type: "button", onclick: () => show.time(impact.largest_force_time) }, when), ": ", ...restitutionParts(run, impact), impactWords(impact)));
+      el("button.link", { type: "button", onclick: () => show.time(impact.largest_force_time) }, when), ": ", ...restitutionParts(run, impact), impactWords(impact),
+      ...(impact.coarse ? [" ", el("strong.fair", { title: coarseZone }, markElement("fair"), `(only ${pointWords(impact)} contact points at once: too coarse)`)] : [])));
   });
   const more = impacts.length - mostOnCard + leftOut;
   if (more > 0) result.push(el("dt"), el("dd.outcome", {}, el("a", { href: "#impacts" }, `and ${more} more`)));
@@ -82,12 +87,14 @@ const columns: [string, (impact: Impact, run: Run) => string | HTMLElement][] = 
   ["restitution", (impact, run) => {
     const remark = restitutionRemark(run, impact);
     const text = number(impact.restitution, 4);
+    if (impact.ended && impact.why_no_restitution) return el("span", { title: impact.why_no_restitution }, "none");
     return remark ? el(`span.${remark.grade}`, { title: `${remark.words}; ${remark.detail}` }, markElement(remark.grade), text) : text;
   }],
   ["normal speed before", ({ normal_velocity_before }) => number(normal_velocity_before, 4)],
   ["after", ({ normal_velocity_after }) => number(normal_velocity_after, 4)],
   ["normal impulse", ({ normal_impulse }) => number(normal_impulse, 4)],
   ["largest force", ({ largest_force }) => number(largest_force, 4)],
+  ["contact points", (impact) => (impact.coarse ? el("span.fair", { title: coarseZone }, markElement("fair"), pointWords(impact)) : pointWords(impact))],
   ["at", ({ largest_force_time }) => number(largest_force_time, 5)],
   ["spin before", ({ spin_before }) => number(spin(spin_before), 4)],
   ["after", ({ spin_after }) => number(spin(spin_after), 4)],
