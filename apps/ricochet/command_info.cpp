@@ -21,6 +21,7 @@
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
+#include "ricochet/io/run_directory.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 
 namespace ricochet::program {
@@ -36,15 +37,10 @@ std::string shape_text(const CellBlock& block) {
   return singular.ends_with("hedron") ? singular.substr(0, singular.size() - 2) + "a" : singular + "s";
 }
 
-/// A .geo file can run shell commands: only `run` and `validate --mesh` hand one to gmsh. CAD files cannot.
-bool is_unmeshed_program(const MeshFile& file) {
-  return fs::path(file.path).extension() == ".geo" && !is_meshed(file);
-}
-
 void describe_mesh(const std::string& path) {
   MeshFile file;
   file.path = path;
-  if (is_unmeshed_program(file)) {
+  if (is_gmsh_script(path) && !is_meshed(file)) {  // only `run` and `validate --mesh` hand one to gmsh
     fmt::print(
         "{}: a geometry that was not meshed yet: its groups and sizes are not known. The gmsh program meshes it when a "
         "case that names it is run, or by `ricochet validate CASE.toml --mesh`; `ricochet info CASE.toml` then "
@@ -78,7 +74,7 @@ void describe_case(const std::string& path) {
   print_contacts(describe_contacts(input));
   fmt::print("  scheme {}, mass {}, {} of {:g} to {:g}\n", input.time.scheme, input.mass.type,
              counted(step_count(input.time), "step"), input.time.step, input.time.end);
-  if (require_mesh_file(input); is_unmeshed_program(mesh_file(input))) {
+  if (require_mesh_file(input); is_gmsh_script(input.mesh.file) && !is_meshed(mesh_file(input))) {
     fmt::print(
         "  groups, sizes and a suggested step are told of meshes: {} has to be meshed first, by `ricochet validate {} "
         "--mesh`\n",
@@ -97,15 +93,11 @@ std::string indented(std::string text) {
 
 /// None: the directory has checkpoints, but no summary that can be read.
 std::optional<RunSummary> summary_of(const std::string& directory) {
-  const bool has_checkpoint = !checkpoint_files(directory).empty();
-  if (!fs::exists(directory + "/summary.json") && !has_checkpoint) {
-    throw Error(ErrorKind::file_access,
-                fmt::format("{}: no run is in this directory: it holds no summary.json", directory));
-  }
+  require_run(directory);
   try {
     return read_summary(directory + "/summary.json");
   } catch (const Error&) {
-    if (!has_checkpoint) throw;
+    if (checkpoint_files(directory).empty()) throw;
     return {};
   }
 }

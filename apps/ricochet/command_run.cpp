@@ -16,6 +16,7 @@
 #include "ricochet/case/run_case.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/progress.hpp"
+#include "ricochet/io/run_directory.hpp"
 #include "stop_signal.hpp"
 
 namespace ricochet::program {
@@ -74,11 +75,8 @@ namespace {
 
 /// `--resume DIR` stands for the case and the settings that the run in DIR was begun with.
 RunArguments with_origin(RunArguments arguments) {
-  std::error_code ignored;
   if (!arguments.resume) {
-    if (std::filesystem::exists(arguments.case_file + "/summary.json", ignored) ||
-        (std::filesystem::is_directory(arguments.case_file, ignored) &&
-         !checkpoint_files(arguments.case_file).empty())) {
+    if (holds_run(arguments.case_file)) {
       throw Error(
           ErrorKind::usage,
           fmt::format("run: {0} is a directory of results, not a case file; `ricochet run --resume {0}` goes on "
@@ -88,6 +86,7 @@ RunArguments with_origin(RunArguments arguments) {
     if (!arguments.case_file.empty()) return arguments;
     throw Error(ErrorKind::usage, "run: a case file is required (or --resume and the directory of a run)");
   }
+  std::error_code ignored;
   if (!arguments.case_file.empty() && !std::filesystem::is_directory(arguments.case_file, ignored)) return arguments;
   if (arguments.case_file.empty() == arguments.output_directory.empty())
     throw Error(ErrorKind::usage, "run --resume: either a case file or the directory of one run is required");

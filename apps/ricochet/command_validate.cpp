@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "commands.hpp"
 #include "place_text.hpp"
 #include "ricochet/base/error.hpp"
@@ -65,10 +63,6 @@ double estimate(const Case& input, const SemidiscreteProblem& problem, const Sch
   return seconds;
 }
 
-bool is_program(const std::string& mesh) {
-  return std::filesystem::path(mesh).extension() == ".geo";
-}
-
 /// Whether there is one to be checked, or one may be made: a .geo file can run shell commands, and meshing may take
 /// long.
 bool has_mesh(const Case& input, const ValidateArguments& arguments) {
@@ -96,7 +90,7 @@ int validate(const ValidateArguments& arguments) {
         "probes, columns of [[expect]], memory and time, and the start of the run; `ricochet validate {}{} --mesh` "
         "meshes the file and checks them{}\n",
         case_file, case_file, arguments.overrides.empty() ? "" : " --set …",
-        is_program(input.mesh.file) ? " (a .geo file can run shell commands: mesh one that you trust)" : "");
+        is_gmsh_script(input.mesh.file) ? " (a .geo file can run shell commands: mesh one that you trust)" : "");
     return 0;
   }
   const std::unique_ptr<Model> model = build_model(input);

@@ -164,6 +164,13 @@ class Builder {
 
 }  // namespace
 
+BoxMesh box_of(CellShape shape, std::vector<int> counts) {
+  BoxMesh box;
+  box.shape = shape;
+  box.counts = std::move(counts);
+  return box;
+}
+
 Mesh make_box_mesh(const BoxMesh& box) {
   return Builder(box).build();
 }

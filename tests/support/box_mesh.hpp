@@ -20,6 +20,9 @@ struct BoxMesh {
   PointMap map;              ///< from [0, 1]ᵈ to the body; empty: the identity
 };
 
+/// The unit box, its cells distorted as by default.
+[[nodiscard]] BoxMesh box_of(CellShape shape, std::vector<int> counts);
+
 /// Vertices on a side of the unit box move within that side only, so the undistorted shape of the body is kept. Groups:
 /// "body" (cells), and of facets "x0", "x1", "y0", … (the sides where that reference coordinate is 0 or 1), "boundary".
 [[nodiscard]] Mesh make_box_mesh(const BoxMesh& box);

@@ -110,6 +110,18 @@ bool RunDirectory::is_in_use(const std::string& path) {
   return locked;
 }
 
+bool holds_run(const std::string& directory) {
+  std::error_code ignored;
+  return fs::exists(fs::path(directory) / "summary.json", ignored) ||
+         (fs::is_directory(directory, ignored) && !checkpoint_files(directory).empty());
+}
+
+void require_run(const std::string& directory) {
+  if (holds_run(directory)) return;
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: no run is in this directory: it holds no summary.json", directory));
+}
+
 void remove_files(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     std::error_code problem;

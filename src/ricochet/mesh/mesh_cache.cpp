@@ -72,7 +72,7 @@ void append_sources(const fs::path& path, std::set<fs::path>& seen, std::string&
   const std::string content = read_whole_file(canonical);
   key += fmt::format("{} {}\n", path.filename().string(), content.size()) + content;
   append_sources(fs::path(path.string() + ".opt"), seen, key);
-  if (extension_of(path.string()) != ".geo") return;
+  if (!is_gmsh_script(path.string())) return;
   constexpr const char* quotes = "\"'";
   std::size_t quote = content.find_first_of(quotes);
   while (quote != std::string::npos) {
@@ -201,7 +201,11 @@ fs::path converted_file(const std::string& path) {
 namespace ricochet {
 
 bool needs_gmsh_program(const std::string& path) {
-  return gmsh::is_cad_file(path) || gmsh::extension_of(path) == ".geo";
+  return gmsh::is_cad_file(path) || is_gmsh_script(path);
+}
+
+bool is_gmsh_script(const std::string& path) {
+  return gmsh::extension_of(path) == ".geo";
 }
 
 }  // namespace ricochet

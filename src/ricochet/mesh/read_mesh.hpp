@@ -22,6 +22,10 @@ struct MeshFile {
 /// True for files that need the gmsh program (.geo, .step, .stp, .iges, .igs, .brep).
 [[nodiscard]] bool needs_gmsh_program(const std::string& path);
 
+/// True for those of them that can also run shell commands (.geo): such a file is handed to gmsh only where a user asks
+/// for its mesh.
+[[nodiscard]] bool is_gmsh_script(const std::string& path);
+
 /// Whether the mesh of such a file is kept from before, so that reading it does not run gmsh on it. Throws as
 /// read_mesh.
 [[nodiscard]] bool is_meshed(const MeshFile& file);

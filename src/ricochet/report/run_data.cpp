@@ -9,6 +9,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/run_directory.hpp"
 
 namespace ricochet {
 
@@ -66,10 +67,7 @@ RunData read_run(const std::string& directory, bool with_results) {
                 fmt::format("{}: no such directory: name the output directories of runs", directory));
   }
   const auto path = [&](const char* file) { return (fs::path(directory) / file).string(); };
-  if (!fs::exists(path("summary.json"))) {
-    throw Error(ErrorKind::file_access,
-                fmt::format("{}: no run is in this directory: it holds no summary.json", directory));
-  }
+  require_run(directory);
   RunData run;
   run.directory = directory;
   run.summary_json = read_file(path("summary.json"));

@@ -145,6 +145,8 @@ TEST(GmshProgramNeeded, ForGeometryOnly) {
   for (const char* name : {"a.geo", "a.STEP", "a.stp", "a.iges", "a.igs", "a.brep"})
     EXPECT_TRUE(needs_gmsh_program(name));
   for (const char* name : {"a.msh", "a", "geo", "a.vtk"}) EXPECT_FALSE(needs_gmsh_program(name));
+  for (const char* name : {"a.geo", "a.GEO"}) EXPECT_TRUE(is_gmsh_script(name));
+  for (const char* name : {"a.STEP", "a.msh", "geo"}) EXPECT_FALSE(is_gmsh_script(name));
 }
 
 }  // namespace

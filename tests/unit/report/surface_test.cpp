@@ -13,16 +13,10 @@
 namespace ricochet {
 namespace {
 
+using test_support::box_of;
 using test_support::BoxMesh;
 using test_support::ElementKind;
 using test_support::make_box_mesh;
-
-BoxMesh box_of(CellShape shape, std::vector<int> counts) {
-  BoxMesh box;
-  box.shape = shape;
-  box.counts = std::move(counts);
-  return box;
-}
 
 /// Three rows, as files have them.
 Points in_space(const Points& nodes) {

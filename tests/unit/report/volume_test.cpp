@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace {
 
-using test_support::BoxMesh;
+using test_support::box_of;
 using test_support::ElementKind;
 using test_support::make_box_mesh;
 
@@ -46,10 +46,8 @@ class VolumeOf : public testing::TestWithParam<ElementKind> {};
 /// The tetrahedra fill the unit cube without gap or overlap, also where the cells' vertices are moved about.
 TEST_P(VolumeOf, ACubeIsComplete) {
   const ElementKind& kind = GetParam();
-  BoxMesh box;
-  box.shape = kind.shape;
-  box.counts = {2, 2, 2};
-  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const auto body =
+      test_support::make_meshed_body(make_box_mesh(box_of(kind.shape, {2, 2, 2})), kind.displacement_degree);
   const Points& nodes = body->space.nodes;
   const Volume volume = make_volume(nodes, body->space.cells, 1000000);
   EXPECT_FALSE(volume.is_thinned);
@@ -82,10 +80,8 @@ TEST_P(VolumeOf, ACubeIsComplete) {
 /// Where nothing is cut away, the inside ends at the surface that is drawn: triangle for triangle.
 TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
   const ElementKind& kind = GetParam();
-  BoxMesh box;
-  box.shape = kind.shape;
-  box.counts = {2, 2, 2};
-  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const auto body =
+      test_support::make_meshed_body(make_box_mesh(box_of(kind.shape, {2, 2, 2})), kind.displacement_degree);
   const Volume volume = make_volume(body->space.nodes, body->space.cells, 1000000);
   const Surface surface = make_surface(body->space.nodes, body->space.cells, 1000000);
   const auto in_body = [](std::array<int, 3> corners, const std::vector<Index>& nodes) {
@@ -108,10 +104,8 @@ TEST_P(VolumeOf, ItsOutsideIsTheSurface) {
 /// Of too many there are fewer: first those of the vertices, which still fill the cube, then larger ones.
 TEST_P(VolumeOf, ManyCellsAreMadeFewer) {
   const ElementKind& kind = GetParam();
-  BoxMesh box;
-  box.shape = kind.shape;
-  box.counts = {4, 4, 4};
-  const auto body = test_support::make_meshed_body(make_box_mesh(box), kind.displacement_degree);
+  const auto body =
+      test_support::make_meshed_body(make_box_mesh(box_of(kind.shape, {4, 4, 4})), kind.displacement_degree);
   const Points& nodes = body->space.nodes;
   const Index of_vertices = body->space.cells.front().size() * (kind.shape == CellShape::hexahedron ? 6 : 1);
   const Volume plain = make_volume(nodes, body->space.cells, of_vertices);
@@ -135,10 +129,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, VolumeOf,
                                          ElementKind{CellShape::hexahedron, 1, 2}));
 
 TEST(Volume, PlaneCellsHaveNone) {
-  BoxMesh box;
-  box.shape = CellShape::triangle;
-  box.counts = {2, 2};
-  const auto body = test_support::make_meshed_body(make_box_mesh(box), 1);
+  const auto body = test_support::make_meshed_body(make_box_mesh(box_of(CellShape::triangle, {2, 2})), 1);
   Points nodes = Points::Zero(3, body->space.nodes.cols());
   nodes.topRows(2) = body->space.nodes;
   EXPECT_EQ(make_volume(nodes, body->space.cells, 1000).count(), 0);

@@ -5,6 +5,7 @@
 
 #include "ricochet/solver/contact/alart_curnier.hpp"
 #include "ricochet/solver/contact/contact_iteration.hpp"
+#include "ricochet/solver/contact/iteration_record.hpp"
 
 namespace ricochet {
 
@@ -166,7 +167,7 @@ std::string ActiveSetSolver::iterate(const ContactSystem& system, const ContactO
     const std::string reason =
         frictionless_.solve(system, options.tolerance, current, solution.newton_steps, solution.factorizations);
     if (!reason.empty()) note_contradiction(frictionless_.contradiction());
-    note(system, options, "active set", system.residual(current), current.reaction, solution);
+    note_iteration(system, options, "active set", system.residual(current), current.reaction, solution);
     return reason;
   }
   const int limit = options.iteration_limit > 0 ? options.iteration_limit : 100;
@@ -178,7 +179,7 @@ std::string ActiveSetSolver::iterate(const ContactSystem& system, const ContactO
     system.evaluate(next_);
     if (step_.refine(next_, next_.reaction)) system.evaluate(next_);
     std::swap(current, next_);
-    note(system, options, "active set", system.residual(current), current.reaction, solution);
+    note_iteration(system, options, "active set", system.residual(current), current.reaction, solution);
   }
   return "the states of the points still change after the largest number of iterations";
 }

@@ -9,6 +9,7 @@
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/contact/cone_formulation.hpp"
 #include "ricochet/solver/contact/contact_iteration.hpp"
+#include "ricochet/solver/contact/iteration_record.hpp"
 
 namespace ricochet {
 
@@ -235,7 +236,7 @@ std::string Admm::iterate(const ContactSystem& system, const ContactOptions& opt
   for (int k = 1; k <= limit; ++k) {
     advance(system);
     const double residual = measure(system);
-    note(system, options, "admm", residual, z_, solution);
+    note_iteration(system, options, "admm", residual, z_, solution);
     if (!std::isfinite(residual)) return indefinite;
     if (residual <= options.tolerance * system.data() || k % verdict_interval == 0 || k == limit) {
       candidate_.reaction = z_;

@@ -2,18 +2,18 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ricochet/solver/contact/active_set.hpp"
-#include "ricochet/solver/contact/cone_formulation.hpp"
 #include "ricochet/solver/contact/contact_costs.hpp"
 #include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/gauss_seidel.hpp"
 #include "ricochet/solver/contact/globalized_newton.hpp"
+#include "ricochet/solver/contact/iteration_record.hpp"
+#include "ricochet/solver/contact/other_solvers.hpp"
 
 namespace ricochet {
 
@@ -37,22 +37,6 @@ constexpr int cold_sweeps = 20;
 constexpr int round_limit = 6;
 /// Part of a point's correction that is taken.
 constexpr double smallest_damping = 0.125;
-/// Other solvers, where Newton has failed from the last reactions and from zero, and before the very end: their
-/// iterations, at most, and so many entries of W or operations of a factor.
-struct OtherSolver {
-  const char* name;
-  bool factorizes;
-  int iteration_limit;
-};
-const std::vector<OtherSolver> first_others{{"newton-alart-curnier", true, 60},
-                                            {"newton-fischer-burmeister", true, 150}};
-const std::vector<OtherSolver> last_others{{"newton-fischer-burmeister", true, 200},
-                                           {"accelerated-gradient", false, 20000},
-                                           {"newton-jean-moreau", true, 200},
-                                           {"admm", false, 20000}};
-constexpr double factor_work_of_others = 1e11;
-constexpr double sweep_work_of_others = 4e9;
-constexpr int fewest_of_others = 5;
 /// Of long runs of sweeps at the very end, and their length in entries of W.
 constexpr int last_rounds = 20;
 constexpr double last_work = 2e7;
@@ -91,7 +75,7 @@ class AutomaticSolver final : public IterativeContactSolver {
   [[nodiscard]] bool works_on_candidates() const override { return true; }
   void forget() override {
     newton_.reset();
-    others_.clear();
+    others_.forget();
     frictionless_.reset();
     costs_ = {};
   }
@@ -113,21 +97,19 @@ class AutomaticSolver final : public IterativeContactSolver {
   bool sweep(const ContactWork& work, int sweeps, double damping);
   std::string iterate_with_products(const ContactWork& work);
   bool newton(const ContactWork& work);
-  [[nodiscard]] bool is_loosely_solved(const ContactWork& work, const ContactIterate& iterate);
   bool sweeps_and_newton(const ContactWork& work);
   bool alternate(const ContactWork& work, int sweeps, double damping);
   std::string find_contradiction(const ContactWork& work);
   bool fall_back(const ContactWork& work, bool was_cold);
   static void begin_at_zero(const ContactWork& work);
   void keep_fallback();
-  bool ask_others(const ContactWork& work, const std::vector<OtherSolver>& others);
   bool sweep_on(const ContactWork& work);
 
   GaussSeidel sweeps_;
   AcceleratedGaussSeidel accelerated_;
   GlobalizedNewton newton_;
-  std::unique_ptr<ContactSolver> products_;                       ///< where there are no entries of W
-  std::map<std::string, std::unique_ptr<ContactSolver>> others_;  ///< where all else has failed
+  std::unique_ptr<ContactSolver> products_;  ///< where there are no entries of W
+  OtherSolvers others_;                      ///< where all else has failed
   PrimalDualActiveSet frictionless_;
   DualActiveSet normals_;
   BestIterate best_;      ///< of a part of the iteration
@@ -177,8 +159,8 @@ bool AutomaticSolver::accelerated(const ContactWork& work) {
       residual = system.residual(work.current);
       residual_per_change = residual / change;
     }
-    note(system, work.options, "sweep", work.options.record ? system.residual(work.current) : residual,
-         work.current.reaction, work.solution);
+    note_iteration(system, work.options, "sweep", work.options.record ? system.residual(work.current) : residual,
+                   work.current.reaction, work.solution);
     best = std::min(best, residual);
     const bool arrived = residual <= target;
     if (arrived || residual < rough_digits * exact_residual) {
@@ -211,7 +193,8 @@ bool AutomaticSolver::sweep(const ContactWork& work, int sweeps, double damping)
   int unchanged = 0;
   for (int k = 1; k <= sweeps && unchanged < 2; ++k) {
     const bool changed = sweeps_.sweep(work.system, damping, work.current);
-    note(work.system, work.options, "sweep", work.system.residual(work.current), work.current.reaction, work.solution);
+    note_iteration(work.system, work.options, "sweep", work.system.residual(work.current), work.current.reaction,
+                   work.solution);
     unchanged = changed || long_run ? 0 : unchanged + 1;
     if (!long_run || k % 16 != 0) continue;
     work.system.evaluate(work.current);
@@ -229,11 +212,6 @@ std::string AutomaticSolver::iterate_with_products(const ContactWork& work) {
       .iterate(work.system, work.options, work.current, work.solution);
 }
 
-/// Where rounding is asked for and nothing improves any more.
-bool AutomaticSolver::is_loosely_solved(const ContactWork& work, const ContactIterate& iterate) {
-  return work.options.tolerance == 0.0 && work.is_solved_on_law(iterate, loosest_residual, on_law_);
-}
-
 /// Newton from `current`, with the line search, then whole steps from the best r.
 bool AutomaticSolver::newton(const ContactWork& work) {
   best_.restart(work);
@@ -241,7 +219,7 @@ bool AutomaticSolver::newton(const ContactWork& work) {
   work.current = best_.iterate;
   if (newton_.run(work, false, best_)) return true;
   work.current = best_.iterate;
-  return is_loosely_solved(work, best_.iterate);
+  return work.is_loosely_solved(best_.iterate, on_law_);
 }
 
 /// Sweeps and Newton in turn, from `current`.
@@ -257,7 +235,7 @@ bool AutomaticSolver::alternate(const ContactWork& work, int sweeps, double damp
       if (newton_.run(work, false, best_)) return true;
       work.current = best_.iterate;
     }
-    if (is_loosely_solved(work, best_.iterate)) return true;
+    if (work.is_loosely_solved(best_.iterate, on_law_)) return true;
     sweeps = cold_sweeps << round;
   }
   return false;
@@ -293,7 +271,7 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
     PrimalDualActiveSet::Watch watch;
     if (options.record) {
       watch = [&](const ContactIterate& now) {
-        record(system, options, "active set", system.residual(now), now.reaction, solution);
+        record_iteration(system, options, "active set", system.residual(now), now.reaction, solution);
       };
     }
     const std::string reason =
@@ -351,7 +329,7 @@ bool AutomaticSolver::fall_back(const ContactWork& work, bool was_cold) {
     if (sweeps_and_newton(work)) return true;
     keep_fallback();
   }
-  if (ask_others(work, first_others)) return true;
+  if (others_.solve(work, OtherSolvers::first, fallback_)) return true;
   work.current = fallback_.iterate;
   if (alternate(work, cold_sweeps, 1.0)) return true;
   keep_fallback();
@@ -361,34 +339,9 @@ bool AutomaticSolver::fall_back(const ContactWork& work, bool was_cold) {
     if (alternate(work, 2 * cold_sweeps, damping)) return true;
     keep_fallback();
   }
-  if (ask_others(work, last_others)) return true;
+  if (others_.solve(work, OtherSolvers::last, fallback_)) return true;
   work.current = fallback_.iterate;
   return sweep_on(work);
-}
-
-/// Other solvers from r = 0, then from the best r there is. They fail where this one does not and the other way round:
-/// strong friction in wedges whose surfaces hardly give (hard_problems_test.cpp) is where they are needed.
-bool AutomaticSolver::ask_others(const ContactWork& work, const std::vector<OtherSolver>& others) {
-  if (!refuse_bounds(work.system).empty()) return false;
-  const double rows = static_cast<double>(work.system.rows());
-  for (const bool cold : {true, false}) {
-    for (const OtherSolver& other : others) {
-      const double limit =
-          other.factorizes ? factor_work_of_others / (rows * rows * rows) : sweep_work_of_others / (rows * rows);
-      ContactOptions options = work.options;
-      options.iteration_limit = static_cast<int>(std::min(limit, static_cast<double>(other.iteration_limit)));
-      if (options.iteration_limit < fewest_of_others) continue;
-      work.current.reaction = cold ? Vector(Vector::Zero(work.system.rows())) : fallback_.iterate.reaction;
-      work.system.evaluate(work.current);
-      std::unique_ptr<ContactSolver>& solver = others_[other.name];
-      if (solver == nullptr) solver = make_contact_solver(other.name);
-      auto& iteration = dynamic_cast<IterativeContactSolver&>(*solver);
-      const bool solved = iteration.iterate(work.system, options, work.current, work.solution).empty();
-      if ((solved && work.options.tolerance > 0.0) || is_loosely_solved(work, work.current)) return true;
-      fallback_.keep(work);
-    }
-  }
-  return false;
 }
 
 /// The last resort: Gauss–Seidel for as long as it comes closer, with Newton tried now and then. Where conditions

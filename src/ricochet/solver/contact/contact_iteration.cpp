@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/dense_kernels.hpp"
+#include "ricochet/solver/contact/iteration_record.hpp"
 
 namespace ricochet {
 
@@ -70,49 +71,6 @@ Vector IterativeContactSolver::warm_start() const {
   start.tail(static_cast<Index>(memory.size())) =
       Eigen::Map<const Vector>(memory.data(), static_cast<Index>(memory.size()));
   return start;
-}
-
-namespace {
-
-/// What a point does, by its reaction alone.
-ContactStatus status_of(const ContactPoint& point, const Vector& reaction) {
-  if (!(reaction[point.first] > 0.0)) return ContactStatus::open;
-  if (!point.has_friction()) return ContactStatus::closed;
-  const double limit = point.friction_limit(reaction[point.first]) * (1.0 - 1e-9);
-  const double length = reaction.segment(point.first + 1, point.size - 1).norm();
-  return length < limit ? ContactStatus::stick : ContactStatus::slip;
-}
-
-/// Takes the states of the points over into the solution's record.
-ContactIteration count_states(const ContactSystem& system, const Vector& reaction, ContactSolution& solution) {
-  ContactIteration counts;
-  for (const ContactPoint& point : system.points()) {
-    const ContactStatus status = status_of(point, reaction);
-    ContactStatus& before = solution.record_status[static_cast<std::size_t>(point.point)];
-    counts.changed += status != before ? 1 : 0;
-    counts.closed += status != ContactStatus::open ? 1 : 0;
-    counts.slipping += status == ContactStatus::slip ? 1 : 0;
-    counts.sticking += status == ContactStatus::stick ? 1 : 0;
-    before = status;
-  }
-  return counts;
-}
-
-}  // namespace
-
-void IterativeContactSolver::note(const ContactSystem& system, const ContactOptions& options, const char* phase,
-                                  double residual, const Vector& reaction, ContactSolution& solution) {
-  ++solution.iterations;
-  record(system, options, phase, residual, reaction, solution);
-}
-
-void IterativeContactSolver::record(const ContactSystem& system, const ContactOptions& options, const char* phase,
-                                    double residual, const Vector& reaction, ContactSolution& solution) {
-  if (!options.record) return;
-  ContactIteration line = count_states(system, reaction, solution);
-  line.phase = phase;
-  line.residual = residual / system.data();
-  solution.record.push_back(line);
 }
 
 void ContactOptions::validate() const {
@@ -301,8 +259,7 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
   if (largest <= accepted_residual(options) * system_.data()) {
     solution.reason =
         "the residual says nothing, for reactions have grown until their rounding hides what is left of it: where a "
-        "body "
-        "is jammed by friction there may be no solution";
+        "body is jammed by friction there may be no solution";
   }
 }
 

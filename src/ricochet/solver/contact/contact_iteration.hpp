@@ -28,14 +28,6 @@ class IterativeContactSolver : public ContactSolver {
   virtual std::string iterate(const ContactSystem& system, const ContactOptions& options, ContactIterate& current,
                               ContactSolution& solution) = 0;
 
-  /// Counts an iteration, and notes it in the record with the reactions it has come to. `residual`: not yet divided by
-  /// the data.
-  static void note(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
-                   const Vector& reaction, ContactSolution& solution);
-  /// Notes it without counting, where a record is asked for.
-  static void record(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
-                     const Vector& reaction, ContactSolution& solution);
-
   /// r on the law: signs and limits hold exactly; where friction is at its limit it is against the slip, to the last
   /// digits where `exactly` is asked for. u does not follow.
   static void put_on_law(const ContactSystem& system, const Vector& motion, bool exactly, Vector& reaction);

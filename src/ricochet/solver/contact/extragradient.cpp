@@ -3,6 +3,7 @@
 
 #include "ricochet/solver/contact/cone_formulation.hpp"
 #include "ricochet/solver/contact/contact_iteration.hpp"
+#include "ricochet/solver/contact/iteration_record.hpp"
 
 namespace ricochet {
 
@@ -80,7 +81,7 @@ std::string Extragradient::iterate(const ContactSystem& system, const ContactOpt
   for (int k = 1; k <= limit; ++k) {
     advance(system, current);
     const double residual = system.residual(current);
-    note(system, options, "extragradient", residual, current.reaction, solution);
+    note_iteration(system, options, "extragradient", residual, current.reaction, solution);
     if (!std::isfinite(residual)) break;
     if (verdict_.is_solved(system, k, residual, current)) return "";
   }

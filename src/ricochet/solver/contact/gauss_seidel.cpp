@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ricochet/solver/contact/contact_iteration.hpp"
+#include "ricochet/solver/contact/iteration_record.hpp"
 
 namespace ricochet {
 
@@ -56,7 +57,7 @@ class GaussSeidelSolver final : public IterativeContactSolver {
     for (int k = 1; k <= limit; ++k) {
       sweeps_.sweep(system, 1.0, current);
       const double residual = system.residual(current);
-      note(system, options, "sweep", residual, current.reaction, solution);
+      note_iteration(system, options, "sweep", residual, current.reaction, solution);
       if (!std::isfinite(residual)) return "the sweeps diverged: W is not positive definite";
       // u gathers the rounding of its updates; the verdict is on a fresh one.
       if (residual > options.tolerance * system.data() && k % 16 != 0) continue;

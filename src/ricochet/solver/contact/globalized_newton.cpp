@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "ricochet/solver/contact/contact_iteration.hpp"
+#include "ricochet/solver/contact/iteration_record.hpp"
 
 namespace ricochet {
 
@@ -51,6 +52,10 @@ bool ContactWork::is_solved_on_law(const ContactIterate& iterate, double toleran
   IterativeContactSolver::put_on_law(system, iterate.motion, false, on_law.reaction);
   if (on_law.reaction != iterate.reaction) system.evaluate(on_law);
   return system.is_solved(on_law, tolerance);
+}
+
+bool ContactWork::is_loosely_solved(const ContactIterate& iterate, ContactIterate& on_law) const {
+  return options.tolerance == 0.0 && is_solved_on_law(iterate, loosest_residual, on_law);
 }
 
 void BestIterate::restart(const ContactWork& work) {
@@ -143,8 +148,7 @@ bool GlobalizedNewton::run(const ContactWork& work, bool line_search, BestIterat
     ++work.solution.newton_steps;
     if (!full_step(work, reduction)) return false;
     reduction = next_reduction(work);
-    IterativeContactSolver::note(system, work.options, "newton", system.residual(trial_), trial_.reaction,
-                                 work.solution);
+    note_iteration(system, work.options, "newton", system.residual(trial_), trial_.reaction, work.solution);
     if (system.is_solved(trial_, work.options.tolerance)) {
       std::swap(work.current, trial_);
       if (work.is_done(work.current)) return true;

@@ -24,6 +24,8 @@ struct ContactWork {
   [[nodiscard]] bool is_done(const ContactIterate& iterate) const;
   /// Whether it is still solved when its reactions are put on their law, as it is handed over: then in `on_law`.
   [[nodiscard]] bool is_solved_on_law(const ContactIterate& iterate, double tolerance, ContactIterate& on_law) const;
+  /// Where rounding is asked for and nothing improves any more: the same for the loosest residual that is accepted.
+  [[nodiscard]] bool is_loosely_solved(const ContactIterate& iterate, ContactIterate& on_law) const;
 };
 
 /// The iterate of least merit so far.

@@ -1,4 +1,5 @@
 #include "ricochet/solver/contact/newton_iteration.hpp"
+#include "ricochet/solver/contact/iteration_record.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -259,7 +260,7 @@ std::string NewtonContactSolver::iterate(const ContactSystem& system, const Cont
     }
     system.evaluate(trial_);
     const double residual = system.residual(trial_);
-    note(system, options, "newton", residual, trial_.reaction, solution);
+    note_iteration(system, options, "newton", residual, trial_.reaction, solution);
     if (system.is_solved(trial_, options.tolerance)) {
       std::swap(current, trial_);
       return "";

@@ -3,6 +3,7 @@
 
 #include "ricochet/solver/contact/cone_formulation.hpp"
 #include "ricochet/solver/contact/contact_iteration.hpp"
+#include "ricochet/solver/contact/iteration_record.hpp"
 
 namespace ricochet {
 
@@ -130,7 +131,7 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
     std::swap(current.reaction, next_.reaction);
     std::swap(current.motion, next_.motion);
     const double residual = system.residual(current);
-    note(system, options, "gradient", residual, current.reaction, solution);
+    note_iteration(system, options, "gradient", residual, current.reaction, solution);
     if (!std::isfinite(residual)) break;
     if (holds_ && is_held_problem_solved(system, current)) hold(system, current, residual);
     if (!holds_ && k == next_comparison) {

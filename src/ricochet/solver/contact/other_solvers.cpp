@@ -1,0 +1,46 @@
+#include "ricochet/solver/contact/other_solvers.hpp"
+
+#include <algorithm>
+
+#include "ricochet/solver/contact/cone_formulation.hpp"
+#include "ricochet/solver/contact/contact_iteration.hpp"
+
+namespace ricochet {
+
+namespace {
+/// At most so many operations of a factor, or entries of W.
+constexpr double factor_work = 1e11;
+constexpr double sweep_work = 4e9;
+constexpr int fewest_iterations = 5;
+}  // namespace
+
+const std::vector<OtherSolvers::Kind> OtherSolvers::first{{"newton-alart-curnier", true, 60},
+                                                          {"newton-fischer-burmeister", true, 150}};
+const std::vector<OtherSolvers::Kind> OtherSolvers::last{{"newton-fischer-burmeister", true, 200},
+                                                         {"accelerated-gradient", false, 20000},
+                                                         {"newton-jean-moreau", true, 200},
+                                                         {"admm", false, 20000}};
+
+bool OtherSolvers::solve(const ContactWork& work, const std::vector<Kind>& kinds, BestIterate& best) {
+  if (!refuse_bounds(work.system).empty()) return false;
+  const double rows = static_cast<double>(work.system.rows());
+  for (const bool cold : {true, false}) {
+    for (const Kind& kind : kinds) {
+      const double limit = kind.factorizes ? factor_work / (rows * rows * rows) : sweep_work / (rows * rows);
+      ContactOptions options = work.options;
+      options.iteration_limit = static_cast<int>(std::min(limit, static_cast<double>(kind.iteration_limit)));
+      if (options.iteration_limit < fewest_iterations) continue;
+      work.current.reaction = cold ? Vector(Vector::Zero(work.system.rows())) : best.iterate.reaction;
+      work.system.evaluate(work.current);
+      std::unique_ptr<ContactSolver>& solver = solvers_[kind.name];
+      if (solver == nullptr) solver = make_contact_solver(kind.name);
+      auto& iteration = dynamic_cast<IterativeContactSolver&>(*solver);
+      const bool solved = iteration.iterate(work.system, options, work.current, work.solution).empty();
+      if ((solved && work.options.tolerance > 0.0) || work.is_loosely_solved(work.current, on_law_)) return true;
+      best.keep(work);
+    }
+  }
+  return false;
+}
+
+}  // namespace ricochet
