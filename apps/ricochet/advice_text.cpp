@@ -151,9 +151,9 @@ void print_contact(const Case& input, const Model& model, std::size_t pair) {
   const bool falls_freely = input.supports.empty() && input.tractions.empty() && input.load.body_force.empty() &&
                             input.initial.displacement.empty() && !input.initial.static_equilibrium;
   if (falls_freely && nearest > rounding) {
-    fmt::print("{}", std::isfinite(meets)
-                         ? fmt::format(" and meets it at t = {:.4g}, of the run's {:g}", meets, input.time.end)
-                         : " and does not come nearer");
+    fmt::print("{}", std::isfinite(meets) ? fmt::format(" and would reach it at t = {:.4g} (the run ends at {:g})",
+                                                        meets, input.time.end)
+                                          : " and does not come nearer");
   }
   fmt::print("\n");
 }

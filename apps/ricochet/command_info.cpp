@@ -40,7 +40,7 @@ std::string shape_text(const CellBlock& block) {
 void describe_mesh(const std::string& path) {
   MeshFile file;
   file.path = path;
-  if (is_gmsh_script(path) && !is_meshed(file)) {  // only `run` and `validate --mesh` hand one to gmsh
+  if (may_run_commands(path) && !is_meshed(file)) {  // only `run` and `validate --mesh` hand one to gmsh
     fmt::print(
         "{}: a geometry that was not meshed yet: its groups and sizes are not known. The gmsh program meshes it when a "
         "case that names it is run, or by `ricochet validate CASE.toml --mesh`; `ricochet info CASE.toml` then "
@@ -74,10 +74,10 @@ void describe_case(const std::string& path) {
   print_contacts(describe_contacts(input));
   fmt::print("  scheme {}, mass {}, {} of {:g} to {:g}\n", input.time.scheme, input.mass.type,
              counted(step_count(input.time), "step"), input.time.step, input.time.end);
-  if (require_mesh_file(input); is_gmsh_script(input.mesh.file) && !is_meshed(mesh_file(input))) {
+  if (require_mesh_file(input); may_run_commands(input.mesh.file) && !is_meshed(mesh_file(input))) {
     fmt::print(
-        "  groups, sizes and a suggested step are told of meshes: {} has to be meshed first, by `ricochet validate {} "
-        "--mesh`\n",
+        "  groups, sizes and a suggested step are only known once {} is meshed: `ricochet validate {} --mesh` does "
+        "that\n",
         input.mesh.file, path);
     return;
   }

@@ -63,8 +63,8 @@ double estimate(const Case& input, const SemidiscreteProblem& problem, const Sch
   return seconds;
 }
 
-/// Whether there is one to be checked, or one may be made: a .geo file can run shell commands, and meshing may take
-/// long.
+/// Whether there is one to be checked, or one may be made: gmsh may run shell commands of the file, and meshing may
+/// take long.
 bool has_mesh(const Case& input, const ValidateArguments& arguments) {
   if (!needs_gmsh_program(input.mesh.file) || arguments.mesh) return true;
   require_mesh_file(input);
@@ -90,7 +90,9 @@ int validate(const ValidateArguments& arguments) {
         "probes, columns of [[expect]], memory and time, and the start of the run; `ricochet validate {}{} --mesh` "
         "meshes the file and checks them{}\n",
         case_file, case_file, arguments.overrides.empty() ? "" : " --set …",
-        is_gmsh_script(input.mesh.file) ? " (a .geo file can run shell commands: mesh one that you trust)" : "");
+        may_run_commands(input.mesh.file)
+            ? " (gmsh runs shell commands that a .geo or .opt file contains: mesh files that you trust)"
+            : "");
     return 0;
   }
   const std::unique_ptr<Model> model = build_model(input);

@@ -65,7 +65,7 @@ class Outcome {
     return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", turned_in(first));
   }
 
-  /// Of a body on an obstacle; the whole resultant where the results tell no impacts.
+  /// Of a body on an obstacle; "-" where the results tell no impacts.
   [[nodiscard]] std::string largest_force() const {
     const auto hardest = std::max_element(s_.impacts.begin(), s_.impacts.end(), [](const Impact& a, const Impact& b) {
       return a.largest_force < b.largest_force;
@@ -122,7 +122,7 @@ void print_comparison(const std::vector<std::string>& directories) {
   std::vector<Run> runs;
   std::size_t width = 24;
   for (const std::string& directory : directories) {
-    runs.push_back({directory, read_summary(directory + "/summary.json")});
+    runs.push_back({directory, read_summary_of_run(directory)});
     width = std::max(width, directory.size());
   }
   print_methods(runs, static_cast<int>(width));

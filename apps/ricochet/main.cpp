@@ -83,7 +83,8 @@ int dispatch(int argc, char** argv) {
       ->type_name("key.path=value")
       ->allow_extra_args(false);
   validate->add_flag("--mesh", arguments.validate.mesh,
-                     "mesh a .geo or CAD file by the gmsh program, as a run does (a .geo file can run shell commands)");
+                     "mesh a .geo or CAD file by the gmsh program, as a run does (which runs shell commands that a "
+                     ".geo or .opt file contains)");
   add_common(*validate, arguments);
 
   CLI::App* info = app.add_subcommand(

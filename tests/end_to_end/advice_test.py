@@ -100,7 +100,7 @@ class Advice(TestCase):
         fast, slow = math.sqrt(200.0), math.sqrt(50.0)
         self.assertIn(f"compression waves {fast:.5g}, shear waves {slow:.5g}", text)
         # A fall through 0.1 at 10.
-        self.assertIn(f'"bottom" is 0.1 away from "floor" at its nearest node and meets it at t = '
+        self.assertIn(f'"bottom" is 0.1 away from "floor" at its nearest node and would reach it at t = '
                       f"{math.sqrt(2 * 0.1 / 10):.4g}", text)
         smallest, median, largest = map(float, re.search(
             r"heights of cells: smallest ([^,]+), median ([^,]+), largest (\S+)", text).groups())

@@ -153,7 +153,7 @@ end = 0.001
         self.assertTrue(impact["ended"])
         self.assertAlmostEqual(impact["normal_velocity_before"], -0.3, delta=1e-9)
         self.assertIsNone(impact["restitution"])
-        self.assertIn("less than 1 % of its speed along the obstacle", impact["why_no_restitution"])
+        self.assertIn("less than 1 % of the speed at which it slid along the obstacle", impact["why_no_restitution"])
         said = self.expect_status(0, run("info", folder)).stdout
         self.assertIn(f"no restitution ({impact['why_no_restitution']})", said)
 

@@ -1,6 +1,7 @@
 """What the program says of motions that the scheme, and of strains that small strain, cannot follow."""
 
 import json
+import re
 import unittest
 
 from harness import TestCase, block_case, run
@@ -15,7 +16,9 @@ class Warnings(TestCase):
 
     def test_supports_whose_velocity_jumps(self):
         ramp, smooth = "-0.01*min(t/0.1, 1)", "-0.005*(1-cos(pi*min(t/0.1, 1)))"
-        for motion, scheme, jumps in ((ramp, "newmark", True), (smooth, "newmark", False), (ramp, "klr-conserving", False)):
+        few_steps = "0.0001*sin(2*pi*t/0.04)"  # twenty in a period
+        for motion, scheme, jumps in ((ramp, "newmark", True), (smooth, "newmark", False), (few_steps, "newmark", False),
+                                      (ramp, "klr-conserving", False)):
             text = block_case() + SUPPORT.format(motion)
             if scheme != "newmark":
                 text = text.replace('scheme = "newmark"\npreset = "trapezoidal"', f'scheme = "{scheme}"')
@@ -27,6 +30,16 @@ class Warnings(TestCase):
                 self.assertIn(f"case.toml:{line}:9", told[0])
                 self.assertIn("jumps at t = 0.1.", told[0])
                 self.assertIn("velocity of this support jumps", run("validate", self.folder / "case.toml").stderr)
+
+    def test_jumps_anywhere_in_a_long_run(self):
+        # A corner at a step, between two steps, at the begin of the motion and after a million steps.
+        for corner in (0.1, 0.1001, 0.0004, 300.0):
+            motion = f"-0.01*max(t-{corner}, 0)"
+            text = (block_case() + SUPPORT.format(motion)).replace("step = 0.01", "step = 0.0002")
+            told = self.expect_status(0, run("validate", self.write("long.toml", text), "--set", "time.end=310")).stderr
+            found = re.search(r"velocity of this support jumps at t = ([^ ]+)\.", told)
+            self.assertIsNotNone(found, (corner, told))
+            self.assertAlmostEqual(float(found[1]), corner, delta=0.0002)
 
     def test_strains_that_are_not_small(self):
         # A uniform strain e along y has the equivalent strain sqrt(2/3 e:e) = 2/3 e, the largest of the motion that it starts.

@@ -15,8 +15,8 @@ namespace ricochet {
 class AtInterruption {
  public:
   explicit AtInterruption(std::function<void()> action);
-  /// Calls `begin` first, which makes what the action will remove: there is no instant at which it is there and the
-  /// action would not be taken. What `begin` throws is thrown, and there is no action then.
+  /// Calls `begin` first, which makes what the action will remove: it never exists without the action being registered.
+  /// What `begin` throws is thrown, and there is no action then.
   AtInterruption(const std::function<void()>& begin, std::function<void()> action);
   ~AtInterruption();
   AtInterruption(const AtInterruption&) = delete;

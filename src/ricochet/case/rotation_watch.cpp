@@ -42,8 +42,9 @@ void RotationWatch::save(Snapshot& snapshot, const std::string& name) const {
 void RotationWatch::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name);
   const auto most = static_cast<Index>(2 * growth_.capacity());
-  if (numbers.size() % 2 != 0 || numbers.size() > most || !numbers.allFinite())
-    throw Error(ErrorKind::invalid_input, "the checkpoint's record of rotations is damaged");
+  bool fits = numbers.size() % 2 == 0 && numbers.size() <= most && numbers.allFinite();
+  for (Index i = 2; fits && i < numbers.size(); ++i) fits = numbers[i] > numbers[i - 2];
+  if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of rotations is damaged");
   growth_.clear();
   for (Index i = 0; i < numbers.size(); i += 2) growth_.push_back({numbers[i], numbers[i + 1]});
 }

@@ -66,11 +66,10 @@ void judge_strain(const RunSummary& summary, const Body& body) {
   const double strain = summary.peak_stress->peak.von_mises / (3.0 * material->mu);
   if (!(strain > strain_limit)) return;
   log::warning(
-      fmt::format("at t = {:.6g} the largest von Mises stress goes with an equivalent strain of {:.2g} %: small "
-                  "strain, which leaves out terms "
-                  "of that relative size, does not hold there, and stresses and forces are wrong by as much. A stiffer "
-                  "body or a slower impact "
-                  "keeps within {:g} %; check the units, too",
+      fmt::format("at t = {:.6g} the largest von Mises stress corresponds to an equivalent strain of {:.2g} %: small "
+                  "strain leaves out terms "
+                  "of that relative size and does not hold there; stresses and forces are wrong by as much. A stiffer "
+                  "body or a slower impact keeps within {:g} %; check the units, too",
                   summary.peak_stress->peak.time, 100.0 * strain, 100.0 * strain_limit));
 }
 

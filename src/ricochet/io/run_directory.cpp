@@ -118,8 +118,9 @@ bool holds_run(const std::string& directory) {
 
 void require_run(const std::string& directory) {
   if (holds_run(directory)) return;
-  throw Error(ErrorKind::file_access,
-              fmt::format("{}: no run is in this directory: it holds no summary.json", directory));
+  throw Error(
+      ErrorKind::file_access,
+      fmt::format("{}: no run is in this directory: it holds neither summary.json nor a checkpoint", directory));
 }
 
 void remove_files(const std::vector<std::string>& files) {

@@ -16,6 +16,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/json_number.hpp"
+#include "ricochet/io/run_directory.hpp"
 #include "ricochet/io/summary_outcome.hpp"
 
 namespace ricochet {
@@ -207,6 +208,18 @@ void write_summary(const std::string& path, const RunSummary& summary) {
   if (file) std::filesystem::rename(temporary, path, problem);
   if (!file || problem)
     throw Error(ErrorKind::file_access, fmt::format("{}: cannot write: {}", path, std::strerror(errno)));
+}
+
+RunSummary read_summary_of_run(const std::string& directory) {
+  require_run(directory);
+  const std::string path = (std::filesystem::path(directory) / "summary.json").string();
+  if (std::error_code ignored; !std::filesystem::exists(path, ignored)) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{0}: summary.json is missing, though the run in it has left a checkpoint: `ricochet run` "
+                            "with --resume goes on with it and writes a summary",
+                            directory));
+  }
+  return read_summary(path);
 }
 
 RunSummary read_summary(const std::string& path) {

@@ -87,6 +87,7 @@ Json impact_to_json(const Impact& impact, int dimension) {
           {"normal_velocity_before", number(impact.normal_velocity_before())},
           {"normal_velocity_after", if_ended(number(impact.normal_velocity_after()))},
           {"obstacle_normal_velocity", number(impact.obstacle_velocity)},
+          {"obstacle_sliding_velocity", components(impact.obstacle_sliding, dimension)},
           {"tangential_velocity_before", components(impact.tangential_velocity_before(), dimension)},
           {"tangential_velocity_after", if_ended(components(impact.tangential_velocity_after(), dimension))},
           {"velocity_before", components(impact.before.velocity, dimension)},

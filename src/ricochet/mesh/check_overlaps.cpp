@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet::gmsh {
@@ -89,12 +90,11 @@ void warn_of_overlaps(const Mesh& mesh) {
   }
   if (count == 0) return;
   const auto place = mesh.nodes.col(static_cast<Index>(worst));
-  log::warning(
-      fmt::format("{}: cells overlap: around node {} at ({:.6g}) they take up {:.3g} times the whole angle{}; the body "
-                  "is counted twice "
-                  "there, in its mass and its stiffness: mesh the part anew",
-                  mesh.source, mesh.node_tags[worst], fmt::join(place.begin(), place.end(), ", "), sums[worst] / whole,
-                  count > 1 ? fmt::format(" (and more than the whole around {} others)", count - 1) : ""));
+  log::warning(fmt::format(
+      "{}: cells overlap: around node {} at ({:.6g}) they take up {:.3g} times the whole angle{}; the body "
+      "is counted twice there, in its mass and its stiffness: mesh the part anew",
+      mesh.source, mesh.node_tags[worst], fmt::join(place.begin(), place.end(), ", "), sums[worst] / whole,
+      count > 1 ? fmt::format(" ({} affected, too)", counted(count - 1, "other node is", "other nodes are")) : ""));
 }
 
 }  // namespace ricochet::gmsh

@@ -1,8 +1,8 @@
 #include "ricochet/mesh/derived_groups.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "ricochet/mesh/boundary_facets.hpp"
@@ -78,17 +78,14 @@ void renumber(const std::vector<Index>& before, const std::vector<Index>& after,
 }
 
 void add_whole_boundary(Mesh& mesh) {
-  std::array<std::vector<CellFacet>, 5> by_shape;  // of CellShape
+  std::map<CellShape, std::vector<CellFacet>> by_shape;
   for (const CellFacet& facet : boundary_facets(mesh.cells))
-    by_shape[static_cast<std::size_t>(facet_shape(mesh.cells[facet.block].shape))].push_back(facet);
+    by_shape[facet_shape(mesh.cells[facet.block].shape)].push_back(facet);
   Group boundary{whole_boundary_name, free_tag(mesh, mesh.dimension - 1), mesh.dimension - 1, {}};
-  for (std::size_t shape = 0; shape < by_shape.size(); ++shape) {
-    if (!by_shape[shape].empty()) (void)block_of(mesh, static_cast<CellShape>(shape));
-  }
+  for (const auto& [shape, facets] : by_shape) (void)block_of(mesh, shape);
   const std::vector<Index> before = first_numbers(mesh.facets);
   std::vector<std::vector<Index>> members;
-  for (CellBlock& block : mesh.facets)
-    members.push_back(add_facets(mesh, by_shape[static_cast<std::size_t>(block.shape)], block));
+  for (CellBlock& block : mesh.facets) members.push_back(add_facets(mesh, by_shape[block.shape], block));
   const std::vector<Index> after = first_numbers(mesh.facets);
   renumber(before, after, mesh.dimension - 1, mesh);
   for (std::size_t block = 0; block < members.size(); ++block) {

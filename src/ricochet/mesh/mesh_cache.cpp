@@ -62,6 +62,15 @@ void append_companions(const fs::path& path, std::set<fs::path>& seen, std::stri
   for (const fs::path& companion : companions(path, content)) append_companions(companion, seen, key);
 }
 
+bool is_script(const std::string& path) {
+  return extension_of(path) == ".geo";
+}
+
+/// That gmsh reads with a file.
+fs::path options_file(const fs::path& path) {
+  return path.string() + ".opt";
+}
+
 /// Appends the contents the mesh depends on: the file, the options Gmsh reads beside it, and every file whose name a
 /// .geo file has in quotes, as those it merges are. A name that a .geo file computes escapes this, as does what its
 /// SystemCall does.
@@ -71,8 +80,8 @@ void append_sources(const fs::path& path, std::set<fs::path>& seen, std::string&
   if (error || !fs::is_regular_file(canonical, error) || !seen.insert(canonical).second) return;
   const std::string content = read_whole_file(canonical);
   key += fmt::format("{} {}\n", path.filename().string(), content.size()) + content;
-  append_sources(fs::path(path.string() + ".opt"), seen, key);
-  if (!is_gmsh_script(path.string())) return;
+  append_sources(options_file(path), seen, key);
+  if (!is_script(path.string())) return;
   constexpr const char* quotes = "\"'";
   std::size_t quote = content.find_first_of(quotes);
   while (quote != std::string::npos) {
@@ -201,11 +210,13 @@ fs::path converted_file(const std::string& path) {
 namespace ricochet {
 
 bool needs_gmsh_program(const std::string& path) {
-  return gmsh::is_cad_file(path) || is_gmsh_script(path);
+  return gmsh::is_cad_file(path) || gmsh::is_script(path);
 }
 
-bool is_gmsh_script(const std::string& path) {
-  return gmsh::extension_of(path) == ".geo";
+bool may_run_commands(const std::string& path) {
+  std::error_code ignored;
+  return gmsh::is_script(path) ||
+         (gmsh::is_cad_file(path) && std::filesystem::exists(gmsh::options_file(path), ignored));
 }
 
 }  // namespace ricochet

@@ -22,9 +22,9 @@ struct MeshFile {
 /// True for files that need the gmsh program (.geo, .step, .stp, .iges, .igs, .brep).
 [[nodiscard]] bool needs_gmsh_program(const std::string& path);
 
-/// True for those of them that can also run shell commands (.geo): such a file is handed to gmsh only where a user asks
-/// for its mesh.
-[[nodiscard]] bool is_gmsh_script(const std::string& path);
+/// True where gmsh could run shell commands for such a file: for a .geo file, and for any that has an options file
+/// (FILE.opt) beside it. These are handed to gmsh only where a user asks for the mesh.
+[[nodiscard]] bool may_run_commands(const std::string& path);
 
 /// Whether the mesh of such a file is kept from before, so that reading it does not run gmsh on it. Throws as
 /// read_mesh.

@@ -26,8 +26,9 @@ using Json = nlohmann::ordered_json;
 
 /// Where the viewer wants the data, and what every report begins with.
 constexpr std::string_view data_begin = "<script type=\"application/json\" id=\"ricochet-runs\">";
-constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->",
-                           format_mark = "<!-- data format 4 -->";
+constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->";
+/// Of the data; the viewer's page begins with the one that it reads.
+constexpr int data_format = 4;
 /// Of all bodies together, but for each as many as may be had at any rate.
 constexpr Index most_triangles = 200'000, always_triangles = 20'000;
 
@@ -200,14 +201,16 @@ Json PageBuilder::start(const RunData& run, std::size_t number) {
   for (const auto& [file, table] : run.probe_tables) {
     const HistoryPart part = pack_history(table, most_bytes_ / 16 / runs_.size(), arrays_);
     json["tables"].push_back({{"file", file}, {"columns", table.names}, {"values", to_json(part.table)}});
-    if (part.rows_per_pair > 0) note(run, json, fmt::format("{}: of each {} rows two", file, part.rows_per_pair));
+    if (part.rows_per_pair > 0)
+      note(run, json, fmt::format("{}: two of every {} rows are kept", file, part.rows_per_pair));
   }
   json["rows_per_pair"] = history.rows_per_pair;
   if (history.rows_per_pair > 0) {
     note(run, json,
-         fmt::format("of each {} rows of the history its least and its largest value stand in the curves, so that the "
-                     "file stays small; history.csv has all {}",
-                     history.rows_per_pair, run.column("time").size()));
+         fmt::format(
+             "curves show the least and the largest value of every {} rows of the history, so that the file stays "
+             "small; history.csv has all {}",
+             history.rows_per_pair, run.column("time").size()));
   }
   json["obstacles"] = obstacles_of(run, arrays_);
   return json;
@@ -252,14 +255,13 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
   if (!body.volume && run.summary.dimension == 3)
     note(run, json, "the inside is not in the page, so that the file stays small: there are no cuts");
   if (!body.left_out.empty()) {
-    note(run, json,
-         fmt::format("fields that are not in this page, but in results.h5: {}", fmt::join(body.left_out, ", ")));
+    note(run, json, fmt::format("fields that only results.h5 has: {}", fmt::join(body.left_out, ", ")));
   }
   json["body"] = to_json(body, *run.results);
 }
 
 std::string PageBuilder::data() {
-  Json page{{"format", 3}, {"version", version}, {"runs", Json::array()}};
+  Json page{{"format", data_format}, {"version", version}, {"runs", Json::array()}};
   for (std::size_t i = 0; i < runs_.size(); ++i) page["runs"].push_back(start(runs_[i], i));
   // What summaries take is in the file, too, and is not binary.
   std::size_t text = 65536;
@@ -288,7 +290,8 @@ std::string PageBuilder::data() {
 Report make_report(const std::vector<std::string>& directories, const ReportOptions& options) {
   const std::string viewer = read_file(options.viewer);
   const std::size_t place = viewer.find(data_place);
-  if (place == std::string::npos || viewer.find(format_mark) == std::string::npos) {
+  if (place == std::string::npos ||
+      viewer.find(fmt::format("<!-- data format {} -->", data_format)) == std::string::npos) {
     throw Error(ErrorKind::file_access,
                 fmt::format("{}: is not the viewer of this version: build or install Ricochet again", options.viewer));
   }

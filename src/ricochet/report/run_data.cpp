@@ -9,7 +9,6 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/durable_file.hpp"
-#include "ricochet/io/run_directory.hpp"
 
 namespace ricochet {
 
@@ -67,11 +66,10 @@ RunData read_run(const std::string& directory, bool with_results) {
                 fmt::format("{}: no such directory: name the output directories of runs", directory));
   }
   const auto path = [&](const char* file) { return (fs::path(directory) / file).string(); };
-  require_run(directory);
   RunData run;
   run.directory = directory;
+  run.summary = read_summary_of_run(directory);
   run.summary_json = read_file(path("summary.json"));
-  run.summary = read_summary(path("summary.json"));
   const bool may_grow = run.summary.status != "done";
   run.history = read_history(path("history.csv"), may_grow);
   check_rows(path("history.csv"), run.history);

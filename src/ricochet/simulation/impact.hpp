@@ -24,18 +24,20 @@ struct Impact {
   long all_contact_points = 0;                               ///< of this body with this obstacle
   std::vector<double> first_place = {};                      ///< reference position of the first contact, if known
   double obstacle_velocity = 0.0;                            ///< along the normal, mean over the normal impulse
-  double mass = 0.0;                                         ///< of the body
-  RigidMotionState before, after;                            ///< `after`: zero where it has not ended
+  /// Of the obstacle's material across its normal, likewise.
+  Eigen::Vector3d obstacle_sliding = Eigen::Vector3d::Zero();
+  double mass = 0.0;               ///< of the body
+  RigidMotionState before, after;  ///< `after`: zero where it has not ended
 
   /// Mean direction of the normal impulse, out of the obstacle; zero without one.
   [[nodiscard]] Eigen::Vector3d normal() const;
   /// Of the centre of mass along the normal, relative to the obstacle; negative: it comes nearer.
   [[nodiscard]] double normal_velocity_before() const;
   [[nodiscard]] double normal_velocity_after() const;
-  /// Of the centre of mass, across the normal.
+  /// Of the centre of mass, across the normal; not relative to the obstacle.
   [[nodiscard]] Eigen::Vector3d tangential_velocity_before() const;
   [[nodiscard]] Eigen::Vector3d tangential_velocity_after() const;
-  /// −(normal velocity after)/(normal velocity before); none where it has not ended or the body did not come nearer.
+  /// −(normal velocity after)/(normal velocity before), where that says something of the impact: restitution.hpp.
   [[nodiscard]] std::optional<double> restitution() const;
   /// So few of many points carry it that one more or less changes the largest force and the duration. A flat end that
   /// strikes with all points it has is not meant.

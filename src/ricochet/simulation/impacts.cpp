@@ -120,7 +120,7 @@ void ImpactRecorder::take_velocity(const State& state, Vector& velocity) {
 void ImpactRecorder::find_forces(const State& state, std::vector<Force>& forces) const {
   forces.assign(places_.size(), Force{});
   const int d = problem_.dimension;
-  const Vector& travel = state.obstacle_increment.normal;
+  const ObstacleMotion& travel = state.obstacle_increment;
   for (Index point = 0; point < problem_.contact.size(); ++point) {
     if (!carries_force(state.forces, point)) continue;
     Force& force = forces[static_cast<std::size_t>(place_of_point_[static_cast<std::size_t>(point)])];
@@ -134,7 +134,11 @@ void ImpactRecorder::find_forces(const State& state, std::vector<Force>& forces)
     force.all.head(d) += own;
     force.normal.head(d) += pressing * problem_.contact.normals.col(point);
     force.pressing += pressing;
-    if (travel.size() > 0) force.travel += pressing * travel[point];
+    if (travel.normal.size() == 0) continue;
+    force.travel += pressing * travel.normal[point];
+    const Points& tangents = problem_.contact.tangents[static_cast<std::size_t>(point)];
+    for (Index k = 0; k < d - 1; ++k)
+      force.sliding.head(d) += (pressing * travel.tangential[point * (d - 1) + k]) * tangents.col(k);
   }
 }
 
@@ -193,6 +197,7 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
   interval.contact_time += h;
   interval.pressing += current.pressing;
   interval.travel += current.travel;
+  add(interval.sliding, 1.0, current.sliding);
   take_largest(interval, current, instant);
 }
 
@@ -257,7 +262,11 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
   result.contact_points = std::lround(interval.most_points);
   result.all_contact_points = place.points;
   result.first_place.assign(interval.first_place.begin(), interval.first_place.begin() + problem_.dimension);
-  if (interval.pressing > 0.0) result.obstacle_velocity = interval.travel / (interval.pressing * scheme_.step());
+  if (interval.pressing > 0.0) {
+    const double duration = interval.pressing * scheme_.step();
+    result.obstacle_velocity = interval.travel / duration;
+    result.obstacle_sliding = vector_of(interval.sliding) / duration;
+  }
   result.mass = rigid_.bodies()[static_cast<std::size_t>(place.body)].mass;
   result.before = motion(interval.before);
   if (result.ended) result.after = motion(interval.after);
@@ -282,6 +291,7 @@ void ImpactRecorder::save(Snapshot& snapshot, const std::string& name) const {
 
 void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
   constexpr Index size = sizeof(Interval) / sizeof(double);
+  constexpr double largest_count = 1e15;
   const auto damaged = [&] {
     throw Error(ErrorKind::invalid_input, "the checkpoint's record of impacts is not one of this case");
   };
@@ -294,7 +304,15 @@ void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
     for (const Interval& interval : *list) {
       // Also false where it is no number.
       if (!(interval.place >= 0.0 && interval.place < static_cast<double>(places_.size()))) damaged();
+      if (interval.place != std::floor(interval.place)) damaged();
+      if (interval.phase != no_contact && interval.phase != touching && interval.phase != apart) damaged();
+      for (const double count : {interval.intervals, interval.most_points}) {
+        if (!(count >= 0.0 && count < largest_count)) damaged();
+      }
     }
+  }
+  for (std::size_t place = 0; place < places_.size(); ++place) {
+    if (open_[place].place != static_cast<double>(place)) damaged();
   }
 }
 

@@ -54,7 +54,9 @@ class ImpactRecorder {
     double phase;  ///< no_contact, touching or apart: lost, but it may come back
     double begin, end, from_start, intervals, contact_time;
     Three impulse, normal_impulse;
-    double pressing, travel;  ///< Σ r_N, and Σ r_N times the obstacle's motion along the normal, over instants
+    /// Σ r_N over instants, and Σ r_N times the obstacle's motion, along the normal and across it.
+    double pressing, travel;
+    Three sliding;
     double largest, largest_time;
     double most_points;
     Three first_place;
@@ -72,6 +74,7 @@ class ImpactRecorder {
   struct Force {
     Eigen::Vector3d all = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
     double pressing = 0.0, travel = 0.0;
+    Eigen::Vector3d sliding = Eigen::Vector3d::Zero();
     long points = 0;            ///< that carry a force
     Index leading = -1;         ///< the point of the largest force, the first of equals
     double leading_size = 0.0;  ///< of that force

@@ -18,13 +18,13 @@ std::string why_no_restitution(const Impact& impact) {
   const double approach = -impact.normal_velocity_before();
   if (!(approach > rounding_of_velocity * impact.normal_impulse.norm() / impact.mass))
     return "the body did not come nearer";
-  if (approach < slowest_beside_sliding * impact.tangential_velocity_before().norm())
-    return "the body came nearer at less than 1 % of its speed along the obstacle";
+  if (approach < slowest_beside_sliding * (impact.tangential_velocity_before() - impact.obstacle_sliding).norm())
+    return "the body came nearer at less than 1 % of the speed at which it slid along the obstacle";
   const double energy = impact.before.kinetic_energy - 0.5 * impact.mass * impact.before.velocity.squaredNorm();
   if (approach < slowest_beside_others * std::sqrt(std::max(0.0, 2.0 * energy / impact.mass)))
     return "the body came nearer at less than 10 % of the speed of its spin and vibrations";
   if (approach < slowest_beside_others * std::abs(impact.other_impulse().dot(impact.normal())) / impact.mass)
-    return "the body came nearer at less than 10 % of the velocity that other forces gave it meanwhile";
+    return "the body came nearer at less than 10 % of the velocity that other forces gave it during the impact";
   return {};
 }
 

@@ -145,8 +145,14 @@ TEST(GmshProgramNeeded, ForGeometryOnly) {
   for (const char* name : {"a.geo", "a.STEP", "a.stp", "a.iges", "a.igs", "a.brep"})
     EXPECT_TRUE(needs_gmsh_program(name));
   for (const char* name : {"a.msh", "a", "geo", "a.vtk"}) EXPECT_FALSE(needs_gmsh_program(name));
-  for (const char* name : {"a.geo", "a.GEO"}) EXPECT_TRUE(is_gmsh_script(name));
-  for (const char* name : {"a.STEP", "a.msh", "geo"}) EXPECT_FALSE(is_gmsh_script(name));
+}
+
+TEST_F(GmshProgram, MayRunCommandsOfScriptsAndOptionsFiles) {
+  for (const char* name : {"a.geo", "a.GEO"}) EXPECT_TRUE(may_run_commands(name));
+  for (const char* name : {"a.STEP", "a.msh", "geo"}) EXPECT_FALSE(may_run_commands(name));
+  (void)files_.write("part.step.opt", "Mesh.MeshSizeMax = 1;\n");
+  EXPECT_TRUE(may_run_commands((files_.path() / "part.step").string()));
+  EXPECT_FALSE(may_run_commands((files_.path() / "other.step").string()));
 }
 
 }  // namespace

@@ -73,5 +73,16 @@ TEST(Restitution, LooksAtRatiosOnly) {
   EXPECT_NEAR(*moving.restitution(), 0.5, 1e-15);
 }
 
+/// Seen from a belt that runs along with the body, it does not slide; seen from one that runs, a body that falls does.
+TEST(Restitution, LooksAtSlidingOnTheObstacle) {
+  Impact carried = impact(200.0, 1.0);
+  carried.obstacle_sliding = {200.0, 0.0, 0.0};
+  ASSERT_TRUE(carried.restitution().has_value());
+  EXPECT_NEAR(*carried.restitution(), 0.5, 1e-15);
+  Impact dropped = impact(0.0, 1.0);
+  dropped.obstacle_sliding = {200.0, 0.0, 0.0};
+  expect_none(dropped, "along the obstacle");
+}
+
 }  // namespace
 }  // namespace ricochet

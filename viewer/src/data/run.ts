@@ -231,7 +231,7 @@ export function readPage(): Run[] {
   const text = document.getElementById("ricochet-runs")?.textContent;
   if (!text) throw new Error("this is the empty viewer: `ricochet report` puts runs into it");
   const page = JSON.parse(text) as PageData;
-  if (page.format !== 3) throw new Error(`this viewer does not read format ${page.format}`);
+  if (page.format !== 4) throw new Error(`this viewer does not read format ${page.format}`);
   const blobs = new Blobs();
   return page.runs.map((run, number) => new Run(number, { ...run, judgement: withNumbers(run.judgement) }, blobs));
 }

@@ -213,7 +213,7 @@ export interface RunData {
 }
 
 export interface PageData {
-  format: 3;
+  format: 4;
   version: string;
   runs: RunData[];
 }

@@ -291,7 +291,8 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
   if (sweeps_and_newton(work)) return "";
   if (const std::string reason = find_contradiction(work); !reason.empty()) return reason;
   if (!std::isfinite(best_.merit)) return "the iteration diverged: the contact operator is not positive definite";
-  if (may_leave_out_twins()) return "some points are nearly one: it is not found which of them press";
+  if (may_leave_out_twins())
+    return "some contact points nearly coincide, and it could not be decided which of them carry the force";
   if (fall_back(work, cold)) return "";
   return "the conditions of contact and friction are not met after all that was tried: there may be no solution, or W "
          "is not positive semi-definite";

@@ -258,8 +258,9 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
   if (solution.reason.empty()) solution.reason = "the largest number of iterations was not enough";
   if (largest <= accepted_residual(options) * system_.data()) {
     solution.reason =
-        "the residual says nothing, for reactions have grown until their rounding hides what is left of it: where a "
-        "body is jammed by friction there may be no solution";
+        "the residual is meaningless, because the reactions have grown so large that rounding hides it: where a body "
+        "is "
+        "jammed by friction there may be no solution";
   }
 }
 

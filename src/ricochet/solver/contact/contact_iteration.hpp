@@ -50,8 +50,8 @@ class IterativeContactSolver : public ContactSolver {
   /// penetrate, instead of on all points.
   [[nodiscard]] virtual bool works_on_candidates() const { return false; }
 
-  /// Before something that costs much is tried: should rather end without a solution, for some points are nearly one,
-  /// and a system with only one of them is what `solve` tries next. It comes back with all of them if that fails.
+  /// True if `iterate` should give up before an expensive attempt: some points nearly coincide, and `solve` next tries
+  /// one of each group of them. It comes back with all of them if that fails.
   [[nodiscard]] bool may_leave_out_twins() { return has_all_points_ && twins_.any(*analysed_, analysed_first_); }
 
   /// These contradict one another.

@@ -9,8 +9,8 @@ namespace ricochet {
 
 namespace {
 
-/// Of the motion that a reaction on one of two points and its opposite on the other make, relative to what either makes
-/// alone, as energies: the squares of motions. Planes at an angle below the root of this are nearly parallel.
+/// Two points are twins if equal and opposite reactions on them cause less than this part of the energy that either
+/// causes alone. Planes at an angle below the root of this are nearly parallel.
 constexpr double alike = 1e-12;
 constexpr int exchange_limit = 20;
 
