@@ -1,5 +1,4 @@
 #include "ricochet/simulation/impacts.hpp"
-#include "ricochet/simulation/restitution.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/simulation/momentum_account.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
+#include "ricochet/simulation/restitution.hpp"
 #include "support/case_run.hpp"
 #include "support/strip.hpp"
 #include "support/thrown_body.hpp"
