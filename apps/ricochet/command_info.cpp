@@ -106,7 +106,8 @@ void describe_result(const std::string& directory) {
   const std::optional<RunSummary> found = summary_of(directory);
   if (!found) {
     fmt::print(
-        "{}: an interrupted run whose summary.json is missing or damaged; `ricochet run` with --resume goes on\n",
+        "{}: an interrupted run whose summary.json is missing or damaged; `ricochet run` with --resume goes on "
+        "where its other files are whole\n",
         directory);
     return describe_checkpoint(checkpoint_files(directory).back().path);
   }

@@ -10,6 +10,7 @@
 #include "penetration_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/run_name.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/old_run.hpp"
 #include "ricochet/case/read_case.hpp"
@@ -111,11 +112,12 @@ int run(const RunArguments& given) {
   options.stop_signal = stop_signal;
   if (arguments.export_contact) options.export_contact = parse_steps(*arguments.export_contact);
   options.export_contact_to = arguments.export_contact_to;
-  const Case input = read_case(arguments.case_file, arguments.overrides);
   if (options.output_directory.empty()) {
     options.output_directory =
         (std::filesystem::path("out") / std::filesystem::path(arguments.case_file).stem()).string();
   }
+  if (options.quiet) log::set_run_name(options.output_directory);
+  const Case input = read_case(arguments.case_file, arguments.overrides);
   const RunSummary summary = run_case(input, options);
   print_summary(summary, options.output_directory);
   if (summary.status == "interrupted") return 128 + stop_signal();

@@ -92,12 +92,13 @@ std::string impact_text(std::size_t number, const RunSummary& summary) {
     text += ", not ended";
   }
   if (const auto restitution = impact.restitution()) {
-    text += fmt::format(", restitution {:.4g}", *restitution);
+    text += fmt::format(", restitution {:.4g}{}", *restitution,
+                        *restitution < 0.0 ? " (its centre still goes towards the obstacle after the last force)" : "");
   } else if (impact.ended) {
     text += fmt::format(", no restitution ({})", why_no_restitution(impact));
   }
-  text += fmt::format(", {}, largest force {:.4g} at {:.6g}", impulse_text(impact), impact.largest_force,
-                      impact.largest_force_time);
+  text += fmt::format(", {}, largest force {:.4g} at {:.6g} (mean {:.4g})", impulse_text(impact), impact.largest_force,
+                      impact.largest_force_time, impact.mean_force());
   return text + spins_text(impact, summary) + rotation_text(number, summary) + resolution_text(impact);
 }
 

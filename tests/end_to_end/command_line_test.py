@@ -295,7 +295,7 @@ class CommandLine(TestCase):
         process = self.expect_status(3, run("run", self.case, "-o", output, "--quiet", *settings(
             {"time.beta": 0.25, "time.gamma": 0, "time.end": 1000, "output.fields_every": 100})))
         self.assertIn("unstable with gamma = 0", process.stderr)
-        self.assertRegex(process.stderr, r"ricochet: step \d+ \(t = [\d.]+\): \w+ is no longer finite")
+        self.assertRegex(process.stderr, r"ricochet: \S+/out: step \d+ \(t = [\d.]+\): \w+ is no longer finite")
         self.assertIn("smaller time.step", process.stderr)
         summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual(summary["status"], "failed")

@@ -245,7 +245,7 @@ class ForeignMeshes(TestCase):
             "wedge": (f"{nodes}{elements}*ELEMENT, TYPE=C3D6\n99, 1, 2, 3, 4, 5, 6\n", ("kind C3D6",)),
             "unknown set": (f"{nodes}{elements}*SURFACE, NAME=s\nnothing, S1\n", ('"nothing"',)),
             "no such face": (f"{nodes}{elements}*SURFACE, NAME=s\nbody, S5\n", ("S5 is no face",)),
-            "no such node": (f"{nodes}*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 7777\n", ("element 1 refers to a node",)),
+            "no such node": (f"{nodes}*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 7777\n", ("element 1 refers to node 7777",)),
             "set of strangers": (f"{nodes}{elements}*NSET, NSET=s\n7777\n", ("names node 7777",)),
             "bad number": (f"*NODE\n1, 0.0, zero, 0.0\n", ("bad_number.inp:2: the coordinates of a node",)),
             "twice": (f"{nodes}{elements}{elements}", ("element 1 is there twice",)),

@@ -156,6 +156,21 @@ end = 0.001
         self.assertIn("less than 1 % of the speed at which it slid along the obstacle", impact["why_no_restitution"])
         said = self.expect_status(0, run("info", folder)).stdout
         self.assertIn(f"no restitution ({impact['why_no_restitution']})", said)
+        # On a belt that runs along with it, it does not graze.
+        carried = self.simulate(DISC, "carried", values | {"obstacle.foundation.velocity": "[200.0, 0.0]"})
+        impact = summary(carried)["impacts"][0]
+        self.assertAlmostEqual(impact["obstacle_sliding_velocity"][0], 200.0, delta=1e-9)
+        self.assertIsNone(impact["why_no_restitution"])
+        self.assertIn(f"restitution {impact['restitution']:.4g}", self.expect_status(0, run("info", carried)).stdout)
+
+    def test_a_body_that_begins_inside_has_no_restitution(self):
+        """Being pushed out would make one of 30 and more."""
+        folder = self.simulate(DISC, "inside", {"mesh.move": "[0.0, -1.0]", "time.end": 0.2}, options=("--quiet", "--force"))
+        impact = summary(folder)["impacts"][0]
+        self.assertTrue(impact["from_inside"])
+        self.assertTrue(impact["ended"])
+        self.assertIsNone(impact["restitution"])
+        self.assertIn("no restitution (the body began inside the obstacle", self.expect_status(0, run("info", folder)).stdout)
 
     def test_the_largest_stress_is_that_of_the_fields_and_more(self):
         every = self.simulate(DISC, "every", {"time.end": 0.02, "output.fields_every": 1})

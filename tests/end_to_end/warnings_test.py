@@ -41,6 +41,16 @@ class Warnings(TestCase):
             self.assertIsNotNone(found, (corner, told))
             self.assertAlmostEqual(float(found[1]), corner, delta=0.0002)
 
+    def test_parameters_that_no_formula_uses(self):
+        text = block_case() + '[initial]\nvelocity = ["v*t_x", "-v"]\nparameters = {v = 1.0, t_x = 2, vel = 3}\n'
+        case = self.write("case.toml", text)
+        told = self.expect_status(0, run("validate", case)).stderr
+        self.assertIn('no formula of this section uses the parameter "vel"', told)
+        self.assertEqual(told.count("no formula of this section"), 1, told)
+        self.assertRegex(told, rf"case.toml:{text[:text.index('parameters')].count(chr(10)) + 1}:\d+: no formula")
+        told = self.expect_status(0, run("validate", case, "--set", "initial.parameters.speed=8")).stderr
+        self.assertIn('the parameter "speed"', told)
+
     def test_strains_that_are_not_small(self):
         # A uniform strain e along y has the equivalent strain sqrt(2/3 e:e) = 2/3 e, the largest of the motion that it starts.
         for strain, told in ((0.30, "equivalent strain of 20 %"), (0.05, None)):

@@ -9,7 +9,6 @@
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/simulation/momentum_account.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
-#include "ricochet/simulation/restitution.hpp"
 #include "support/case_run.hpp"
 #include "support/strip.hpp"
 #include "support/thrown_body.hpp"
@@ -113,20 +112,6 @@ TEST(Impacts, DoNotDependOnWhoMoves) {
   EXPECT_NEAR(hit[0].end, thrown[0].end, 1e-9);
   EXPECT_NEAR(*hit[0].restitution(), *thrown[0].restitution(), 1e-8);
   EXPECT_NEAR(hit[0].largest_force, thrown[0].largest_force, 1e-7 * thrown[0].largest_force);
-}
-
-/// Seen from a belt that runs along with it, a body falls straight down.
-TEST(Impacts, DoNotDependOnABeltThatRunsAlong) {
-  for (const double speed : {0.0, 5000.0}) {
-    const std::string wall = "normal = [1.0, 0.0]\n";
-    std::string text = bar(25, fmt::format("[initial]\nvelocity = [-10.0, {}]\n", speed));
-    text.insert(text.find(wall) + wall.size(), fmt::format("velocity = [0.0, {}]\n", speed));
-    const std::vector<Impact> found = impacts_of(text, {"time.end=1.6"});
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_NEAR(found[0].obstacle_velocity, 0.0, 1e-9);
-    EXPECT_NEAR(found[0].obstacle_sliding[1], speed, 1e-9 * speed);
-    EXPECT_EQ(why_no_restitution(found[0]), "") << speed;
-  }
 }
 
 struct SchemeOfImpacts {

@@ -93,7 +93,8 @@ void set_run_name(std::string name) {
   run_name() = std::move(name);
 }
 std::string with_run_name(const std::string& message) {
-  const bool says = run_name().empty() || message.find(run_name()) != std::string::npos;
+  const bool says =
+      run_name().empty() || message.starts_with(run_name() + ":") || message.starts_with(run_name() + "/");
   return says ? message : run_name() + ": " + message;
 }
 

@@ -157,8 +157,8 @@ Section obstacle_section() {
            .required = true,
            .choices = obstacle_types(),
            .decides = true,
-           .doc = "This version has planes only, each with a half-space behind it: curved obstacles are not "
-                  "supported."},
+           .doc = "This version has planes only, each with a half-space behind it: curved obstacles are not supported. "
+                  "Several planes approximate a hollow (a trough, a bowl); nothing replaces a round obstacle."},
           {.name = "point",
            .type = KeyType::vector,
            .unit = "length",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -50,6 +51,36 @@ void list_values(const TomlNode& node, const std::string& path, Case& result) {
   }
 }
 
+bool is_identifier(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// Is the name a word of a text below a node?
+bool mentions(const TomlNode& node, const std::string& name) {
+  for (std::size_t at = node.text.find(name); at != std::string::npos; at = node.text.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    if ((at == 0 || !is_identifier(node.text[at - 1])) && (end == node.text.size() || !is_identifier(node.text[end])))
+      return true;
+  }
+  return std::any_of(node.children.begin(), node.children.end(),
+                     [&](const TomlNode& child) { return child.key != "parameters" && mentions(child, name); });
+}
+
+/// A misspelled parameter of --set would be a run with the old value.
+void warn_of_unused_parameters(const TomlNode& node, Remarks& remarks) {
+  for (const TomlNode& child : node.children) {
+    if (child.key != "parameters" || !child.is_table()) {
+      warn_of_unused_parameters(child, remarks);
+      continue;
+    }
+    for (const TomlNode& parameter : child.children) {
+      if (mentions(node, parameter.key)) continue;
+      remarks.warnings.push_back(fmt::format("{}: no formula of this section uses the parameter \"{}\"",
+                                             parameter.key_location.text(), parameter.key));
+    }
+  }
+}
+
 // `when` compares with what is in effect, wherever it comes from.
 void list_effective_values(const Remarks& remarks, Case& result) {
   for (const std::string& path : remarks.ignored) result.values.erase(path);
@@ -75,6 +106,7 @@ Case read_case_text(const std::string& text, const std::string& path, const std:
   check_tree(root, problems);
   read_sections(root, result, problems, remarks);
   problems.raise();
+  warn_of_unused_parameters(root, remarks);
   list_values(root, "", result);
   list_effective_values(remarks, result);
   for (const std::string& message : remarks.warnings) log::warning(message);

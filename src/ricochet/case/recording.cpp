@@ -33,7 +33,10 @@ ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, co
   for (const ContactPair& pair : model.contact_pairs) obstacles.push_back(pair.obstacle_name);
   ConnectedBodies bodies = find_connected_bodies(model.space);
   std::vector<double> separation = wave_crossing_times(model.body, bodies);
-  return {model.problem, scheme, state, std::move(obstacles), std::move(bodies.of_node), std::move(separation)};
+  ImpactRecorder impacts(model.problem, scheme, state, std::move(obstacles), std::move(bodies.of_node),
+                         std::move(separation));
+  if (!model.initial.static_equilibrium) impacts.begin_inside(points_inside(model.problem, model.initial.displacement));
+  return impacts;
 }
 
 std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const Model& model,

@@ -70,6 +70,7 @@ Json impact_to_json(const Impact& impact, int dimension) {
           {"duration", number(impact.end - impact.begin)},
           {"ended", impact.ended},
           {"from_start", impact.from_start},
+          {"from_inside", impact.from_inside},
           {"intervals", impact.intervals},
           {"contact_time", number(impact.contact_time)},
           {"impulse", components(impact.impulse, dimension)},
@@ -78,6 +79,7 @@ Json impact_to_json(const Impact& impact, int dimension) {
           {"other_impulse", if_ended(components(impact.other_impulse(), dimension))},
           {"largest_force", number(impact.largest_force)},
           {"largest_force_time", number(impact.largest_force_time)},
+          {"mean_force", number(impact.mean_force())},
           {"contact_points", impact.contact_points},
           {"all_contact_points", impact.all_contact_points},
           {"coarse", impact.is_coarse()},
@@ -184,6 +186,7 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies,
   impact.end = impact.begin + to_number(json.at("duration"));
   impact.ended = json.at("ended");
   impact.from_start = json.at("from_start");
+  impact.from_inside = json.value("from_inside", false);
   impact.intervals = json.at("intervals");
   impact.contact_time = to_number(json.at("contact_time"));
   impact.impulse = vector_from(json.at("impulse"));
@@ -194,6 +197,7 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies,
   impact.all_contact_points = json.value("all_contact_points", 0L);
   impact.first_place = to_numbers(json.value("first_place", Json::array()));
   impact.obstacle_velocity = to_number(json.at("obstacle_normal_velocity"));
+  impact.obstacle_sliding = vector_from(json.value("obstacle_sliding_velocity", Json::array()));
   if (impact.body < 0 || impact.body >= static_cast<int>(bodies.size()))
     throw Error(
         ErrorKind::invalid_input,

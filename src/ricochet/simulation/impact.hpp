@@ -15,6 +15,7 @@ struct Impact {
   double begin = 0.0, end = 0.0;  ///< where it has not ended: so far
   bool ended = true;
   bool from_start = false;                                   ///< in contact when the run begins
+  bool from_inside = false;                                  ///< begins with the run, as the body starts inside
   long intervals = 1;                                        ///< of contact that were taken together
   double contact_time = 0.0;                                 ///< of these alone
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();         ///< of all contact forces on the body
@@ -39,6 +40,8 @@ struct Impact {
   [[nodiscard]] Eigen::Vector3d tangential_velocity_after() const;
   /// −(normal velocity after)/(normal velocity before), where that says something of the impact: restitution.hpp.
   [[nodiscard]] std::optional<double> restitution() const;
+  /// Size of the impulse over the time of contact.
+  [[nodiscard]] double mean_force() const { return contact_time > 0.0 ? impulse.norm() / contact_time : 0.0; }
   /// So few of many points carry it that one more or less changes the largest force and the duration. A flat end that
   /// strikes with all points it has is not meant.
   [[nodiscard]] bool is_coarse() const {

@@ -101,11 +101,16 @@ void ImpactRecorder::find_places(const std::vector<std::string>& obstacles) {
     });
     place_of_point_.push_back(static_cast<int>(found - places_.begin()));
     if (found == places_.end()) {
-      places_.push_back({body, obstacle, 1});
+      places_.push_back({body, obstacle, 1, false});
     } else {
       ++found->points;
     }
   }
+}
+
+void ImpactRecorder::begin_inside(const std::vector<Index>& points) {
+  for (const Index point : points)
+    places_[static_cast<std::size_t>(place_of_point_[static_cast<std::size_t>(point)])].begins_inside = true;
 }
 
 /// The velocity that momenta are accounted for with.
@@ -226,6 +231,9 @@ void ImpactRecorder::begin(Interval& interval, double time, const Force& first, 
   interval.place = place;
   interval.begin = interval.end = time;
   interval.from_start = time > 0.0 ? 0.0 : 1.0;
+  // The first instant with a force can be the end of the first step.
+  const bool in_first_step = time < scheme_.step();
+  interval.from_inside = in_first_step && places_[static_cast<std::size_t>(place)].begins_inside ? 1.0 : 0.0;
   interval.intervals = 1.0;
   interval.first_place = place_of(first.leading);
   interval.before = {numbers_of(motion.velocity), numbers_of(motion.spin), motion.kinetic_energy,
@@ -253,6 +261,7 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
   result.end = interval.end;
   result.ended = interval.phase != touching;
   result.from_start = interval.from_start != 0.0;
+  result.from_inside = interval.from_inside != 0.0;
   result.intervals = std::lround(interval.intervals);
   result.contact_time = interval.contact_time;
   result.impulse = vector_of(interval.impulse);

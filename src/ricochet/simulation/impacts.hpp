@@ -33,6 +33,8 @@ class ImpactRecorder {
   /// Of a recorder that was saved at the state this one was opened on.
   void load(const Snapshot& snapshot, const std::string& name);
 
+  /// These contact points are inside their obstacle when the run begins.
+  void begin_inside(const std::vector<Index>& points);
   /// Enters a step with the forces at its end (in the state). Allocates nothing.
   void enter_step(const State& state);
   /// By their begin.
@@ -52,7 +54,7 @@ class ImpactRecorder {
   struct Interval {
     double place;  ///< index in places_
     double phase;  ///< no_contact, touching or apart: lost, but it may come back
-    double begin, end, from_start, intervals, contact_time;
+    double begin, end, from_start, from_inside, intervals, contact_time;
     Three impulse, normal_impulse;
     /// Σ r_N over instants, and Σ r_N times the obstacle's motion, along the normal and across it.
     double pressing, travel;
@@ -69,6 +71,7 @@ class ImpactRecorder {
     int body;
     std::string obstacle;
     long points;
+    bool begins_inside = false;
   };
   /// Resultants of the points of a place at an instant.
   struct Force {

@@ -15,6 +15,7 @@ constexpr double slowest_beside_sliding = 0.01, slowest_beside_others = 0.1;
 
 std::string why_no_restitution(const Impact& impact) {
   if (!impact.ended) return "the body still touches";
+  if (impact.from_inside) return "the body began inside the obstacle, which pushed it out";
   const double approach = -impact.normal_velocity_before();
   if (!(approach > rounding_of_velocity * impact.normal_impulse.norm() / impact.mass))
     return "the body did not come nearer";

@@ -13,6 +13,9 @@ struct InitialConditions {
   Vector velocity;                  ///< per dof
 };
 
+/// Contact points that this displacement puts inside their obstacle at t = 0, by more than rounding.
+[[nodiscard]] std::vector<Index> points_inside(const SemidiscreteProblem& problem, const Vector& displacement);
+
 /// Displacement, velocity, acceleration and forces that satisfy the momentum equation at t = 0:
 ///   supported dofs take their prescribed displacement, and velocity and acceleration from its first values (spacing
 ///   h); with a singular mass the contact dofs take their equilibrium K_cc u_c = L_c − K_ci u_i + (Gᵀr)_c, contact

@@ -55,20 +55,21 @@ TEST(MalformedCase, References) {
        "20:9: the group \"low\" is in another [[contact]] already, at 17:9"},
       {0, "[obstacle.floor]\ntype = \"sphere\"\npoint = [0, 0]\nnormal = [0, 1]",
        "13:8: \"type\" must be \"plane\"; found the text \"sphere\". This version has planes only, each with a "
-       "half-space "
-       "behind it: curved obstacles are not supported."},
+       "half-space behind it: curved obstacles are not supported. Several planes approximate a hollow (a trough, a "
+       "bowl); nothing replaces a round obstacle."},
       // What belongs to another shape is no further problem.
       {0,
        "[obstacle.ball]\ntype = \"sphere\"\ncentre = [0, 0, 0]\nradius = 1.0\nside = \"inside\"\n[[contact]]\ngroup = "
        "\"low\"\nobstacle = \"ball\"",
        "13:8: \"type\" must be \"plane\"; found the text \"sphere\". This version has planes only, each with a "
-       "half-space "
-       "behind it: curved obstacles are not supported."},
+       "half-space behind it: curved obstacles are not supported. Several planes approximate a hollow (a trough, a "
+       "bowl); nothing replaces a round obstacle."},
       {0, "[obstacle.floor]\ntype = \"plain\"\nnrmal = [0, 1]",
        "13:8: \"type\" must be \"plane\"; found the text \"plain\"; did you mean \"plane\"?"},
       {0, "[obstacle.floor]\ntype = 3",
        "13:8: \"type\" must be \"plane\"; found the integer 3. This version has planes "
-       "only, each with a half-space behind it: curved obstacles are not supported."},
+       "only, each with a half-space behind it: curved obstacles are not supported. Several planes approximate a "
+       "hollow (a trough, a bowl); nothing replaces a round obstacle."},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 0]",
        "15:10: \"normal\" must not be zero: it points out of the obstacle"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 0, 1]",
@@ -76,7 +77,8 @@ TEST(MalformedCase, References) {
        "vectors must have as many as the mesh has dimensions"},
       {0, "[obstacle.floor]\npoint = [0]\nnormal = [0, 1, 2, 3]",
        "12:1: [obstacle.floor] has no \"type\": \"plane\". This version has planes only, each with a half-space behind "
-       "it: curved obstacles are not supported.\n13:9: \"point\" "
+       "it: curved obstacles are not supported. Several planes approximate a hollow (a trough, a bowl); nothing "
+       "replaces a round obstacle.\n13:9: \"point\" "
        "must be a vector of 2 or 3 numbers (unit: length); found a list of 1 value\n14:10: \"normal\" must be a vector "
        "of 2 or 3 numbers; found a list of 4 values"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, \"a\"]\nnormal = [nan, 1]",

@@ -38,6 +38,9 @@ TEST(Restitution, IsNoneOfABodyThatStaysOrDidNotCome) {
   Impact stays = impact(0.0, 1.0);
   stays.ended = false;
   expect_none(stays, "still touches");
+  Impact pushed_out = impact(0.0, 1.0);
+  pushed_out.from_inside = true;
+  expect_none(pushed_out, "began inside");
   expect_none(impact(1.0, 0.0, 1.0), "did not come nearer");
   expect_none(impact(1.0, -0.5, 1.0), "did not come nearer");
 }

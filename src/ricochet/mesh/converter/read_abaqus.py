@@ -297,7 +297,9 @@ class InpReader:
             nodes = numpy.searchsorted(ids, table[:, 1:]).clip(max=len(ids) - 1)
             wrong = numpy.nonzero((ids[nodes] != table[:, 1:]).any(axis=1))[0]
             if len(wrong):
-                raise Refusal(f"element {table[wrong[0], 0]} refers to a node that is not there")
+                row = table[wrong[0]]
+                missing = row[1:][~numpy.isin(row[1:], ids)][0]
+                raise Refusal(f"element {row[0]} refers to node {missing}, which is not there")
             mesh.blocks.append(Block(self.kinds[name], nodes, table[:, 0], name))
         self.add_groups(mesh, ids)
         self.add_notes(mesh)
