@@ -15,6 +15,8 @@ import unittest
 PROGRAM = pathlib.Path(os.environ["RICOCHET_PROGRAM"])
 SOURCE = pathlib.Path(os.environ["RICOCHET_SOURCE_DIR"])
 MESHES = SOURCE / "tests" / "data" / "meshes"
+# Seconds that a run of the program may take: many more under the sanitizers.
+TIME_LIMIT = float(os.environ.get("RICOCHET_TIME_LIMIT", "500"))
 DISC = SOURCE / "cases" / "disc" / "disc.toml"
 
 # Each scheme with the mass that it is shown with.
@@ -55,7 +57,7 @@ def with_more(path, text):
 def run(*arguments, directory=None, environment=None):
     """The finished process of the program, its output as text."""
     return subprocess.run([str(PROGRAM), *map(str, arguments)], cwd=directory, env=environment, text=True,
-                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=500)
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=TIME_LIMIT)
 
 
 def settings(values):

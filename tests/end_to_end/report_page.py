@@ -9,7 +9,7 @@ import zlib
 
 import numpy
 
-from harness import PROGRAM, TestCase, run
+from harness import PROGRAM, TIME_LIMIT, TestCase, run
 
 VIEWER = ("<!doctype html><!-- ricochet report --><!-- data format 4 --><html><body><p>a viewer</p><!--RICOCHET-DATA--><script>$&\\1</script>"
           "</body></html>\n")
@@ -68,6 +68,6 @@ class ReportTestCase(TestCase):
 
     def report(self, *arguments, status=0):
         process = subprocess.run([self.program, "report", *map(str, arguments)], cwd=self.folder, text=True,
-                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=500)
+                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=TIME_LIMIT)
         self.assertEqual(process.returncode, status, process.stderr)
         return process
