@@ -72,7 +72,9 @@ std::vector<Triangle> boundary_triangles(const std::vector<CellBlock>& blocks) {
   for (const CellFacet& facet : boundary_facets(blocks)) {
     const std::vector<Index> nodes = nodes_of_facet(blocks, facet);
     for (const auto& [corners, edges] : patterns[facet.block]) {
-      const auto corner = [&](std::size_t k) { return nodes[static_cast<std::size_t>(corners[k])]; };
+      const auto corner = [&, &corners = corners](std::size_t k) {
+        return nodes[static_cast<std::size_t>(corners[k])];
+      };
       result.push_back({{corner(0), corner(1), corner(2)}, first_cell[facet.block] + facet.cell, edges});
     }
   }
