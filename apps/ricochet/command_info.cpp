@@ -21,7 +21,6 @@
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
-#include "ricochet/io/run_directory.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 
 namespace ricochet::program {
@@ -37,10 +36,15 @@ std::string shape_text(const CellBlock& block) {
   return singular.ends_with("hedron") ? singular.substr(0, singular.size() - 2) + "a" : singular + "s";
 }
 
+/// gmsh may run shell commands for it, so only `run` and `validate --mesh` hand it over.
+bool must_be_meshed_first(const MeshFile& file) {
+  return may_run_commands(file.path) && !is_meshed(file);
+}
+
 void describe_mesh(const std::string& path) {
   MeshFile file;
   file.path = path;
-  if (may_run_commands(path) && !is_meshed(file)) {  // only `run` and `validate --mesh` hand one to gmsh
+  if (must_be_meshed_first(file)) {
     fmt::print(
         "{}: a geometry that was not meshed yet: its groups and sizes are not known. The gmsh program meshes it when a "
         "case that names it is run, or by `ricochet validate CASE.toml --mesh`; `ricochet info CASE.toml` then "
@@ -74,7 +78,7 @@ void describe_case(const std::string& path) {
   print_contacts(describe_contacts(input));
   fmt::print("  scheme {}, mass {}, {} of {:g} to {:g}\n", input.time.scheme, input.mass.type,
              counted(step_count(input.time), "step"), input.time.step, input.time.end);
-  if (require_mesh_file(input); may_run_commands(input.mesh.file) && !is_meshed(mesh_file(input))) {
+  if (require_mesh_file(input); must_be_meshed_first(mesh_file(input))) {
     fmt::print(
         "  groups, sizes and a suggested step are only known once {} is meshed: `ricochet validate {} --mesh` does "
         "that\n",
@@ -93,9 +97,8 @@ std::string indented(std::string text) {
 
 /// None: the directory has checkpoints, but no summary that can be read.
 std::optional<RunSummary> summary_of(const std::string& directory) {
-  require_run(directory);
   try {
-    return read_summary(directory + "/summary.json");
+    return read_summary_of_run(directory);
   } catch (const Error&) {
     if (checkpoint_files(directory).empty()) throw;
     return {};

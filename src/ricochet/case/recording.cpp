@@ -35,7 +35,8 @@ ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, co
   std::vector<double> separation = wave_crossing_times(model.body, bodies);
   ImpactRecorder impacts(model.problem, scheme, state, std::move(obstacles), std::move(bodies.of_node),
                          std::move(separation));
-  if (!model.initial.static_equilibrium) impacts.begin_inside(points_inside(model.problem, model.initial.displacement));
+  if (!model.initial.static_equilibrium)
+    impacts.begin_inside(points_inside(model.problem, model.initial.displacement).points);
   return impacts;
 }
 

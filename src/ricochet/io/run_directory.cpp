@@ -116,13 +116,6 @@ bool holds_run(const std::string& directory) {
          (fs::is_directory(directory, ignored) && !checkpoint_files(directory).empty());
 }
 
-void require_run(const std::string& directory) {
-  if (holds_run(directory)) return;
-  throw Error(
-      ErrorKind::file_access,
-      fmt::format("{}: no run is in this directory: it holds neither summary.json nor a checkpoint", directory));
-}
-
 void remove_files(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     std::error_code problem;

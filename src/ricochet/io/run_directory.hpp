@@ -39,8 +39,6 @@ class RunDirectory {
 
 /// Whether a run has left a summary or a checkpoint there.
 [[nodiscard]] bool holds_run(const std::string& directory);
-/// Throws Error(file_access) where it has left neither.
-void require_run(const std::string& directory);
 
 /// Removes files. Throws Error(file_access).
 void remove_files(const std::vector<std::string>& files);

@@ -211,7 +211,11 @@ void write_summary(const std::string& path, const RunSummary& summary) {
 }
 
 RunSummary read_summary_of_run(const std::string& directory) {
-  require_run(directory);
+  if (!holds_run(directory)) {
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format("{}: no run is in this directory: it holds neither summary.json nor a checkpoint", directory));
+  }
   const std::string path = (std::filesystem::path(directory) / "summary.json").string();
   if (std::error_code ignored; !std::filesystem::exists(path, ignored)) {
     throw Error(ErrorKind::file_access,

@@ -149,25 +149,25 @@ namespace {
 
 /// A body that starts inside its obstacle is pushed out at once, which creates energy: rarely what was meant.
 void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
-  const std::vector<Index> inside = points_inside(problem, state.displacement);
-  if (inside.empty()) return;
-  Vector gap;
-  problem.gaps(state.displacement, 0.0, gap);
+  const auto [points, deepest] = points_inside(problem, state.displacement);
+  if (points.empty()) return;
   log::warning(fmt::format(
       "at the start {} of {} {} inside their obstacle, the deepest by {:.3g}: they are "
       "pushed out at once, which creates energy; check the obstacle's point and normal (which "
       "points out of the obstacle), or start from initial.displacement = \"static\"",
-      inside.size(), counted(gap.size(), "contact point"), inside.size() == 1 ? "is" : "are", -gap.minCoeff()));
+      points.size(), counted(problem.contact.size(), "contact point"), points.size() == 1 ? "is" : "are", deepest));
 }
 
 }  // namespace
 
-std::vector<Index> points_inside(const SemidiscreteProblem& problem, const Vector& displacement) {
+PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& displacement) {
   Vector gap;
   problem.gaps(displacement, 0.0, gap);
-  std::vector<Index> inside;
+  PointsInside inside;
   for (Index i = 0; i < gap.size(); ++i) {
-    if (gap[i] < -problem.contact.gap_rounding[i]) inside.push_back(i);
+    if (!(gap[i] < -problem.contact.gap_rounding[i])) continue;
+    inside.points.push_back(i);
+    inside.deepest = std::max(inside.deepest, -gap[i]);
   }
   return inside;
 }

@@ -13,8 +13,12 @@ struct InitialConditions {
   Vector velocity;                  ///< per dof
 };
 
-/// Contact points that this displacement puts inside their obstacle at t = 0, by more than rounding.
-[[nodiscard]] std::vector<Index> points_inside(const SemidiscreteProblem& problem, const Vector& displacement);
+/// Contact points that a displacement puts inside their obstacle at t = 0, by more than rounding.
+struct PointsInside {
+  std::vector<Index> points;
+  double deepest = 0.0;  ///< of them, positive
+};
+[[nodiscard]] PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& displacement);
 
 /// Displacement, velocity, acceleration and forces that satisfy the momentum equation at t = 0:
 ///   supported dofs take their prescribed displacement, and velocity and acceleration from its first values (spacing
