@@ -11,6 +11,8 @@ LAYERS = ["base", "linear_algebra", "mesh", "fem", "contact", "mass", "problem",
           "case", "report"]
 # linear_algebra is a tool of the layers from mass on: meshes, elements and contact do without it.
 WITHOUT_LINEAR_ALGEBRA = {"mesh", "fem", "contact"}
+# A scheme and a step solver speak of stages, which are in problem/: neither knows the other.
+STRANGERS = {("scheme", "solver"), ("solver", "scheme")}
 
 # Headers of other projects that stay in the named places, each a folder and how many source files may include it there.
 CONFINED = {
@@ -51,7 +53,8 @@ class Layering(unittest.TestCase):
                 if parts[0] != "ricochet" or include == "ricochet/version.hpp":
                     continue
                 backwards = LAYERS.index(parts[1]) > LAYERS.index(layer)
-                if backwards or (parts[1] == "linear_algebra" and layer in WITHOUT_LINEAR_ALGEBRA):
+                forbidden = (layer, parts[1]) in STRANGERS
+                if backwards or forbidden or (parts[1] == "linear_algebra" and layer in WITHOUT_LINEAR_ALGEBRA):
                     wrong.append(f"{path.relative_to(SOURCE)} includes {include}")
         self.assertEqual(wrong, [])
 

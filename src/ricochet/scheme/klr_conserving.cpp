@@ -1,6 +1,7 @@
 #include "ricochet/base/error.hpp"
-#include "ricochet/scheme/contact_conditions.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/scheme.hpp"
+#include "ricochet/scheme/step_equations.hpp"
 
 namespace ricochet {
 
@@ -41,48 +42,34 @@ class KlrConserving final : public Scheme {
     const double h = step();
     Vector& ahead = state.memory["increment_ahead"];
     ahead = h * state.velocity + (0.5 * h * h) * state.acceleration;
+    const std::vector<Index>& supported = problem.supports.dofs();
     problem.supports.values(h, supported_);
-    for (Index i = 0; i < problem.supports.size(); ++i) {
-      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      ahead[dof] = supported_[i] - state.displacement[dof];
-    }
+    for (std::size_t i = 0; i < supported.size(); ++i)
+      ahead[supported[i]] = supported_[static_cast<Index>(i)] - state.displacement[supported[i]];
   }
 
-  void prepare(const SemidiscreteProblem& problem, const State& state, int, Stage& stage) override {
-    const double h = step();
-    const Vector& before = state.displacement;                      // the source's Uⁿ⁻¹
-    const Vector& difference = state.memory.at("increment_ahead");  // Uⁿ − Uⁿ⁻¹
-    const double time = state.time + h;
-    now_ = before + difference;  // Uⁿ
-    velocity_ = difference / h;
-    problem.internal_force->evaluate(now_, force_);
-    problem.loads.total(time, stage.right_hand_side);
-    stage.right_hand_side -= force_;
-    // C Vⁿ = C (Uⁿ−Uⁿ⁻¹)/h + C δ/2h.
-    if (problem.has_damping()) stage.right_hand_side.noalias() -= problem.damping * velocity_;
-    problem.supports.values(time + h, supported_);
-    stage.prescribed.resize(problem.supports.size());
-    for (Index i = 0; i < problem.supports.size(); ++i) {
-      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      stage.prescribed[i] = supported_[i] - (now_[dof] + difference[dof]);
-    }
-    require_contact(problem, time, stage);
-  }
+  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
+    const double h = step(), time = state.time + h;
+    Vector& ahead = state.memory.at("increment_ahead");  // Uⁿ − Uⁿ⁻¹
+    now_ = state.displacement + ahead;                   // Uⁿ; the state is that of n−1
+    velocity_ = ahead / h;
+    Stage& stage = stages.stage(0);
+    equations_.balance(problem, time, now_, velocity_, stage);  // Vⁿ = (Uⁿ−Uⁿ⁻¹)/h + δ/2h
+    const auto to_next = [&](Index dof, double next) { return next - (now_[dof] + ahead[dof]); };
+    equations_.prescribe(problem, time + h, to_next, stage);
+    equations_.observe_obstacles(problem, time, now_);
+    require_no_approach(problem, now_, time, velocity_, equations_.obstacle_velocity(), h, stage);
+    stage.gap_factor = 0.5 / h;
+    equations_.require_friction(problem, velocity_, 0.5 / h, stage);
+    if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
 
-  void finish(const SemidiscreteProblem& problem, const std::vector<StageSolution>& solutions, State& state,
-              Vector& increment) override {
-    const double h = step();
-    const StageSolution& solution = solutions.front();
-    Vector& ahead = state.memory.at("increment_ahead");
+    const StageSolution& solution = stages.solve(0);
     state.displacement += ahead;
     increment = ahead + 0.5 * solution.increment;  // (Uⁿ⁺¹−Uⁿ⁻¹)/2
     ahead += solution.increment;
     state.velocity = increment / h;
     state.acceleration = solution.increment / (h * h);
-    for (const Index dof : problem.massless_dofs) state.acceleration[dof] = 0.0;
-    take_contact(solution, obstacle_velocity_, h, state);
-    if (problem.loads.varies()) problem.loads.varying(state.time + h, state.forces.varying_load);
-    if (problem.has_damping()) state.forces.damping_force.noalias() = problem.damping * state.velocity;
+    equations_.take_forces(problem, solution, 0.5 / h, h, state);
   }
 
   void energy_state(const State& state, Vector& displacement, Vector& velocity) const override {
@@ -92,28 +79,8 @@ class KlrConserving final : public Scheme {
   }
 
  private:
-  /// On velocities: those at δ = 0 are (Uⁿ−Uⁿ⁻¹)/h.
-  void require_contact(const SemidiscreteProblem& problem, double time, Stage& stage) {
-    const double h = step();
-    problem.obstacle_velocity(now_, time, obstacle_velocity_);
-    problem.gaps(now_, time, gap_);
-    stage.gap_offset.noalias() = problem.contact.gap_operator * velocity_;
-    if (obstacle_velocity_.normal.size() > 0) stage.gap_offset -= obstacle_velocity_.normal;
-    stage.gap_factor = 0.5 / h;
-    // The velocity is a difference of displacements.
-    problem.trace_rounding(now_, stage.gap_offset_rounding);
-    problem.trace_rounding(velocity_, velocity_rounding_);
-    stage.gap_offset_rounding = stage.gap_offset_rounding / h + velocity_rounding_;
-    stage.eligible.resize(static_cast<std::size_t>(gap_.size()));
-    for (Index i = 0; i < gap_.size(); ++i) {
-      stage.eligible[static_cast<std::size_t>(i)] = gap_[i] <= problem.contact.gap_rounding[i] ? 1 : 0;
-    }
-    require_friction(problem, velocity_, obstacle_velocity_, 0.5 / h, stage);
-    if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
-  }
-
-  Vector now_, force_, supported_, gap_, velocity_, velocity_rounding_;
-  ObstacleMotion obstacle_velocity_;
+  Vector now_, velocity_, supported_;
+  StepEquations equations_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
-#include "ricochet/scheme/contact_conditions.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/scheme.hpp"
+#include "ricochet/scheme/step_equations.hpp"
 
 namespace ricochet {
 
@@ -21,46 +22,30 @@ class Midpoint final : public Scheme {
   }
   [[nodiscard]] double force_instant() const override { return -0.5; }
 
-  void prepare(const SemidiscreteProblem& problem, const State& state, int, Stage& stage) override {
-    const double h = step();
+  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
+    const double h = step(), middle = state.time + 0.5 * h;
     base_ = state.displacement + (0.5 * h) * state.velocity;
-    problem.internal_force->evaluate(base_, force_);
-    problem.loads.total(state.time + 0.5 * h, stage.right_hand_side);
-    stage.right_hand_side -= force_;
-    // C V_½ = (2/h) C (x − U₀) = (2/h) C δ + C V₀.
-    if (problem.has_damping()) stage.right_hand_side.noalias() -= problem.damping * state.velocity;
-    problem.supports.values(state.time + h, supported_);
-    stage.prescribed.resize(problem.supports.size());
-    for (Index i = 0; i < problem.supports.size(); ++i) {
-      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      stage.prescribed[i] = 0.5 * (state.displacement[dof] + supported_[i]) - base_[dof];
-    }
-    require_no_penetration(problem, base_, state.time + 0.5 * h, stage);
+    Stage& stage = stages.stage(0);
     // V_½ = V₀ + (2/h) δ, also where there is no inertia: V is ΔU/h there, and 2(x − U₀)/h = ΔU/h.
-    problem.obstacle_velocity(base_, state.time + 0.5 * h, obstacle_velocity_);
-    require_friction(problem, state.velocity, obstacle_velocity_, 2.0 / h, stage);
-  }
+    equations_.balance(problem, middle, base_, state.velocity, stage);
+    const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - base_[dof]; };
+    equations_.prescribe(problem, state.time + h, half_way, stage);
+    require_no_penetration(problem, base_, middle, stage);
+    equations_.observe_obstacles(problem, middle, base_);
+    equations_.require_friction(problem, state.velocity, 2.0 / h, stage);
 
-  void finish(const SemidiscreteProblem& problem, const std::vector<StageSolution>& solutions, State& state,
-              Vector& increment) override {
-    const double h = step();
-    const StageSolution& solution = solutions.front();
+    const StageSolution& solution = stages.solve(0);
     increment = h * state.velocity + 2.0 * solution.increment;  // 2 (x − U₀)
     state.displacement += increment;
     state.velocity += (4.0 / h) * solution.increment;           // 2 (U₁−U₀)/h − V₀
     state.acceleration = (4.0 / (h * h)) * solution.increment;  // (V₁−V₀)/h
-    for (const Index dof : problem.massless_dofs) {
-      state.velocity[dof] = increment[dof] / h;
-      state.acceleration[dof] = 0.0;
-    }
-    take_contact(solution, obstacle_velocity_, h, state);
-    if (problem.loads.varies()) problem.loads.varying(state.time + 0.5 * h, state.forces.varying_load);
-    if (problem.has_damping()) state.forces.damping_force.noalias() = problem.damping * increment * (1.0 / h);
+    follow_without_inertia(problem, increment, h, state);
+    equations_.take_forces(problem, solution, 2.0 / h, h, state);
   }
 
  private:
-  Vector base_, force_, supported_;
-  ObstacleMotion obstacle_velocity_;
+  Vector base_;
+  StepEquations equations_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
-#include "ricochet/scheme/contact_conditions.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/scheme.hpp"
+#include "ricochet/scheme/step_equations.hpp"
 
 namespace ricochet {
 
@@ -22,48 +23,32 @@ class Newmark final : public Scheme {
       : Scheme(parameters), beta_(parameters.beta), gamma_(parameters.gamma), alpha_(1.0 / (beta_ * step() * step())) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
-    return {{alpha_, 1.0, problem.has_singular_mass() ? 1.0 / step() : gamma_ * step() * alpha_}};
+    return {{alpha_, 1.0, damping_factor(problem)}};
   }
   [[nodiscard]] WorkRule work_rule() const override { return {1.0 - gamma_, gamma_}; }
 
-  void prepare(const SemidiscreteProblem& problem, const State& state, int, Stage& stage) override {
+  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();
-    predicted_increment_ = h * state.velocity + (h * h * (0.5 - beta_)) * state.acceleration;
-    base_ = state.displacement + predicted_increment_;
-    problem.internal_force->evaluate(base_, force_);
-    problem.loads.total(state.time + h, stage.right_hand_side);
-    stage.right_hand_side -= force_;
-    if (problem.has_damping()) {
-      damping_velocity(problem, state);
-      stage.right_hand_side.noalias() -= problem.damping * velocity_;
-    }
-    problem.supports.values(state.time + h, supported_);
-    stage.prescribed.resize(problem.supports.size());
-    for (Index i = 0; i < problem.supports.size(); ++i) {
-      stage.prescribed[i] = supported_[i] - base_[problem.supports.dofs()[static_cast<std::size_t>(i)]];
-    }
+    predicted_ = h * state.velocity + (h * h * (0.5 - beta_)) * state.acceleration;
+    base_ = state.displacement + predicted_;
+    Stage& stage = stages.stage(0);
+    if (problem.has_damping()) find_damping_velocity(problem, state);
+    equations_.balance(problem, state.time + h, base_, velocity_, stage);
+    const auto to_end = [&](Index dof, double end) { return end - base_[dof]; };
+    equations_.prescribe(problem, state.time + h, to_end, stage);
     require_no_penetration(problem, base_, state.time + h, stage);
-    require_friction_over_step(problem, state, stage);
-  }
+    equations_.require_friction_over_step(problem, state, predicted_, h, stage);
 
-  void finish(const SemidiscreteProblem& problem, const std::vector<StageSolution>& solutions, State& state,
-              Vector& increment) override {
-    const double h = step();
-    const StageSolution& solution = solutions.front();
-    increment = predicted_increment_ + solution.increment;
+    const StageSolution& solution = stages.solve(0);
+    increment = predicted_ + solution.increment;
     acceleration_ = alpha_ * solution.increment;
     for (const Index dof : problem.massless_dofs) acceleration_[dof] = 0.0;
     dissipate(problem, state, increment);
-    if (problem.has_damping()) {
-      velocity_ += (problem.has_singular_mass() ? 1.0 / h : gamma_ * h * alpha_) * solution.increment;
-      state.forces.damping_force.noalias() = problem.damping * velocity_;
-    }
     state.displacement += increment;
     state.velocity += h * ((1.0 - gamma_) * state.acceleration + gamma_ * acceleration_);
     state.acceleration = acceleration_;
-    for (const Index dof : problem.massless_dofs) state.velocity[dof] = increment[dof] / h;
-    take_contact(solution, obstacle_velocity_, h, state);
-    if (problem.loads.varies()) problem.loads.varying(state.time + h, state.forces.varying_load);
+    follow_without_inertia(problem, increment, h, state);
+    equations_.take_forces(problem, solution, damping_factor(problem), h, state);
   }
 
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
@@ -75,23 +60,17 @@ class Newmark final : public Scheme {
   [[nodiscard]] double numerical_dissipation(const SemidiscreteProblem&) const override { return dissipation_; }
 
  private:
-  /// The velocity that damping acts on, at the base (δ = 0).
-  void damping_velocity(const SemidiscreteProblem& problem, const State& state) {
+  [[nodiscard]] double damping_factor(const SemidiscreteProblem& problem) const {
+    return problem.has_singular_mass() ? 1.0 / step() : gamma_ * step() * alpha_;
+  }
+
+  /// The velocity that damping acts on, at δ = 0.
+  void find_damping_velocity(const SemidiscreteProblem& problem, const State& state) {
     if (problem.has_singular_mass()) {
-      velocity_ = predicted_increment_ / step();
+      velocity_ = predicted_ / step();
     } else {
       velocity_ = state.velocity + (step() * (1.0 - gamma_)) * state.acceleration;
     }
-  }
-
-  void require_friction_over_step(const SemidiscreteProblem& problem, const State& state, Stage& stage) {
-    if (problem.has_moving_obstacles()) {
-      middle_ = state.displacement + 0.5 * predicted_increment_;
-      problem.obstacle_velocity(middle_, state.time + 0.5 * step(), obstacle_velocity_);
-    }
-    if (!problem.contact.has_friction()) return;
-    rate_ = predicted_increment_ / step();
-    require_friction(problem, rate_, obstacle_velocity_, 1.0 / step(), stage);
   }
 
   void dissipate(const SemidiscreteProblem& problem, const State& state, const Vector& increment) {
@@ -106,8 +85,8 @@ class Newmark final : public Scheme {
 
   double beta_, gamma_, alpha_;
   double dissipation_ = 0.0;
-  Vector base_, force_, supported_, predicted_increment_, acceleration_, velocity_, difference_, rate_, middle_;
-  ObstacleMotion obstacle_velocity_;
+  Vector base_, predicted_, acceleration_, velocity_, difference_, force_;
+  StepEquations equations_;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/stage.hpp"
+#include "ricochet/scheme/stage_solve.hpp"
 #include "ricochet/scheme/state.hpp"
 
 /// @file Time schemes. To add one: a file with a class, one line in registry.cpp, and its tests.
@@ -53,11 +53,10 @@ class Scheme {
   /// Completes a starting state whose displacement, velocity, acceleration and forces satisfy the momentum equation at
   /// t = 0.
   virtual void start(const SemidiscreteProblem&, State&) {}
-  /// Fills the stage of this number for the step that begins at `state`. Vectors keep their storage from step to step.
-  virtual void prepare(const SemidiscreteProblem& problem, const State& state, int stage_number, Stage& stage) = 0;
-  /// Takes the state to the end of the step. `increment` receives the displacement that the step's forces work on.
-  virtual void finish(const SemidiscreteProblem& problem, const std::vector<StageSolution>& solutions, State& state,
-                      Vector& increment) = 0;
+  /// Takes the state to the end of the step: fills stages, has them solved, and reads their solutions. `increment`
+  /// receives the displacement that the step's forces work on. Changes the state only after the last solve, so that a
+  /// step that fails leaves it as it was.
+  virtual void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) = 0;
 
   /// Displacement and velocity at which the scheme accounts for energy.
   virtual void energy_state(const State& state, Vector& displacement, Vector& velocity) const;

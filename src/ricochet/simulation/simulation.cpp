@@ -49,35 +49,39 @@ void Simulation::save(Snapshot& snapshot) const {
 void Simulation::make_solver(const StepSolverOptions& options) {
   const std::vector<OperatorCoefficients> operators = scheme_.operators(problem_);
   solver_ = make_step_solver(problem_, operators, options);
-  solutions_.resize(operators.size());
-  for (const OperatorCoefficients& coefficients : operators) stage_dofs_.push_back(coefficients.dofs);
+  stages_.resize(operators.size());
+  for (std::size_t number = 0; number < operators.size(); ++number) stages_[number].dofs = operators[number].dofs;
+}
+
+Stage& Simulation::stage(std::size_t number) {
+  return stages_.at(number).stage;
+}
+
+const StageSolution& Simulation::solve(std::size_t number) {
+  auto& [stage, solution, dofs] = stages_.at(number);
+  solver_->solve(number, stage, solution);
+  if (!is_finite(problem_, dofs, solution.increment)) {
+    throw Error(ErrorKind::not_converged,
+                "the displacement is no longer finite, so the motion has grown beyond all bounds; use a stable scheme "
+                "or mass (newmark with mass \"equivalent\")");
+  }
+  iterations_ += solution.iterations;
+  return solution;
 }
 
 void Simulation::advance() {
-  int iterations = 0;
-  for (std::size_t number = 0; number < solutions_.size(); ++number) {
-    try {
-      scheme_.prepare(problem_, state_, static_cast<int>(number), stage_);
-      solver_->solve(number, stage_, solutions_[number]);
-    } catch (const Error& problem) {
-      const std::string advice = problem.kind() == ErrorKind::not_converged
-                                     ? "; try a smaller time.step, or a finer mesh where contact begins"
-                                     : "";
-      throw Error(problem.kind(), fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}{}",
-                                              state_.step + 1, state_.time + scheme_.step(), scheme_.step(),
-                                              problem_.contact.size(), problem.what(), advice));
-    }
-    if (!is_finite(problem_, stage_dofs_[number], solutions_[number].increment)) {
-      throw Error(
-          ErrorKind::not_converged,
-          fmt::format("step {} (t = {:.9g}): the displacement is no longer finite, so the motion has grown beyond all "
-                      "bounds; use a stable scheme or mass (newmark with mass \"equivalent\"), or a smaller time.step",
-                      state_.step + 1, state_.time + scheme_.step()));
-    }
-    iterations += solutions_[number].iterations;
+  iterations_ = 0;
+  try {
+    scheme_.advance(problem_, state_, *this, increment_);
+  } catch (const Error& problem) {
+    const std::string advice = problem.kind() == ErrorKind::not_converged
+                                   ? "; try a smaller time.step, or a finer mesh where contact begins"
+                                   : "";
+    throw Error(problem.kind(), fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}{}",
+                                            state_.step + 1, state_.time + scheme_.step(), scheme_.step(),
+                                            problem_.contact.size(), problem.what(), advice));
   }
-  scheme_.finish(problem_, solutions_, state_, increment_);
-  state_.iterations = iterations;
+  state_.iterations = iterations_;
   state_.step += 1;
   state_.time = static_cast<double>(state_.step) * scheme_.step();
   account_->enter_step(increment_, state_);

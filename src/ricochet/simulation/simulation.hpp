@@ -11,7 +11,7 @@
 /// @file A problem, a scheme and a state, step by step.
 namespace ricochet {
 
-class Simulation {
+class Simulation : private StageSolve {
  public:
   /// Finds the starting state and factorizes the scheme's operators. Keeps references to both arguments.
   Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
@@ -38,16 +38,23 @@ class Simulation {
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const { return solver_->methods(); }
 
  private:
+  /// A stage of the step with what it gave.
+  struct SolvedStage {
+    Stage stage;
+    StageSolution solution;
+    StageDofs dofs = StageDofs::all;  ///< that it solves for
+  };
   void make_solver(const StepSolverOptions& options);
+  Stage& stage(std::size_t number) override;
+  const StageSolution& solve(std::size_t number) override;
 
   const SemidiscreteProblem& problem_;
   Scheme& scheme_;
   State state_;
   std::unique_ptr<StepSolver> solver_;
   std::unique_ptr<EnergyAccount> account_;
-  Stage stage_;
-  std::vector<StageDofs> stage_dofs_;  ///< that each stage solves for
-  std::vector<StageSolution> solutions_;
+  std::vector<SolvedStage> stages_;
+  int iterations_ = 0;  ///< of the contact solver in this step
   Vector increment_;
 };
 

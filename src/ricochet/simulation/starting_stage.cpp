@@ -1,6 +1,6 @@
 #include "ricochet/simulation/starting_stage.hpp"
 
-#include "ricochet/scheme/contact_conditions.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
 
 namespace ricochet {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ricochet/scheme/stage.hpp"
+#include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/state.hpp"
 
 /// @file What the searches for a starting state have in common. Not part of the public interface.

@@ -10,7 +10,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/mass/mass.hpp"
-#include "ricochet/scheme/contact_conditions.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 #include "ricochet/simulation/static_equilibrium.hpp"
 #include "ricochet/solver/step_solver.hpp"

@@ -10,7 +10,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/displacement_space.hpp"
-#include "ricochet/scheme/contact_conditions.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/simulation/rigid_equilibrium.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 #include "ricochet/solver/step_solver.hpp"

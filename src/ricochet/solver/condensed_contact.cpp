@@ -203,8 +203,6 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
   solution.normal_reaction.setZero(points);
   if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
-  if (stage.compliance.size() > 0)
-    throw Error(ErrorKind::invalid_input, "contact compliance is not available in this version");
   asked_ = false;
   if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
   if (!all_points_ && !choose_candidates(stage)) return;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/stage.hpp"
+#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/contact_candidates.hpp"
 #include "ricochet/solver/contact_columns.hpp"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
-#include "ricochet/scheme/stage.hpp"
+#include "ricochet/problem/stage.hpp"
 
 /// @file Which contact points take part in the contact problem of a stage. Nothing is left out for good: after every
 /// stage the points that were not asked are looked at, and where one of them would penetrate it is taken up and the

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/stage.hpp"
+#include "ricochet/problem/stage.hpp"
 
 /// @file The matrix of a stage and the dofs it is solved for.
 namespace ricochet {

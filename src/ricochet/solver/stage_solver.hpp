@@ -5,7 +5,7 @@
 
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/stage.hpp"
+#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/step_solver.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/stage.hpp"
+#include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 
 /// @file Solving the stages of a step. A step solver knows nothing of time.

@@ -1,4 +1,4 @@
-#include "ricochet/scheme/contact_conditions.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
 
 #include <limits>
 
@@ -9,6 +9,21 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
   stage.gap_offset_rounding = problem.contact.gap_rounding;
   stage.gap_factor = 1.0;
   stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
+}
+
+void require_no_approach(const SemidiscreteProblem& problem, const Vector& displacement, double time,
+                         const Vector& velocity, const ObstacleMotion& obstacle, double step, Stage& stage) {
+  problem.gaps(displacement, time, stage.gap_offset);
+  stage.eligible.resize(static_cast<std::size_t>(problem.contact.size()));
+  for (Index i = 0; i < problem.contact.size(); ++i) {
+    const bool touches = stage.gap_offset[i] <= problem.contact.gap_rounding[i];
+    stage.eligible[static_cast<std::size_t>(i)] = touches ? 1 : 0;
+  }
+  problem.trace_rounding(displacement, stage.gap_offset);
+  problem.trace_rounding(velocity, stage.gap_offset_rounding);
+  stage.gap_offset_rounding += stage.gap_offset / step;
+  stage.gap_offset.noalias() = problem.contact.gap_operator * velocity;
+  if (obstacle.normal.size() > 0) stage.gap_offset -= obstacle.normal;
 }
 
 void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, const ObstacleMotion& obstacle,
@@ -24,16 +39,6 @@ void require_friction(const SemidiscreteProblem& problem, const Vector& velocity
     stage.slip_offset_rounding[i] +=
         8.0 * std::numeric_limits<double>::epsilon() * obstacle.tangential.segment(i * tangents, tangents).lpNorm<1>();
   }
-}
-
-void take_contact(const StageSolution& solution, const ObstacleMotion& obstacle, double duration, State& state) {
-  state.forces.normal_reaction = solution.normal_reaction;
-  state.forces.tangential_reaction = solution.tangential_reaction;
-  state.forces.support_reaction = solution.support_reaction;
-  state.contact_status = solution.contact_status;
-  if (obstacle.normal.size() == 0) return;
-  state.obstacle_increment.normal = duration * obstacle.normal;
-  state.obstacle_increment.tangential = duration * obstacle.tangential;
 }
 
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 ///
 /// A stage asks for an increment δ (the unknown is x = base + δ) and reactions such that
 ///   A δ = b + Gᵀ r_N − B_Tᵀ r_T + support reactions,   A = αM + κK + ηC,   δ given on supported dofs,
-///   for each eligible contact point:  0 ≤ r_N,i ⟂ y_i = q_i + s (G δ)_i + c_i r_N,i ≥ 0,
+///   for each eligible contact point:  0 ≤ r_N,i ⟂ y_i = q_i + s (G δ)_i ≥ 0,
 ///     |r_T,i| ≤ F_i r_N,i,   r_T,i = F_i r_N,i w_i/|w_i| where the slip rate w_i = p_i + σ (B_T δ)_i is not zero.
 /// b is the residual force at the base, q the gap (or gap rate) and p the slip rate there: written in increments, no
 /// digits are lost between large inertia terms that cancel, and the energy account closes to rounding.
@@ -39,7 +39,6 @@ struct Stage {
   Vector gap_offset;               ///< q, per contact point
   Vector gap_offset_rounding;      ///< size of the rounding error of q: a y above −(this + the solver's own) is zero
   double gap_factor = 1.0;         ///< s
-  Vector compliance;               ///< c; empty: zero
   double slip_factor = 1.0;        ///< σ
   Vector slip_offset;              ///< p, (d−1) per contact point; empty: no friction in this stage
   Vector slip_offset_rounding;     ///< size of the rounding error of p, per contact point

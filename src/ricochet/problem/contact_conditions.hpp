@@ -1,0 +1,22 @@
+#pragma once
+
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/problem/stage.hpp"
+
+/// @file The contact conditions that most stages have.
+namespace ricochet {
+
+/// Every contact point is eligible and y is its gap: y = g₀ + G (base + δ) at `time`.
+void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage);
+
+/// Points that touch at `displacement` and `time` do not approach their obstacle, the others carry no force:
+/// y = G (velocity + s δ) − the obstacle's, eligible where the gap is not positive. `velocity` is a difference of
+/// displacements over `step`, which decides its rounding. The caller sets s.
+void require_no_approach(const SemidiscreteProblem& problem, const Vector& displacement, double time,
+                         const Vector& velocity, const ObstacleMotion& obstacle, double step, Stage& stage);
+
+/// Coulomb's law on the slip rate w = B_T (velocity + σ δ) − the obstacle's. Does nothing without friction.
+void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, const ObstacleMotion& obstacle,
+                      double slip_factor, Stage& stage);
+
+}  // namespace ricochet

@@ -1,0 +1,64 @@
+#include "ricochet/scheme/semi_explicit/contact_equilibrium.hpp"
+
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+void ContactEquilibrium::analyse(const SemidiscreteProblem& problem) {
+  const SparseMatrix& stiffness = problem.internal_force->tangent();
+  const Index dofs = problem.dof_count();
+  std::vector<char> is_near(static_cast<std::size_t>(dofs), 0);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+    for (SparseMatrix::InnerIterator entry(stiffness, problem.contact_dofs[i]); entry; ++entry) {
+      entries.emplace_back(static_cast<int>(i), static_cast<int>(entry.row()), entry.value());
+      is_near[static_cast<std::size_t>(entry.row())] = 1;
+    }
+  }
+  contact_rows_.resize(static_cast<Index>(problem.contact_dofs.size()), dofs);
+  contact_rows_.setFromTriplets(entries.begin(), entries.end());
+  contact_node_dofs_.clear();
+  for (const Index node : problem.contact.unique_nodes()) {
+    for (int k = 0; k < problem.dimension; ++k) contact_node_dofs_.push_back(node * problem.dimension + k);
+  }
+  for (const Index dof : contact_node_dofs_) is_near[static_cast<std::size_t>(dof)] = 1;
+  near_dofs_.clear();
+  for (Index dof = 0; dof < dofs; ++dof) {
+    if (is_near[static_cast<std::size_t>(dof)] != 0) near_dofs_.push_back(dof);
+  }
+  for (Vector* values : {&predicted_, &base_, &middle_, &rate_}) values->setZero(dofs);
+}
+
+void ContactEquilibrium::predict(const SemidiscreteProblem& problem, const State& state, const Vector& supported_next,
+                                 double step) {
+  for (const Index dof : near_dofs_) {
+    predicted_[dof] = step * (state.velocity[dof] + (0.5 * step) * state.acceleration[dof]);
+  }
+  for (Index i = 0; i < problem.supports.size(); ++i) {
+    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+    predicted_[dof] = supported_next[i] - state.displacement[dof];
+  }
+  for (const Index dof : contact_node_dofs_) {
+    base_[dof] = state.displacement[dof] + predicted_[dof];
+    middle_[dof] = state.displacement[dof] + 0.5 * predicted_[dof];
+    rate_[dof] = predicted_[dof] / step;
+  }
+}
+
+void ContactEquilibrium::require(const SemidiscreteProblem& problem, const State& state, const Vector& force,
+                                 const Vector& load, const Vector& supported_next, double step,
+                                 StepEquations& equations, Stage& stage) {
+  predict(problem, state, supported_next, step);
+  row_force_.noalias() = contact_rows_ * predicted_;
+  if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
+  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+    const Index dof = problem.contact_dofs[i];
+    stage.right_hand_side[dof] = load[dof] - force[dof] - row_force_[static_cast<Index>(i)];
+  }
+  stage.prescribed.setZero(problem.supports.size());  // what supports prescribe is in the base
+  require_no_penetration(problem, base_, state.time + step, stage);
+  if (problem.has_moving_obstacles()) equations.observe_obstacles(problem, state.time + 0.5 * step, middle_);
+  equations.require_friction(problem, rate_, 1.0 / step, stage);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,68 @@
+#include "ricochet/scheme/step_equations.hpp"
+
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+void StepEquations::balance(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage) {
+  time_ = time;
+  problem.internal_force->evaluate(base, force_);
+  problem.loads.total(time, stage.right_hand_side);
+  stage.right_hand_side -= force_;
+}
+
+void StepEquations::balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
+                            Stage& stage) {
+  balance(problem, time, base, stage);
+  if (!problem.has_damping()) return;
+  damping_velocity_ = velocity;
+  stage.right_hand_side.noalias() -= problem.damping * velocity;
+}
+
+void StepEquations::observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement) {
+  problem.obstacle_velocity(displacement, time, obstacle_velocity_);
+}
+
+void StepEquations::require_friction(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor,
+                                     Stage& stage) const {
+  ricochet::require_friction(problem, velocity, obstacle_velocity_, slip_factor, stage);
+}
+
+void StepEquations::require_friction_over_step(const SemidiscreteProblem& problem, const State& state,
+                                               const Vector& predicted, double step, Stage& stage) {
+  if (problem.has_moving_obstacles()) {
+    middle_ = state.displacement + 0.5 * predicted;
+    observe_obstacles(problem, state.time + 0.5 * step, middle_);
+  }
+  if (!problem.contact.has_friction()) return;
+  rate_ = predicted / step;
+  require_friction(problem, rate_, 1.0 / step, stage);
+}
+
+void StepEquations::take_forces(const SemidiscreteProblem& problem, const StageSolution& solution, double damping,
+                                double step, State& state) {
+  take_contact(solution, step, state);
+  if (problem.loads.varies()) problem.loads.varying(time_, state.forces.varying_load);
+  if (!problem.has_damping()) return;
+  damping_velocity_ += damping * solution.increment;
+  state.forces.damping_force.noalias() = problem.damping * damping_velocity_;
+}
+
+void StepEquations::take_contact(const StageSolution& solution, double step, State& state) const {
+  state.forces.normal_reaction = solution.normal_reaction;
+  state.forces.tangential_reaction = solution.tangential_reaction;
+  state.forces.support_reaction = solution.support_reaction;
+  state.contact_status = solution.contact_status;
+  if (obstacle_velocity_.normal.size() == 0) return;
+  state.obstacle_increment.normal = step * obstacle_velocity_.normal;
+  state.obstacle_increment.tangential = step * obstacle_velocity_.tangential;
+}
+
+void follow_without_inertia(const SemidiscreteProblem& problem, const Vector& increment, double step, State& state) {
+  for (const Index dof : problem.massless_dofs) {
+    state.velocity[dof] = increment[dof] / step;
+    state.acceleration[dof] = 0.0;
+  }
+}
+
+}  // namespace ricochet

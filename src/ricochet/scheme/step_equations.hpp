@@ -1,0 +1,57 @@
+#pragma once
+
+#include "ricochet/problem/stage.hpp"
+#include "ricochet/scheme/state.hpp"
+
+/// @file What every scheme says of its stages, and takes from them: written once.
+namespace ricochet {
+
+/// The momentum equation and the contact conditions of a stage at an instant t of the step,
+///   M A + C V + K x = L(t) + Gᵀ r_N − B_Tᵀ r_T,   x = base + δ,   C V = C v + η C δ,
+/// where v is the velocity at δ = 0 and η the operator's coefficient of C; and the forces that its solution leaves in
+/// the state. Keeps its storage from step to step.
+class StepEquations {
+ public:
+  /// b = L(t) − f(base) − C v, f the internal force. M A has no part in b: bases are chosen so.
+  void balance(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage);
+  void balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
+               Stage& stage);
+
+  /// δ on supported dofs: increment(dof, prescribed displacement at `time`).
+  template <class Increment>
+  void prescribe(const SemidiscreteProblem& problem, double time, const Increment& increment, Stage& stage) {
+    problem.supports.values(time, stage.prescribed);
+    for (Index i = 0; i < problem.supports.size(); ++i) {
+      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+      stage.prescribed[i] = increment(dof, stage.prescribed[i]);
+    }
+  }
+
+  /// The obstacles' velocities where the contact points are at a displacement and a time. They, and friction, act on
+  /// the motion of the whole step.
+  void observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement);
+  [[nodiscard]] const ObstacleMotion& obstacle_velocity() const { return obstacle_velocity_; }
+  /// Coulomb's law on the slip rate B_T (velocity + slip_factor δ) relative to the obstacles observed.
+  void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor,
+                        Stage& stage) const;
+  /// The same on the mean slip rate B_T ΔU/h of the step, ΔU = predicted + δ; the obstacles' at its middle.
+  void require_friction_over_step(const SemidiscreteProblem& problem, const State& state, const Vector& predicted,
+                                  double step, Stage& stage);
+
+  /// Reactions, contact status and the motion of the obstacles over the step; the loads at the instant of balance(),
+  /// and the damping force there with the operator's coefficient η.
+  void take_forces(const SemidiscreteProblem& problem, const StageSolution& solution, double damping, double step,
+                   State& state);
+  /// The reactions alone.
+  void take_contact(const StageSolution& solution, double step, State& state) const;
+
+ private:
+  double time_ = 0.0;
+  Vector force_, damping_velocity_, middle_, rate_;
+  ObstacleMotion obstacle_velocity_;
+};
+
+/// On dofs without inertia A and V are no states: A = 0, V = ΔU/h.
+void follow_without_inertia(const SemidiscreteProblem& problem, const Vector& increment, double step, State& state);
+
+}  // namespace ricochet
