@@ -15,7 +15,6 @@
 #include "ricochet/fem/stress.hpp"
 #include "ricochet/fem/wave_speed.hpp"
 #include "ricochet/mesh/derived_groups.hpp"
-#include "ricochet/scheme/critical_step.hpp"
 #include "ricochet/simulation/rigid_bodies.hpp"
 
 namespace ricochet::program {
@@ -43,10 +42,6 @@ double reach(const Mesh& mesh) {
 double two_digits(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
   return std::floor(value / unit * (1.0 + 1e-9)) * unit;
-}
-
-bool is_plane_stress(const Body& body) {
-  return body.mesh->dimension == 2 && body.plane == PlaneState::stress;
 }
 
 void print_materials(const Body& body) {
@@ -96,12 +91,10 @@ void print_steps(const Case& input, const Model& model, const ConnectedBodies& c
              times.front(), times[times.size() / 2], bodies.size() > 1 ? "the largest body" : "the body",
              *std::max_element(bodies.begin(), bodies.end()));
   const double step = input.time.step;
-  if (input.time.scheme == "semi-explicit" && model.problem.mass.is_diagonal()) {
-    const double critical = central_difference_limit(model.problem);
-    fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", critical, step / critical);
-    fmt::print(
-        "  suggested step {:.2g}: nine tenths of the critical one, above which central differences are unstable\n",
-        two_digits(0.9 * critical));
+  if (const std::optional<double> critical = make_scheme(input.time)->stability_limit(model.problem)) {
+    fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", *critical, step / *critical);
+    fmt::print("  suggested step {:.2g}: nine tenths of the critical one, above which {} is unstable\n",
+               two_digits(0.9 * *critical), input.time.scheme);
     return;
   }
   const double median = times[times.size() / 2];
@@ -128,20 +121,20 @@ void print_contact(const Case& input, const Model& model, std::size_t pair) {
   const ContactBoundary& contact = model.problem.contact;
   const int d = model.mesh.dimension;
   const ContactSection& section = input.contacts[pair];
-  const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
-                                     [&](const ObstacleSection& o) { return o.name == section.obstacle; });
-  const Obstacle& plane = *model.contact_pairs[pair].obstacle;
+  const Obstacle& obstacle = *model.contact_pairs[pair].obstacle;
   double nearest = std::numeric_limits<double>::infinity(), meets = nearest, rounding = 0.0;
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
     if (contact.node_pair[i] != static_cast<int>(pair)) continue;
     const auto row = static_cast<Index>(i);
     const Vector normal = contact.node_normals.col(row);
     const double gap = contact.node_initial_gap[row];
-    if (gap < nearest) rounding = plane.gap_rounding(model.space.nodes.col(contact.nodes[i]));
+    if (gap < nearest) rounding = obstacle.gap_rounding(model.space.nodes.col(contact.nodes[i]));
     nearest = std::min(nearest, gap);
-    double velocity = normal.dot(model.initial.velocity.segment(contact.nodes[i] * d, d)), acceleration = 0.0;
+    const SpaceVector position = model.space.nodes.col(contact.nodes[i]);
+    const double velocity = normal.dot(model.initial.velocity.segment(contact.nodes[i] * d, d)) -
+                            normal.dot(obstacle.surface_velocity(position, 0.0));
+    double acceleration = 0.0;
     for (int k = 0; k < d; ++k) {
-      if (!obstacle->velocity.empty()) velocity -= normal[k] * obstacle->velocity[static_cast<std::size_t>(k)];
       if (!input.load.gravity.empty()) acceleration += normal[k] * input.load.gravity[static_cast<std::size_t>(k)];
     }
     meets = std::min(meets, time_of_contact(gap, velocity, acceleration));

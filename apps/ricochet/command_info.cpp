@@ -73,7 +73,8 @@ void describe_case(const std::string& path) {
   fmt::print("{}: {}\n", path, input.title.empty() ? "a case" : input.title);
   fmt::print("  mesh    {} (displacement of degree {})\n", input.mesh.file, input.mesh.degree);
   for (const MaterialSection& m : input.materials) {
-    fmt::print("  material \"{}\": density {:g}, lambda {:g}, mu {:g}\n", m.group, m.density, m.lambda, m.mu);
+    const std::unique_ptr<MaterialLaw> law = make_material_law(m.law, m.parameters);
+    fmt::print("  material \"{}\": density {:g}, lambda {:g}, mu {:g}\n", m.group, m.density, law->lambda(), law->mu());
   }
   print_contacts(describe_contacts(input));
   fmt::print("  scheme {}, mass {}, {} of {:g} to {:g}\n", input.time.scheme, input.mass.type,

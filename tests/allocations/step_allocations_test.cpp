@@ -143,8 +143,7 @@ TEST(PenetrationReports, CostTheSameInAFinerMesh) {
     const ThrownBody body{"disc", 2, 1, mesh_geometry("disc", disc, size, 1)};
     CaseRun run(thrown_case(body, "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n"));
     // The disc is about the middle of the wall, which no contact names.
-    ObstacleParameters wall{"plane", Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(1.0, 0.0)};
-    const std::unique_ptr<Obstacle> obstacle = make_obstacle(wall);
+    const std::unique_ptr<Obstacle> obstacle = make_plane(Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(1.0, 0.0));
     PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs, {{"wall", obstacle.get()}});
     watch.look(run.state());
     const long before = allocation_count();

@@ -225,7 +225,7 @@ PointMap ball_map(const Vector& centre) {
 }
 
 Material test_material() {
-  return {"body", 1.7, 1.3, 0.8, 0.0, 0.0};
+  return {"body", 1.7, make_linear_elasticity(1.3, 0.8)};
 }
 
 std::unique_ptr<MeshedBody> make_meshed_body(Mesh mesh, int displacement_degree, PlaneState plane) {

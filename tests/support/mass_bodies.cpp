@@ -88,7 +88,7 @@ AssembledBody::AssembledBody(const BodyDescription& description) {
   file.geometry_degree = description.order;
   mesh = read_mesh(file);
   space = make_displacement_space(mesh, description.order);
-  body = {&mesh, &space, PlaneState::strain, {{"body", 3.0, 1.0, 1.0, 0.0, 0.0}}, {}};
+  body = {&mesh, &space, PlaneState::strain, {{"body", 3.0, make_linear_elasticity(1.0, 1.0)}}, {}};
   body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), 0);
   consistent = assemble_scalar_mass(body, node_graph(space));
   cells = std::make_unique<CellMasses>(body);

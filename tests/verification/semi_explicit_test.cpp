@@ -8,6 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/scheme/critical_step.hpp"
+#include "ricochet/scheme/semi_explicit/requirements.hpp"
 #include "support/case_run.hpp"
 #include "support/strip.hpp"
 #include "support/thrown_body.hpp"
@@ -52,11 +53,7 @@ struct UncheckedRun {
   double first = 0.0, largest = 0.0;  ///< total energy, which nothing adds to
 
   UncheckedRun(const CaseRun& run, double step, int steps) {
-    SchemeParameters parameters;
-    parameters.name = "semi-explicit";
-    parameters.step = step;
-    parameters.check_critical_step = false;
-    scheme = make_scheme(parameters);
+    scheme = make_semi_explicit_at_any_step(step);
     InitialConditions initial = run.model().initial;
     std::mt19937 generator(7);
     std::uniform_real_distribution<double> random(-0.5, 0.5);

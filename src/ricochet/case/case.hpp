@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ricochet/base/expression.hpp"
+#include "ricochet/base/parameters.hpp"
 #include "ricochet/base/types.hpp"
 #include "ricochet/mesh/place_mesh.hpp"
 
@@ -39,18 +40,15 @@ struct DampingSection {
 struct MaterialSection {
   std::string group;
   double density = 0.0;
-  double lambda = 0.0;  ///< Lamé's first parameter, computed from young and poisson when those were given
-  double mu = 0.0;      ///< shear modulus, likewise
+  std::string law = "linear";
+  Parameters parameters;  ///< of the law
   DampingSection damping;
 };
 
 struct ObstacleSection {
   std::string name;
-  std::string type = "plane";
-  std::vector<double> point;
-  std::vector<double> normal;    ///< out of the obstacle, as written (not yet of length one)
-  std::vector<double> velocity;  ///< empty: at rest
-  double rotation_rate = 0.0;    ///< about the normal
+  std::string type;
+  Parameters parameters;  ///< of the type
 };
 
 struct ContactSection {
@@ -86,13 +84,12 @@ struct InitialSection {
 
 struct MassSection {
   std::string type = "equivalent";
+  Parameters parameters;  ///< of the type
 };
 
 struct TimeSection {
   std::string scheme;
-  double beta = 0.25;  ///< newmark
-  double gamma = 0.5;  ///< newmark
-  std::string preset;  ///< newmark: "", "trapezoidal" (¼, ½) or "textbook-half" (½, ½): fills beta and gamma
+  Parameters parameters;  ///< of the scheme
   double step = 0.0;
   double end = 0.0;
 };

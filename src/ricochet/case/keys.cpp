@@ -103,6 +103,12 @@ const Section* find_section(std::string_view name) {
   return found != sections.end() ? &*found : nullptr;
 }
 
+const TypeKeys* find_type(const Section& section, std::string_view name) {
+  const auto found = std::find_if(section.types.begin(), section.types.end(),
+                                  [name](const TypeKeys& type) { return type.name == name; });
+  return found != section.types.end() ? &*found : nullptr;
+}
+
 const Key* find_key(const std::vector<Key>& keys, std::string_view name) {
   const auto found = std::find_if(keys.begin(), keys.end(), [name](const Key& key) { return key.name == name; });
   return found != keys.end() ? &*found : nullptr;

@@ -1,52 +1,16 @@
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "ricochet/base/parameters.hpp"
+
 /// @file The table of everything a case file may say. Reading, checking, the JSON Schema and the documentation page are
-/// all driven by it. A new key is one entry in keys_table*.cpp and one line in read_sections.cpp that puts it into the
-/// Case.
+/// all driven by it. A key of a registered type (a scheme, an obstacle, a law) is declared where the type is; any other
+/// is one entry in keys_table*.cpp and one line in read_sections.cpp that puts it into the Case.
 namespace ricochet {
-
-enum class KeyType {
-  text,        ///< any text; not empty when required
-  choice,      ///< one of `choices`
-  number,      ///< finite, within `range`
-  integer,     ///< within `range`, or one of `choices`
-  vector,      ///< 2 or 3 numbers
-  formula,     ///< a number or an expression in `variables`
-  formulas,    ///< 2 or 3 of them, or one of `choices`
-  components,  ///< a list of distinct `choices`, which name the directions of space
-  names,       ///< a list of distinct `choices`
-  groups,      ///< the name of a group of the mesh, or a list of distinct ones: their union
-  parameters,  ///< a table of numbers, for the expressions beside it
-  conditions,  ///< a table of key paths and the values they must have
-  table,       ///< a sub-table with `keys`
-};
-
-/// Bounds of a number.
-struct Range {
-  std::optional<double> above = {};
-  std::optional<double> at_least = {};
-  std::optional<double> below = {};
-  std::optional<double> at_most = {};
-};
-
-struct Key {
-  std::string name;
-  KeyType type = KeyType::text;
-  std::string unit = {};  ///< the kind of unit ("length", "stress"; "1": a pure number); empty where there is none
-  bool required = false;
-  std::optional<std::string> standard = {};  ///< the default, as text
-  std::vector<std::string> choices = {};
-  Range range = {};
-  std::string variables = {};  ///< of expressions: "t", "x, y and z" or "x, y, z and t"
-  std::vector<Key> keys = {};  ///< of a sub-table
-  bool decides = false;        ///< which other keys there are: where its value is refused, nothing else is looked at
-  std::string doc;             ///< one line of documentation
-};
 
 enum class SectionKind {
   top,    ///< keys before the first section
@@ -55,22 +19,27 @@ enum class SectionKind {
   named,  ///< [name.NAME], any number of them
 };
 
+/// A registered type's own keys.
+struct TypeKeys {
+  std::string name;
+  std::vector<Key> keys;
+  KeySets alternatives = {};
+  std::function<void(const ParameterCheck& place, Parameters& values)> check = {};
+};
+
 struct Section {
   std::string name;
   SectionKind kind = SectionKind::table;
   bool required = false;
-  /// Sets of keys of which exactly one must be given, whole.
-  std::vector<std::vector<std::string>> alternatives = {};
+  KeySets alternatives = {};
   std::string doc;
-  std::vector<Key> keys;
+  std::vector<Key> keys;  ///< with those of all types
+  /// The key that names a registered type, and the types with the keys that are theirs; empty where there are none.
+  std::string type_key = {};
+  std::vector<TypeKeys> types = {};
 };
 
-/// Values of beta and gamma that go by a name.
-struct NewmarkPreset {
-  std::string name;
-  double beta, gamma;
-};
-[[nodiscard]] const std::vector<NewmarkPreset>& newmark_presets();
+[[nodiscard]] const TypeKeys* find_type(const Section& section, std::string_view name);
 
 /// All sections, the top of the file first.
 [[nodiscard]] const std::vector<Section>& case_sections();

@@ -64,14 +64,16 @@ class TreeChecker {
   void check_section(const Section& section);
   void check_list(const Section& section, TomlNode& list);
   void check_named(const Section& section, TomlNode& sections);
+  void check_entry(const Section& section, const std::string& title, TomlNode& table);
   void check_keys(const std::vector<Key>& keys, const std::string& title, TomlNode& table);
-  bool is_of_unknown_type(const std::vector<Key>& keys, TomlNode& table);
+  void check_known(const std::vector<Key>& keys, const std::string& title, TomlNode& table);
+  const TypeKeys* find_type_of(const Section& section, TomlNode& table);
+  void check_foreign_key(const Section& section, const Key& key, const std::string& title, TomlNode& table);
   void check_key(const Key& key, const std::string& title, TomlNode& value);
-  void check_alternatives(const Section& section, const std::string& title, const TomlNode& table);
+  void check_alternatives(const KeySets& alternatives, const std::vector<Key>& keys, const std::string& title,
+                          const TomlNode& table);
   void report_missing_section(const Section& section);
   void check_dimension();
-  void check_conditions();
-  void check_condition(TomlNode& condition);
 
   TomlNode& root_;
   Problems& problems_;
@@ -85,7 +87,7 @@ void TreeChecker::run() {
     if (section.kind != SectionKind::top) check_section(section);
   }
   check_dimension();
-  check_conditions();
+  check_conditions(root_, problems_);
 }
 
 void TreeChecker::check_top() {
@@ -127,11 +129,11 @@ void TreeChecker::check_section(const Section& section) {
     node->key = section.name;
     node->is_default = true;
     node->location = node->key_location = root_.location;
-    return check_keys(section.keys, section_title(section), *node);
+    return check_entry(section, section_title(section), *node);
   }
   if (section.kind == SectionKind::list) return check_list(section, *node);
   if (section.kind == SectionKind::named) return check_named(section, *node);
-  if (node->is_table()) return check_keys(section.keys, section_title(section), *node);
+  if (node->is_table()) return check_entry(section, section_title(section), *node);
   node->is_refused = true;
   problems_.add(node->key_location, node->is_list_of_tables()
                                         ? fmt::format("there is only one {0}: write [{1}], not [[{1}]]",
@@ -155,10 +157,7 @@ void TreeChecker::check_list(const Section& section, TomlNode& list) {
                                                        section_title(section), describe(list)));
     return;
   }
-  for (TomlNode& entry : list.children) {
-    check_keys(section.keys, section_title(section), entry);
-    check_alternatives(section, section_title(section), entry);
-  }
+  for (TomlNode& entry : list.children) check_entry(section, section_title(section), entry);
 }
 
 void TreeChecker::check_named(const Section& section, TomlNode& sections) {
@@ -180,30 +179,75 @@ void TreeChecker::check_named(const Section& section, TomlNode& sections) {
     } else if (!is_plain_name(entry.key)) {
       entry.is_refused = true;
       problems_.add(entry.key_location, fmt::format("the name of {} can only have letters, digits, _ and -", title));
-    } else if (is_of_unknown_type(section.keys, entry)) {
-      entry.is_refused = true;
     } else {
-      check_keys(section.keys, title, entry);
+      check_entry(section, title, entry);
     }
   }
 }
 
-bool TreeChecker::is_of_unknown_type(const std::vector<Key>& keys, TomlNode& table) {
-  for (const Key& key : keys) {
-    TomlNode* value = key.decides ? table.find(key.name) : nullptr;
-    if (value == nullptr) continue;
-    check_value(key, *value, problems_);
-    if (value->is_refused) return true;
+/// The type that an entry names or has by default; none where it names no known one, which is told.
+const TypeKeys* TreeChecker::find_type_of(const Section& section, TomlNode& table) {
+  const Key& key = *find_key(section.keys, section.type_key);
+  TomlNode* const value = table.find(key.name);
+  if (value == nullptr) return key.standard ? find_type(section, *key.standard) : nullptr;
+  check_value(key, *value, problems_);
+  return value->is_refused ? nullptr : find_type(section, value->text);
+}
+
+void TreeChecker::check_entry(const Section& section, const std::string& title, TomlNode& table) {
+  if (section.type_key.empty()) {
+    check_known(section.keys, title, table);
+    check_keys(section.keys, title, table);
+    return check_alternatives(section.alternatives, section.keys, title, table);
   }
-  return false;
+  const TypeKeys* const type = find_type_of(section, table);
+  const TomlNode* const named = table.find(section.type_key);
+  if (type == nullptr && named != nullptr && find_key(section.keys, section.type_key)->decides) {
+    table.is_refused = true;
+    return;
+  }
+  std::vector<Key> keys;
+  for (const Key& key : section.keys) {
+    const Key* const own = type != nullptr ? find_key(type->keys, key.name) : nullptr;
+    const bool is_of_some_type = own != nullptr || !key.only_for.empty();
+    if (!is_of_some_type) {
+      if (key.name != section.type_key || named == nullptr) keys.push_back(key);
+    } else if (own != nullptr) {
+      keys.push_back(*own);
+    } else {
+      check_foreign_key(section, key, title, table);
+    }
+  }
+  check_known(section.keys, title, table);
+  check_keys(keys, title, table);
+  if (type != nullptr) check_alternatives(type->alternatives, type->keys, title, table);
+}
+
+/// A key that the entry's type does not have. In a file whose type was replaced by --set it means nothing; otherwise it
+/// is a mistake.
+void TreeChecker::check_foreign_key(const Section& section, const Key& key, const std::string& title, TomlNode& table) {
+  TomlNode* const value = table.find(key.name);
+  const TomlNode* const type = table.find(section.type_key);
+  if (value == nullptr) return;
+  if (type == nullptr || type->is_refused) return check_key(key, title, *value);
+  if (type->is_override() && !value->is_override()) {
+    value->is_ignored = true;
+    problems_.add_info(value->location,
+                       fmt::format("\"{}\" is ignored: the {} is \"{}\"", key.name, section.type_key, type->text));
+    return;
+  }
+  value->is_refused = true;
+  problems_.add(value->location, fmt::format("\"{}\" is for the {} {} only; the {} is \"{}\"", key.name,
+                                             section.type_key, join_names(key.only_for), section.type_key, type->text));
+}
+
+void TreeChecker::check_known(const std::vector<Key>& keys, const std::string& title, TomlNode& table) {
+  for (const TomlNode& member : table.children) {
+    if (!is_key_of(keys, member)) problems_.add(member.key_location, unknown_key_message(member.key, title, keys));
+  }
 }
 
 void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& title, TomlNode& table) {
-  for (const TomlNode& member : table.children) {
-    if (!is_key_of(keys, member)) {
-      problems_.add(member.key_location, unknown_key_message(member.key, title, keys));
-    }
-  }
   for (const Key& key : keys) {
     if (TomlNode* value = table.find(key.name)) {
       check_key(key, title, *value);
@@ -222,7 +266,11 @@ void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& ti
 void TreeChecker::check_key(const Key& key, const std::string& title, TomlNode& value) {
   check_value(key, value, problems_);
   if (value.is_refused) return;
-  if (key.type == KeyType::table) check_keys(key.keys, fmt::format("\"{}\" of {}", key.name, title), value);
+  if (key.type == KeyType::table) {
+    const std::string of_table = fmt::format("\"{}\" of {}", key.name, title);
+    check_known(key.keys, of_table, value);
+    check_keys(key.keys, of_table, value);
+  }
   const bool is_vector = key.type == KeyType::vector || key.type == KeyType::formulas;
   if (is_vector && value.kind == Kind::list) {
     vectors_.push_back({value.location, fmt::format("\"{}\" of {}", key.name, title), value.children.size()});
@@ -234,15 +282,16 @@ void TreeChecker::check_key(const Key& key, const std::string& title, TomlNode& 
   }
 }
 
-void TreeChecker::check_alternatives(const Section& section, const std::string& title, const TomlNode& table) {
-  if (section.alternatives.empty()) return;
+void TreeChecker::check_alternatives(const KeySets& alternatives, const std::vector<Key>& keys,
+                                     const std::string& title, const TomlNode& table) {
+  if (alternatives.empty()) return;
   std::vector<std::string> given, texts;
   std::size_t touched = 0, complete = 0;
-  for (const std::vector<std::string>& names : section.alternatives) {
+  for (const std::vector<std::string>& names : alternatives) {
     texts.push_back(join_names(names));
     std::size_t present = 0;
     for (const std::string& name : names) {
-      if (table.find(name) == nullptr && !is_misspelt(*find_key(section.keys, name), section.keys, table)) continue;
+      if (table.find(name) == nullptr && !is_misspelt(*find_key(keys, name), keys, table)) continue;
       given.push_back(name);
       ++present;
     }
@@ -291,81 +340,10 @@ void TreeChecker::check_dimension() {
   }
 }
 
-// `when = { time.scheme = "…" }` without quotes is a nested table in TOML: both spellings mean a path.
-void flatten(const TomlNode& node, const std::string& prefix, std::vector<TomlNode>& conditions) {
-  for (const TomlNode& child : node.children) {
-    const std::string path = prefix.empty() ? child.key : prefix + "." + child.key;
-    if (child.is_table() && !child.children.empty()) {
-      flatten(child, path, conditions);
-    } else {
-      conditions.push_back(child);
-      conditions.back().key = path;
-    }
-  }
-}
-
-void TreeChecker::check_conditions() {
-  TomlNode* list = root_.find("expect");
-  if (list == nullptr || list->is_refused) return;
-  for (TomlNode& entry : list->children) {
-    TomlNode* when = entry.find("when");
-    if (when == nullptr || when->is_refused) continue;
-    std::vector<TomlNode> conditions;
-    flatten(*when, "", conditions);
-    when->children = conditions;
-    for (TomlNode& condition : when->children) check_condition(condition);
-  }
-}
-
-void TreeChecker::check_condition(TomlNode& condition) {
-  try {
-    const KeyPath path = parse_key_path(condition.key);
-    std::string missing;
-    if (path.key->type == KeyType::conditions || (path.key->type == KeyType::table && path.member.empty())) {
-      missing = "it holds several values: say which";
-    } else {
-      static_cast<void>(find_entry(root_, path, missing));
-    }
-    if (!missing.empty()) {
-      problems_.add(condition.key_location, fmt::format("\"when\" names \"{}\": {}", condition.key, missing));
-    } else if (path.member.empty()) {
-      Key key = *path.key;
-      key.name = condition.key;
-      check_value(key, condition, problems_);
-    } else {
-      check_value({.name = condition.key, .type = KeyType::number, .doc = ""}, condition, problems_);
-    }
-  } catch (const Error& problem) {
-    problems_.add(condition.key_location, fmt::format("\"when\" names \"{}\": {}", condition.key, problem.what()));
-  }
-}
-
 }  // namespace
 
 void check_tree(TomlNode& root, Problems& problems) {
   TreeChecker(root, problems).run();
-}
-
-const TomlNode* find_entry(const TomlNode& root, const KeyPath& path, std::string& problem) {
-  const TomlNode* node = path.section->kind == SectionKind::top ? &root : root.find(path.section->name);
-  if (path.section->kind == SectionKind::list) {
-    const std::size_t count = node != nullptr && node->is_list_of_tables() ? node->children.size() : 0;
-    const auto number = static_cast<std::size_t>(std::stol(path.entry));
-    if (number >= count) {
-      problem = fmt::format("there is no entry {} of {}: {}", number, section_title(*path.section),
-                            count == 0   ? "the case has none"
-                            : count == 1 ? "there is only entry 0"
-                                         : fmt::format("they go from 0 to {}", count - 1));
-      return nullptr;
-    }
-    return &node->children[number];
-  }
-  if (path.section->kind == SectionKind::named) {
-    const TomlNode* named = node != nullptr ? node->find(path.entry) : nullptr;
-    if (named == nullptr) problem = fmt::format("there is no [{}.{}]", path.section->name, path.entry);
-    return named;
-  }
-  return node;
 }
 
 }  // namespace ricochet

@@ -1,3 +1,9 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <list>
+
+#include "ricochet/base/text.hpp"
 #include "ricochet/case/keys_table.hpp"
 
 // The table itself: its sections in their order.
@@ -12,15 +18,55 @@ Section top_section() {
           .keys = {{.name = "title", .standard = "", .doc = "A line about the case, repeated in its results."}}};
 }
 
+std::vector<Section> make_sections() {
+  return {top_section(),     mesh_section(),    material_section(), obstacle_section(),
+          contact_section(), support_section(), traction_section(), load_section(),
+          initial_section(), mass_section(),    time_section(),     solver_section(),
+          probe_section(),   output_section(),  check_section(),    expect_section()};
+}
+
+std::vector<std::string> types_with(const std::string& key, const std::vector<TypeKeys>& types) {
+  std::vector<std::string> names;
+  for (const TypeKeys& type : types) {
+    if (find_key(type.keys, key) != nullptr) names.push_back(type.name);
+  }
+  return names;
+}
+
 }  // namespace
 
+void add_type_keys(Section& section, const std::string& type_key, std::vector<TypeKeys> types) {
+  std::vector<Key> added;
+  for (const TypeKeys& type : types) {
+    for (Key key : type.keys) {
+      if (find_key(added, key.name) != nullptr) continue;
+      const std::vector<std::string> names = types_with(key.name, types);
+      if (names.size() < types.size()) {
+        key.only_for = names;
+        if (key.doc.ends_with('.')) key.doc.pop_back();
+        key.doc += fmt::format("; for the {} {} only.", type_key, join_names(names));
+      }
+      added.push_back(std::move(key));
+    }
+  }
+  const auto at =
+      std::find_if(section.keys.begin(), section.keys.end(), [&](const Key& key) { return key.name == type_key; });
+  at->choices.clear();
+  for (const TypeKeys& type : types) at->choices.push_back(type.name);
+  section.keys.insert(at + 1, added.begin(), added.end());
+  section.type_key = type_key;
+  section.types = std::move(types);
+}
+
 const std::vector<Section>& case_sections() {
-  static const std::vector<Section> sections{
-      top_section(),     mesh_section(),    material_section(), obstacle_section(),
-      contact_section(), support_section(), traction_section(), load_section(),
-      initial_section(), mass_section(),    time_section(),     solver_section(),
-      probe_section(),   output_section(),  check_section(),    expect_section()};
-  return sections;
+  // Types may be registered while a program runs; tables that somebody may still look at stay.
+  static std::list<std::vector<Section>> tables;
+  static long revision = -1;
+  if (revision != registry_revision()) {
+    revision = registry_revision();
+    tables.push_back(make_sections());
+  }
+  return tables.back();
 }
 
 }  // namespace ricochet

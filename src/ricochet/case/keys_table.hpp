@@ -1,13 +1,22 @@
 #pragma once
 
+#include "ricochet/base/registry.hpp"
 #include "ricochet/case/keys.hpp"
 
 /// @file The parts of the table of keys, in keys_table*.cpp. Nothing else in the program lists the keys of a case file.
 /// Not part of the public interface.
 namespace ricochet {
 
-inline const Range positive{.above = 0.0};
-inline const Range nonnegative{.at_least = 0.0};
+/// Puts the keys of registered types into a section, behind the key that names the type.
+void add_type_keys(Section& section, const std::string& type_key, std::vector<TypeKeys> types);
+template <class Type>
+[[nodiscard]] Section with_types(Section section, const std::string& type_key, const Registry<Type>& registry) {
+  std::vector<TypeKeys> types;
+  for (const Registration<Type>& entry : registry.all())
+    types.push_back({entry.name, entry.keys, entry.alternatives, entry.check});
+  add_type_keys(section, type_key, std::move(types));
+  return section;
+}
 
 // keys_table_model.cpp: what is simulated.
 [[nodiscard]] Section mesh_section();

@@ -4,57 +4,28 @@
 // The part of the table that is about how it is simulated: the mass, the time scheme, the solver of a step.
 namespace ricochet {
 
-namespace {
-
-std::vector<std::string> preset_names() {
-  std::vector<std::string> names;
-  for (const NewmarkPreset& preset : newmark_presets()) names.push_back(preset.name);
-  return names;
-}
-
-}  // namespace
-
 Section mass_section() {
-  return {
+  Section section{
       .name = "mass",
       .doc = "The mass matrix.",
       .keys = {{.name = "type",
                 .type = KeyType::choice,
                 .standard = "equivalent",
-                .choices = mass_names(),
                 .doc = "The equivalent masses have no inertia on contact nodes, and keep total mass, centre of gravity "
                        "and moments of inertia. \"equivalent-lumped\" is diagonal, for the scheme \"semi-explicit\". "
                        "\"equivalent-compact\" couples hardly more nodes than \"consistent\", so that its factors are "
                        "small; \"equivalent\" is built like it where a case in space has more than 2,000 contact "
                        "nodes, those of all bodies together; `mass_built` in summary.json says so."}}};
+  return with_types(std::move(section), "type", mass_registry());
 }
 
 Section time_section() {
-  return {
+  Section section{
       .name = "time",
       .required = true,
       .doc = "The time scheme and its steps.",
       .keys = {
-          {.name = "scheme",
-           .type = KeyType::choice,
-           .required = true,
-           .choices = scheme_names(),
-           .doc = "The time scheme."},
-          {.name = "beta",
-           .type = KeyType::number,
-           .unit = "1",
-           .range = positive,
-           .doc = "Newmark's beta, textbook definition; for the scheme \"newmark\" only."},
-          {.name = "gamma",
-           .type = KeyType::number,
-           .unit = "1",
-           .range = nonnegative,
-           .doc = "Newmark's gamma, textbook definition; unstable below 1/2; for the scheme \"newmark\" only."},
-          {.name = "preset",
-           .type = KeyType::choice,
-           .choices = preset_names(),
-           .doc = "Instead of beta and gamma: \"trapezoidal\" is beta = 1/4, gamma = 1/2; \"textbook-half\" is beta = "
-                  "gamma = 1/2."},
+          {.name = "scheme", .type = KeyType::choice, .required = true, .doc = "The time scheme."},
           {.name = "step",
            .type = KeyType::number,
            .unit = "time",
@@ -69,6 +40,7 @@ Section time_section() {
            .range = positive,
            .doc = "The run goes from t = 0 to here; at least one step and at most 1e9."},
       }};
+  return with_types(std::move(section), "scheme", scheme_registry());
 }
 
 Section solver_section() {
@@ -106,11 +78,6 @@ Section solver_section() {
                   "at after it, and where one has penetrated the step is solved again with it. \"all\": all do, which "
                   "changes results by rounding only; for exported contact problems of one size."},
       }};
-}
-
-const std::vector<NewmarkPreset>& newmark_presets() {
-  static const std::vector<NewmarkPreset> presets{{"trapezoidal", 0.25, 0.5}, {"textbook-half", 0.5, 0.5}};
-  return presets;
 }
 
 }  // namespace ricochet

@@ -113,41 +113,26 @@ Section mesh_section() {
 }
 
 Section material_section() {
-  return {
-      .name = "material",
-      .kind = SectionKind::list,
-      .required = true,
-      .alternatives = {{"lambda", "mu"}, {"young", "poisson"}},
-      .doc = "Isotropic linear elasticity of one physical group of cells.",
-      .keys = {
-          group_key("cells", "all"),
-          {.name = "density",
-           .type = KeyType::number,
-           .unit = "density",
-           .required = true,
-           .range = positive,
-           .doc = "Mass per volume."},
-          {.name = "lambda",
-           .type = KeyType::number,
-           .unit = "stress",
-           .doc = "First Lamé parameter; 3 lambda + 2 mu must be positive."},
-          {.name = "mu",
-           .type = KeyType::number,
-           .unit = "stress",
-           .range = positive,
-           .doc = "Second Lamé parameter, the shear modulus."},
-          {.name = "young", .type = KeyType::number, .unit = "stress", .range = positive, .doc = "Young's modulus."},
-          {.name = "poisson",
-           .type = KeyType::number,
-           .unit = "1",
-           .range = {.above = -1.0, .below = 0.5},
-           .doc = "Poisson's ratio."},
-          damping_key(),
-      }};
+  Section section{.name = "material",
+                  .kind = SectionKind::list,
+                  .required = true,
+                  .doc = "The material of one or more groups of cells.",
+                  .keys = {
+                      group_key("cells", "all"),
+                      {.name = "density",
+                       .type = KeyType::number,
+                       .unit = "density",
+                       .required = true,
+                       .range = positive,
+                       .doc = "Mass per volume."},
+                      {.name = "law", .type = KeyType::choice, .standard = "linear", .doc = "The material law."},
+                      damping_key(),
+                  }};
+  return with_types(std::move(section), "law", material_law_registry());
 }
 
 Section obstacle_section() {
-  return {
+  Section section{
       .name = "obstacle",
       .kind = SectionKind::named,
       .doc = "A rigid obstacle, named so that [[contact]] can refer to it.",
@@ -155,32 +140,11 @@ Section obstacle_section() {
           {.name = "type",
            .type = KeyType::choice,
            .required = true,
-           .choices = obstacle_types(),
            .decides = true,
            .doc = "This version has planes only, each with a half-space behind it: curved obstacles are not supported. "
                   "Several planes approximate a hollow (a trough, a bowl); nothing replaces a round obstacle."},
-          {.name = "point",
-           .type = KeyType::vector,
-           .unit = "length",
-           .required = true,
-           .doc = "A point of the plane."},
-          {.name = "normal",
-           .type = KeyType::vector,
-           .unit = "1",
-           .required = true,
-           .doc = "Normal of the plane, out of the obstacle; of any length but zero."},
-          {.name = "velocity",
-           .type = KeyType::vector,
-           .unit = "length/time",
-           .doc = "Constant velocity of the plane; without it the plane rests. Friction acts on the velocity of the "
-                  "body relative to it, and obstacle_work is what it puts into the body."},
-          {.name = "rotation_rate",
-           .type = KeyType::number,
-           .unit = "angle/time",
-           .standard = "0",
-           .doc = "Rate in rad per time at which the plane turns about its normal through `point`, right-handed: a "
-                  "turntable. In three dimensions only."},
       }};
+  return with_types(std::move(section), "type", obstacle_registry());
 }
 
 Section contact_section() {

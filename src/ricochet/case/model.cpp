@@ -63,9 +63,10 @@ void check_placement(const Case& input, int dimension) {
 void check_dimensions(const Case& input, int dimension) {
   check_placement(input, dimension);
   for (const ObstacleSection& obstacle : input.obstacles) {
-    check_length(input, "obstacle." + obstacle.name + ".point", obstacle.point.size(), dimension);
-    check_length(input, "obstacle." + obstacle.name + ".normal", obstacle.normal.size(), dimension);
-    check_length(input, "obstacle." + obstacle.name + ".velocity", obstacle.velocity.size(), dimension);
+    for (const auto& [key, value] : obstacle.parameters.values()) {
+      if (const auto* const vector = std::get_if<std::vector<double>>(&value))
+        check_length(input, fmt::format("obstacle.{}.{}", obstacle.name, key), vector->size(), dimension);
+    }
   }
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     for (const int component : input.supports[i].components) {
@@ -138,8 +139,8 @@ void assign_materials(const Case& input, Model& model) {
       }
       assigned = static_cast<int>(i);
     }
-    model.body.materials.push_back(
-        {section.group, section.density, section.lambda, section.mu, section.damping.mass, section.damping.stiffness});
+    model.body.materials.push_back({section.group, section.density, make_material_law(section.law, section.parameters),
+                                    section.damping.mass, section.damping.stiffness});
     const double poisson = model.body.materials.back().poisson();
     const bool locks = input.mesh.degree == 1 && !(mesh.dimension == 2 && model.body.plane == PlaneState::stress);
     // Got back from λ and μ, 0.45 itself is a little more or less.
@@ -233,7 +234,16 @@ bool is_curved(const Mesh& mesh) {
 }  // namespace
 
 std::unique_ptr<Scheme> make_scheme(const TimeSection& time) {
-  return make_scheme(SchemeParameters{time.scheme, time.step, time.beta, time.gamma});
+  return make_scheme(time.scheme, time.step, time.parameters);
+}
+
+std::string scheme_text(const TimeSection& time) {
+  std::string numbers;
+  for (const auto& [name, value] : time.parameters.values()) {
+    const auto* const number = std::get_if<double>(&value);
+    if (number != nullptr) numbers += fmt::format("{}{} {:g}", numbers.empty() ? "" : ", ", name, *number);
+  }
+  return numbers.empty() ? time.scheme : fmt::format("{} ({})", time.scheme, numbers);
 }
 
 std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {

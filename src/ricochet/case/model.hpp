@@ -36,6 +36,8 @@ struct Model {
 
 /// The scheme that [time] asks for.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const TimeSection& time);
+/// The scheme with its parameters: "newmark (beta 0.25, gamma 0.5)".
+[[nodiscard]] std::string scheme_text(const TimeSection& time);
 
 /// The mesh as the case asks for it.
 [[nodiscard]] MeshFile mesh_file(const Case& input);

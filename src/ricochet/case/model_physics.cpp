@@ -20,10 +20,6 @@ namespace ricochet {
 
 namespace {
 
-Vector to_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
-}
-
 /// Facets may belong to one contact only: to be pressed by the same obstacle twice has no meaning.
 void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
   for (std::size_t i = 1; i < pairs.size(); ++i) {
@@ -49,15 +45,12 @@ void warn_of_bound_without_area(const ContactSection& section, const Model& mode
       section.group));
 }
 
-/// A stuck node that has inertia keeps ±V from step to step under the trapezoidal rule, and creeps.
-void warn_of_creep(const Case& input, const SemidiscreteProblem& problem) {
-  const TimeSection& time = input.time;
-  const bool trapezoidal = time.scheme == "newmark" && time.beta == 0.25 && time.gamma == 0.5;
-  if (!trapezoidal || problem.has_singular_mass() || !problem.contact.has_friction()) return;
+void warn_of_creep(const Case& input, const Scheme& scheme, const SemidiscreteProblem& problem) {
+  if (!scheme.stuck_nodes_alternate() || problem.has_singular_mass() || !problem.contact.has_friction()) return;
   log::warning(fmt::format(
-      "newmark with beta = 1/4, gamma = 1/2, friction and mass \"{}\": nodes that stick keep their velocity with "
-      "alternating sign, their forces rattle and slips come out wrong; use mass \"equivalent\"",
-      input.mass.type));
+      "{}, friction and mass \"{}\": nodes that stick keep their velocity with alternating sign, their forces rattle "
+      "and slips come out wrong; use mass \"equivalent\"",
+      scheme_text(input.time), input.mass.type));
 }
 
 /// With degree 1 a body whose skin is nearly all of its nodes has little left to carry the inertia of the skin: the
@@ -97,12 +90,12 @@ std::optional<long> find_jump(const std::function<double(long)>& value, long ste
   return jump > sharp * fastest ? std::optional(jumps_at) : std::nullopt;
 }
 
-/// A prescribed displacement whose velocity jumps leaves a node with ±(half of the jump) from step to step where γ = ½
-/// damps nothing: under the trapezoidal rule, V₁ = 2ΔU/h − V₀ and A₁ = −4V₀/h − A₀ once the node is held, so that its
-/// acceleration and the force of the support grow with every step.
-void warn_of_jumping_supports(const Case& input) {
+/// A prescribed displacement whose velocity jumps leaves a node with ±(half of the jump) from step to step where a
+/// scheme damps nothing.
+void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
   const TimeSection& time = input.time;
-  if (time.scheme != "newmark" || time.gamma != 0.5) return;
+  const Scheme::JumpResponse response = scheme.jump_response();
+  if (response == Scheme::JumpResponse::fades) return;
   constexpr long most_instants = 2'000'000;
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     const SupportSection& section = input.supports[i];
@@ -112,11 +105,13 @@ void warn_of_jumping_supports(const Case& input) {
                   std::min(step_count(time), most_instants));
     if (!jump) continue;
     log::warning(
-        fmt::format("{}: the velocity of this support jumps at t = {:.6g}. newmark with gamma = 1/2 keeps such a jump "
-                    "from step to step with alternating sign{}; make the motion smooth, for example with "
-                    "0.5*(1-cos(pi*t/T)), and take ten steps or more for it, or do not use the forces of this support",
+        fmt::format("{}: the velocity of this support jumps at t = {:.6g}. {} keeps such a jump from step to step with "
+                    "alternating sign{}; make the motion smooth, for example with 0.5*(1-cos(pi*t/T)), and take ten "
+                    "steps or more for it, or do not use the forces of this support",
                     input.where(fmt::format("support.{}.value", i)).text(), static_cast<double>(*jump) * time.step,
-                    time.beta < 0.5 ? ", and the support's force grows with every step" : " in the support's force"));
+                    scheme_text(time),
+                    response == Scheme::JumpResponse::grows ? ", and the support's force grows with every step"
+                                                            : " in the support's force"));
   }
 }
 
@@ -144,10 +139,9 @@ void add_contacts(const Case& input, Model& model) {
   std::map<std::string, const Obstacle*> by_name;
   for (const ObstacleSection& section : input.obstacles) {
     try {
-      model.obstacles.push_back(make_obstacle({section.type, to_vector(section.point), to_vector(section.normal),
-                                               to_vector(section.velocity), section.rotation_rate}));
+      model.obstacles.push_back(make_obstacle(section.type, section.parameters));
     } catch (const Error& problem) {
-      refuse(input, fmt::format("obstacle.{}.rotation_rate", section.name), problem.what());
+      refuse(input, "obstacle." + section.name, problem.what());
     }
     by_name[section.name] = model.obstacles.back().get();
   }
@@ -191,7 +185,7 @@ void assemble_operators(const Case& input, Model& model) {
     log::info(fmt::format("the mass \"{}\" of {} contact nodes is built as \"{}\", which keeps the factor small",
                           input.mass.type, mass_input.contact_nodes.size(), model.mass_built));
   }
-  const std::unique_ptr<MassConstruction> construction = make_mass(model.mass_built);
+  const std::unique_ptr<MassConstruction> construction = make_mass(model.mass_built, input.mass.parameters);
   const auto build = [&](const SparseMatrix& from, const std::vector<double>& weight = {}) {
     const CellMasses cells(model.body, weight);
     mass_input.consistent = &from;
@@ -221,9 +215,10 @@ void assemble_operators(const Case& input, Model& model) {
     model.problem.damping = model.problem.has_damping() ? SparseMatrix(model.problem.damping + part) : part;
   }
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
-  warn_of_creep(input, model.problem);
+  const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
+  warn_of_creep(input, *scheme, model.problem);
   warn_of_thin_inside(model, mass_input.contact_nodes.size());
-  warn_of_jumping_supports(input);
+  warn_of_jumping_supports(input, *scheme);
 }
 
 namespace {

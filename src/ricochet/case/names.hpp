@@ -5,6 +5,7 @@
 
 #include "ricochet/contact/multiplier_space.hpp"
 #include "ricochet/contact/obstacle.hpp"
+#include "ricochet/fem/material_law.hpp"
 #include "ricochet/io/fields/field_source.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/scheme/scheme.hpp"

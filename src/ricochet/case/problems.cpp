@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 
 namespace ricochet {
 
@@ -25,6 +26,19 @@ void Problems::raise() const {
     text += problem.location.text() + ": " + problem.message;
   }
   throw Error(ErrorKind::invalid_input, text);
+}
+
+void Problems::add_warning(const SourceLocation& location, const std::string& message) {
+  warnings_.push_back(location.text() + ": " + message);
+}
+
+void Problems::add_info(const SourceLocation& location, const std::string& message) {
+  infos_.push_back(location.text() + ": " + message);
+}
+
+void Problems::tell_remarks() const {
+  for (const std::string& message : warnings_) log::warning(message);
+  for (const std::string& message : infos_) log::info(message);
 }
 
 }  // namespace ricochet

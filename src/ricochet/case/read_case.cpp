@@ -39,6 +39,7 @@ std::string read_text(const std::string& path) {
 
 // Locations and texts of everything below a node. Vectors and lists of names are one value, lists of tables are not.
 void list_values(const TomlNode& node, const std::string& path, Case& result) {
+  if (node.is_ignored) return;
   if (!path.empty() && !node.is_default) result.locations[path] = node.location;
   if (!node.is_table() && !node.is_list_of_tables()) {
     result.values[path] = value_text(node);
@@ -67,27 +68,29 @@ bool mentions(const TomlNode& node, const std::string& name) {
 }
 
 /// A misspelled parameter of --set would be a run with the old value.
-void warn_of_unused_parameters(const TomlNode& node, Remarks& remarks) {
+void warn_of_unused_parameters(const TomlNode& node, Problems& problems) {
   for (const TomlNode& child : node.children) {
     if (child.key != "parameters" || !child.is_table()) {
-      warn_of_unused_parameters(child, remarks);
+      warn_of_unused_parameters(child, problems);
       continue;
     }
     for (const TomlNode& parameter : child.children) {
       if (mentions(node, parameter.key)) continue;
-      remarks.warnings.push_back(fmt::format("{}: no formula of this section uses the parameter \"{}\"",
-                                             parameter.key_location.text(), parameter.key));
+      problems.add_warning(parameter.key_location,
+                           fmt::format("no formula of this section uses the parameter \"{}\"", parameter.key));
     }
   }
 }
 
 // `when` compares with what is in effect, wherever it comes from.
-void list_effective_values(const Remarks& remarks, Case& result) {
-  for (const std::string& path : remarks.ignored) result.values.erase(path);
-  if (result.time.scheme != "newmark") return;
-  result.values["time.beta"] = fmt::format("{}", result.time.beta);
-  result.values["time.gamma"] = fmt::format("{}", result.time.gamma);
-  if (result.time.preset.empty()) result.values.erase("time.preset");
+void list_effective_values(const std::string& path, const Section& section, const Parameters& parameters,
+                           Case& result) {
+  for (const TypeKeys& type : section.types) {
+    for (const Key& key : type.keys) {
+      if (!parameters.has(key.name)) result.values.erase(path + "." + key.name);
+    }
+  }
+  for (const auto& [name, value] : parameters.values()) result.values[path + "." + name] = as_text(value);
 }
 
 }  // namespace
@@ -101,16 +104,14 @@ Case read_case_text(const std::string& text, const std::string& path, const std:
   result.path = path;
   TomlNode root = parse_toml(text, path);
   Problems problems;
-  Remarks remarks;
   result.overridden = apply_overrides(root, overrides, problems);
   check_tree(root, problems);
-  read_sections(root, result, problems, remarks);
+  read_sections(root, result, problems);
   problems.raise();
-  warn_of_unused_parameters(root, remarks);
+  warn_of_unused_parameters(root, problems);
   list_values(root, "", result);
-  list_effective_values(remarks, result);
-  for (const std::string& message : remarks.warnings) log::warning(message);
-  for (const std::string& message : remarks.infos) log::info(message);
+  list_effective_values("time", *find_section("time"), result.time.parameters, result);
+  problems.tell_remarks();
   return result;
 }
 

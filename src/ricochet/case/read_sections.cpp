@@ -68,30 +68,12 @@ MeshSection read_mesh(const SectionReader& reader, const std::string& case_path)
   return mesh;
 }
 
-// Lamé's parameters from whichever pair is given. The element code condenses them for plane stress.
-void read_elasticity(const SectionReader& reader, MaterialSection& material) {
-  material.lambda = reader.number("lambda");
-  material.mu = reader.number("mu");
-  if (reader.is_usable("lambda") && reader.is_usable("mu") && !(3.0 * material.lambda + 2.0 * material.mu > 0.0)) {
-    reader.add_problem("lambda",
-                       fmt::format("3 lambda + 2 mu must be positive (the bulk modulus is a third of it); it is {}",
-                                   3.0 * material.lambda + 2.0 * material.mu));
-  }
-  if (!reader.is_usable("young") || !reader.is_usable("poisson")) return;
-  const double young = reader.number("young"), poisson = reader.number("poisson");
-  material.lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-  material.mu = young / (2.0 * (1.0 + poisson));
-  if (!std::isfinite(material.lambda) || !std::isfinite(material.mu)) {
-    reader.add_problem("poisson",
-                       fmt::format("young = {} and poisson = {} give infinite lambda or mu", young, poisson));
-  }
-}
-
 MaterialSection read_material(const SectionReader& reader, Case& result) {
   MaterialSection material;
   material.group = reader.groups("group", result.group_lists);
   material.density = reader.number("density");
-  read_elasticity(reader, material);
+  material.law = reader.text("law");
+  material.parameters = reader.type_parameters(*find_section("material"));
   const SectionReader damping = reader.table("damping");
   material.damping.mass = damping.number("mass");
   material.damping.stiffness = damping.number("stiffness");
@@ -102,14 +84,7 @@ ObstacleSection read_obstacle(const SectionReader& reader) {
   ObstacleSection obstacle;
   obstacle.name = reader.name();
   obstacle.type = reader.text("type");
-  obstacle.point = reader.vector("point");
-  obstacle.normal = reader.vector("normal");
-  obstacle.velocity = reader.vector("velocity");
-  obstacle.rotation_rate = reader.number("rotation_rate");
-  const bool is_zero = std::all_of(obstacle.normal.begin(), obstacle.normal.end(), [](double n) { return n == 0.0; });
-  if (reader.is_usable("normal") && is_zero) {
-    reader.add_problem("normal", "\"normal\" must not be zero: it points out of the obstacle");
-  }
+  obstacle.parameters = reader.type_parameters(*find_section("obstacle"));
   return obstacle;
 }
 
@@ -151,6 +126,25 @@ void check_distinct(const std::vector<SectionReader>& readers, const std::string
       break;
     }
   }
+}
+
+TimeSection read_time(const SectionReader& reader) {
+  constexpr double most_steps = 1e9;
+  TimeSection time;
+  time.scheme = reader.text("scheme");
+  time.parameters = reader.type_parameters(*find_section("time"));
+  time.step = reader.number("step");
+  time.end = reader.number("end");
+  if (!reader.is_usable("step") || !reader.is_usable("end")) return time;
+  if (time.end < time.step) {
+    reader.add_problem("end",
+                       fmt::format("\"end\" is {}, before the end of the first step of {}", time.end, time.step));
+  } else if (time.end / time.step > most_steps) {
+    reader.add_problem(
+        "step", fmt::format("a step of {} up to the end {} makes {:.3g} steps; at most {:.0e} are possible", time.step,
+                            time.end, time.end / time.step, most_steps));
+  }
+  return time;
 }
 
 SupportSection read_support(const SectionReader& reader, Case& result) {
@@ -255,7 +249,7 @@ void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections,
 
 }  // namespace
 
-void read_sections(const TomlNode& root, Case& result, Problems& problems, Remarks& remarks) {
+void read_sections(const TomlNode& root, Case& result, Problems& problems) {
   const Sections sections(root, problems);
   result.title = SectionReader(case_sections().front().keys, root, problems).text("title");
   result.mesh = read_mesh(sections.one("mesh"), result.path);
@@ -270,8 +264,9 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems, Remar
   const SectionReader load = sections.one("load");
   result.load = {load.vector("gravity"), load.formulas("body_force")};
   result.initial = read_initial(sections.one("initial"));
-  result.mass.type = sections.one("mass").text("type");
-  result.time = read_time(sections.one("time"), remarks);
+  const SectionReader mass = sections.one("mass");
+  result.mass = {mass.text("type"), mass.type_parameters(*find_section("mass"))};
+  result.time = read_time(sections.one("time"));
   for (const SectionReader& reader : sections.all("probe")) result.probes.push_back(read_probe(reader, result));
   check_distinct(sections.all("probe"), "probe", "name");
   const SectionReader solver = sections.one("solver");

@@ -11,7 +11,8 @@ namespace {
 
 constexpr const char* introduction = R"page(# The case file
 
-<!-- Generated from the table of keys in src/ricochet/case/keys_table*.cpp. Change it there; a test compares. -->
+<!-- Generated from the table of keys in src/ricochet/case/keys_table*.cpp, and from those that schemes, obstacles and laws
+declare where they are defined. Change it there; a test compares. -->
 
 A case file is a [TOML](https://toml.io) document that says everything about a run. `ricochet validate CASE.toml` checks it,
 `ricochet schema` prints its JSON Schema, for editors that complete and check while one types.
@@ -92,9 +93,9 @@ when = { "time.scheme" = "newmark" }
 - **On the command line**, `--set key.path=value` replaces or adds a value before anything is checked:
   `--set time.step=1e-4`, `--set contact.0.friction=0` (entries of `[[…]]` are counted from 0),
   `--set obstacle.floor.normal=[0,1]`, `--set material.0.damping.mass=0.1`, `--set traction.0.parameters.p=50`. The value
-  is TOML, or else a text that needs no quotes: `--set time.scheme=midpoint`. The keys beta, gamma and preset of a file
-  are ignored when `--set` replaces the scheme by one that has none; and of preset and beta or gamma, what `--set` gives
-  counts.
+  is TOML, or else a text that needs no quotes: `--set time.scheme=midpoint`. Keys that belong to one type alone
+  (beta, gamma and preset of `newmark`) are ignored when `--set` replaces the type by one that has none of them; and of preset
+  and beta or gamma, what `--set` gives counts.
 
 )page";
 
@@ -156,15 +157,25 @@ std::string occurrence(const Section& section) {
   return "";
 }
 
-std::string alternatives_text(const Section& section) {
-  if (section.alternatives.empty()) return "";
+std::string alternatives_text(const KeySets& alternatives, const std::string& where) {
+  if (alternatives.empty()) return "";
   std::string text;
-  for (const auto& names : section.alternatives) {
+  for (const auto& names : alternatives) {
     std::string set;
     for (const std::string& name : names) set += (set.empty() ? "" : " and ") + fmt::format("`{}`", name);
     text += (text.empty() ? "" : ", or ") + set;
   }
-  return fmt::format("\n\nGive {}.", text);
+  return fmt::format("\n\nGive {}{}.", text, where);
+}
+
+std::string alternatives_text(const Section& section) {
+  std::string text = alternatives_text(section.alternatives, "");
+  for (const TypeKeys& type : section.types) {
+    const bool only_one = section.types.size() == 1;
+    text += alternatives_text(type.alternatives,
+                              only_one ? "" : fmt::format(" with the {} \"{}\"", section.type_key, type.name));
+  }
+  return text;
 }
 
 }  // namespace

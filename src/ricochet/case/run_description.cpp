@@ -16,8 +16,10 @@ std::vector<ContactDescription> describe_contacts(const Case& input) {
   for (const ContactSection& contact : input.contacts) {
     const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
                                        [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
+    const Parameters& of_obstacle = obstacle->parameters;
     result.push_back({contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound,
-                      obstacle->velocity, obstacle->rotation_rate});
+                      of_obstacle.has("velocity") ? of_obstacle.vector("velocity") : std::vector<double>(),
+                      of_obstacle.has("rotation_rate") ? of_obstacle.number("rotation_rate") : 0.0});
   }
   return result;
 }
@@ -73,9 +75,7 @@ ContactProvenance describe_provenance(const Case& input, const RunSummary& summa
     overrides += fmt::format(" {}{}", key, value != input.values.end() ? "=" + value->second : "");
   }
   result.origin = fmt::format("Ricochet {}, case {}{}{}; scheme {}", summary.version, input.path,
-                              overrides.empty() ? "" : " with --set", overrides, summary.scheme);
-  if (summary.scheme == "newmark")
-    result.origin += fmt::format(" (beta {:g}, gamma {:g})", input.time.beta, input.time.gamma);
+                              overrides.empty() ? "" : " with --set", overrides, scheme_text(input.time));
   result.origin += fmt::format(", step size {:g}, mass {}, multipliers", summary.step, summary.mass_text());
   std::vector<std::string> spaces;
   for (const ContactSection& contact : input.contacts) {

@@ -25,7 +25,8 @@ bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, co
   return energy <= 1e-14 * terms;
 }
 
-void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
+void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
+                  const State& state) {
   const double scale = summary.energy_scale();
   const bool contact_creates = summary.digest("contact_work").maximum > 0.01 * scale;
   const bool friction_creates = summary.digest("friction_work").maximum > 0.01 * scale;
@@ -34,7 +35,7 @@ void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem,
   const bool rotates = rotation > large_rotation && !summary.small_strain_holds_in_impacts();
   if (!(contact_creates || friction_creates || rotates) || is_rounding_of_energy(scale, problem, state)) return;
   if (contact_creates) {
-    const bool best = (summary.scheme == "newmark" || summary.scheme == "semi-explicit") && problem.has_singular_mass();
+    const bool best = scheme.suits_singular_mass() && problem.has_singular_mass();
     log::warning(
         fmt::format("contact forces have created energy: contact_work reaches {:.2g} of the largest energy; {}",
                     summary.digest("contact_work").maximum / scale,
@@ -63,7 +64,7 @@ void judge_strain(const RunSummary& summary, const Body& body) {
     return candidate.name == summary.peak_stress->material;
   });
   if (material == body.materials.end()) return;
-  const double strain = summary.peak_stress->peak.von_mises / (3.0 * material->mu);
+  const double strain = summary.peak_stress->peak.von_mises / (3.0 * material->mu());
   if (!(strain > strain_limit)) return;
   log::warning(
       fmt::format("at t = {:.6g} the largest von Mises stress corresponds to an equivalent strain of {:.2g} %: small "

@@ -9,7 +9,8 @@
 namespace ricochet {
 
 /// Warns of what the account of energy says that a user should hear.
-void judge_energy(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state);
+void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
+                  const State& state);
 
 /// Warns where the largest von Mises stress goes with an equivalent strain √(2/3 e:e) = σ/(3μ), e the deviatoric
 /// strain, that is not small.

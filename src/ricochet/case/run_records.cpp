@@ -134,7 +134,7 @@ void Run::finish() {
   }
   describe_progress(summary_);
   if (summary_.status == "done") {
-    judge_energy(summary_, model_->problem, simulation_->state());
+    judge_energy(summary_, *scheme_, model_->problem, simulation_->state());
     judge_strain(summary_, model_->body);
     summary_.warnings = log::warnings();
   }

@@ -105,7 +105,7 @@ Json keys_schema(const std::vector<Key>& keys) {
   Json required = Json::array();
   for (const Key& key : keys) {
     schema["properties"][key.name] = key_schema(key);
-    if (key.required) required.push_back(key.name);
+    if (key.required && key.only_for.empty()) required.push_back(key.name);
   }
   if (!required.empty()) schema["required"] = required;
   schema["additionalProperties"] = false;
@@ -113,12 +113,12 @@ Json keys_schema(const std::vector<Key>& keys) {
 }
 
 // Exactly one set of keys, whole: each set comes with the refusal of every key of the others.
-void add_alternatives(const Section& section, Json& schema) {
-  if (section.alternatives.empty()) return;
+void add_alternatives(const KeySets& alternatives, Json& schema) {
+  if (alternatives.empty()) return;
   Json options = Json::array();
-  for (const auto& chosen : section.alternatives) {
+  for (const auto& chosen : alternatives) {
     Json refused = Json::array();
-    for (const auto& other : section.alternatives) {
+    for (const auto& other : alternatives) {
       if (&other == &chosen) continue;
       for (const std::string& name : other) refused.push_back({{"required", Json::array({name})}});
     }
@@ -127,9 +127,38 @@ void add_alternatives(const Section& section, Json& schema) {
   schema["oneOf"] = options;
 }
 
+// What holds for the entries of one type: which of its keys must be there, and which of the others' must not.
+Json type_conditions(const Section& section, const TypeKeys& type) {
+  Json then = Json::object(), required = Json::array(), foreign = Json::array();
+  for (const Key& key : section.keys) {
+    if (key.only_for.empty()) continue;
+    const Key* const own = find_key(type.keys, key.name);
+    if (own == nullptr) foreign.push_back({{"required", Json::array({key.name})}});
+    if (own != nullptr && own->required) required.push_back(key.name);
+  }
+  if (!required.empty()) then["required"] = required;
+  if (!foreign.empty()) then["not"] = {{"anyOf", foreign}};
+  add_alternatives(type.alternatives, then);
+  return then;
+}
+
+void add_types(const Section& section, Json& schema) {
+  if (section.types.size() == 1) return add_alternatives(section.types.front().alternatives, schema);
+  Json conditions = Json::array();
+  for (const TypeKeys& type : section.types) {
+    const Json then = type_conditions(section, type);
+    if (then.empty()) continue;
+    Json given{{"properties", {{section.type_key, {{"const", type.name}}}}}};
+    if (!find_key(section.keys, section.type_key)->standard) given["required"] = Json::array({section.type_key});
+    conditions.push_back({{"if", given}, {"then", then}});
+  }
+  if (!conditions.empty()) schema["allOf"] = conditions;
+}
+
 Json section_schema(const Section& section) {
   Json entry = keys_schema(section.keys);
-  add_alternatives(section, entry);
+  add_alternatives(section.alternatives, entry);
+  if (!section.types.empty()) add_types(section, entry);
   Json schema = entry;
   if (section.kind == SectionKind::list) schema = {{"type", "array"}, {"items", entry}};
   if (section.kind == SectionKind::list && section.required) schema["minItems"] = 1;

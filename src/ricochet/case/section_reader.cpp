@@ -24,7 +24,7 @@ bool SectionReader::is_usable(const std::string& name) const {
 
 const TomlNode* SectionReader::usable(const std::string& name) const {
   const TomlNode* node = table_.find(name);
-  return node != nullptr && !node->is_refused ? node : nullptr;
+  return node != nullptr && !node->is_refused && !node->is_ignored ? node : nullptr;
 }
 
 std::string SectionReader::text(const std::string& name) const {
@@ -157,6 +157,29 @@ SourceLocation SectionReader::where(const std::string& name) const {
 
 void SectionReader::add_problem(const std::string& name, const std::string& message) const {
   problems_.add(where(name), message);
+}
+
+void SectionReader::add_warning(const std::string& name, const std::string& message) const {
+  problems_.add_warning(where(name), message);
+}
+
+void SectionReader::add_info(const std::string& name, const std::string& message) const {
+  problems_.add_info(where(name), message);
+}
+
+Parameters SectionReader::type_parameters(const Section& section) const {
+  Parameters values;
+  const TypeKeys* const type = find_type(section, text(section.type_key));
+  if (type == nullptr) return values;
+  for (const Key& key : type->keys) {
+    if (!is_usable(key.name)) continue;
+    if (key.type == KeyType::number) values.set(key.name, number(key.name));
+    if (key.type == KeyType::integer) values.set(key.name, static_cast<double>(integer(key.name)));
+    if (key.type == KeyType::vector) values.set(key.name, vector(key.name));
+    if (key.type == KeyType::text || key.type == KeyType::choice) values.set(key.name, text(key.name));
+  }
+  if (type->check) type->check(*this, values);
+  return values;
 }
 
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 /// nothing, so that reading goes on and finds the remaining problems.
 namespace ricochet {
 
-class SectionReader {
+class SectionReader final : public ParameterCheck {
  public:
   /// `keys` and `table` must outlive the reader.
   SectionReader(const std::vector<Key>& keys, const TomlNode& table, Problems& problems)
@@ -24,10 +24,10 @@ class SectionReader {
   [[nodiscard]] const std::string& name() const { return table_.key; }
 
   /// Written by the user, in the file or by --set; perhaps refused.
-  [[nodiscard]] bool is_given(const std::string& name) const;
-  [[nodiscard]] bool is_override(const std::string& name) const;
+  [[nodiscard]] bool is_given(const std::string& name) const override;
+  [[nodiscard]] bool is_override(const std::string& name) const override;
   /// There is a value, default or not, and nothing is wrong with it.
-  [[nodiscard]] bool is_usable(const std::string& name) const;
+  [[nodiscard]] bool is_usable(const std::string& name) const override;
 
   [[nodiscard]] std::string text(const std::string& name) const;
   /// Any value as text, a list as "[a, b]".
@@ -52,7 +52,13 @@ class SectionReader {
 
   /// Of the value, or of the section when the key is absent.
   [[nodiscard]] SourceLocation where(const std::string& name) const;
-  void add_problem(const std::string& name, const std::string& message) const;
+  [[nodiscard]] std::string place(const std::string& name) const override { return where(name).text(); }
+  void add_problem(const std::string& name, const std::string& message) const override;
+  void add_warning(const std::string& name, const std::string& message) const override;
+  void add_info(const std::string& name, const std::string& message) const override;
+
+  /// The values of the type that a key names, checked as the type asks; none where the type was refused.
+  [[nodiscard]] Parameters type_parameters(const Section& section) const;
 
  private:
   [[nodiscard]] const TomlNode* usable(const std::string& name) const;

@@ -26,6 +26,7 @@ struct TomlNode {
   SourceLocation key_location;     ///< of the key; of the value where there is none
   bool is_default = false;         ///< not written by anyone: filled in from the table of keys
   bool is_refused = false;         ///< a problem with it was reported: nothing more is to be said about it
+  bool is_ignored = false;         ///< it has no effect in this run; the user was told
 
   [[nodiscard]] bool is_table() const { return kind == Kind::table; }
   [[nodiscard]] bool is_list_of_tables() const;

@@ -1,63 +1,42 @@
 #include "ricochet/contact/multiplier_space.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 
-#include "ricochet/base/error.hpp"
-#include "ricochet/base/text.hpp"
-
 namespace ricochet {
 
-namespace {
+// The spaces, each by the function of its own file that registers it. One line each, in the order of the documentation.
+// clang-format off
+#define RICOCHET_MULTIPLIER_SPACES(space) \
+  space(nodal_multipliers)                \
+  space(p0_multipliers)                   \
+  space(p1_multipliers)                   \
+  space(dual_multipliers)
+// clang-format on
 
-struct SpaceRegistration {
-  std::string name;
-  std::function<std::unique_ptr<MultiplierSpace>(const ContactPatch&)> make;
-  MultiplierAnchor anchor = MultiplierAnchor::node;
-  std::function<std::string(CellShape, int)> instability = {};  ///< as the function of that name; empty: stable
-};
+#define RICOCHET_DECLARE(registration) MultiplierSpaceRegistration registration();
+RICOCHET_MULTIPLIER_SPACES(RICOCHET_DECLARE)
+#undef RICOCHET_DECLARE
 
-const std::vector<SpaceRegistration>& space_registrations() {
-  static const std::vector<SpaceRegistration> all{
-      {"nodal", make_nodal_multipliers},
-      {"p0", make_p0_multipliers, MultiplierAnchor::facet, p0_instability},
-      {"p1", make_p1_multipliers},
-      {"dual", make_dual_multipliers},
-  };
-  return all;
-}
-
-const SpaceRegistration& registration(const std::string& name) {
-  for (const SpaceRegistration& entry : space_registrations()) {
-    if (entry.name == name) return entry;
-  }
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("unknown multipliers \"{}\"; known: {}", name, join_names(multiplier_space_names())));
-}
-
-}  // namespace
-
-std::vector<std::string> multiplier_space_names() {
-  std::vector<std::string> names;
-  for (const SpaceRegistration& entry : space_registrations()) names.push_back(entry.name);
-  return names;
+Registry<MultiplierSpaceType>& multiplier_space_registry() {
+#define RICOCHET_REGISTER(registration) registration(),
+  static Registry<MultiplierSpaceType> registry("multipliers", {RICOCHET_MULTIPLIER_SPACES(RICOCHET_REGISTER)});
+#undef RICOCHET_REGISTER
+  return registry;
 }
 
 std::unique_ptr<MultiplierSpace> make_multiplier_space(const std::string& name, const ContactPatch& patch) {
-  return registration(name).make(patch);
+  return multiplier_space_registry().find(name).type.make(patch);
 }
 
 MultiplierAnchor anchor_of(const std::string& multipliers) {
-  return registration(multipliers).anchor;
+  return multiplier_space_registry().find(multipliers).type.anchor;
 }
 
 std::string instability(const std::string& multipliers, CellShape facet, int displacement_degree) {
-  const SpaceRegistration& space = registration(multipliers);
+  const MultiplierSpaceType& space = multiplier_space_registry().find(multipliers).type;
   return space.instability ? space.instability(facet, displacement_degree) : std::string();
 }
 

@@ -7,10 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/base/registry.hpp"
 #include "ricochet/fem/facet_integration.hpp"
 
 /// @file Spaces of contact and friction multipliers on the contact boundary (Λ_N^h, Λ_T^h of the source's section 2).
-/// To add one: a file with a class, and one line in multiplier_space.cpp's registrations.
+/// To add one: a file with a class and its registration, and one line in multiplier_space.cpp.
 namespace ricochet {
 
 /// What a space is built on: the facets of all contact pairs that share an obstacle and name the same space.
@@ -67,15 +68,27 @@ class MultiplierSpace {
   const ContactPatch* patch_;
 };
 
+struct MultiplierSpaceType {
+  /// The patch must outlive the space.
+  std::function<std::unique_ptr<MultiplierSpace>(const ContactPatch&)> make;
+  MultiplierAnchor anchor = MultiplierAnchor::node;
+  std::function<std::string(CellShape, int)> instability = {};  ///< as the function of that name; empty: stable
+};
+using MultiplierSpaceRegistration = Registration<MultiplierSpaceType>;
+
+/// All spaces. A program of one's own may add to them.
+[[nodiscard]] Registry<MultiplierSpaceType>& multiplier_space_registry();
+[[nodiscard]] inline std::vector<std::string> multiplier_space_names() {
+  return multiplier_space_registry().names();
+}
 /// By the name used in a case file; throws Error(invalid_input) that lists the names. The patch must outlive the space.
 [[nodiscard]] std::unique_ptr<MultiplierSpace> make_multiplier_space(const std::string& name,
                                                                      const ContactPatch& patch);
-[[nodiscard]] std::vector<std::string> multiplier_space_names();
 /// What the multipliers of a space are anchored at; throws like make_multiplier_space.
 [[nodiscard]] MultiplierAnchor anchor_of(const std::string& multipliers);
 
 /// Whether a space is uniformly inf–sup stable with displacements of a degree on facets of a shape, as the numerical
-/// test of inf_sup.hpp finds it on families of meshes (docs/multipliers.md). Without stability, pressures that
+/// test inf_sup_test.cpp finds it on families of meshes (docs/multipliers.md). Without stability, pressures that
 /// oscillate from facet to facet are not controlled, and there may be too many conditions for the displacements there
 /// are.
 [[nodiscard]] bool is_stable(const std::string& multipliers, CellShape facet, int displacement_degree);
@@ -88,14 +101,5 @@ class MultiplierSpace {
 /// D_i and c_ij of a space from integrals of its functions over the patch; c_ij that vanish to rounding are exact
 /// zeros.
 [[nodiscard]] std::vector<Multiplier> integrate_multipliers(const MultiplierSpace& space, MultiplierAnchor anchor);
-
-/// Why p0 is not stable, where it is not: see instability.
-[[nodiscard]] std::string p0_instability(CellShape facet, int displacement_degree);
-
-/// One constructor per file.
-[[nodiscard]] std::unique_ptr<MultiplierSpace> make_nodal_multipliers(const ContactPatch& patch);
-[[nodiscard]] std::unique_ptr<MultiplierSpace> make_p0_multipliers(const ContactPatch& patch);
-[[nodiscard]] std::unique_ptr<MultiplierSpace> make_p1_multipliers(const ContactPatch& patch);
-[[nodiscard]] std::unique_ptr<MultiplierSpace> make_dual_multipliers(const ContactPatch& patch);
 
 }  // namespace ricochet

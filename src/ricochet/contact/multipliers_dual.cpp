@@ -122,8 +122,8 @@ class DualMultipliers final : public MultiplierSpace {
 
 }  // namespace
 
-std::unique_ptr<MultiplierSpace> make_dual_multipliers(const ContactPatch& patch) {
-  return std::make_unique<DualMultipliers>(patch);
+MultiplierSpaceRegistration dual_multipliers() {
+  return {"dual", {[](const ContactPatch& patch) { return std::make_unique<DualMultipliers>(patch); }}};
 }
 
 }  // namespace ricochet

@@ -137,8 +137,8 @@ class NodalMultipliers final : public MultiplierSpace {
 
 }  // namespace
 
-std::unique_ptr<MultiplierSpace> make_nodal_multipliers(const ContactPatch& patch) {
-  return std::make_unique<NodalMultipliers>(patch);
+MultiplierSpaceRegistration nodal_multipliers() {
+  return {"nodal", {[](const ContactPatch& patch) { return std::make_unique<NodalMultipliers>(patch); }}};
 }
 
 }  // namespace ricochet

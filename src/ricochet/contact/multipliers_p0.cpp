@@ -37,8 +37,7 @@ class P0Multipliers final : public MultiplierSpace {
   }
 };
 
-}  // namespace
-
+/// Why p0 is not stable, where it is not: see instability().
 std::string p0_instability(CellShape facet, int displacement_degree) {
   if (displacement_degree == 1) {
     return "multipliers \"p0\" are not inf-sup stable with displacements of degree 1: pressures that alternate from "
@@ -51,8 +50,12 @@ std::string p0_instability(CellShape facet, int displacement_degree) {
   return {};
 }
 
-std::unique_ptr<MultiplierSpace> make_p0_multipliers(const ContactPatch& patch) {
-  return std::make_unique<P0Multipliers>(patch);
+}  // namespace
+
+MultiplierSpaceRegistration p0_multipliers() {
+  return {"p0",
+          {[](const ContactPatch& patch) { return std::make_unique<P0Multipliers>(patch); }, MultiplierAnchor::facet,
+           p0_instability}};
 }
 
 }  // namespace ricochet

@@ -72,8 +72,8 @@ class P1Multipliers final : public MultiplierSpace {
 
 }  // namespace
 
-std::unique_ptr<MultiplierSpace> make_p1_multipliers(const ContactPatch& patch) {
-  return std::make_unique<P1Multipliers>(patch);
+MultiplierSpaceRegistration p1_multipliers() {
+  return {"p1", {[](const ContactPatch& patch) { return std::make_unique<P1Multipliers>(patch); }}};
 }
 
 }  // namespace ricochet

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "ricochet/base/registry.hpp"
 #include "ricochet/base/types.hpp"
 
-/// @file Rigid obstacles. To add one: a class here or in a file of its own, and one line in `make_obstacle`.
+/// @file Rigid obstacles. To add one: a file in obstacles/ with a class and its registration, and one line in
+/// obstacle.cpp.
 namespace ricochet {
 
 /// A point or a displacement of space, of two or three components: making one allocates nothing.
@@ -34,17 +37,26 @@ class Obstacle {
   [[nodiscard]] virtual SpaceVector surface_velocity(const SpaceVector& position, double time) const = 0;
 };
 
-/// What a case says of an obstacle.
-struct ObstacleParameters {
-  std::string type;
-  Vector point;
-  Vector normal;
-  Vector velocity = {};        ///< of `point`; empty: at rest
-  double rotation_rate = 0.0;  ///< about the normal through `point`, right-handed, in rad per time; 3D only
-};
+using ObstacleConstructor = std::function<std::unique_ptr<Obstacle>(const Parameters& parameters)>;
+using ObstacleRegistration = Registration<ObstacleConstructor>;
 
-/// Throws Error(invalid_input) for an unknown type, naming the known ones.
-[[nodiscard]] std::unique_ptr<Obstacle> make_obstacle(const ObstacleParameters& parameters);
-[[nodiscard]] std::vector<std::string> obstacle_types();
+/// All types of obstacles. A program of one's own may add to them.
+[[nodiscard]] Registry<ObstacleConstructor>& obstacle_registry();
+[[nodiscard]] inline std::vector<std::string> obstacle_types() {
+  return obstacle_registry().names();
+}
+/// By type, with the values of its keys; throws Error(invalid_input) that lists the types, or says which value is
+/// missing, too many or wrong.
+[[nodiscard]] std::unique_ptr<Obstacle> make_obstacle(const std::string& type, Parameters parameters);
+/// At rest; `normal` of any length but zero, out of the obstacle.
+[[nodiscard]] std::unique_ptr<Obstacle> make_plane(const Vector& point, const Vector& normal);
+
+// For the files that define obstacles: what several of them have.
+[[nodiscard]] Key obstacle_velocity_key();
+/// Zero where none is given.
+[[nodiscard]] Vector obstacle_velocity(const Parameters& parameters, Index dimension);
+[[nodiscard]] inline Vector as_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+}
 
 }  // namespace ricochet

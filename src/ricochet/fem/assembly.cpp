@@ -107,10 +107,9 @@ SparseMatrix stiffness(const Body& body, const NodeGraph& graph, const std::vect
     const auto material_number = static_cast<std::size_t>(body.cell_material[number]);
     const Material& material = body.materials[material_number];
     const double factor = weight.empty() ? 1.0 : weight[material_number];
-    const bool plane_stress = d == 2 && body.plane == PlaneState::stress;
-    const double lambda = factor * (plane_stress ? material.plane_stress_lambda() : material.lambda);
-    element_stiffness<d>(rules[b], body.mesh->nodes, body.mesh->cells[b].cell(cell), lambda, factor * material.mu,
-                         blocks);
+    const IsotropicElasticity law = *material.law->constant_tangent(is_plane_stress(body));
+    element_stiffness<d>(rules[b], body.mesh->nodes, body.mesh->cells[b].cell(cell),
+                         {factor * law.lambda, factor * law.mu}, blocks);
   });
 }
 

@@ -19,6 +19,13 @@ struct Body {
   std::vector<int> cell_material;  ///< per cell, numbered through all blocks: index into materials
 };
 
+[[nodiscard]] inline bool is_plane_stress(const Body& body) {
+  return body.mesh->dimension == 2 && body.plane == PlaneState::stress;
+}
+[[nodiscard]] inline const Material& material_of(const Body& body, Index cell) {
+  return body.materials[static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(cell)])];
+}
+
 /// ∫ w ρ N_i N_j, one scalar per pair of nodes: the mass matrix is M = m ⊗ I. `weight` is per material (empty: 1).
 /// Exactly symmetric.
 [[nodiscard]] SparseMatrix assemble_scalar_mass(const Body& body, const NodeGraph& graph,

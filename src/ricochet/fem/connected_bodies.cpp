@@ -89,8 +89,7 @@ std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies&
   for (std::size_t cell = 0; cell < bodies.of_cell.size(); ++cell) {
     const Material& material = body.materials[static_cast<std::size_t>(body.cell_material[cell])];
     double& slowest = speed[static_cast<std::size_t>(bodies.of_cell[cell])];
-    const bool plane_stress = nodes.rows() == 2 && body.plane == PlaneState::stress;
-    slowest = std::min(slowest, compression_wave_speed(material, plane_stress));
+    slowest = std::min(slowest, compression_wave_speed(material, is_plane_stress(body)));
   }
   for (std::size_t b = 0; b < count; ++b)
     result.push_back((highest[b] - lowest[b]).head(nodes.rows()).maxCoeff() / speed[b]);

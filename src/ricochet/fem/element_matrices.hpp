@@ -64,22 +64,13 @@ void element_mass(const MassIntegration& integration, const Points& coordinates,
   }
 }
 
-/// Adds measure · (λ g_i g_jᵀ + μ g_j g_iᵀ + μ g_i·g_j I) for all pairs of nodes with the gradients g, node by node.
+/// Adds the tangent for all pairs of nodes with the gradients g, node by node.
 template <int d, int fixed_count>
-void add_elastic_pairs(const double* gradients, int count, double lambda, double mu, double* result) {
+void add_elastic_pairs(const double* gradients, int count, const IsotropicElasticity& law, double* result) {
   const int nodes = fixed_count > 0 ? fixed_count : count;
   for (int j = 0; j < nodes; ++j) {
     for (int i = 0; i <= j; ++i, result += d * d) {
-      const double* gi = gradients + i * d;
-      const double* gj = gradients + j * d;
-      double product = 0.0;
-      for (int a = 0; a < d; ++a) product += gi[a] * gj[a];
-      for (int a = 0; a < d; ++a) {
-        for (int b = 0; b < d; ++b) {
-          result[a * d + b] += lambda * (gi[a] * gj[b]) + mu * (gi[b] * gj[a]);
-        }
-        result[a * d + a] += mu * product;
-      }
+      law.add_tangent<d>(gradients + i * d, gradients + j * d, result);
     }
   }
 }
@@ -87,7 +78,7 @@ void add_elastic_pairs(const double* gradients, int count, double lambda, double
 /// ∫ A ε(N_i e_a) : ε(N_j e_b) over a cell, d × d numbers per pair of nodes. `nodes` are the geometry's.
 template <int d>
 void element_stiffness(const BlockIntegration& integration, const Points& coordinates, const Index* nodes,
-                       double lambda, double mu, double* result) {
+                       const IsotropicElasticity& law, double* result) {
   constexpr int most_nodes = 27;
   const int count = static_cast<int>(integration.displacement.values.rows());
   std::array<double, most_nodes * d> gradients;
@@ -96,6 +87,7 @@ void element_stiffness(const BlockIntegration& integration, const Points& coordi
     const Eigen::Matrix<double, d, d> map = jacobian<d>(coordinates, nodes, integration.geometry.gradients[q]);
     const Eigen::Matrix<double, d, d> inverse = map.inverse();
     const double measure = integration.rule.weights[static_cast<Index>(q)] * map.determinant();
+    const IsotropicElasticity weighted{measure * law.lambda, measure * law.mu};
     const Matrix& reference = integration.displacement.gradients[q];
     for (int i = 0; i < count; ++i) {
       for (int a = 0; a < d; ++a) {
@@ -105,11 +97,11 @@ void element_stiffness(const BlockIntegration& integration, const Points& coordi
       }
     }
     if (count == d + 1) {
-      add_elastic_pairs<d, d + 1>(gradients.data(), count, measure * lambda, measure * mu, result);
+      add_elastic_pairs<d, d + 1>(gradients.data(), count, weighted, result);
     } else if (count == (d + 1) * (d + 2) / 2) {
-      add_elastic_pairs<d, (d + 1) * (d + 2) / 2>(gradients.data(), count, measure * lambda, measure * mu, result);
+      add_elastic_pairs<d, (d + 1) * (d + 2) / 2>(gradients.data(), count, weighted, result);
     } else {
-      add_elastic_pairs<d, 0>(gradients.data(), count, measure * lambda, measure * mu, result);
+      add_elastic_pairs<d, 0>(gradients.data(), count, weighted, result);
     }
   }
 }

@@ -45,38 +45,31 @@ void block_volumes(const Body& body, std::size_t block, Index first_cell, Vector
 
 namespace {
 
-/// λ tr ε I + 2μ ε and ½ σ : ε of one material.
+/// The law of one material in a body of this dimension.
 template <int d>
 class StressLaw {
  public:
   using Tensor = Eigen::Matrix<double, d, d>;
 
   StressLaw(const Body& body, Index cell)
-      : StressLaw(body, body.materials[static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(cell)])]) {}
+      : has_out_of_plane_stress_(d == 2 && !is_plane_stress(body)),
+        elasticity_(*material_of(body, cell).law->constant_tangent(is_plane_stress(body))) {}
 
-  [[nodiscard]] double energy_density(const Tensor& strain) const {
-    const double trace = strain.trace();
-    return 0.5 * lambda_ * trace * trace + mu_ * strain.squaredNorm();
-  }
+  [[nodiscard]] double energy_density(const Tensor& strain) const { return elasticity_.energy(strain); }
   void write_stress(const Tensor& strain, double* to) const {
-    const double pressure = lambda_ * strain.trace();
+    Tensor in_space;
+    elasticity_.stress(strain, in_space);
     Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();
-    stress.template topLeftCorner<d, d>() = 2.0 * mu_ * strain;
-    stress.template topLeftCorner<d, d>().diagonal().array() += pressure;
-    if (d == 2 && !plane_stress_) stress(2, 2) = pressure;
+    stress.template topLeftCorner<d, d>() = in_space;
+    if (has_out_of_plane_stress_) stress(2, 2) = elasticity_.out_of_plane_stress(strain);
     for (int i = 0; i < 3; ++i) {
       for (int j = i; j < 3; ++j) *to++ = stress(i, j);
     }
   }
 
  private:
-  StressLaw(const Body& body, const Material& material)
-      : plane_stress_(d == 2 && body.plane == PlaneState::stress),
-        lambda_(plane_stress_ ? material.plane_stress_lambda() : material.lambda),
-        mu_(material.mu) {}
-
-  bool plane_stress_;
-  double lambda_, mu_;
+  bool has_out_of_plane_stress_;
+  IsotropicElasticity elasticity_;
 };
 
 template <int d>

@@ -333,8 +333,8 @@ SparseMatrix CompactEquivalentMass::build(const MassInput& input) const {
 
 }  // namespace
 
-std::unique_ptr<MassConstruction> make_compact_equivalent_mass() {
-  return std::make_unique<CompactEquivalentMass>();
+MassRegistration compact_equivalent_mass() {
+  return {"equivalent-compact", [](const Parameters&) { return std::make_unique<CompactEquivalentMass>(); }};
 }
 
 }  // namespace ricochet

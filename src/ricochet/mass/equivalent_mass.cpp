@@ -321,8 +321,8 @@ class EquivalentMass final : public MassConstruction {
 
 }  // namespace
 
-std::unique_ptr<MassConstruction> make_equivalent_mass() {
-  return std::make_unique<EquivalentMass>();
+MassRegistration equivalent_mass() {
+  return {"equivalent", [](const Parameters&) { return std::make_unique<EquivalentMass>(); }};
 }
 
 }  // namespace ricochet

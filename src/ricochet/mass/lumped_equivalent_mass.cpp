@@ -287,8 +287,8 @@ class LumpedEquivalentMass final : public MassConstruction {
 
 }  // namespace
 
-std::unique_ptr<MassConstruction> make_lumped_equivalent_mass() {
-  return std::make_unique<LumpedEquivalentMass>();
+MassRegistration lumped_equivalent_mass() {
+  return {"equivalent-lumped", [](const Parameters&) { return std::make_unique<LumpedEquivalentMass>(); }};
 }
 
 }  // namespace ricochet

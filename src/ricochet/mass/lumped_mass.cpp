@@ -28,8 +28,8 @@ class LumpedMass final : public MassConstruction {
 
 }  // namespace
 
-std::unique_ptr<MassConstruction> make_lumped_mass() {
-  return std::make_unique<LumpedMass>();
+MassRegistration lumped_mass() {
+  return {"lumped", [](const Parameters&) { return std::make_unique<LumpedMass>(); }};
 }
 
 }  // namespace ricochet

@@ -1,34 +1,37 @@
 #include "ricochet/mass/mass.hpp"
 
-#include <fmt/format.h>
-
-#include <functional>
-
-#include "ricochet/base/error.hpp"
-#include "ricochet/base/text.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 
 namespace ricochet {
 
-namespace {
+// The masses, each by the function of its own file that registers it. One line each, in the order of the documentation.
+// clang-format off
+#define RICOCHET_MASSES(mass)   \
+  mass(consistent_mass)         \
+  mass(lumped_mass)             \
+  mass(equivalent_mass)         \
+  mass(compact_equivalent_mass) \
+  mass(nearest_equivalent_mass) \
+  mass(lumped_equivalent_mass)
+// clang-format on
 
-struct Registration {
-  std::string name;
-  std::function<std::unique_ptr<MassConstruction>()> make;
-};
+#define RICOCHET_DECLARE(registration) MassRegistration registration();
+RICOCHET_MASSES(RICOCHET_DECLARE)
+#undef RICOCHET_DECLARE
 
-const std::vector<Registration>& registrations() {
-  static const std::vector<Registration> all{
-      {"consistent", make_consistent_mass},
-      {"lumped", make_lumped_mass},
-      {"equivalent", make_equivalent_mass},
-      {"equivalent-compact", make_compact_equivalent_mass},
-      {"equivalent-nearest", make_nearest_equivalent_mass},
-      {"equivalent-lumped", make_lumped_equivalent_mass},
-  };
-  return all;
+Registry<MassConstructor>& mass_registry() {
+#define RICOCHET_REGISTER(registration) registration(),
+  static Registry<MassConstructor> registry("mass", {RICOCHET_MASSES(RICOCHET_REGISTER)});
+#undef RICOCHET_REGISTER
+  return registry;
 }
+
+std::unique_ptr<MassConstruction> make_mass(const std::string& name, Parameters parameters) {
+  return mass_registry().find(name, parameters).type(parameters);
+}
+
+namespace {
 
 class ConsistentMass final : public MassConstruction {
  public:
@@ -37,21 +40,8 @@ class ConsistentMass final : public MassConstruction {
 
 }  // namespace
 
-std::unique_ptr<MassConstruction> make_consistent_mass() {
-  return std::make_unique<ConsistentMass>();
-}
-
-std::vector<std::string> mass_names() {
-  std::vector<std::string> names;
-  for (const Registration& entry : registrations()) names.push_back(entry.name);
-  return names;
-}
-
-std::unique_ptr<MassConstruction> make_mass(const std::string& name) {
-  for (const Registration& entry : registrations()) {
-    if (entry.name == name) return entry.make();
-  }
-  throw Error(ErrorKind::invalid_input, fmt::format("unknown mass \"{}\"; known: {}", name, join_names(mass_names())));
+MassRegistration consistent_mass() {
+  return {"consistent", [](const Parameters&) { return std::make_unique<ConsistentMass>(); }};
 }
 
 /// On a ball of degree 2 with 9,054 contact nodes the factor is 4.7 times as large (docs/equivalent-mass.md).

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "ricochet/base/registry.hpp"
 #include "ricochet/base/types.hpp"
 
-/// @file Mass matrices. All act on one scalar per node (M = m ⊗ I). To add one: a file with a class, and one line in
-/// mass.cpp's registrations.
+/// @file Mass matrices. All act on one scalar per node (M = m ⊗ I). To add one: a file with a class and its
+/// registration, and one line in mass.cpp.
 namespace ricochet {
 
 class CellMasses;
@@ -37,21 +39,20 @@ class MassConstruction {
   [[nodiscard]] virtual bool removes_contact_inertia() const { return false; }
 };
 
-/// By the name used in a case file; throws Error(invalid_input) that lists the names.
-[[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name);
-[[nodiscard]] std::vector<std::string> mass_names();
+using MassConstructor = std::function<std::unique_ptr<MassConstruction>(const Parameters& parameters)>;
+using MassRegistration = Registration<MassConstructor>;
+
+/// All masses. A program of one's own may add to them.
+[[nodiscard]] Registry<MassConstructor>& mass_registry();
+[[nodiscard]] inline std::vector<std::string> mass_names() {
+  return mass_registry().names();
+}
+/// By the name used in a case file, with the values of its keys; throws Error(invalid_input) that lists the names.
+[[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name, Parameters parameters = {});
 /// The name of the mass that is built for the one asked for: "equivalent-compact" where "equivalent" would couple so
 /// many nodes in space that a factor of the stage's operator is several times as large. Contact nodes of all bodies
 /// count together, as the factor is one; else what is asked for.
 [[nodiscard]] std::string mass_to_build(const std::string& asked, const MassInput& input);
-
-/// One constructor per file.
-[[nodiscard]] std::unique_ptr<MassConstruction> make_consistent_mass();
-[[nodiscard]] std::unique_ptr<MassConstruction> make_lumped_mass();
-[[nodiscard]] std::unique_ptr<MassConstruction> make_equivalent_mass();
-[[nodiscard]] std::unique_ptr<MassConstruction> make_compact_equivalent_mass();
-[[nodiscard]] std::unique_ptr<MassConstruction> make_nearest_equivalent_mass();
-[[nodiscard]] std::unique_ptr<MassConstruction> make_lumped_equivalent_mass();
 
 /// A diagonal mass: row sums where they are all positive (degree 1: total mass and centre of gravity are kept), else
 /// the diagonal of the consistent mass, scaled to keep the total.

@@ -114,8 +114,8 @@ class NearestEquivalentMass final : public MassConstruction {
 
 }  // namespace
 
-std::unique_ptr<MassConstruction> make_nearest_equivalent_mass() {
-  return std::make_unique<NearestEquivalentMass>();
+MassRegistration nearest_equivalent_mass() {
+  return {"equivalent-nearest", [](const Parameters&) { return std::make_unique<NearestEquivalentMass>(); }};
 }
 
 }  // namespace ricochet

@@ -69,7 +69,7 @@ class KlrConserving final : public Scheme {
     ahead += solution.increment;
     state.velocity = increment / h;
     state.acceleration = solution.increment / (h * h);
-    equations_.take_forces(problem, solution, 0.5 / h, h, state);
+    equations_.take_forces(problem, solution, h, state.velocity, 1.0, state);
   }
 
   void energy_state(const State& state, Vector& displacement, Vector& velocity) const override {
@@ -85,8 +85,8 @@ class KlrConserving final : public Scheme {
 
 }  // namespace
 
-std::unique_ptr<Scheme> make_klr_conserving(const SchemeParameters& parameters) {
-  return std::make_unique<KlrConserving>(parameters);
+SchemeRegistration klr_conserving_scheme() {
+  return {"klr-conserving", [](double step, const Parameters&) { return std::make_unique<KlrConserving>(step); }};
 }
 
 }  // namespace ricochet

@@ -40,7 +40,7 @@ class Midpoint final : public Scheme {
     state.velocity += (4.0 / h) * solution.increment;           // 2 (U₁−U₀)/h − V₀
     state.acceleration = (4.0 / (h * h)) * solution.increment;  // (V₁−V₀)/h
     follow_without_inertia(problem, increment, h, state);
-    equations_.take_forces(problem, solution, 2.0 / h, h, state);
+    equations_.take_forces(problem, solution, h, increment, 1.0 / h, state);
   }
 
  private:
@@ -50,8 +50,8 @@ class Midpoint final : public Scheme {
 
 }  // namespace
 
-std::unique_ptr<Scheme> make_midpoint(const SchemeParameters& parameters) {
-  return std::make_unique<Midpoint>(parameters);
+SchemeRegistration midpoint_scheme() {
+  return {"midpoint", [](double step, const Parameters&) { return std::make_unique<Midpoint>(step); }};
 }
 
 }  // namespace ricochet

@@ -1,4 +1,5 @@
 #include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/newmark_keys.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -19,13 +20,21 @@ namespace {
 /// of the two velocities would make the operator unsymmetric.
 class Newmark final : public Scheme {
  public:
-  explicit Newmark(const SchemeParameters& parameters)
-      : Scheme(parameters), beta_(parameters.beta), gamma_(parameters.gamma), alpha_(1.0 / (beta_ * step() * step())) {}
+  Newmark(double step, double beta, double gamma)
+      : Scheme(step), beta_(beta), gamma_(gamma), alpha_(1.0 / (beta * step * step)) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return {{alpha_, 1.0, damping_factor(problem)}};
   }
   [[nodiscard]] WorkRule work_rule() const override { return {1.0 - gamma_, gamma_}; }
+  [[nodiscard]] bool suits_singular_mass() const override { return true; }
+  /// A stuck node keeps ±V under the trapezoidal rule, and creeps.
+  [[nodiscard]] bool stuck_nodes_alternate() const override { return beta_ == 0.25 && gamma_ == 0.5; }
+  /// γ = ½ damps nothing: V₁ = 2ΔU/h − V₀, and for β < ½ A₁ = −4V₀/h − A₀ once the node is held.
+  [[nodiscard]] JumpResponse jump_response() const override {
+    if (gamma_ != 0.5) return JumpResponse::fades;
+    return beta_ < 0.5 ? JumpResponse::grows : JumpResponse::alternates;
+  }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();
@@ -48,7 +57,8 @@ class Newmark final : public Scheme {
     state.velocity += h * ((1.0 - gamma_) * state.acceleration + gamma_ * acceleration_);
     state.acceleration = acceleration_;
     follow_without_inertia(problem, increment, h, state);
-    equations_.take_forces(problem, solution, damping_factor(problem), h, state);
+    if (problem.has_damping()) velocity_ += damping_factor(problem) * solution.increment;
+    equations_.take_forces(problem, solution, h, velocity_, 1.0, state);
   }
 
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
@@ -91,8 +101,12 @@ class Newmark final : public Scheme {
 
 }  // namespace
 
-std::unique_ptr<Scheme> make_newmark(const SchemeParameters& parameters) {
-  return std::make_unique<Newmark>(parameters);
+SchemeRegistration newmark_scheme() {
+  const auto make = [](double step, const Parameters& parameters) {
+    const auto [beta, gamma] = newmark_parameters(parameters);
+    return std::make_unique<Newmark>(step, beta, gamma);
+  };
+  return {"newmark", make, newmark_keys(), {}, check_newmark};
 }
 
 }  // namespace ricochet

@@ -1,26 +1,19 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "ricochet/base/registry.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/stage_solve.hpp"
 #include "ricochet/scheme/state.hpp"
 
-/// @file Time schemes. To add one: a file with a class, one line in registry.cpp, and its tests.
+/// @file Time schemes. To add one: a file with a class and its registration, one line in registry.cpp, and its tests.
 namespace ricochet {
-
-/// Parameters of schemes, from [time] of a case.
-struct SchemeParameters {
-  std::string name;
-  double step = 0.0;   ///< h
-  double beta = 0.25;  ///< newmark
-  double gamma = 0.5;  ///< newmark
-  /// semi-explicit: refuse a step above the critical one. Only tests of instability go without.
-  bool check_critical_step = true;
-};
 
 /// How a step's forces and displacement enter the balance of energy:
 /// work of a force F over a step = incrementᵀ (previous_weight F_previous + current_weight F_current).
@@ -31,7 +24,7 @@ struct WorkRule {
 
 class Scheme {
  public:
-  explicit Scheme(const SchemeParameters& parameters) : step_(parameters.step) {}
+  explicit Scheme(double step) : step_(step) {}
   virtual ~Scheme() = default;
   Scheme(const Scheme&) = delete;
   Scheme& operator=(const Scheme&) = delete;
@@ -46,6 +39,18 @@ class Scheme {
   [[nodiscard]] virtual WorkRule work_rule() const { return {}; }
   /// Steps below this one are stable; infinite without such a limit. Known after analyse().
   [[nodiscard]] virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }
+
+  // What others should know of it, so that nobody has to know it by name.
+  /// A limit on the step that it asks for with this problem, before analyse(); none where every step is stable or where
+  /// the problem is none that it takes.
+  [[nodiscard]] virtual std::optional<double> stability_limit(const SemidiscreteProblem&) const { return std::nullopt; }
+  /// With a mass without inertia on contact nodes its contact forces create hardly any energy.
+  [[nodiscard]] virtual bool suits_singular_mass() const { return false; }
+  /// Nodes with inertia that friction holds keep a velocity of alternating sign.
+  [[nodiscard]] virtual bool stuck_nodes_alternate() const { return false; }
+  /// What a jump in the velocity of a prescribed displacement leaves in the steps that follow.
+  enum class JumpResponse { fades, alternates, grows };
+  [[nodiscard]] virtual JumpResponse jump_response() const { return JumpResponse::fades; }
 
   /// Computes what stays the same in all steps, before start(). A scheme keeps nothing else from step to step: what a
   /// step leaves for the next one is in the state, so that a run can go on from a checkpoint.
@@ -69,8 +74,17 @@ class Scheme {
   double step_;
 };
 
-/// By name; throws Error(invalid_input) that lists the names.
-[[nodiscard]] std::unique_ptr<Scheme> make_scheme(const SchemeParameters& parameters);
-[[nodiscard]] std::vector<std::string> scheme_names();
+/// Makes a scheme of a step size h.
+using SchemeConstructor = std::function<std::unique_ptr<Scheme>(double step, const Parameters& parameters)>;
+using SchemeRegistration = Registration<SchemeConstructor>;
+
+/// All schemes. A program of one's own may add to them.
+[[nodiscard]] Registry<SchemeConstructor>& scheme_registry();
+[[nodiscard]] inline std::vector<std::string> scheme_names() {
+  return scheme_registry().names();
+}
+/// By name, with the values of its keys: make_scheme("newmark", 1e-4, {{"beta", 0.25}, {"gamma", 0.5}}). Throws
+/// Error(invalid_input) that lists the names, or says which parameter is missing or too many.
+[[nodiscard]] std::unique_ptr<Scheme> make_scheme(const std::string& name, double step, Parameters parameters = {});
 
 }  // namespace ricochet

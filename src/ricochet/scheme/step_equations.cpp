@@ -14,9 +14,7 @@ void StepEquations::balance(const SemidiscreteProblem& problem, double time, con
 void StepEquations::balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
                             Stage& stage) {
   balance(problem, time, base, stage);
-  if (!problem.has_damping()) return;
-  damping_velocity_ = velocity;
-  stage.right_hand_side.noalias() -= problem.damping * velocity;
+  if (problem.has_damping()) stage.right_hand_side.noalias() -= problem.damping * velocity;
 }
 
 void StepEquations::observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement) {
@@ -39,13 +37,11 @@ void StepEquations::require_friction_over_step(const SemidiscreteProblem& proble
   require_friction(problem, rate_, 1.0 / step, stage);
 }
 
-void StepEquations::take_forces(const SemidiscreteProblem& problem, const StageSolution& solution, double damping,
-                                double step, State& state) {
+void StepEquations::take_forces(const SemidiscreteProblem& problem, const StageSolution& solution, double step,
+                                const Vector& motion, double rate, State& state) const {
   take_contact(solution, step, state);
   if (problem.loads.varies()) problem.loads.varying(time_, state.forces.varying_load);
-  if (!problem.has_damping()) return;
-  damping_velocity_ += damping * solution.increment;
-  state.forces.damping_force.noalias() = problem.damping * damping_velocity_;
+  if (problem.has_damping()) state.forces.damping_force.noalias() = problem.damping * motion * rate;
 }
 
 void StepEquations::take_contact(const StageSolution& solution, double step, State& state) const {

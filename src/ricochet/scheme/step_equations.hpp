@@ -7,8 +7,8 @@
 namespace ricochet {
 
 /// The momentum equation and the contact conditions of a stage at an instant t of the step,
-///   M A + C V + K x = L(t) + Gᵀ r_N − B_Tᵀ r_T,   x = base + δ,   C V = C v + η C δ,
-/// where v is the velocity at δ = 0 and η the operator's coefficient of C; and the forces that its solution leaves in
+///   M A + C V + K x = L(t) + Gᵀ r_N − B_Tᵀ r_T,   x = base + δ,
+/// with the velocity v at δ = 0; and the forces that its solution leaves in
 /// the state. Keeps its storage from step to step.
 class StepEquations {
  public:
@@ -39,15 +39,15 @@ class StepEquations {
                                   double step, Stage& stage);
 
   /// Reactions, contact status and the motion of the obstacles over the step; the loads at the instant of balance(),
-  /// and the damping force there with the operator's coefficient η.
-  void take_forces(const SemidiscreteProblem& problem, const StageSolution& solution, double damping, double step,
-                   State& state);
+  /// and the damping force there, rate · C motion.
+  void take_forces(const SemidiscreteProblem& problem, const StageSolution& solution, double step, const Vector& motion,
+                   double rate, State& state) const;
   /// The reactions alone.
   void take_contact(const StageSolution& solution, double step, State& state) const;
 
  private:
   double time_ = 0.0;
-  Vector force_, damping_velocity_, middle_, rate_;
+  Vector force_, middle_, rate_;
   ObstacleMotion obstacle_velocity_;
 };
 

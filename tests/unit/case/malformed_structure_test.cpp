@@ -11,7 +11,8 @@ TEST(MalformedCase, Structure) {
       {5, "densty = 1.0", "5:1: unknown key \"densty\" in [[material]]; did you mean \"density\"?"},
       {5, "weight = 1.0",
        "3:1: [[material]] has no \"density\": a positive number (unit: density). Mass per volume.\n5:1: unknown key "
-       "\"weight\" in [[material]]; its keys are \"group\", \"density\", \"lambda\", \"mu\", \"young\", \"poisson\" "
+       "\"weight\" in [[material]]; its keys are \"group\", \"density\", \"law\", \"lambda\", \"mu\", \"young\", "
+       "\"poisson\" "
        "and \"damping\""},
       {0, "[tim]\nstep = 1", "12:2: unknown section \"tim\"; did you mean [time]?"},
       {0, "[rocket]\nstep = 1",

@@ -24,7 +24,7 @@ TEST(Overrides, ReplaceAndAddValues) {
   EXPECT_EQ(read.time.scheme, "klr-conserving");
   EXPECT_EQ(read.title, "two words");
   EXPECT_EQ(read.contacts.at(1).group, "c");
-  EXPECT_EQ(read.obstacles.at(0).normal, (std::vector<double>{1.0, 0.0}));
+  EXPECT_EQ(read.obstacles.at(0).parameters.vector("normal"), (std::vector<double>{1.0, 0.0}));
   EXPECT_EQ(read.materials.at(0).damping.mass, 0.5);
   EXPECT_EQ(read.materials.at(0).damping.stiffness, 0.0);
   EXPECT_EQ(read.tractions.at(0).value.at(1)(0, 0, 0, 2.0), 14.0);

@@ -2,6 +2,7 @@
 
 #include "case_text.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/fem/material_law.hpp"
 
 namespace ricochet::case_test {
 
@@ -93,16 +94,17 @@ TEST(ReadCase, ReadsEveryKey) {
   ASSERT_EQ(read.materials.size(), 2U);
   EXPECT_EQ(read.materials[0].group, "body");
   EXPECT_EQ(read.materials[0].density, 6000.0);
-  EXPECT_DOUBLE_EQ(read.materials[0].lambda, 1.0);  // the three-dimensional parameter, for plane stress too
-  EXPECT_DOUBLE_EQ(read.materials[0].mu, 1.0);
+  EXPECT_DOUBLE_EQ(make_material_law("linear", read.materials[0].parameters)->lambda(),
+                   1.0);  // the three-dimensional parameter, for plane stress too
+  EXPECT_DOUBLE_EQ(make_material_law("linear", read.materials[0].parameters)->mu(), 1.0);
   EXPECT_EQ(read.materials[0].damping.mass, 0.5);
   EXPECT_EQ(read.materials[0].damping.stiffness, 0.25);
-  EXPECT_EQ(read.materials[1].lambda, -0.5);
+  EXPECT_EQ(read.materials[1].parameters.number("lambda"), -0.5);
   EXPECT_EQ(read.mass.type, "equivalent-nearest");
   EXPECT_EQ(read.time.scheme, "newmark");
-  EXPECT_EQ(read.time.beta, 0.3);
-  EXPECT_EQ(read.time.gamma, 0.55);
-  EXPECT_EQ(read.time.preset, "");
+  EXPECT_EQ(read.time.parameters.number("beta"), 0.3);
+  EXPECT_EQ(read.time.parameters.number("gamma"), 0.55);
+  EXPECT_FALSE(read.time.parameters.has("preset"));
   EXPECT_EQ(read.time.step, 1e-4);
   EXPECT_EQ(read.time.end, 0.15);
   EXPECT_EQ(read.output.fields_every, 0);
@@ -115,8 +117,8 @@ TEST(ReadCase, ReadsBoundariesAndLoads) {
   EXPECT_EQ(read.obstacles[0].name, "wall");  // in the order of the file, not of the alphabet
   EXPECT_EQ(read.obstacles[1].name, "floor");
   EXPECT_EQ(read.obstacles[0].type, "plane");
-  EXPECT_EQ(read.obstacles[0].point, (std::vector<double>{1.0, 0.5}));
-  EXPECT_EQ(read.obstacles[0].normal, (std::vector<double>{-2.0, 0.0}));
+  EXPECT_EQ(read.obstacles[0].parameters.vector("point"), (std::vector<double>{1.0, 0.5}));
+  EXPECT_EQ(read.obstacles[0].parameters.vector("normal"), (std::vector<double>{-2.0, 0.0}));
   ASSERT_EQ(read.contacts.size(), 1U);
   EXPECT_EQ(read.contacts[0].group, "lower");
   EXPECT_EQ(read.contacts[0].obstacle, "floor");
@@ -189,6 +191,7 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"mesh.plane", "strain"},
                                                              {"material.0.group", "body"},
                                                              {"material.0.density", "1"},
+                                                             {"material.0.law", "linear"},
                                                              {"material.0.lambda", "1"},
                                                              {"material.0.mu", "1"},
                                                              {"material.0.damping.mass", "0"},
@@ -260,13 +263,13 @@ TEST(ReadCase, SaysWhenAFileCannotBeRead) {
 }
 
 TEST(ReadCase, AnEmptyFileLacksTheRequiredSections) {
-  EXPECT_EQ(problems_of(""),
-            "1:1: there is no section [mesh], which must have \"file\". The body and how it is discretized.\n"
-            "1:1: there is no section [[material]], which must have \"group\" and \"density\". Isotropic linear "
-            "elasticity of "
-            "one physical group of cells.\n"
-            "1:1: there is no section [time], which must have \"scheme\", \"step\" and \"end\". The time scheme and "
-            "its steps.");
+  EXPECT_EQ(
+      problems_of(""),
+      "1:1: there is no section [mesh], which must have \"file\". The body and how it is discretized.\n"
+      "1:1: there is no section [[material]], which must have \"group\" and \"density\". The material of one or more "
+      "groups of cells.\n"
+      "1:1: there is no section [time], which must have \"scheme\", \"step\" and \"end\". The time scheme and "
+      "its steps.");
 }
 
 }  // namespace ricochet::case_test

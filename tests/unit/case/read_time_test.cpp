@@ -20,14 +20,14 @@ const std::string parameter_file = with_scheme(newmark + "beta = 0.3\ngamma = 0.
 
 TEST(ReadTime, PresetsStandForBetaAndGamma) {
   const Case half = read_text(preset_file);
-  EXPECT_EQ(half.time.preset, "textbook-half");
-  EXPECT_EQ(half.time.beta, 0.5);
-  EXPECT_EQ(half.time.gamma, 0.5);
+  EXPECT_EQ(half.time.parameters.text("preset"), "textbook-half");
+  EXPECT_EQ(half.time.parameters.number("beta"), 0.5);
+  EXPECT_EQ(half.time.parameters.number("gamma"), 0.5);
   EXPECT_EQ(half.values.at("time.beta"), "0.5");  // in effect, so that `when` can ask for it
   EXPECT_EQ(half.values.at("time.preset"), "textbook-half");
   const Case trapezoidal = read_text(preset_file, {"time.preset=trapezoidal"});
-  EXPECT_EQ(trapezoidal.time.beta, 0.25);
-  EXPECT_EQ(trapezoidal.time.gamma, 0.5);
+  EXPECT_EQ(trapezoidal.time.parameters.number("beta"), 0.25);
+  EXPECT_EQ(trapezoidal.time.parameters.number("gamma"), 0.5);
 }
 
 TEST(ReadTime, NewmarkKeysOfTheFileAreIgnoredWhenTheSchemeIsReplaced) {
@@ -35,20 +35,20 @@ TEST(ReadTime, NewmarkKeysOfTheFileAreIgnoredWhenTheSchemeIsReplaced) {
   EXPECT_EQ(read.time.scheme, "midpoint");
   EXPECT_EQ(read.values.count("time.beta"), 0U);
   EXPECT_EQ(read.values.count("time.gamma"), 0U);
-  EXPECT_EQ(read_text(preset_file, {"time.scheme=klr-conserving"}).time.preset, "");
+  EXPECT_FALSE(read_text(preset_file, {"time.scheme=klr-conserving"}).time.parameters.has("preset"));
   EXPECT_EQ(problems_of(parameter_file, {"time.scheme=midpoint", "time.beta=0.25"}),
             "--set time.beta=0.25: \"beta\" is for the scheme \"newmark\" only; the scheme is \"midpoint\"");
 }
 
 TEST(ReadTime, OfPresetAndParametersWhatSetGivesCounts) {
   const Case preset = read_text(parameter_file, {"time.preset=trapezoidal"});
-  EXPECT_EQ(preset.time.preset, "trapezoidal");
-  EXPECT_EQ(preset.time.beta, 0.25);
-  EXPECT_EQ(preset.time.gamma, 0.5);
+  EXPECT_EQ(preset.time.parameters.text("preset"), "trapezoidal");
+  EXPECT_EQ(preset.time.parameters.number("beta"), 0.25);
+  EXPECT_EQ(preset.time.parameters.number("gamma"), 0.5);
   const Case beta = read_text(preset_file, {"time.beta=0.3"});
-  EXPECT_EQ(beta.time.preset, "");
-  EXPECT_EQ(beta.time.beta, 0.3);
-  EXPECT_EQ(beta.time.gamma, 0.5);
+  EXPECT_FALSE(beta.time.parameters.has("preset"));
+  EXPECT_EQ(beta.time.parameters.number("beta"), 0.3);
+  EXPECT_EQ(beta.time.parameters.number("gamma"), 0.5);
   EXPECT_EQ(beta.values.count("time.preset"), 0U);
   EXPECT_NE(problems_of(parameter_file, {"time.preset=trapezoidal", "time.beta=0.3"}), "");
 }
@@ -59,7 +59,8 @@ TEST(ReadTime, AFileForAnotherSchemeNeedsParametersForNewmark) {
             "--set time.scheme=newmark: the scheme \"newmark\" needs \"beta\" and \"gamma\", or a \"preset\": "
             "\"trapezoidal\" "
             "(beta = 0.25, gamma = 0.5) or \"textbook-half\" (beta = 0.5, gamma = 0.5); \"beta\" is missing");
-  EXPECT_EQ(read_text(midpoint, {"time.scheme=newmark", "time.preset=trapezoidal"}).time.beta, 0.25);
+  EXPECT_EQ(read_text(midpoint, {"time.scheme=newmark", "time.preset=trapezoidal"}).time.parameters.number("beta"),
+            0.25);
 }
 
 TEST(ReadTime, WarnsOfInstability) {

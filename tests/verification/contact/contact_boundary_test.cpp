@@ -25,7 +25,7 @@ namespace {
 const FreeComponent all_free = [](Index, int) { return true; };
 
 std::unique_ptr<Obstacle> plane(const Vector& normal) {
-  return make_obstacle({"plane", Vector::Constant(normal.size(), -0.5), normal, {}, 0.0});
+  return make_plane(Vector::Constant(normal.size(), -0.5), normal);
 }
 
 std::unique_ptr<MeshedBody> box(CellShape shape, int degree, double scale = 1.0) {
@@ -302,8 +302,8 @@ TEST(ContactBoundary, HasNoUnit) {
     const auto one = box(shape, 2);
     const auto other = box(shape, 2, scale);
     const Vector normal = Vector::LinSpaced(d, 0.2, 1.0);
-    const auto small = make_obstacle({"plane", Vector::Constant(d, -0.5), normal, {}, 0.0});
-    const auto large = make_obstacle({"plane", Vector::Constant(d, -0.5 * scale), normal, {}, 0.0});
+    const auto small = make_plane(Vector::Constant(d, -0.5), normal);
+    const auto large = make_plane(Vector::Constant(d, -0.5 * scale), normal);
     for (const std::string& multipliers : multiplier_space_names()) {
       SCOPED_TRACE(name(shape) + multipliers);
       const ContactBoundary a =

@@ -1,4 +1,4 @@
-#include "ricochet/contact/inf_sup.hpp"
+#include "support/inf_sup.hpp"
 
 #include <gtest/gtest.h>
 

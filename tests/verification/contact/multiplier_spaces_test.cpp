@@ -33,7 +33,7 @@ const FreeComponent all_free = [](Index, int) { return true; };
 std::unique_ptr<Obstacle> tilted_plane(int dimension) {
   const Vector point = Vector::Constant(dimension, -0.3);
   const Vector normal = Vector::LinSpaced(dimension, 0.2, 1.0);
-  return make_obstacle({"plane", point, normal, {}, 0.0});
+  return make_plane(point, normal);
 }
 
 /// A function of position without symmetries.

@@ -58,7 +58,7 @@ class PressedBlock {
     test_ = make_meshed_body(make_checked_box_mesh({kind.shape, counts, kind.geometry_degree, 0.15, map}),
                              kind.displacement_degree);
     const Vector normal = rotation.col(d_ - 1);
-    obstacle_ = make_obstacle({"plane", shift - closing * normal, normal, {}, 0.0});
+    obstacle_ = make_plane(shift - closing * normal, normal);
     exact_ = interpolate(test_->space, [&](const Vector& x) -> Vector {
       return rotation * strain() * rotation.transpose() * (x - shift) - closing * normal;
     });
@@ -146,8 +146,8 @@ class PressedBlock {
     const Material material = test_material();
     Matrix stress = Matrix::Zero(d_, d_);
     stress(d_ - 1, d_ - 1) = -pressure;
-    const double share = material.lambda / (d_ * material.lambda + 2.0 * material.mu);
-    return (stress - share * stress.trace() * Matrix::Identity(d_, d_)) / (2.0 * material.mu);
+    const double share = material.lambda() / (d_ * material.lambda() + 2.0 * material.mu());
+    return (stress - share * stress.trace() * Matrix::Identity(d_, d_)) / (2.0 * material.mu());
   }
 
   void set_up_problem(const Matrix& rotation, const Vector& shift, const Vector& normal,

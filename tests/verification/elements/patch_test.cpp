@@ -48,11 +48,11 @@ Matrix stress_of(const Matrix& h, PlaneState plane) {
   const Matrix strain = 0.5 * (h + h.transpose());
   const Index d = h.rows();
   if (d == 2 && plane == PlaneState::stress) {
-    const double nu = material.lambda / (2.0 * (material.lambda + material.mu));
-    const double young = 2.0 * material.mu * (1.0 + nu);
+    const double nu = material.lambda() / (2.0 * (material.lambda() + material.mu()));
+    const double young = 2.0 * material.mu() * (1.0 + nu);
     return young / (1.0 - nu * nu) * ((1.0 - nu) * strain + nu * strain.trace() * Matrix::Identity(2, 2));
   }
-  return material.lambda * strain.trace() * Matrix::Identity(d, d) + 2.0 * material.mu * strain;
+  return material.lambda() * strain.trace() * Matrix::Identity(d, d) + 2.0 * material.mu() * strain;
 }
 
 class PatchTest : public testing::TestWithParam<PatchCase> {

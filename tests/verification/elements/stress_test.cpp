@@ -127,7 +127,7 @@ TEST(NodalRecovery, IsOfHigherOrder) {
   const Material material = test_material();
   const auto exact = [&](const Vector& x) {  // σ_xx of plane strain
     const double xx = 2.0 * x[0] - x[1], yy = std::sin(2.0 * x[0]);
-    return material.lambda * (xx + yy) + 2.0 * material.mu * xx;
+    return material.lambda() * (xx + yy) + 2.0 * material.mu() * xx;
   };
   std::vector<double> inside, nodal, own;
   for (const int count : {8, 16, 32}) {

@@ -177,7 +177,7 @@ TEST(DegenerateBodies, ALargePlateOfTwoLayersIsRefused) {
     const MassInput input{&consistent, &plate->space.nodes,
                           facet_nodes(plate->space, plate->mesh.group("boundary", 2).members), nullptr, &cells};
     try {
-      (void)make_compact_equivalent_mass()->build(input);
+      (void)make_mass("equivalent-compact")->build(input);
       ADD_FAILURE() << "no error";
     } catch (const Error& problem) {
       const std::string message = problem.what();

@@ -48,12 +48,12 @@ TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKi
   for (const Description& description : test_support::bodies_of_every_kind()) {
     const Assembled body(description);
     const Vector scale = body.consistent.diagonal();
-    const SparseMatrix mass = make_equivalent_mass()->build(body.input);
+    const SparseMatrix mass = make_mass("equivalent")->build(body.input);
     expect_equivalent(mass, body, description.name);
     const double top = top_eigenvalue(mass, scale);
     std::string nearest_text = "refused";
     try {
-      const SparseMatrix nearest = make_nearest_equivalent_mass()->build(body.input);
+      const SparseMatrix nearest = make_mass("equivalent-nearest")->build(body.input);
       expect_equivalent(nearest, body, description.name + " (nearest)");
       char text[16];
       std::snprintf(text, sizeof text, "%.2f", top_eigenvalue(nearest, scale));
@@ -63,7 +63,7 @@ TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKi
       EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
       EXPECT_NE(std::string(problem.what()).find("use mass type \"equivalent\""), std::string::npos) << problem.what();
     }
-    const SparseMatrix compact = make_compact_equivalent_mass()->build(body.input);
+    const SparseMatrix compact = make_mass("equivalent-compact")->build(body.input);
     expect_equivalent(compact, body, description.name + " (compact)");
     const auto share = [&](const SparseMatrix& of) {
       return static_cast<double>(of.nonZeros()) / static_cast<double>(body.consistent.nonZeros());
@@ -81,13 +81,13 @@ TEST(EquivalentMass, DegreeOneSpaceOnSecondOrderCells) {
   for (const char* name : {"disc, h 0.25, degree 2", "ball, h 0.4, degree 2"}) {
     Assembled body(test_support::body_of_kind(name));
     const DisplacementSpace linear = make_displacement_space(body.mesh, 1);
-    Body same{&body.mesh, &linear, PlaneState::strain, {{"body", 3.0, 1.0, 1.0, 0.0, 0.0}}, {}};
+    Body same{&body.mesh, &linear, PlaneState::strain, {{"body", 3.0, make_linear_elasticity(1.0, 1.0)}}, {}};
     same.cell_material.assign(static_cast<std::size_t>(body.mesh.cell_count()), 0);
     body.consistent = assemble_scalar_mass(same, node_graph(linear));
     body.space = linear;
     body.input = {&body.consistent, &body.space.nodes,
                   facet_nodes(linear, body.mesh.group("contact", body.mesh.dimension - 1).members)};
-    expect_equivalent(make_equivalent_mass()->build(body.input), body, name);
+    expect_equivalent(make_mass("equivalent")->build(body.input), body, name);
   }
 }
 
@@ -98,7 +98,7 @@ TEST(EquivalentMass, OfDampingThatVanishesAroundContactNodes) {
   for (Index i = 0; i < inside.size(); ++i) inside[i] = body.space.nodes.col(i).norm() < 0.3 ? 1.0 : 0.0;
   const SparseMatrix damping = inside.asDiagonal() * body.consistent * inside.asDiagonal();
   const SparseMatrix found =
-      make_equivalent_mass()->build({&damping, &body.space.nodes, body.input.contact_nodes, &body.consistent});
+      make_mass("equivalent")->build({&damping, &body.space.nodes, body.input.contact_nodes, &body.consistent});
   EXPECT_NEAR(found.sum(), damping.sum(), 1e-13 * damping.sum());
 }
 
@@ -108,7 +108,7 @@ TEST(EquivalentMass, SaysWhereTheInertiaHasNowhereToGo) {
                         "Rectangle(1)={0,0,0,1,1}; Physical Surface(\"body\")={1}; Transfinite Curve{:}=2; "
                         "Transfinite Surface{1}; Physical Curve(\"contact\")={1,2,3,4};"});
   try {
-    (void)make_equivalent_mass()->build(body.input);
+    (void)make_mass("equivalent")->build(body.input);
     FAIL() << "no error";
   } catch (const Error& problem) {
     EXPECT_NE(std::string(problem.what()).find("the inertia of the contact node at (0, 0) cannot be moved"),

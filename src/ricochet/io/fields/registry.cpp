@@ -10,13 +10,13 @@ std::unique_ptr<FieldSource> make_stress_fields(const FieldContext& context);
 
 namespace {
 
-struct Registration {
+struct FieldRegistration {
   std::vector<std::string> names;
   std::unique_ptr<FieldSource> (*make)(const FieldContext& context);
 };
 
-const std::vector<Registration>& registrations() {
-  static const std::vector<Registration> all{
+const std::vector<FieldRegistration>& registrations() {
+  static const std::vector<FieldRegistration> all{
       {{"displacement", "velocity", "acceleration"}, make_motion_fields},
       {{"contact_pressure", "friction_traction", "gap", "contact_status"}, make_contact_fields},
       {{"stress", "von_mises", "principal_stress", "strain_energy_density", "nodal_stress", "nodal_von_mises",
@@ -38,7 +38,7 @@ bool FieldContext::wants_any(const std::vector<std::string>& names) const {
 
 std::vector<std::unique_ptr<FieldSource>> make_field_sources(const FieldContext& context) {
   std::vector<std::unique_ptr<FieldSource>> result;
-  for (const Registration& entry : registrations()) {
+  for (const FieldRegistration& entry : registrations()) {
     if (context.wants_any(entry.names)) result.push_back(entry.make(context));
   }
   return result;
@@ -46,7 +46,8 @@ std::vector<std::unique_ptr<FieldSource>> make_field_sources(const FieldContext&
 
 std::vector<std::string> field_names() {
   std::vector<std::string> result;
-  for (const Registration& entry : registrations()) result.insert(result.end(), entry.names.begin(), entry.names.end());
+  for (const FieldRegistration& entry : registrations())
+    result.insert(result.end(), entry.names.begin(), entry.names.end());
   return result;
 }
 

@@ -27,8 +27,7 @@ constexpr const char* internal_force = "internal_force";
 /// One product with K in a step, and one with its contact rows.
 class SemiExplicit final : public Scheme {
  public:
-  explicit SemiExplicit(const SchemeParameters& parameters)
-      : Scheme(parameters), check_critical_step_(parameters.check_critical_step) {}
+  explicit SemiExplicit(double step, bool at_any_step = false) : Scheme(step), at_any_step_(at_any_step) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     if (problem.contact_dofs.empty()) return {};
@@ -36,11 +35,15 @@ class SemiExplicit final : public Scheme {
   }
   [[nodiscard]] WorkRule work_rule() const override { return {0.5, 0.5}; }
   [[nodiscard]] double critical_step() const override { return critical_step_; }
+  [[nodiscard]] bool suits_singular_mass() const override { return true; }
+  [[nodiscard]] std::optional<double> stability_limit(const SemidiscreteProblem& problem) const override {
+    return problem.mass.is_diagonal() ? std::optional(central_difference_limit(problem)) : std::nullopt;
+  }
 
   void analyse(const SemidiscreteProblem& problem) override {
     require_semi_explicit(problem);
     critical_step_ = central_difference_limit(problem);
-    if (check_critical_step_) ricochet::check_critical_step(step(), critical_step_);
+    if (!at_any_step_) check_critical_step(step(), critical_step_);
     motion_.analyse(problem, step());
     contact_.analyse(problem);
   }
@@ -87,7 +90,7 @@ class SemiExplicit final : public Scheme {
     return problem.loads.varies() ? load_ : problem.loads.constant();
   }
 
-  bool check_critical_step_;
+  bool at_any_step_;
   double critical_step_ = std::numeric_limits<double>::infinity();
   Vector varying_, load_;
   const Vector no_correction_;
@@ -99,8 +102,12 @@ class SemiExplicit final : public Scheme {
 
 }  // namespace
 
-std::unique_ptr<Scheme> make_semi_explicit(const SchemeParameters& parameters) {
-  return std::make_unique<SemiExplicit>(parameters);
+std::unique_ptr<Scheme> make_semi_explicit_at_any_step(double step) {
+  return std::make_unique<SemiExplicit>(step, true);
+}
+
+SchemeRegistration semi_explicit_scheme() {
+  return {"semi-explicit", [](double step, const Parameters&) { return std::make_unique<SemiExplicit>(step); }};
 }
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 
 /// @file The inf–sup constant of a displacement and a multiplier space on a mesh. A diagnostic: dense algebra of the
 /// size of the contact boundary.
-namespace ricochet {
+namespace ricochet::test_support {
 
 /// β_h = inf_λ sup_v ∫λv / (‖v‖ |λ|_h), with
 ///   ‖v‖² = ∫ |∇v|² + v²/L² over the body, L its extent, v the normal displacement, zero on held nodes,
@@ -32,4 +32,4 @@ namespace ricochet {
                                       const std::string& multipliers,
                                       const std::function<bool(Index node)>& is_held = {});
 
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -1,4 +1,4 @@
-#include "ricochet/contact/inf_sup.hpp"
+#include "support/inf_sup.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
@@ -10,7 +10,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/contact/multiplier_space.hpp"
 
-namespace ricochet {
+namespace ricochet::test_support {
 
 namespace {
 
@@ -20,8 +20,7 @@ SparseMatrix norm_matrix(const Body& body, const std::function<bool(Index)>& is_
   Body scalar = body;
   Material laplacian;
   laplacian.density = 1.0;
-  laplacian.lambda = -1.0;
-  laplacian.mu = 1.0;
+  laplacian.law = make_linear_elasticity(-1.0, 1.0);
   scalar.plane = PlaneState::strain;
   scalar.materials.assign(body.materials.size(), laplacian);
   const NodeGraph graph = node_graph(*body.space);
@@ -115,4 +114,4 @@ double inf_sup_constant(const Body& body, const std::vector<Index>& facets, cons
   return std::sqrt(std::max(eigen.eigenvalues()[0], 0.0));
 }
 
-}  // namespace ricochet
+}  // namespace ricochet::test_support

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// @file Keys of a case file: what a value may be. A type that has parameters (a scheme, an obstacle, a material law)
+/// declares its keys where it is defined; case/keys.hpp puts all keys into one table.
+namespace ricochet {
+
+enum class KeyType {
+  text,        ///< any text; not empty when required
+  choice,      ///< one of `choices`
+  number,      ///< finite, within `range`
+  integer,     ///< within `range`, or one of `choices`
+  vector,      ///< 2 or 3 numbers
+  formula,     ///< a number or an expression in `variables`
+  formulas,    ///< 2 or 3 of them, or one of `choices`
+  components,  ///< a list of distinct `choices`, which name the directions of space
+  names,       ///< a list of distinct `choices`
+  groups,      ///< the name of a group of the mesh, or a list of distinct ones: their union
+  parameters,  ///< a table of numbers, for the expressions beside it
+  conditions,  ///< a table of key paths and the values they must have
+  table,       ///< a sub-table with `keys`
+};
+
+/// Bounds of a number.
+struct Range {
+  std::optional<double> above = {};
+  std::optional<double> at_least = {};
+  std::optional<double> below = {};
+  std::optional<double> at_most = {};
+};
+inline const Range positive{.above = 0.0};
+inline const Range nonnegative{.at_least = 0.0};
+
+struct Key {
+  std::string name;
+  KeyType type = KeyType::text;
+  std::string unit = {};  ///< the kind of unit ("length", "stress"; "1": a pure number); empty where there is none
+  bool required = false;
+  std::optional<std::string> standard = {};  ///< the default, as text
+  std::vector<std::string> choices = {};
+  Range range = {};
+  std::string variables = {};  ///< of expressions: "t", "x, y and z" or "x, y, z and t"
+  std::vector<Key> keys = {};  ///< of a sub-table
+  bool decides = false;        ///< which other keys there are: where its value is refused, nothing else is looked at
+  std::string doc;             ///< one line of documentation
+  /// Filled in by the table: the types that have this key; empty: it belongs to the section whatever the type.
+  std::vector<std::string> only_for = {};
+};
+
+/// Sets of keys of which exactly one must be given, whole.
+using KeySets = std::vector<std::vector<std::string>>;
+
+}  // namespace ricochet

@@ -1,0 +1,73 @@
+#include "ricochet/base/parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+namespace {
+
+template <class Wanted>
+const Wanted& value_of(const std::map<std::string, Parameters::Value>& values, const std::string& name) {
+  const auto found = values.find(name);
+  if (found == values.end())
+    throw Error(ErrorKind::invalid_input, fmt::format("the parameter \"{}\" is missing", name));
+  const Wanted* const value = std::get_if<Wanted>(&found->second);
+  if (value == nullptr) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("the parameter \"{}\" has a value of another kind: {}", name, as_text(found->second)));
+  }
+  return *value;
+}
+
+Parameters::Value standard_value(const Key& key) {
+  const bool is_number = key.type == KeyType::number || key.type == KeyType::integer;
+  if (is_number) return std::strtod(key.standard->c_str(), nullptr);
+  return *key.standard;
+}
+
+}  // namespace
+
+double Parameters::number(const std::string& name) const {
+  return value_of<double>(values_, name);
+}
+
+const std::string& Parameters::text(const std::string& name) const {
+  return value_of<std::string>(values_, name);
+}
+
+const std::vector<double>& Parameters::vector(const std::string& name) const {
+  return value_of<std::vector<double>>(values_, name);
+}
+
+void Parameters::complete(const std::vector<Key>& keys, const std::string& owner) {
+  for (const auto& [name, value] : values_) {
+    if (std::any_of(keys.begin(), keys.end(), [&n = name](const Key& key) { return key.name == n; })) continue;
+    std::vector<std::string> names;
+    for (const Key& key : keys) names.push_back(key.name);
+    throw Error(ErrorKind::invalid_input, fmt::format("{} has no parameter \"{}\"; {}", owner, name,
+                                                      names.empty() ? "it has none" : "it has " + join_names(names)));
+  }
+  for (const Key& key : keys) {
+    if (has(key.name)) continue;
+    if (key.required)
+      throw Error(ErrorKind::invalid_input, fmt::format("{} needs the parameter \"{}\"", owner, key.name));
+    if (key.standard) set(key.name, standard_value(key));
+  }
+}
+
+std::string as_text(const Parameters::Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  std::string list;
+  for (const double component : std::get<std::vector<double>>(value))
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", component);
+  return "[" + list + "]";
+}
+
+}  // namespace ricochet

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "ricochet/base/keys.hpp"
+
+/// @file The values of a type's own keys, and how a type checks them while a case file is read.
+namespace ricochet {
+
+/// What a registered type is made from: values by the names of its keys.
+class Parameters {
+ public:
+  using Value = std::variant<double, std::string, std::vector<double>>;
+
+  Parameters() = default;
+  Parameters(std::initializer_list<std::pair<const std::string, Value>> values) : values_(values) {}
+
+  void set(const std::string& name, Value value) { values_[name] = std::move(value); }
+  void erase(const std::string& name) { values_.erase(name); }
+  [[nodiscard]] bool has(const std::string& name) const { return values_.contains(name); }
+  /// Throw Error(invalid_input) where the value is absent or of another kind.
+  [[nodiscard]] double number(const std::string& name) const;
+  [[nodiscard]] const std::string& text(const std::string& name) const;
+  [[nodiscard]] const std::vector<double>& vector(const std::string& name) const;
+  [[nodiscard]] const std::map<std::string, Value>& values() const { return values_; }
+
+  /// Adds the defaults of keys that have no value. Throws Error(invalid_input) that names `owner` where a required
+  /// value is missing, or a value belongs to none of the keys.
+  void complete(const std::vector<Key>& keys, const std::string& owner);
+
+ private:
+  std::map<std::string, Value> values_;
+};
+
+/// As in a case file: texts without quotes, numbers in their shortest exact form, lists as "[1, 2]".
+[[nodiscard]] std::string as_text(const Parameters::Value& value);
+
+/// Where the values of a section stand in a case file, for checks that concern several keys. Problems are collected and
+/// told together, each with file, line and column.
+class ParameterCheck {
+ public:
+  virtual ~ParameterCheck() = default;
+  /// Written by the user, in the file or by --set; perhaps refused.
+  [[nodiscard]] virtual bool is_given(const std::string& name) const = 0;
+  /// Written by the user on the command line.
+  [[nodiscard]] virtual bool is_override(const std::string& name) const = 0;
+  /// There is a value, default or not, and nothing is wrong with it.
+  [[nodiscard]] virtual bool is_usable(const std::string& name) const = 0;
+  /// "file:line:column" of the value, or of the section when the key is absent.
+  [[nodiscard]] virtual std::string place(const std::string& name) const = 0;
+  /// The case is refused.
+  virtual void add_problem(const std::string& name, const std::string& message) const = 0;
+  /// The case runs; the user should know.
+  virtual void add_warning(const std::string& name, const std::string& message) const = 0;
+  virtual void add_info(const std::string& name, const std::string& message) const = 0;
+};
+
+}  // namespace ricochet

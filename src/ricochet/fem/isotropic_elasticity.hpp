@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+/// @file Isotropic linear elasticity: W = ½λ (tr ε)² + μ ε : ε, σ = λ tr ε I + 2μ ε, ε the symmetric part of the
+/// displacement's gradient. These formulas are all there is of the law: assembly and stress output call them.
+namespace ricochet {
+
+/// λ and μ as a body of this dimension has them: plane stress condenses the stress-free direction, λ := 2λμ/(λ+2μ).
+struct IsotropicElasticity {
+  double lambda = 0.0;
+  double mu = 0.0;
+
+  template <class Tensor>
+  [[nodiscard]] double energy(const Eigen::MatrixBase<Tensor>& strain) const {
+    const double trace = strain.trace();
+    return 0.5 * lambda * trace * trace + mu * strain.squaredNorm();
+  }
+  /// The stress normal to the plane of a plane strain.
+  template <class Tensor>
+  [[nodiscard]] double out_of_plane_stress(const Eigen::MatrixBase<Tensor>& strain) const {
+    return lambda * strain.trace();
+  }
+  template <class Strain, class Stress>
+  void stress(const Eigen::MatrixBase<Strain>& strain, Eigen::MatrixBase<Stress>& result) const {
+    const double pressure = lambda * strain.trace();
+    result = 2.0 * mu * strain;
+    result.diagonal().array() += pressure;
+  }
+  /// Adds factor · (λ g_i g_jᵀ + μ g_j g_iᵀ + μ g_i·g_j I): the tangent between the displacements of two nodes whose
+  /// functions have the gradients g_i, g_j. d × d numbers, row by row.
+  template <int d>
+  void add_tangent(const double* gi, const double* gj, double* result) const {
+    double product = 0.0;
+    for (int a = 0; a < d; ++a) product += gi[a] * gj[a];
+    for (int a = 0; a < d; ++a) {
+      for (int b = 0; b < d; ++b) result[a * d + b] += lambda * (gi[a] * gj[b]) + mu * (gi[b] * gj[a]);
+      result[a * d + a] += mu * product;
+    }
+  }
+};
+
+}  // namespace ricochet

@@ -1,0 +1,26 @@
+#include "ricochet/fem/material_law.hpp"
+
+namespace ricochet {
+
+// The laws, each by the function of its own file that registers it. One line each, in the order of the documentation.
+// clang-format off
+#define RICOCHET_MATERIAL_LAWS(law) \
+  law(linear_elasticity_law)
+// clang-format on
+
+#define RICOCHET_DECLARE(registration) MaterialLawRegistration registration();
+RICOCHET_MATERIAL_LAWS(RICOCHET_DECLARE)
+#undef RICOCHET_DECLARE
+
+Registry<MaterialLawConstructor>& material_law_registry() {
+#define RICOCHET_REGISTER(registration) registration(),
+  static Registry<MaterialLawConstructor> registry("material law", {RICOCHET_MATERIAL_LAWS(RICOCHET_REGISTER)});
+#undef RICOCHET_REGISTER
+  return registry;
+}
+
+std::unique_ptr<MaterialLaw> make_material_law(const std::string& name, Parameters parameters) {
+  return material_law_registry().find(name, parameters).type(parameters);
+}
+
+}  // namespace ricochet

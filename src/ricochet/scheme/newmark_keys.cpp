@@ -1,0 +1,114 @@
+#include "ricochet/scheme/newmark_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Values of beta and gamma that go by a name.
+struct Preset {
+  std::string name;
+  double beta, gamma;
+};
+const std::array<Preset, 2> presets{{{"trapezoidal", 0.25, 0.5}, {"textbook-half", 0.5, 0.5}}};
+
+const Preset& find_preset(const std::string& name) {
+  return *std::find_if(presets.begin(), presets.end(), [&](const Preset& preset) { return preset.name == name; });
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const Preset& preset : presets) names.push_back(preset.name);
+  return names;
+}
+
+/// beta and gamma, or a preset in their place. False, with a problem, where they do not say which.
+bool is_complete(const ParameterCheck& place) {
+  const bool has_preset = place.is_given("preset");
+  for (const std::string name : {"beta", "gamma"}) {
+    if (has_preset && place.is_given(name) && place.is_override(name) == place.is_override("preset")) {
+      place.add_problem("preset",
+                        fmt::format("\"preset\" and \"{}\" are given together: \"preset\" stands for beta and "
+                                    "gamma, leave out one or the other",
+                                    name));
+      return false;
+    }
+    if (!has_preset && !place.is_given(name)) {
+      std::vector<std::string> texts;
+      for (const Preset& preset : presets)
+        texts.push_back(fmt::format("\"{}\" (beta = {}, gamma = {})", preset.name, preset.beta, preset.gamma));
+      place.add_problem("scheme", fmt::format("the scheme \"newmark\" needs \"beta\" and \"gamma\", or a \"preset\": "
+                                              "{}; \"{}\" is missing",
+                                              join_names(texts, " or ", false), name));
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Of a preset and beta or gamma, that of --set counts.
+void choose(const ParameterCheck& place, const std::string& name, double of_preset, Parameters& values) {
+  const bool own_counts = place.is_usable(name) && place.is_override(name);
+  if (place.is_usable(name)) {
+    const std::string loser = own_counts ? "preset" : name, winner = own_counts ? name : "preset";
+    place.add_info(loser, fmt::format("\"{}\" is overridden by {}", loser, place.place(winner)));
+  }
+  if (own_counts) {
+    values.erase("preset");
+  } else {
+    values.set(name, of_preset);
+  }
+}
+
+}  // namespace
+
+std::vector<Key> newmark_keys() {
+  return {{.name = "beta",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = positive,
+           .doc = "Newmark's beta, textbook definition."},
+          {.name = "gamma",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = nonnegative,
+           .doc = "Newmark's gamma, textbook definition; unstable below 1/2."},
+          {.name = "preset",
+           .type = KeyType::choice,
+           .choices = preset_names(),
+           .doc = "Instead of beta and gamma: \"trapezoidal\" is beta = 1/4, gamma = 1/2; \"textbook-half\" is beta = "
+                  "gamma = 1/2."}};
+}
+
+void check_newmark(const ParameterCheck& place, Parameters& values) {
+  if (!is_complete(place)) return;
+  if (place.is_usable("preset")) {
+    const Preset& preset = find_preset(values.text("preset"));
+    choose(place, "beta", preset.beta, values);
+    choose(place, "gamma", preset.gamma, values);
+  }
+  if (!values.has("beta") || !values.has("gamma")) return;  // refused
+  const double beta = values.number("beta"), gamma = values.number("gamma");
+  const std::string at = place.is_given("gamma") ? "gamma" : "preset";
+  if (gamma < 0.5) {
+    place.add_warning(at, fmt::format("Newmark's scheme is unstable with gamma = {} (below 1/2)", gamma));
+  } else if (2.0 * beta < gamma) {
+    place.add_warning(at, fmt::format("Newmark's scheme is only conditionally stable with beta = {}, gamma = {} "
+                                      "(2 beta < gamma): the step must be small enough",
+                                      beta, gamma));
+  }
+}
+
+NewmarkParameters newmark_parameters(const Parameters& values) {
+  if (values.has("beta") || !values.has("preset")) return {values.number("beta"), values.number("gamma")};
+  const Preset& preset = find_preset(values.text("preset"));
+  return {preset.beta, preset.gamma};
+}
+
+}  // namespace ricochet

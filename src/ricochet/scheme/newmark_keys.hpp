@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/base/parameters.hpp"
+
+/// @file Newmark's beta and gamma in a case file: by themselves or by the name of a preset.
+namespace ricochet {
+
+struct NewmarkParameters {
+  double beta = 0.0, gamma = 0.0;  ///< textbook definition
+};
+
+[[nodiscard]] std::vector<Key> newmark_keys();
+/// Afterwards the values have the beta and gamma that count; and the preset, where both come from it.
+void check_newmark(const ParameterCheck& place, Parameters& values);
+[[nodiscard]] NewmarkParameters newmark_parameters(const Parameters& values);
+
+}  // namespace ricochet
