@@ -2,7 +2,7 @@
 """Draws the pictures of the cases' READMEs: runs the cases into out/pictures and plots their history.csv beside the
 closed forms. From the repository root, with python3-matplotlib installed:
 
-    /usr/bin/python3 cases/pictures.py [puck disc rod bar ball hertz layer incline conveyor oblique ball-spin]
+    /usr/bin/python3 cases/pictures.py [puck disc rod bar ball hertz layer incline conveyor oblique ball-spin bowl]
 """
 import csv
 import subprocess
@@ -248,6 +248,31 @@ def ball_spin():
     save(figure, "cases/ball-spin/ball-spin.png")
 
 
+def bowl():
+    figure, (motion, energy) = plt.subplots(1, 2, figsize=(10, 3.6))
+    length, friction = np.sqrt(1 - 0.004**2) - 0.002, 0.01
+    smooth, rough = run("bowl/bowl", "bowl"), run("bowl/rough", "bowl-rough")
+    for history, style, label in ((smooth, "C0-", "without friction"), (rough, "C1-", "F = 0.01")):
+        motion.plot(history["time"], np.sin(0.1) + history["base.displacement_x"], style, label=label)
+    # The point mass: θ'' = −(g/l) sin θ − F sgn(θ') ((g/l) cos θ + θ'²).
+    for coefficient in (0.0, friction):
+        angle, rate, h, points = 0.1, -1e-9, 1e-4, []
+        for step in range(31000):
+            points.append((step * h, np.sin(angle)))
+            sign = np.sign(rate)
+            rate -= h * 9.81 / length * np.sin(angle) + h * coefficient * sign * (9.81 / length * np.cos(angle) + rate**2)
+            angle += h * rate
+        motion.plot(*np.array(points).T, label="point mass" if coefficient else None, zorder=0, **EXACT)
+    energy.plot(rough["time"], 1e3 * rough["total_energy"], label="total energy, F = 0.01")
+    energy.plot(rough["time"], 1e3 * rough["friction_work"], "--", label="friction work")
+    energy.plot(smooth["time"], 1e3 * smooth["total_energy"], label="total energy without friction")
+    motion.set(xlabel="time, s", title="horizontal position of the block, m")
+    energy.set(xlabel="time, s", title="energy, mJ/m")
+    motion.legend(loc="lower right")
+    energy.legend(loc="lower left")
+    save(figure, "cases/bowl/bowl.png")
+
+
 def hertz_pressure():
     """Pressure over the radius of the pressed cylinder and ball, in every multiplier space that is stable there."""
     import meshio  # python3-meshio, for this picture only
@@ -293,6 +318,6 @@ def hertz_pressure():
 
 if __name__ == "__main__":
     known = {"puck": puck, "disc": disc, "rod": rod, "bar": bar, "ball": ball, "hertz": hertz_pressure, "layer": layer, "incline": incline,
-             "conveyor": conveyor, "oblique": oblique, "ball-spin": ball_spin}
+             "conveyor": conveyor, "oblique": oblique, "ball-spin": ball_spin, "bowl": bowl}
     for wanted in sys.argv[1:] or known:
         known[wanted]()

@@ -32,14 +32,17 @@ double force_variation(const RunSummary& s) {
 }
 
 void print_methods(const std::vector<Run>& runs, int width) {
-  constexpr const char* row = "{:<{}} {:<15} {:<18} {:>11} {:>11} {:>11} {:>14} {:>14} {:>9}\n";
-  fmt::print(row, "run", width, "scheme", "mass", "energy at", "energy at", "largest", "variation of", "deepest inter-",
-             "time per");
-  fmt::print(row, "", width, "", "", "the start", "the end", "energy", "contact force", "penetration", "step, ms");
+  std::size_t scheme_width = 15;
+  for (const auto& [directory, s] : runs) scheme_width = std::max(scheme_width, s.scheme.size());
+  constexpr const char* row = "{:<{}} {:<{}} {:<18} {:>11} {:>11} {:>11} {:>14} {:>14} {:>9}\n";
+  fmt::print(row, "run", width, "scheme", scheme_width, "mass", "energy at", "energy at", "largest", "variation of",
+             "deepest inter-", "time per");
+  fmt::print(row, "", width, "", scheme_width, "", "the start", "the end", "energy", "contact force", "penetration",
+             "step, ms");
   for (const auto& [directory, s] : runs) {
     const ColumnDigest energy = s.digest("total_energy");
-    fmt::print("{:<{}} {:<15} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14.4g} {:>14} {:>9.3g}{}\n", directory, width,
-               s.scheme, s.mass, energy.first, energy.last, energy.maximum, force_variation(s),
+    fmt::print("{:<{}} {:<{}} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14.4g} {:>14} {:>9.3g}{}\n", directory, width,
+               s.scheme, scheme_width, s.mass, energy.first, energy.last, energy.maximum, force_variation(s),
                deepest_penetration_text(s), 1e3 * s.time_per_step, status_text(directory, s));
   }
 }

@@ -58,6 +58,17 @@ class Layering(unittest.TestCase):
                     wrong.append(f"{path.relative_to(SOURCE)} includes {include}")
         self.assertEqual(wrong, [])
 
+    def test_contact_matrices_are_read_by_contact_and_solvers_alone(self):
+        """All others ask ContactRows and ContactBoundary: rows may follow the motion."""
+        raw = re.compile(r"\b(gap_operator|tangential_trace|pressure_recovery)\b|\bcontact_?(?:\.|->)trace\b")
+        readers = {}
+        for path in sources():
+            if found := raw.findall(path.read_text(encoding="utf-8")):
+                readers.setdefault(str(path.relative_to(SOURCE).parent), []).append((path.name, found))
+        inside = {folder for folder in readers if re.match(r"src/ricochet/(contact|solver)(/|$)", folder)}
+        self.assertTrue(inside, "nobody reads them: this test looks for something else")
+        self.assertEqual({folder: readers[folder] for folder in readers if folder not in inside}, {})
+
     def test_contact_solvers_know_nothing_of_finite_elements_or_time(self):
         folder = SOURCE / "src" / "ricochet" / "solver" / "contact"
         allowed = ("ricochet/base/", "ricochet/linear_algebra/", "ricochet/solver/contact/")

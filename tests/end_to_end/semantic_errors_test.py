@@ -139,7 +139,7 @@ class SemanticErrors(TestCase):
 
     def test_one_plane_with_two_frictions(self):
         self.refuse(block_case() + obstacle("again", [0.0, 0.0], [0.0, 2.0]) + "friction = 0.3\n", None, "case.toml:",
-                    '"again" and "floor"', "one and the same plane", "different friction")
+                    '"again" and "floor"', "one and the same surface", "different friction")
 
     def test_obstacles_that_leave_no_room(self):
         press = obstacle("press", [0.0, 0.3], [0.0, -1.0], "velocity = [0.0, -100.0]\n")

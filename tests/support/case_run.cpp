@@ -1,14 +1,17 @@
 #include "support/case_run.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <stdexcept>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/case/run_case.hpp"
+#include "support/paths.hpp"
 
 namespace ricochet::test_support {
 
@@ -25,14 +28,23 @@ std::string write_temporary(const std::string& name, const std::string& text) {
 }
 
 std::string mesh_geometry(const std::string& name, const std::string& geometry, double size, int order) {
-  const std::string source =
-      write_temporary(name + ".geo", "SetFactory(\"OpenCASCADE\");\nMesh.MeshSizeMin = " + std::to_string(size) +
-                                         ";\nMesh.MeshSizeMax = " + std::to_string(size) + ";\n" + geometry + "\n");
+  const std::string text = "SetFactory(\"OpenCASCADE\");\nMesh.MeshSizeMin = " + std::to_string(size) +
+                           ";\nMesh.MeshSizeMax = " + std::to_string(size) + ";\n" + geometry + "\n";
+  // Tests that run at the same time ask for the same meshes: each is made once, and appears whole.
+  const std::string key = text + "order " + std::to_string(order);
+  const std::filesystem::path directory = meshes_directory();
+  const std::filesystem::path made = directory / (name + "_" + std::to_string(std::hash<std::string>()(key)) + ".msh");
+  if (std::filesystem::exists(made)) return made.string();
+  const std::string source = write_temporary(name + ".geo", text);
   const std::string result = std::filesystem::path(source).replace_extension(".msh").string();
   const std::string command =
       "gmsh '" + source + "' -3 -nt 1 -v 1 -format msh41 -order " + std::to_string(order) + " -o '" + result + "'";
   if (std::system(command.c_str()) != 0) throw std::runtime_error("gmsh failed: " + command);
-  return result;
+  std::filesystem::create_directories(directory);
+  const std::filesystem::path copy = made.string() + "." + std::to_string(::getpid());
+  std::filesystem::copy_file(result, copy, std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::rename(copy, made);
+  return made.string();
 }
 
 CaseRun::CaseRun(const std::string& toml, const std::vector<std::string>& overrides) {

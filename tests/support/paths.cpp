@@ -10,4 +10,8 @@ std::string data_path(const std::string& relative) {
   return RICOCHET_SOURCE_DIR "/tests/data/" + relative;
 }
 
+std::string meshes_directory() {
+  return RICOCHET_MESHES_DIR;
+}
+
 }  // namespace ricochet::test_support

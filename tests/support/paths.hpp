@@ -12,4 +12,7 @@ std::string source_path(const std::string& relative);
 /// A file of tests/data, such as "meshes/triangle_o1_msh41_ascii.msh".
 std::string data_path(const std::string& relative);
 
+/// Where meshes that tests make are kept.
+std::string meshes_directory();
+
 }  // namespace ricochet::test_support

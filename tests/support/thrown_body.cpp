@@ -1,5 +1,7 @@
 #include "support/thrown_body.hpp"
 
+#include <algorithm>
+
 #include "ricochet/case/names.hpp"
 #include "support/case_run.hpp"
 #include "support/paths.hpp"
@@ -14,6 +16,14 @@ std::vector<ThrownBody> thrown_bodies() {
           {"curved disc of degree 2", 2, 2, mesh_geometry("disc2", disc, 0.5, 2)},
           {"ball of tetrahedra", 3, 1, mesh_geometry("ball", ball, 0.45, 1)},
           {"curved ball of degree 2", 3, 2, mesh_geometry("ball2", ball, 0.7, 2)}};
+}
+
+ThrownBody one_sided_block() {
+  return {
+      "block", 2, 1,
+      mesh_geometry("block",
+                    "Rectangle(1)={0,0.03,0,1,0.7}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1};",
+                    0.2, 1)};
 }
 
 std::string thrown_case(const ThrownBody& body, const std::string& mass, const std::string& time,
@@ -40,8 +50,23 @@ std::string dragged_case(const ThrownBody& body, const std::string& mass, const 
          (flat ? "[\"0.1*sin(9*t)\", \"x\"]\n" : "[\"0.1*sin(9*t)\", \"0\", \"y\"]\n");
 }
 
-std::string Discretization::time() const {
+std::string time_of(const std::string& scheme) {
   return "scheme = \"" + scheme + "\"\n" + (scheme == "newmark" ? "beta = 0.3025\ngamma = 0.6\n" : "");
+}
+
+std::vector<std::string> masses_of(const std::string& scheme) {
+  if (scheme == "semi-explicit") return {"equivalent-lumped"};
+  if (scheme == "klr-conserving" || scheme == "contact-stabilized") return {"consistent", "lumped"};
+  return mass_names();
+}
+
+bool Discretization::is_possible() const {
+  const std::vector<std::string> masses = masses_of(scheme);
+  return std::find(masses.begin(), masses.end(), mass) != masses.end();
+}
+
+std::string Discretization::time() const {
+  return time_of(scheme);
 }
 
 std::string Discretization::contact() const {
@@ -62,7 +87,8 @@ std::vector<SupportedCase> moving_support_cases() {
   std::vector<SupportedCase> result;
   for (const auto& [scheme, mass] :
        {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"}, std::pair{"midpoint", "consistent"},
-        std::pair{"klr-conserving", "consistent"}, std::pair{"semi-explicit", "equivalent-lumped"}}) {
+        std::pair{"klr-conserving", "consistent"}, std::pair{"semi-explicit", "equivalent-lumped"},
+        std::pair{"contact-stabilized", "consistent"}}) {
     result.push_back({scheme, "[mesh]\nfile = \"" + data_path("meshes/quadrilateral_o1_msh41_ascii.msh") +
                                   "\"\n"
                                   "[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n"

@@ -17,6 +17,9 @@ struct ThrownBody {
 /// the contact boundary.
 std::vector<ThrownBody> thrown_bodies();
 
+/// A block with contact on one side, of which every mass can be made.
+ThrownBody one_sided_block();
+
 /// A body thrown at an oblique plane in oblique gravity, turning, so that no component is special: 150 steps of 0.01.
 /// `time`, `contact` and `obstacle` are further lines of [time], [[contact]] and [obstacle.plane].
 std::string thrown_case(const ThrownBody& body, const std::string& mass, const std::string& time,
@@ -26,6 +29,12 @@ std::string thrown_case(const ThrownBody& body, const std::string& mass, const s
 std::string dragged_case(const ThrownBody& body, const std::string& mass, const std::string& time,
                          const std::string& contact);
 
+/// Lines of [time] for a registered scheme.
+std::string time_of(const std::string& scheme);
+/// The masses that a scheme takes; it refuses all others. Every mass where this list does not know better: a new scheme
+/// is tested with all of them.
+std::vector<std::string> masses_of(const std::string& scheme);
+
 /// Every scheme, mass and multiplier space that is registered, whether they go together or not.
 struct Discretization {
   std::string scheme, mass, multipliers;
@@ -33,6 +42,8 @@ struct Discretization {
   /// Lines of [time] and [[contact]], with friction.
   [[nodiscard]] std::string time() const;
   [[nodiscard]] std::string contact() const;
+  /// The scheme takes the mass.
+  [[nodiscard]] bool is_possible() const;
   [[nodiscard]] std::string label() const { return scheme + ' ' + mass + ' ' + multipliers; }
 };
 std::vector<Discretization> all_discretizations();

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ricochet/base/error.hpp"
+#include "ricochet/mass/mass.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 
@@ -14,10 +17,12 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::masses_of;
 using test_support::StepEnd;
 using test_support::thrown_bodies;
 using test_support::thrown_case;
 using test_support::ThrownBody;
+using test_support::time_of;
 
 /// Runs a case and compares the energy change of every step with `identity(before, after)`.
 void expect_identity(CaseRun& run, const std::string& name,
@@ -152,19 +157,65 @@ TEST(EnergyIdentity, SemiExplicitAtHalfSteps) {
   }
 }
 
+TEST(EnergyIdentity, ContactStabilizedLosesEnergyOnly) {
+  // −r_N·g₀ of the forces at the end, and what the projection of the free flight takes, each of them a loss.
+  for (const ThrownBody& body : thrown_bodies()) {
+    for (const std::string& mass : masses_of("contact-stabilized")) {
+      CaseRun run(thrown_case(body, mass, "scheme = \"contact-stabilized\"\n"));
+      const double h = run.scheme().step();
+      double created = 0.0, by_projection = 0.0, deepest = 0.0;
+      expect_identity(run, body.name + ", " + mass, [&](const StepEnd& a, const StepEnd& b) {
+        // U₁ − Û = (h/2)(V₁ − V₀), and Û − U₀ − hV₀ is what projected the free flight.
+        const Vector last = 0.5 * h * (b.velocity - a.velocity);
+        const Vector shift = b.displacement - last - a.displacement - h * a.velocity;
+        Vector momentum;
+        run.problem().mass.multiply(last, momentum);
+        const double projected = -2.0 / (h * h) * shift.dot(momentum), at_end = -b.normal.dot(a.gap);
+        created = std::max({created, projected / b.size_of_energy_terms, at_end / b.size_of_energy_terms});
+        by_projection = std::min(by_projection, projected);
+        deepest = std::max(deepest, -b.gap.minCoeff());
+        return at_end + projected;
+      });
+      EXPECT_LT(created, 20.0 * std::numeric_limits<double>::epsilon()) << body.name << ", " << mass;
+      EXPECT_LT(by_projection, 0.0) << body.name << ": nothing was projected";
+      EXPECT_LT(deepest, 1e-12) << body.name;
+    }
+  }
+}
+
+TEST(EnergyIdentity, SchemesRefuseTheMassesThatTheyDoNotTake) {
+  const ThrownBody body = test_support::one_sided_block();
+  for (const std::string& scheme : scheme_names()) {
+    const std::vector<std::string> taken = masses_of(scheme);
+    for (const std::string& mass : mass_names()) {
+      if (std::find(taken.begin(), taken.end(), mass) != taken.end()) continue;
+      try {
+        const CaseRun run(thrown_case(body, mass, time_of(scheme)));
+        ADD_FAILURE() << scheme << " takes " << mass;
+      } catch (const Error& refusal) {
+        EXPECT_NE(std::string(refusal.what()).find("scheme \"" + scheme + "\""), std::string::npos) << refusal.what();
+      }
+    }
+  }
+}
+
+/// Every scheme there is has an identity in this file.
+TEST(EnergyIdentity, IsKnownOfEveryScheme) {
+  EXPECT_EQ(scheme_names(),
+            (std::vector<std::string>{"midpoint", "klr-conserving", "newmark", "semi-explicit", "contact-stabilized"}));
+}
+
 TEST(EnergyIdentity, AccountClosesWithSupportsDampingAndLoadsThatVary) {
   const std::string block =
       "Rectangle(1)={0,0.01,0,2,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1}; "
       "Physical Curve(\"left\")={4}; Physical Curve(\"top\")={3};";
   const std::string mesh = test_support::mesh_geometry("block", block, 0.3, 1);
-  for (const char* scheme :
-       {"scheme = \"midpoint\"\n", "scheme = \"klr-conserving\"\n", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
-        "scheme = \"newmark\"\nbeta = 0.3025\ngamma = 0.6\n", "scheme = \"semi-explicit\"\n"}) {
-    for (const char* mass : {"consistent", "lumped", "equivalent", "equivalent-lumped"}) {
-      const bool is_explicit = std::string(scheme).find("explicit") != std::string::npos;
-      // Refused: klr-conserving needs inertia on contact nodes; semi-explicit takes one mass only.
-      if (std::string(scheme).find("klr") != std::string::npos && std::string(mass).starts_with("equivalent")) continue;
-      if (is_explicit && std::string(mass) != "equivalent-lumped") continue;
+  std::vector<std::pair<std::string, std::string>> schemes;
+  for (const std::string& name : scheme_names()) schemes.emplace_back(name, time_of(name));
+  schemes.emplace_back("newmark", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n");
+  for (const auto& [name, scheme] : schemes) {
+    for (const std::string& mass : masses_of(name)) {
+      const bool is_explicit = name == "semi-explicit";
       CaseRun run(
           "[mesh]\nfile = \"" + mesh +
           "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 50.0\npoisson = 0.3\ndamping = { mass = 0.1, "
@@ -177,7 +228,7 @@ TEST(EnergyIdentity, AccountClosesWithSupportsDampingAndLoadsThatVary) {
           "[[traction]]\ngroup = \"top\"\nvalue = [\"0.3*x*cos(t)\", \"-p*min(t/0.2, 1)\"]\nparameters = { p = 1.0 }\n"
           "[load]\ngravity = [0.0, -1.0]\nbody_force = [\"0.1*t\", \"0.1*y\"]\n"
           "[mass]\ntype = \"" +
-          std::string(mass) + "\"\n[time]\n" + scheme + "step = 0.01\nend = 2.0\n");
+          mass + "\"\n[time]\n" + scheme + "step = 0.01\nend = 2.0\n");
       double worst = 0.0, largest = 0.0;
       run.run([&] {
         const Energies now = run.simulation().account().energies(run.state());

@@ -52,7 +52,7 @@ double mean_displacement(const CaseRun& run, int component) {
 
 double contact_force(const CaseRun& run, int component) {
   Vector force = Vector::Zero(run.problem().dof_count());
-  run.problem().add_contact_force(run.state().forces.normal_reaction, run.state().forces.tangential_reaction, force);
+  run.state().forces.rows->add_force(run.state().forces.normal_reaction, run.state().forces.tangential_reaction, force);
   double sum = 0.0;
   for (Index dof = component; dof < force.size(); dof += run.problem().dimension) sum += force[dof];
   return sum;

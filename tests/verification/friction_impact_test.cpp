@@ -47,7 +47,8 @@ Vector momentum(CaseRun& run) {
 /// Contact force and loads, per dof.
 Vector force(const CaseRun& run) {
   Vector result = run.problem().loads.constant();
-  run.problem().add_contact_force(run.state().forces.normal_reaction, run.state().forces.tangential_reaction, result);
+  run.state().forces.rows->add_force(run.state().forces.normal_reaction, run.state().forces.tangential_reaction,
+                                     result);
   return result;
 }
 

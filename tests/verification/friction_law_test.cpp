@@ -55,7 +55,7 @@ struct Seen {
 /// y of the step's conditions 0 ≤ r_N ⟂ y ≥ 0: the gap at the scheme's instant, or the normal part of its increment.
 Vector normal_motion(CaseRun& run, const Vector& increment) {
   const State& state = run.state();
-  if (run.input().time.scheme == "klr-conserving") return run.problem().contact.gap_operator * increment;
+  if (run.input().time.scheme == "klr-conserving") return run.problem().contact.rows->gap_operator * increment;
   const double ahead = run.input().time.scheme == "midpoint" ? 0.5 : 0.0;
   Vector gap;
   run.problem().gaps(state.displacement - ahead * increment, state.time - ahead * run.scheme().step(), gap);
@@ -67,7 +67,7 @@ Vector normal_motion(CaseRun& run, const Vector& increment) {
 void check_law(CaseRun& run, const Vector& increment, double coefficient, const Vector& bounds, Seen& seen) {
   const State& state = run.state();
   const ContactBoundary& contact = run.problem().contact;
-  const Vector slip = contact.tangential_trace * increment;
+  const Vector slip = contact.rows->tangential_trace * increment;
   const Index tangents = contact.dimension - 1;
   const double force_size = state.forces.normal_reaction.maxCoeff();
   const double slip_size = increment.lpNorm<Eigen::Infinity>();
@@ -222,7 +222,8 @@ TEST(FrictionEnergy, MidpointAndNewmarkIdentitiesWithFriction) {
       run.run(
           [&] {
             const StepEnd after(run);
-            const Vector slip = run.problem().contact.tangential_trace * (after.displacement - before.displacement);
+            const Vector slip =
+                run.problem().contact.rows->tangential_trace * (after.displacement - before.displacement);
             const double contact = midpoint ? -2.0 * after.normal.dot(before.gap)
                                             : 0.5 * (before.normal.dot(after.gap) - after.normal.dot(before.gap));
             const double friction =
@@ -264,7 +265,7 @@ TEST(FrictionEnergy, KlrLosesWhatFrictionTakesAndNeverGains) {
       run.run(
           [&] {
             const Vector& next = run.state().memory.at("increment_ahead");
-            const Vector slip = run.problem().contact.tangential_trace * (0.5 * (ahead + next));
+            const Vector slip = run.problem().contact.rows->tangential_trace * (0.5 * (ahead + next));
             const double friction = -run.state().forces.tangential_reaction.dot(slip);
             const double now = energy();
             worst = std::max(worst, std::abs(now - before - friction) / first);
@@ -311,7 +312,8 @@ TEST(FrictionMomentum, BalancesCloseToRounding) {
       };
       const auto force = [&] {
         Vector nodal = problem.loads.constant();
-        problem.add_contact_force(run.state().forces.normal_reaction, run.state().forces.tangential_reaction, nodal);
+        run.state().forces.rows->add_force(run.state().forces.normal_reaction, run.state().forces.tangential_reaction,
+                                           nodal);
         return resultants(problem, nodal);
       };
       Vector force_before = force(), momentum_before = momentum();

@@ -121,7 +121,7 @@ struct Base {
     velocity = mean(run.simulation().increment()) / run.scheme().step();
     const Vector& friction = run.state().forces.tangential_reaction;
     for (Index i = 0; i < contact.size(); ++i) {
-      traction -= contact.tangents[static_cast<std::size_t>(i)](0, 0) * friction[i] / contact.weights.sum();
+      traction -= contact.rows->tangents[static_cast<std::size_t>(i)](0, 0) * friction[i] / contact.weights.sum();
     }
   }
 };

@@ -60,7 +60,7 @@ std::vector<ContactNode> contact_nodes(const CaseRun& run) {
   const ContactBoundary& contact = run.problem().contact;
   const StepForces& forces = run.state().forces;
   Vector along = forces.tangential_reaction;
-  for (Index i = 0; i < along.size(); ++i) along[i] *= contact.tangents[static_cast<std::size_t>(i)](0, 0);
+  for (Index i = 0; i < along.size(); ++i) along[i] *= contact.rows->tangents[static_cast<std::size_t>(i)](0, 0);
   const Vector pressure = contact.pressure_recovery * forces.normal_reaction;
   const Vector traction = contact.pressure_recovery * along;
   std::vector<ContactNode> nodes;
@@ -114,7 +114,7 @@ TEST(PartialSlip, CylinderPushedAlongThePlane) {
       const double load = run.state().forces.normal_reaction.sum();
       double shear = 0.0;
       for (Index i = 0; i < run.problem().contact.size(); ++i) {
-        shear += run.problem().contact.tangents[static_cast<std::size_t>(i)](0, 0) *
+        shear += run.problem().contact.rows->tangents[static_cast<std::size_t>(i)](0, 0) *
                  run.state().forces.tangential_reaction[i];
       }
       const double a = std::sqrt(4.0 * load * (1.0 - poisson * poisson) / (M_PI * young));  // Hertz

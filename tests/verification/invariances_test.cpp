@@ -91,7 +91,7 @@ std::vector<Frame> frames(const Setting& s, const SchemeChoice& choice) {
   run.run([&] {
     const StepForces& forces = run.state().forces;
     Vector reaction = Vector::Zero(run.problem().dof_count());
-    run.problem().add_contact_force(forces.normal_reaction, forces.tangential_reaction, reaction);
+    run.state().forces.rows->add_force(forces.normal_reaction, forces.tangential_reaction, reaction);
     result.push_back({run.state().displacement, reaction, forces.normal_reaction});
   });
   return result;

@@ -70,9 +70,9 @@ TEST(LargeContact, EstimatesAreWhatIsMade) {
   };
   for (Index k = 0; k < points; ++k) {
     const Index point = k * contact.size() / points;
-    add(contact.gap_operator, point, rows * k);
-    add(contact.tangential_trace, 2 * point, rows * k + 1);
-    add(contact.tangential_trace, 2 * point + 1, rows * k + 2);
+    add(contact.rows->gap_operator, point, rows * k);
+    add(contact.rows->tangential_trace, 2 * point, rows * k + 1);
+    add(contact.rows->tangential_trace, 2 * point + 1, rows * k + 2);
   }
   SparseMatrix transposed(static_cast<Index>(analysed.dofs.size()), rows * points);
   transposed.setFromTriplets(entries.begin(), entries.end());

@@ -66,19 +66,18 @@ Difference largest_difference(const std::string& text) {
 
 TEST(MomentumAccount, BalancesInEverySchemeMassAndMultiplierSpace) {
   const std::vector<ThrownBody> bodies = thrown_bodies();
-  int runs = 0;
+  const ThrownBody block = test_support::one_sided_block();
   for (const test_support::Discretization& each : test_support::all_discretizations()) {
-    const Difference found = largest_difference(dragged_case(bodies[0], each.mass, each.time(), each.contact()));
-    if (found.momentum < 0.0) continue;
-    ++runs;
+    const Difference found = largest_difference(dragged_case(block, each.mass, each.time(), each.contact()));
+    EXPECT_EQ(found.momentum >= 0.0, each.is_possible()) << each.label();
     EXPECT_LT(found.momentum, 1e-13) << each.label();
     EXPECT_LT(found.angular, 1e-13) << each.label();
   }
-  EXPECT_GT(runs, 30);
   for (const std::size_t body : {std::size_t{2}, std::size_t{3}, std::size_t{4}}) {
     const Difference found =
         largest_difference(dragged_case(bodies[body], "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
                                         "friction = 0.3\nmultipliers = \"p1\"\nunstable_multipliers = \"allow\"\n"));
+    EXPECT_GE(found.momentum, 0.0) << bodies[body].name;
     EXPECT_LT(found.momentum, 1e-13) << bodies[body].name;
     EXPECT_LT(found.angular, 1e-13) << bodies[body].name;
   }
@@ -103,7 +102,7 @@ TEST(MomentumAccount, BalancesUnderTrescasLaw) {
         const StepForces& forces = run.state().forces;
         SpaceVector sum = SpaceVector::Zero(body.dimension);
         for (Index i = 0; i < run.problem().contact.size(); ++i) {
-          sum += contact_force(run.problem().contact, forces, i);
+          sum += contact_force(forces, i);
           if (forces.normal_reaction[i] == 0.0 && carries_force(forces, i)) ++without_pressure;
         }
         std::vector<double> row;

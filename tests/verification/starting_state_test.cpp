@@ -109,7 +109,7 @@ double momentum_residual(CaseRun& run) {
   problem.internal_force->evaluate(state.displacement, internal);
   Vector residual = problem.mass.whole() * state.acceleration + internal - load;
   if (problem.has_damping()) residual += problem.damping * state.velocity;
-  problem.add_contact_force(-state.forces.normal_reaction, Vector(), residual);
+  state.forces.rows->add_force(-state.forces.normal_reaction, Vector(), residual);
   for (const Index dof : problem.supports.dofs()) residual[dof] = 0.0;
   return residual.lpNorm<Eigen::Infinity>() / (load.lpNorm<Eigen::Infinity>() + internal.lpNorm<Eigen::Infinity>());
 }
@@ -135,7 +135,7 @@ TEST(StartingState, SatisfiesTheMomentumEquationWithEveryMass) {
 TEST(StartingState, RestingNodesCarryTheWeightFromTheStart) {
   for (const char* mass : {"consistent", "lumped"}) {
     CaseRun run(block_case(0.0, mass, newmark));  // undeformed, at rest on the floor, gravity starts to act
-    const Vector acceleration = run.problem().contact.gap_operator * run.state().acceleration;
+    const Vector acceleration = run.problem().contact.rows->gap_operator * run.state().acceleration;
     EXPECT_GE(acceleration.minCoeff(), -1e-12 * 10.0) << "nothing accelerates into the floor";
     EXPECT_GT(run.state().forces.normal_reaction.sum(), 0.0);
   }

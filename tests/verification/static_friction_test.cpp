@@ -41,7 +41,7 @@ std::string block_case(const std::string& mass, const std::string& belt_velocity
 
 double contact_force(const CaseRun& run, int component) {
   Vector force = Vector::Zero(run.problem().dof_count());
-  run.problem().add_contact_force(run.state().forces.normal_reaction, run.state().forces.tangential_reaction, force);
+  run.state().forces.rows->add_force(run.state().forces.normal_reaction, run.state().forces.tangential_reaction, force);
   double sum = 0.0;
   for (Index i = component; i < force.size(); i += run.problem().dimension) sum += force[i];
   return sum;
@@ -52,7 +52,7 @@ double largest_friction(const CaseRun& run) {
   const ContactBoundary& contact = run.problem().contact;
   double sum = 0.0;
   for (Index i = 0; i < contact.size(); ++i) {
-    if (contact.tangential_trace.row(i).nonZeros() > 0) sum += friction * run.state().forces.normal_reaction[i];
+    if (contact.rows->tangential_trace.row(i).nonZeros() > 0) sum += friction * run.state().forces.normal_reaction[i];
   }
   return sum;
 }

@@ -141,8 +141,8 @@ Section obstacle_section() {
            .type = KeyType::choice,
            .required = true,
            .decides = true,
-           .doc = "This version has planes only, each with a half-space behind it: curved obstacles are not supported. "
-                  "Several planes approximate a hollow (a trough, a bowl); nothing replaces a round obstacle."},
+           .doc = "A plane with a half-space behind it, or a sphere: a ball or, seen from inside, a bowl. Other curved "
+                  "obstacles are not supported."},
       }};
   return with_types(std::move(section), "type", obstacle_registry());
 }

@@ -63,9 +63,10 @@ void check_placement(const Case& input, int dimension) {
 void check_dimensions(const Case& input, int dimension) {
   check_placement(input, dimension);
   for (const ObstacleSection& obstacle : input.obstacles) {
-    for (const auto& [key, value] : obstacle.parameters.values()) {
-      if (const auto* const vector = std::get_if<std::vector<double>>(&value))
-        check_length(input, fmt::format("obstacle.{}.{}", obstacle.name, key), vector->size(), dimension);
+    for (const Key& key : obstacle_registry().find(obstacle.type).keys) {
+      if (key.type != KeyType::vector || !obstacle.parameters.has(key.name)) continue;
+      check_length(input, fmt::format("obstacle.{}.{}", obstacle.name, key.name),
+                   obstacle.parameters.vector(key.name).size(), dimension);
     }
   }
   for (std::size_t i = 0; i < input.supports.size(); ++i) {

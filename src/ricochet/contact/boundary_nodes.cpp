@@ -53,7 +53,11 @@ BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& p
     for (const Index node : facet_nodes(*body.space, pairs[k].facets)) {
       const auto [entry, added] = nodes_.try_emplace({node, pairs[k].obstacle});
       if (added) {
-        const Vector normal = pairs[k].obstacle->normal(body.space->nodes.col(node));
+        // Where the normal turns with the motion, only a node that supports hold altogether is held along it.
+        const int d = body.space->dimension;
+        const Vector normal = pairs[k].obstacle->is_flat()
+                                  ? Vector(pairs[k].obstacle->normal(body.space->nodes.col(node)))
+                                  : Vector(Vector::Constant(d, 1.0 / std::sqrt(d)));
         entry->second = {static_cast<int>(k), !has_free_part(node, normal, is_free)};
         held_count_ += entry->second.held ? 1 : 0;
       }
@@ -84,9 +88,9 @@ void BoundaryNodes::check_coincidence(const Body& body, const std::vector<Contac
       std::string place;
       for (const double coordinate : at) place += fmt::format("{}{}", place.empty() ? "" : ", ", coordinate);
       throw Error(ErrorKind::invalid_input,
-                  fmt::format("obstacles \"{}\" and \"{}\" are one and the same plane at the node at ({}), with "
+                  fmt::format("obstacles \"{}\" and \"{}\" are one and the same surface at the node at ({}), with "
                               "different friction or motion: which of them carries the node is not determined; remove "
-                              "one of these contacts or move one of the planes",
+                              "one of these contacts or move one of the obstacles",
                               std::min(first.obstacle_name, second.obstacle_name),
                               std::max(first.obstacle_name, second.obstacle_name), place));
     }

@@ -12,6 +12,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/contact/boundary_nodes.hpp"
 #include "ricochet/contact/contact_directions.hpp"
+#include "ricochet/contact/curved_contact.hpp"
 #include "ricochet/contact/multiplier_space.hpp"
 
 namespace ricochet {
@@ -79,12 +80,13 @@ Index number_points(std::vector<Patch>& patches) {
   return static_cast<Index>(order.size());
 }
 
-void resize(ContactBoundary& boundary, Index count) {
+void resize(ContactBoundary& boundary, ContactRows& rows, Index count) {
   boundary.pair.resize(static_cast<std::size_t>(count));
-  boundary.normals.resize(boundary.dimension, count);
-  boundary.tangents.resize(static_cast<std::size_t>(count));
+  rows.normals.resize(boundary.dimension, count);
+  rows.tangents.resize(static_cast<std::size_t>(count));
+  rows.slips.assign(static_cast<std::size_t>(count * (boundary.dimension - 1)), 0);
+  rows.gap_rounding.resize(count);
   boundary.initial_gap.resize(count);
-  boundary.gap_rounding.resize(count);
   boundary.weights.resize(count);
   boundary.friction_coefficient.resize(count);
   boundary.friction_bound.resize(count);
@@ -140,7 +142,7 @@ std::map<Index, double> mean_gaps(const Patch& patch) {
 
 /// g₀ and its rounding. Where the displacement's space contains the geometry, the trace of the nodes' gaps is the mean
 /// gap against planes, exactly.
-void fill_gaps(const Patch& patch, const Body& body, ContactBoundary& boundary) {
+void fill_gaps(const Patch& patch, const Body& body, ContactBoundary& boundary, ContactRows& rows) {
   // Displacements come from solves over the whole body, so their rounding is relative to its size, wherever a node is.
   const double body_size = extent(body.space->nodes);
   const double body_rounding = 8.0 * std::numeric_limits<double>::epsilon() * body_size;
@@ -157,7 +159,7 @@ void fill_gaps(const Patch& patch, const Body& body, ContactBoundary& boundary) 
     }
     if (by_quadrature) gap = means.at(multiplier.node >= 0 ? multiplier.node : multiplier.facet);
     boundary.initial_gap[patch.numbers[i]] = gap;
-    boundary.gap_rounding[patch.numbers[i]] = rounding;
+    rows.gap_rounding[patch.numbers[i]] = rounding;
   }
 }
 
@@ -201,27 +203,29 @@ class Operators {
  public:
   explicit Operators(int dimension) : d_(dimension) {}
 
-  void add(int point, const Multiplier& multiplier, const Vector& normal, const ContactTangents& tangents) {
+  void add(int point, const Multiplier& multiplier, const Vector& normal, const ContactTangents& tangents,
+           bool is_flat) {
     for (const auto& [node, weight] : multiplier.trace) {
       trace_.emplace_back(point, static_cast<int>(node), weight);
       for (int k = 0; k < d_; ++k) {
         const int dof = static_cast<int>(node) * d_ + k;
         gap_.emplace_back(point, dof, weight * normal[k]);
         for (int j = 0; j < d_ - 1; ++j) {
-          if (!tangents.slips[static_cast<std::size_t>(j)]) continue;
-          slip_.emplace_back(point * (d_ - 1) + j, dof, weight * tangents.directions(k, j));
+          const bool slips = tangents.slips[static_cast<std::size_t>(j)];
+          if (!slips && is_flat) continue;  // a row that follows the motion has its entries at all times
+          slip_.emplace_back(point * (d_ - 1) + j, dof, slips ? weight * tangents.directions(k, j) : 0.0);
         }
       }
     }
   }
 
-  void finish(Index points, Index nodes, ContactBoundary& boundary) const {
+  void finish(Index points, Index nodes, ContactBoundary& boundary, ContactRows& rows) const {
     boundary.trace.resize(points, nodes);
     boundary.trace.setFromTriplets(trace_.begin(), trace_.end());
-    boundary.gap_operator.resize(points, nodes * d_);
-    boundary.gap_operator.setFromTriplets(gap_.begin(), gap_.end());
-    boundary.tangential_trace.resize(points * (d_ - 1), nodes * d_);
-    boundary.tangential_trace.setFromTriplets(slip_.begin(), slip_.end());
+    rows.gap_operator.resize(points, nodes * d_);
+    rows.gap_operator.setFromTriplets(gap_.begin(), gap_.end());
+    rows.tangential_trace.resize(points * (d_ - 1), nodes * d_);
+    rows.tangential_trace.setFromTriplets(slip_.begin(), slip_.end());
   }
 
  private:
@@ -270,18 +274,51 @@ void fill_nodes(const std::vector<Patch>& patches, const BoundaryNodes& all, con
 }
 
 void fill_points(const Patch& patch, const Body& body, const FreeComponent& is_free, ContactBoundary& boundary,
-                 Operators& operators) {
+                 ContactRows& rows, Operators& operators) {
   for (std::size_t i = 0; i < patch.kept.size(); ++i) {
     const Multiplier& multiplier = patch.kept[i];
     const int number = patch.numbers[i];
     const Vector normal = patch.obstacle->normal(anchor_position(*body.space, multiplier));
     const ContactTangents tangents = tangents_at(freest_node(multiplier, boundary.dimension, is_free), normal, is_free);
     boundary.pair[static_cast<std::size_t>(number)] = multiplier.pair;
-    boundary.normals.col(number) = normal;
-    boundary.tangents[static_cast<std::size_t>(number)] = tangents.directions;
+    rows.normals.col(number) = normal;
+    rows.tangents[static_cast<std::size_t>(number)] = tangents.directions;
+    for (int k = 0; k < boundary.dimension - 1; ++k) {
+      const bool slips = tangents.slips[static_cast<std::size_t>(k)];
+      rows.slips[static_cast<std::size_t>(number * (boundary.dimension - 1) + k)] = slips ? 1 : 0;
+    }
     boundary.weights[number] = multiplier.weight;
-    operators.add(number, multiplier, normal, tangents);
+    operators.add(number, multiplier, normal, tangents, patch.obstacle->is_flat());
   }
+}
+
+/// Points and nodes at curved obstacles, where gaps and normals follow the motion.
+void follow_curved_obstacles(const Body& body, const std::vector<Patch>& patches, const std::vector<ContactPair>& pairs,
+                             const FreeComponent& is_free, ContactRows& rows, ContactBoundary& boundary) {
+  CurvedContactData data;
+  for (const Patch& patch : patches) {
+    if (patch.obstacle->is_flat()) continue;
+    for (std::size_t i = 0; i < patch.kept.size(); ++i) {
+      const Index node = freest_node(patch.kept[i], boundary.dimension, is_free);
+      CurvedContactData::Point point{patch.numbers[i], patch.obstacle, {}};
+      for (int k = 0; k < boundary.dimension; ++k) point.is_free[static_cast<std::size_t>(k)] = is_free(node, k);
+      data.points.push_back(point);
+    }
+  }
+  for (std::size_t i = 0; i < boundary.nodes.size(); ++i) {
+    const Obstacle* const obstacle = pairs[static_cast<std::size_t>(boundary.node_pair[i])].obstacle;
+    if (!obstacle->is_flat()) data.nodes.push_back({static_cast<Index>(i), boundary.nodes[i], obstacle});
+  }
+  if (data.points.empty()) return;
+  rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
+  data.node_positions = body.space->nodes;
+  data.node_normals = boundary.node_normals;
+  data.trace = boundary.trace;
+  boundary.geometry = make_curved_contact(std::move(data));
+  // Gaps at the start are those that the rows are the derivatives of.
+  Vector gap = boundary.initial_gap;
+  boundary.geometry->gaps(Vector::Zero(body.space->dof_count()), 0.0, gap);
+  boundary.initial_gap = gap;
 }
 
 }  // namespace
@@ -307,16 +344,19 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
   boundary.dimension = body.space->dimension;
   boundary.facets = facets_of(pairs);
   const Index count = number_points(patches);
-  resize(boundary, count);
+  const auto rows = std::make_shared<ContactRows>();
+  resize(boundary, *rows, count);
   Operators operators(boundary.dimension);
   for (const Patch& patch : patches) {
     check_weights(patch, pairs);
-    fill_points(patch, body, is_free, boundary, operators);
-    fill_gaps(patch, body, boundary);
+    fill_points(patch, body, is_free, boundary, *rows, operators);
+    fill_gaps(patch, body, boundary, *rows);
     fill_friction(patch, pairs, boundary);
   }
-  operators.finish(count, body.space->node_count(), boundary);
+  operators.finish(count, body.space->node_count(), boundary, *rows);
   fill_nodes(patches, nodes, body, pairs, boundary);
+  follow_curved_obstacles(body, patches, pairs, is_free, *rows, boundary);
+  boundary.rows = rows;
   return boundary;
 }
 

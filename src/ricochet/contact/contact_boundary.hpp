@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "ricochet/contact/contact_geometry.hpp"
 #include "ricochet/contact/obstacle.hpp"
 #include "ricochet/fem/assembly.hpp"
 
@@ -47,29 +49,27 @@ using FreeComponent = std::function<bool(Index node, int component)>;
 /// g_i = (1/D_i) ∫ψ_i g and its reaction is r_i = D_i λ_i for a multiplier λ in stress units: λ_h = Σ_i (r_i/D_i) ψ_i.
 /// The signs of the source's Λ_N^h and the disc of Λ_T^h are conditions on the λ_i. For nodal multipliers c is the
 /// identity: each node is a contact point, once per obstacle that may touch it.
+///
+/// What is here is fixed. Directions and gaps are in `rows`, which `geometry` makes anew where they follow the motion.
 struct ContactBoundary {
   int dimension = 2;
   std::vector<Index> facets;  ///< of all pairs, numbered through all blocks, ascending, each once
 
   // Per contact point:
-  std::vector<int> pair;         ///< index of the ContactPair it came from (the first that names it)
-  Points normals;                ///< unit normal out of the obstacle, d × points
-  std::vector<Points> tangents;  ///< d × (d−1), orthonormal with the normal
-  Vector initial_gap;            ///< g₀
-  Vector gap_rounding;           ///< a gap up to this is zero to rounding
-  Vector weights;                ///< D_i > 0: length in 2D, area in 3D
-  Vector friction_coefficient;   ///< F
-  Vector friction_bound;         ///< a force, bound × D_i; 0: none
-  SparseRowMatrix trace;         ///< c, points × nodes of the space
-  SparseRowMatrix gap_operator;  ///< G = c ⊗ nᵀ, points × dofs
-  SparseRowMatrix tangential_trace;  ///< B_T = c ⊗ tᵀ, (d−1)·points × dofs; a row is zero where supports hold the body
-                                     ///< in that direction: no friction acts along it
+  std::vector<int> pair;                            ///< index of the ContactPair it came from (the first that names it)
+  Vector initial_gap;                               ///< g₀
+  Vector weights;                                   ///< D_i > 0: length in 2D, area in 3D
+  Vector friction_coefficient;                      ///< F
+  Vector friction_bound;                            ///< a force, bound × D_i; 0: none
+  SparseRowMatrix trace;                            ///< c, points × nodes of the space
+  std::shared_ptr<const ContactRows> rows;          ///< at the start: against planes for good
+  std::shared_ptr<const ContactGeometry> geometry;  ///< null where rows never change
 
   // Per node of the contact boundary (once per obstacle), for what is reported node by node:
   std::vector<Index> nodes;      ///< ascending; all nodes that the trace of some point reaches
   std::vector<int> node_pair;    ///< index of the (first) ContactPair
   std::vector<Index> own_point;  ///< the contact point anchored at the node, or −1
-  Points node_normals;           ///< d × nodes
+  Points node_normals;           ///< at the start, d × nodes
   Vector node_initial_gap;
   SparseRowMatrix pressure_recovery;  ///< contact nodes × points: pressure at the nodes = this · r_N, in stress units;
                                       ///< any component of the friction traction likewise from that of the reaction
@@ -77,6 +77,28 @@ struct ContactBoundary {
   [[nodiscard]] Index size() const { return initial_gap.size(); }
   [[nodiscard]] bool has_friction() const {
     return (friction_coefficient.array() > 0.0).any() || (friction_bound.array() > 0.0).any();
+  }
+  [[nodiscard]] bool follows_motion() const { return geometry != nullptr; }
+  /// Calls visit(node, c_ij) for the nodes that a point sees.
+  template <class Visit>
+  void visit_nodes(Index point, const Visit& visit) const {
+    for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry)
+      visit(static_cast<Index>(entry.col()), entry.value());
+  }
+  [[nodiscard]] Index first_node(Index point) const { return SparseRowMatrix::InnerIterator(trace, point).col(); }
+  /// Calls visit(point, value) for the points that the pressure at an entry of `nodes` comes from.
+  template <class Visit>
+  void visit_recovery(Index entry, const Visit& visit) const {
+    for (SparseRowMatrix::InnerIterator from(pressure_recovery, entry); from; ++from)
+      visit(static_cast<Index>(from.col()), from.value());
+  }
+  /// Pressure at the entries of `nodes`, in stress units.
+  void recover_pressure(const Vector& normal_reaction, Vector& pressure) const {
+    pressure.noalias() = pressure_recovery * normal_reaction;
+  }
+  /// Σ_j c_ij X_j with the nodes' positions: d × points.
+  [[nodiscard]] Points positions(const Points& node_positions) const {
+    return (trace * node_positions.transpose()).transpose();
   }
   /// The nodes that the trace of some point reaches, ascending, each once.
   [[nodiscard]] std::vector<Index> unique_nodes() const;

@@ -6,7 +6,8 @@ namespace ricochet {
 // documentation.
 // clang-format off
 #define RICOCHET_OBSTACLES(obstacle) \
-  obstacle(plane_obstacle)
+  obstacle(plane_obstacle)           \
+  obstacle(sphere_obstacle)
 // clang-format on
 
 #define RICOCHET_DECLARE(registration) ObstacleRegistration registration();

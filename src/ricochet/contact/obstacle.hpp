@@ -6,26 +6,26 @@
 #include <vector>
 
 #include "ricochet/base/registry.hpp"
-#include "ricochet/base/types.hpp"
+#include "ricochet/base/space_vector.hpp"
 
 /// @file Rigid obstacles. To add one: a file in obstacles/ with a class and its registration, and one line in
 /// obstacle.cpp.
 namespace ricochet {
 
-/// A point or a displacement of space, of two or three components: making one allocates nothing.
-using SpaceVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
-
 /// A rigid body seen from a point of space: how far its surface is, which way is out, and how it moves. Gaps and
-/// normals are those at t = 0; an obstacle may translate, and turn in ways that leave its surface what it is.
+/// normals are those at t = 0; an obstacle may translate, and turn in ways that leave its surface what it is. The
+/// normal is the derivative of the gap.
 class Obstacle {
  public:
   virtual ~Obstacle() = default;
   /// Signed distance to the surface, positive outside.
-  [[nodiscard]] virtual double gap(const Vector& position) const = 0;
+  [[nodiscard]] virtual double gap(const SpaceVector& position) const = 0;
   /// Unit normal out of the obstacle at the surface's nearest point.
-  [[nodiscard]] virtual Vector normal(const Vector& position) const = 0;
+  [[nodiscard]] virtual SpaceVector normal(const SpaceVector& position) const = 0;
   /// Size of the rounding error of `gap` at this position: gaps no larger than this are zero.
-  [[nodiscard]] virtual double gap_rounding(const Vector& position) const = 0;
+  [[nodiscard]] virtual double gap_rounding(const SpaceVector& position) const = 0;
+  /// The gap is a linear function of the position.
+  [[nodiscard]] virtual bool is_flat() const = 0;
   /// Whether its material moves at all.
   [[nodiscard]] virtual bool moves() const = 0;
   /// Displacement of the obstacle as a whole since t = 0: the gap at t is that of position − translation(t) at 0.

@@ -1,44 +1,130 @@
 #include "ricochet/problem/contact_conditions.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace ricochet {
 
+namespace {
+
+/// Rows of the stage that may be written: nobody else looks at them. A step that is done keeps those that it was solved
+/// with, so there are as many as steps and stages in use, and nothing is allocated after the first ones.
+ContactRows& own_rows(const SemidiscreteProblem& problem, Stage& stage) {
+  for (std::shared_ptr<ContactRows>& rows : stage.rows_in_store) {
+    if (rows.use_count() > 1 && stage.rows != rows) continue;
+    if (rows.use_count() > 2) continue;
+    if (stage.rows != rows) {
+      *rows = *stage.rows;
+      stage.rows = rows;
+    }
+    return *rows;
+  }
+  stage.rows_in_store.push_back(
+      std::make_shared<ContactRows>(stage.rows != nullptr ? *stage.rows : *problem.contact.rows));
+  stage.rows = stage.rows_in_store.back();
+  return *stage.rows_in_store.back();
+}
+
+/// Rows at a displacement and a time.
+void take_rows(const SemidiscreteProblem& problem, const Vector& displacement, double time, Stage& stage) {
+  if (!problem.contact.follows_motion()) {
+    if (stage.rows != problem.contact.rows) stage.rows = problem.contact.rows;
+    return;
+  }
+  problem.contact.geometry->update(displacement, time, own_rows(problem, stage));
+}
+
+/// The slip rate at δ = 0, and its rounding.
+void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const Vector& obstacle, Stage& stage) {
+  stage.rows->tangential_motion(velocity, stage.slip_offset);
+  problem.trace_rounding(velocity, stage.slip_offset_rounding);
+  if (obstacle.size() == 0) return;
+  stage.slip_offset -= obstacle;
+  const int tangents = problem.dimension - 1;
+  for (Index i = 0; i < problem.contact.size(); ++i) {
+    stage.slip_offset_rounding[i] +=
+        8.0 * std::numeric_limits<double>::epsilon() * obstacle.segment(i * tangents, tangents).lpNorm<1>();
+  }
+}
+
+}  // namespace
+
 void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage) {
+  take_rows(problem, base, time, stage);
   problem.gaps(base, time, stage.gap_offset);
-  stage.gap_offset_rounding = problem.contact.gap_rounding;
+  stage.gap_offset_rounding = stage.rows->gap_rounding;
   stage.gap_factor = 1.0;
   stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
+  if (!problem.contact.follows_motion()) return;
+  if (!stage.motion) stage.motion.emplace();
+  stage.motion->displacement = base;
+  stage.motion->time = time;
 }
 
 void require_no_approach(const SemidiscreteProblem& problem, const Vector& displacement, double time,
                          const Vector& velocity, const ObstacleMotion& obstacle, double step, Stage& stage) {
+  take_rows(problem, displacement, time, stage);
+  stage.motion.reset();
   problem.gaps(displacement, time, stage.gap_offset);
   stage.eligible.resize(static_cast<std::size_t>(problem.contact.size()));
   for (Index i = 0; i < problem.contact.size(); ++i) {
-    const bool touches = stage.gap_offset[i] <= problem.contact.gap_rounding[i];
+    const bool touches = stage.gap_offset[i] <= stage.rows->gap_rounding[i];
     stage.eligible[static_cast<std::size_t>(i)] = touches ? 1 : 0;
   }
   problem.trace_rounding(displacement, stage.gap_offset);
   problem.trace_rounding(velocity, stage.gap_offset_rounding);
   stage.gap_offset_rounding += stage.gap_offset / step;
-  stage.gap_offset.noalias() = problem.contact.gap_operator * velocity;
-  if (obstacle.normal.size() > 0) stage.gap_offset -= obstacle.normal;
+  stage.rows->normal_motion(velocity, stage.gap_offset);
+  if (obstacle.normal.size() == 0) return;
+  if (obstacle.in_space.size() == 0) {
+    stage.gap_offset -= obstacle.normal;
+  } else {
+    for (Index i = 0; i < problem.contact.size(); ++i)
+      stage.gap_offset[i] -= stage.rows->normals.col(i).dot(obstacle.in_space.col(i));
+  }
 }
 
 void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, const ObstacleMotion& obstacle,
                       double slip_factor, Stage& stage) {
   if (!problem.contact.has_friction()) return;
   stage.slip_factor = slip_factor;
-  stage.slip_offset.noalias() = problem.contact.tangential_trace * velocity;
-  problem.trace_rounding(velocity, stage.slip_offset_rounding);
-  if (obstacle.tangential.size() == 0) return;
-  stage.slip_offset -= obstacle.tangential;
-  const int tangents = problem.dimension - 1;
-  for (Index i = 0; i < problem.contact.size(); ++i) {
-    stage.slip_offset_rounding[i] +=
-        8.0 * std::numeric_limits<double>::epsilon() * obstacle.tangential.segment(i * tangents, tangents).lpNorm<1>();
+  if (obstacle.in_space.size() == 0) {
+    take_slip(problem, velocity, obstacle.tangential, stage);
+  } else {
+    ObstacleMotion here = obstacle;
+    project_motion(*stage.rows, here);
+    take_slip(problem, velocity, here.tangential, stage);
   }
+  if (!stage.motion) return;
+  stage.motion->velocity = velocity;
+  stage.motion->obstacle_velocity = obstacle.in_space;
+}
+
+void linearize_contact(const SemidiscreteProblem& problem, const Vector& increment, Stage& stage) {
+  const ContactMotion& motion = *stage.motion;
+  const Vector displacement = motion.displacement + increment;
+  problem.contact.geometry->update(displacement, motion.time, own_rows(problem, stage));
+  problem.gaps(displacement, motion.time, stage.gap_offset);
+  Vector moved;
+  stage.rows->normal_motion(increment, moved);
+  stage.gap_offset -= moved;
+  if (stage.slip_offset.size() == 0) return;
+  ObstacleMotion obstacle{Vector::Zero(problem.contact.size()), Vector::Zero(stage.slip_offset.size()),
+                          motion.obstacle_velocity};
+  project_motion(*stage.rows, obstacle);
+  take_slip(problem, motion.velocity, motion.obstacle_velocity.size() > 0 ? obstacle.tangential : Vector(), stage);
+}
+
+double linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution, const Stage& stage,
+                           Vector& gap) {
+  problem.gaps(stage.motion->displacement + solution.increment, stage.motion->time, gap);
+  double error = -std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < gap.size(); ++i) {
+    if (stage.eligible[static_cast<std::size_t>(i)] == 0) continue;
+    const double wrong = solution.normal_reaction[i] > 0.0 ? std::abs(gap[i]) : -gap[i];
+    error = std::max(error, wrong - stage.gap_offset_rounding[i]);
+  }
+  return error;
 }
 
 }  // namespace ricochet

@@ -6,7 +6,8 @@
 /// @file The contact conditions that most stages have.
 namespace ricochet {
 
-/// Every contact point is eligible and y is its gap: y = g₀ + G (base + δ) at `time`.
+/// Every contact point is eligible and y is its gap: y = g₀ + G (base + δ) at `time`; where gaps are not linear,
+/// y = g(base + δ) with the rows at base, and the solver takes them again.
 void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage);
 
 /// Points that touch at `displacement` and `time` do not approach their obstacle, the others carry no force:
@@ -18,5 +19,13 @@ void require_no_approach(const SemidiscreteProblem& problem, const Vector& displ
 /// Coulomb's law on the slip rate w = B_T (velocity + σ δ) − the obstacle's. Does nothing without friction.
 void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, const ObstacleMotion& obstacle,
                       double slip_factor, Stage& stage);
+
+/// For solvers: rows and offsets at the increment that the stage has given.
+void linearize_contact(const SemidiscreteProblem& problem, const Vector& increment, Stage& stage);
+/// The largest amount by which the gaps at this increment are not what the stage's rows say, beyond rounding: of points
+/// that carry a force by how much they are open or closed, of others by how much they penetrate. At most 0: the stage
+/// is solved.
+[[nodiscard]] double linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution,
+                                         const Stage& stage, Vector& gap);
 
 }  // namespace ricochet

@@ -26,9 +26,10 @@ bool SemidiscreteProblem::has_moving_obstacles() const {
 }
 
 void SemidiscreteProblem::gaps(const Vector& displacement, double time, Vector& gap) const {
-  gap.noalias() = contact.gap_operator * displacement;
+  contact.rows->normal_motion(displacement, gap);
   gap += contact.initial_gap;
-  subtract_translation(obstacles, contact.pair, contact.normals, time, gap);
+  subtract_translation(obstacles, contact.pair, contact.rows->normals, time, gap);
+  if (contact.follows_motion()) contact.geometry->gaps(displacement, time, gap);
 }
 
 void SemidiscreteProblem::node_gaps(const Vector& displacement, double time, Vector& gap) const {
@@ -38,28 +39,50 @@ void SemidiscreteProblem::node_gaps(const Vector& displacement, double time, Vec
     gap[i] = contact.node_initial_gap[i] + contact.node_normals.col(i).dot(displacement.segment(first, dimension));
   }
   subtract_translation(obstacles, contact.node_pair, contact.node_normals, time, gap);
+  if (contact.follows_motion()) contact.geometry->node_gaps(displacement, time, gap);
+}
+
+SpaceVector SemidiscreteProblem::node_normal(Index entry, const Vector& displacement, double time) const {
+  if (contact.follows_motion()) return contact.geometry->node_normal(entry, displacement, time);
+  return contact.node_normals.col(entry);
 }
 
 void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double time, ObstacleMotion& velocity) const {
   if (!has_moving_obstacles()) return;
   const int tangents = dimension - 1;
+  const ContactRows& rows = *contact.rows;
   velocity.normal.setZero(contact.size());
   velocity.tangential.setZero(contact.size() * tangents);
+  if (contact.follows_motion()) velocity.in_space.setZero(dimension, contact.size());
   SpaceVector position(dimension);
   for (Index i = 0; i < contact.size(); ++i) {
     const Obstacle& obstacle = *obstacle_of_point(i);
     if (!obstacle.moves()) continue;
     position.setZero();
-    for (SparseRowMatrix::InnerIterator entry(contact.trace, i); entry; ++entry) {
-      position += entry.value() * (nodes.col(entry.col()) + displacement.segment(entry.col() * dimension, dimension));
-    }
+    contact.visit_nodes(i, [&](Index node, double weight) {
+      position += weight * (nodes.col(node) + displacement.segment(node * dimension, dimension));
+    });
     const SpaceVector at = obstacle.surface_velocity(position, time);
-    velocity.normal[i] = contact.normals.col(i).dot(at);
+    if (contact.follows_motion()) velocity.in_space.col(i) = at;
+    velocity.normal[i] = rows.normals.col(i).dot(at);
     for (int k = 0; k < tangents; ++k) {
       const Index row = i * tangents + k;
-      // Rows of B_T that are zero belong to directions in which supports hold the body: no slip is defined there.
-      if (contact.tangential_trace.row(row).nonZeros() == 0) continue;
-      velocity.tangential[row] = contact.tangents[static_cast<std::size_t>(i)].col(k).dot(at);
+      if (rows.slips[static_cast<std::size_t>(row)] == 0) continue;
+      velocity.tangential[row] = rows.tangents[static_cast<std::size_t>(i)].col(k).dot(at);
+    }
+  }
+}
+
+void project_motion(const ContactRows& rows, ObstacleMotion& motion) {
+  if (motion.in_space.size() == 0) return;
+  const Index tangents = rows.dimension() - 1;
+  for (Index i = 0; i < rows.size(); ++i) {
+    motion.normal[i] = rows.normals.col(i).dot(motion.in_space.col(i));
+    for (Index k = 0; k < tangents; ++k) {
+      const Index row = i * tangents + k;
+      const bool slips = rows.slips[static_cast<std::size_t>(row)] != 0;
+      motion.tangential[row] =
+          slips ? rows.tangents[static_cast<std::size_t>(i)].col(k).dot(motion.in_space.col(i)) : 0.0;
     }
   }
 }
@@ -68,26 +91,10 @@ void SemidiscreteProblem::trace_rounding(const Vector& values, Vector& rounding)
   rounding.resize(contact.size());
   for (Index i = 0; i < contact.size(); ++i) {
     double sum = 0.0;
-    for (SparseRowMatrix::InnerIterator entry(contact.trace, i); entry; ++entry) {
-      sum += std::abs(entry.value()) * values.segment(entry.col() * dimension, dimension).lpNorm<1>();
-    }
+    contact.visit_nodes(i, [&](Index node, double weight) {
+      sum += std::abs(weight) * values.segment(node * dimension, dimension).lpNorm<1>();
+    });
     rounding[i] = 8.0 * std::numeric_limits<double>::epsilon() * sum;
-  }
-}
-
-void SemidiscreteProblem::add_contact_force(const Vector& normal, const Vector& tangential, Vector& force) const {
-  // Row by row: few points carry a force, and nothing is allocated.
-  for (Index i = 0; i < normal.size(); ++i) {
-    if (normal[i] == 0.0) continue;
-    for (SparseRowMatrix::InnerIterator entry(contact.gap_operator, i); entry; ++entry) {
-      force[entry.col()] += entry.value() * normal[i];
-    }
-  }
-  for (Index i = 0; i < tangential.size(); ++i) {
-    if (tangential[i] == 0.0) continue;
-    for (SparseRowMatrix::InnerIterator entry(contact.tangential_trace, i); entry; ++entry) {
-      force[entry.col()] -= entry.value() * tangential[i];
-    }
   }
 }
 

@@ -14,10 +14,11 @@
 /// Where an obstacle translates by s(t), the gap is g₀ + G U − n·s(t).
 namespace ricochet {
 
-/// What obstacles do at the contact points: velocities, or increments over a step. Both empty when no obstacle moves.
+/// What obstacles do at the contact points: velocities, or increments over a step. All empty when no obstacle moves.
 struct ObstacleMotion {
   Vector normal;      ///< n·v, per point
   Vector tangential;  ///< tᵀv, (d−1) per point; 0 along rows of B_T that are zero
+  Points in_space;    ///< v, d × points, where rows follow the motion: others may be asked for; else empty
 };
 
 struct SemidiscreteProblem {
@@ -48,14 +49,18 @@ struct SemidiscreteProblem {
   void gaps(const Vector& displacement, double time, Vector& gap) const;
   /// Gaps of the nodes of the contact boundary likewise.
   void node_gaps(const Vector& displacement, double time, Vector& gap) const;
-  /// Velocities of the obstacles where the contact points are at this displacement and time.
+  /// The normal at a node of the contact boundary.
+  [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const;
+  /// Velocities of the obstacles where the contact points are at this displacement and time, along the directions of
+  /// the rows at the start.
   void obstacle_velocity(const Vector& displacement, double time, ObstacleMotion& velocity) const;
   /// Size of the rounding errors of a trace c·v, per point: 8 ε Σ_j |c_ij| |v_j|, a few roundings of v and of the
   /// products.
   void trace_rounding(const Vector& values, Vector& rounding) const;
-  /// Adds Gᵀ r_N − B_Tᵀ r_T to a force vector. `tangential` may be empty (frictionless).
-  void add_contact_force(const Vector& normal, const Vector& tangential, Vector& force) const;
 };
+
+/// Components of a motion of the obstacles along the directions of other rows.
+void project_motion(const ContactRows& rows, ObstacleMotion& motion);
 
 /// Fills massless_dofs, is_massless and contact_dofs from contact and supports, and takes the mass: dofs × dofs,
 /// symmetric to the bit.

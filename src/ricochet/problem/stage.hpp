@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ricochet/base/contact_status.hpp"
 #include "ricochet/base/types.hpp"
+#include "ricochet/contact/contact_rows.hpp"
 
 /// @file What a time scheme and a step solver say to each other: a step is one or more contact problems.
 ///
@@ -32,11 +35,24 @@ struct OperatorCoefficients {
   StageDofs dofs = StageDofs::all;
 };
 
+/// What the contact conditions of a stage are taken from, so that they can be taken again where rows follow the motion:
+/// the gap at displacement + δ at `time`, and the slip rate B_T (velocity + σ δ) less the obstacles'.
+struct ContactMotion {
+  Vector displacement, velocity;
+  double time = 0.0;
+  Points obstacle_velocity;  ///< d × points; empty where none moves
+};
+
 struct Stage {
-  Vector right_hand_side;          ///< b, per dof
-  Vector prescribed;               ///< δ on supported dofs, in the order of Supports::dofs()
-  std::vector<char> eligible;      ///< per contact point
-  Vector gap_offset;               ///< q, per contact point
+  std::shared_ptr<const ContactRows> rows;  ///< G and B_T
+  /// Set where the gaps of this stage are no linear functions of δ: the solver takes rows and offsets anew until they
+  /// hold at the solution.
+  std::optional<ContactMotion> motion;
+  std::vector<std::shared_ptr<ContactRows>> rows_in_store;  ///< memory for rows that follow the motion
+  Vector right_hand_side;                                   ///< b, per dof
+  Vector prescribed;                                        ///< δ on supported dofs, in the order of Supports::dofs()
+  std::vector<char> eligible;                               ///< per contact point
+  Vector gap_offset;                                        ///< q, per contact point
   Vector gap_offset_rounding;      ///< size of the rounding error of q: a y above −(this + the solver's own) is zero
   double gap_factor = 1.0;         ///< s
   double slip_factor = 1.0;        ///< σ

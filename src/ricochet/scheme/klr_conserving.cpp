@@ -69,7 +69,7 @@ class KlrConserving final : public Scheme {
     ahead += solution.increment;
     state.velocity = increment / h;
     state.acceleration = solution.increment / (h * h);
-    equations_.take_forces(problem, solution, h, state.velocity, 1.0, state);
+    equations_.take_forces(problem, stage, solution, h, state.velocity, 1.0, state);
   }
 
   void energy_state(const State& state, Vector& displacement, Vector& velocity) const override {

@@ -58,7 +58,7 @@ class Newmark final : public Scheme {
     state.acceleration = acceleration_;
     follow_without_inertia(problem, increment, h, state);
     if (problem.has_damping()) velocity_ += damping_factor(problem) * solution.increment;
-    equations_.take_forces(problem, solution, h, velocity_, 1.0, state);
+    equations_.take_forces(problem, stage, solution, h, velocity_, 1.0, state);
   }
 
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {

@@ -9,7 +9,8 @@ namespace ricochet {
   scheme(midpoint_scheme)        \
   scheme(klr_conserving_scheme)  \
   scheme(newmark_scheme)         \
-  scheme(semi_explicit_scheme)
+  scheme(semi_explicit_scheme)   \
+  scheme(contact_stabilized_scheme)
 // clang-format on
 
 #define RICOCHET_DECLARE(registration) SchemeRegistration registration();

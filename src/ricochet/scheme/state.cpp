@@ -13,9 +13,13 @@ void save(const State& state, Snapshot& snapshot, const std::string& name) {
   snapshot.save(name + ".support_reaction", state.forces.support_reaction);
   snapshot.save(name + ".varying_load", state.forces.varying_load);
   snapshot.save(name + ".damping_force", state.forces.damping_force);
+  const bool follows = !state.forces.rows->revision.empty();
+  const Points& normals = state.forces.rows->normals;
+  snapshot.save(name + ".normals", follows ? Vector(normals.reshaped()) : Vector());
   snapshot.save(name + ".contact_status", state.contact_status);
   snapshot.save(name + ".obstacle_increment.normal", state.obstacle_increment.normal);
   snapshot.save(name + ".obstacle_increment.tangential", state.obstacle_increment.tangential);
+  snapshot.save(name + ".obstacle_increment.in_space", Vector(state.obstacle_increment.in_space.reshaped()));
   snapshot.save(name + ".iterations", state.iterations);
   Snapshot::Texts names;
   for (const auto& [key, values] : state.memory) {
@@ -39,9 +43,18 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   state.forces.support_reaction = snapshot.reals(name + ".support_reaction", problem.supports.size());
   state.forces.varying_load = snapshot.reals(name + ".varying_load", dofs, 0);
   state.forces.damping_force = snapshot.reals(name + ".damping_force", dofs, 0);
+  state.forces.rows = problem.contact.rows;
+  if (problem.contact.follows_motion()) {
+    const auto rows = std::make_shared<ContactRows>(*problem.contact.rows);
+    const Vector& normals = snapshot.reals(name + ".normals", points * problem.dimension);
+    problem.contact.geometry->restore(normals.reshaped(problem.dimension, points), *rows);
+    state.forces.rows = rows;
+  }
   state.contact_status = snapshot.statuses(name + ".contact_status", points);
   state.obstacle_increment.normal = snapshot.reals(name + ".obstacle_increment.normal", points, 0);
   state.obstacle_increment.tangential = snapshot.reals(name + ".obstacle_increment.tangential", tangents, 0);
+  const Vector& in_space = snapshot.reals(name + ".obstacle_increment.in_space", points * problem.dimension, 0);
+  state.obstacle_increment.in_space = in_space.reshaped(problem.dimension, in_space.size() / problem.dimension);
   state.iterations = static_cast<int>(snapshot.integer(name + ".iterations"));
   for (const std::string& key : snapshot.texts(name + ".memory"))
     state.memory[key] = snapshot.reals(name + ".memory." + key);

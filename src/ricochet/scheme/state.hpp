@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,12 @@ namespace ricochet {
 
 /// Forces at the scheme's instant of a step, as its momentum equation contains them.
 struct StepForces {
-  Vector normal_reaction;      ///< r_N per contact point
-  Vector tangential_reaction;  ///< r_T, (d−1) per contact point; empty without friction
-  Vector support_reaction;     ///< on supported dofs
-  Vector varying_load;         ///< varying part of L, per dof; empty without one
-  Vector damping_force;        ///< C times the scheme's velocity, per dof; empty without damping
+  std::shared_ptr<const ContactRows> rows;  ///< directions of the reactions: Gᵀ r_N − B_Tᵀ r_T is their nodal force
+  Vector normal_reaction;                   ///< r_N per contact point
+  Vector tangential_reaction;               ///< r_T, (d−1) per contact point; empty without friction
+  Vector support_reaction;                  ///< on supported dofs
+  Vector varying_load;                      ///< varying part of L, per dof; empty without one
+  Vector damping_force;                     ///< C times the scheme's velocity, per dof; empty without damping
 };
 
 struct State {

@@ -37,14 +37,15 @@ void StepEquations::require_friction_over_step(const SemidiscreteProblem& proble
   require_friction(problem, rate_, 1.0 / step, stage);
 }
 
-void StepEquations::take_forces(const SemidiscreteProblem& problem, const StageSolution& solution, double step,
-                                const Vector& motion, double rate, State& state) const {
-  take_contact(solution, step, state);
+void StepEquations::take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                                double step, const Vector& motion, double rate, State& state) const {
+  take_contact(stage, solution, step, state);
   if (problem.loads.varies()) problem.loads.varying(time_, state.forces.varying_load);
   if (problem.has_damping()) state.forces.damping_force.noalias() = problem.damping * motion * rate;
 }
 
-void StepEquations::take_contact(const StageSolution& solution, double step, State& state) const {
+void StepEquations::take_contact(const Stage& stage, const StageSolution& solution, double step, State& state) const {
+  if (state.forces.rows != stage.rows) state.forces.rows = stage.rows;
   state.forces.normal_reaction = solution.normal_reaction;
   state.forces.tangential_reaction = solution.tangential_reaction;
   state.forces.support_reaction = solution.support_reaction;
@@ -52,6 +53,9 @@ void StepEquations::take_contact(const StageSolution& solution, double step, Sta
   if (obstacle_velocity_.normal.size() == 0) return;
   state.obstacle_increment.normal = step * obstacle_velocity_.normal;
   state.obstacle_increment.tangential = step * obstacle_velocity_.tangential;
+  if (obstacle_velocity_.in_space.size() == 0) return;
+  state.obstacle_increment.in_space = step * obstacle_velocity_.in_space;
+  project_motion(*stage.rows, state.obstacle_increment);
 }
 
 void follow_without_inertia(const SemidiscreteProblem& problem, const Vector& increment, double step, State& state) {

@@ -40,10 +40,10 @@ class StepEquations {
 
   /// Reactions, contact status and the motion of the obstacles over the step; the loads at the instant of balance(),
   /// and the damping force there, rate · C motion.
-  void take_forces(const SemidiscreteProblem& problem, const StageSolution& solution, double step, const Vector& motion,
-                   double rate, State& state) const;
+  void take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
+                   const Vector& motion, double rate, State& state) const;
   /// The reactions alone.
-  void take_contact(const StageSolution& solution, double step, State& state) const;
+  void take_contact(const Stage& stage, const StageSolution& solution, double step, State& state) const;
 
  private:
   double time_ = 0.0;

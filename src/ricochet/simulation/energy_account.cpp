@@ -43,17 +43,25 @@ EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const
   return result;
 }
 
-void EnergyAccount::enter_step(const Vector& increment, const State& state) {
-  const ObstacleMotion& obstacle = state.obstacle_increment;
-  gap_increment_.noalias() = problem_.contact.gap_operator * increment;
+void EnergyAccount::find_motion(const ContactRows& rows, const Vector& increment, ObstacleMotion& obstacle) {
+  project_motion(rows, obstacle);
+  rows.normal_motion(increment, gap_increment_);
   if (obstacle.normal.size() > 0) gap_increment_ -= obstacle.normal;
-  if (problem_.contact.has_friction()) {
-    slip_increment_.noalias() = problem_.contact.tangential_trace * increment;
-    if (obstacle.tangential.size() > 0) slip_increment_ -= obstacle.tangential;
-  }
+  if (!problem_.contact.has_friction()) return;
+  rows.tangential_motion(increment, slip_increment_);
+  if (obstacle.tangential.size() > 0) slip_increment_ -= obstacle.tangential;
+}
+
+void EnergyAccount::enter_step(const Vector& increment, const State& state) {
+  obstacle_ = state.obstacle_increment;
+  const ContactRows* rows = nullptr;
+  // Forces work along the rows that they act through: those of the two ends of a step differ where they follow the
+  // motion, and with the account of either for the other energy would be missing.
   const auto enter = [&](const StepForces& forces, double weight) {
     if (weight == 0.0) return;
-    const StepWorks step = works_of(forces, increment, obstacle);
+    if (rows != forces.rows.get()) find_motion(*forces.rows, increment, obstacle_);
+    rows = forces.rows.get();
+    const StepWorks step = works_of(forces, increment, obstacle_);
     works_.contact += weight * step.contact;
     works_.friction += weight * step.friction;
     works_.obstacle += weight * step.obstacle;

@@ -51,6 +51,8 @@ class EnergyAccount {
     double load = 0.0, contact = 0.0, friction = 0.0, support = 0.0, obstacle = 0.0, damping = 0.0;
   };
   [[nodiscard]] StepWorks works_of(const StepForces& forces, const Vector& increment, const ObstacleMotion& obstacle);
+  /// Motion of the contact points over the step along these rows, and that of the obstacles.
+  void find_motion(const ContactRows& rows, const Vector& increment, ObstacleMotion& obstacle);
 
   const SemidiscreteProblem& problem_;
   const Scheme& scheme_;
@@ -59,6 +61,7 @@ class EnergyAccount {
   StepForces previous_;
   double initial_ = 0.0;
   Vector displacement_, velocity_, gap_increment_, slip_increment_;
+  ObstacleMotion obstacle_;
 };
 
 }  // namespace ricochet

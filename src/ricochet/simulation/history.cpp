@@ -100,7 +100,7 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
 
 void HistoryRecorder::add_contact_force(const State& state) {
   SpaceVector force = SpaceVector::Zero(problem_.dimension);
-  for (Index i = 0; i < problem_.contact.size(); ++i) force += contact_force(problem_.contact, state.forces, i);
+  for (Index i = 0; i < problem_.contact.size(); ++i) force += contact_force(state.forces, i);
   append(force, row_);
 }
 
@@ -139,7 +139,7 @@ void HistoryRecorder::add_contact_state(const Observation& observation) {
 
 Observation Observer::observe(const State& state) {
   problem_.node_gaps(state.displacement, state.time, gap_);
-  pressure_.noalias() = problem_.contact.pressure_recovery * state.forces.normal_reaction;
+  problem_.contact.recover_pressure(state.forces.normal_reaction, pressure_);
   return {state, gap_, pressure_};
 }
 

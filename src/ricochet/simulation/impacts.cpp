@@ -93,8 +93,7 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
 void ImpactRecorder::find_places(const std::vector<std::string>& obstacles) {
   const ContactBoundary& contact = problem_.contact;
   for (Index point = 0; point < contact.size(); ++point) {
-    const SparseRowMatrix::InnerIterator entry(contact.trace, point);
-    const int body = rigid_.body_of_node(entry.col());
+    const int body = rigid_.body_of_node(contact.first_node(point));
     const std::string& obstacle = obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];
     const auto found = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
       return place.body == body && place.obstacle == obstacle;
@@ -130,20 +129,18 @@ void ImpactRecorder::find_forces(const State& state, std::vector<Force>& forces)
     if (!carries_force(state.forces, point)) continue;
     Force& force = forces[static_cast<std::size_t>(place_of_point_[static_cast<std::size_t>(point)])];
     const double pressing = state.forces.normal_reaction[point];
-    const SpaceVector own = contact_force(problem_.contact, state.forces, point);
+    const SpaceVector own = contact_force(state.forces, point);
     ++force.points;
     if (const double size = own.norm(); force.leading < 0 || size > force.leading_size) {
       force.leading = point;
       force.leading_size = size;
     }
     force.all.head(d) += own;
-    force.normal.head(d) += pressing * problem_.contact.normals.col(point);
+    force.normal.head(d) += pressing * state.forces.rows->normal(point);
     force.pressing += pressing;
     if (travel.normal.size() == 0) continue;
     force.travel += pressing * travel.normal[point];
-    const Points& tangents = problem_.contact.tangents[static_cast<std::size_t>(point)];
-    for (Index k = 0; k < d - 1; ++k)
-      force.sliding.head(d) += (pressing * travel.tangential[point * (d - 1) + k]) * tangents.col(k);
+    force.sliding.head(d) += pressing * state.forces.rows->along_tangents(point, travel.tangential);
   }
 }
 
@@ -218,10 +215,10 @@ void ImpactRecorder::take_largest(Interval& interval, const Force& force, double
 ImpactRecorder::Three ImpactRecorder::place_of(Index point) const {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   double sum = 0.0;
-  for (SparseRowMatrix::InnerIterator entry(problem_.contact.trace, point); entry; ++entry) {
-    place.head(problem_.dimension) += entry.value() * problem_.nodes.col(entry.col());
-    sum += entry.value();
-  }
+  problem_.contact.visit_nodes(point, [&](Index node, double weight) {
+    place.head(problem_.dimension) += weight * problem_.nodes.col(node);
+    sum += weight;
+  });
   return numbers_of(place / sum);
 }
 

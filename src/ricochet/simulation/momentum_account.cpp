@@ -27,7 +27,7 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
     : problem_(problem), step_(scheme.step()), rule_(scheme.work_rule()) {
   arm_ = problem.nodes.colwise().norm().maxCoeff();
   constant_load_ = of_nodes(problem.loads.constant());
-  positions_ = (problem.contact.trace * problem.nodes.transpose()).transpose();
+  positions_ = problem.contact.positions(problem.nodes);
   previous_ = resultant(state.forces);
 }
 
@@ -63,8 +63,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const 
   Resultant contact, supports;
   for (Index i = 0; i < forces.normal_reaction.size(); ++i) {
     // Under Tresca's law a point without pressure may still carry friction.
-    if (carries_force(forces, i))
-      add(contact, in_space(positions_.col(i)), in_space(contact_force(problem_.contact, forces, i)));
+    if (carries_force(forces, i)) add(contact, in_space(positions_.col(i)), in_space(contact_force(forces, i)));
   }
   include(contact);
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {

@@ -209,22 +209,20 @@ class NearestForce {
 std::vector<Cone> make_cones(const SemidiscreteProblem& problem, const FreeMotions& motions,
                              const std::vector<char>& frictionless) {
   const ContactBoundary& contact = problem.contact;
+  const ContactRows& rows = *contact.rows;
   const Index tangents = problem.dimension - 1;
   std::vector<Cone> cones;
   for (Index i = 0; i < contact.size(); ++i) {
-    SparseRowMatrix::InnerIterator first(contact.gap_operator, i);
-    if (!first || !motions.contains(first.col())) continue;
+    if (!motions.contains(contact.first_node(i) * problem.dimension)) continue;
     Cone cone{Vector::Zero(motions.count()), Matrix::Zero(motions.count(), tangents), 0.0, false, i};
-    for (SparseRowMatrix::InnerIterator entry(contact.gap_operator, i); entry; ++entry)
-      motions.add_force(entry.col(), entry.value(), cone.normal);
+    rows.visit_normal(i, [&](Index dof, double value) { motions.add_force(dof, value, cone.normal); });
     if (frictionless.empty() || frictionless[static_cast<std::size_t>(i)] == 0) {
       cone.coefficient = contact.friction_coefficient[i];
       cone.is_rough = cone.coefficient == 0.0 && contact.friction_bound[i] > 0.0;
     }
     for (Index k = 0; k < tangents; ++k) {
       Vector force = Vector::Zero(motions.count());
-      for (SparseRowMatrix::InnerIterator entry(contact.tangential_trace, i * tangents + k); entry; ++entry)
-        motions.add_force(entry.col(), entry.value(), force);
+      rows.visit_tangential(i * tangents + k, [&](Index dof, double value) { motions.add_force(dof, value, force); });
       cone.tangential.col(k) = force;
     }
     cones.push_back(std::move(cone));
@@ -241,7 +239,7 @@ UnheldMotion describe(const SemidiscreteProblem& problem, const FreeMotions& mot
   double pressure = 0.0, friction = 0.0;
   for (std::size_t k = 0; k < nearest.points().size(); ++k) {
     const Index point = nearest.points()[k];
-    normal += nearest.sizes()[k] * problem.contact.normals.col(point);
+    normal += nearest.sizes()[k] * problem.contact.rows->normal(point);
     pressure += nearest.sizes()[k];
     friction += nearest.sizes()[k] * problem.contact.friction_coefficient[point];
   }

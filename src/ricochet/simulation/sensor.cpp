@@ -16,14 +16,4 @@ bool carries_force(const StepForces& forces, Index point) {
   return !forces.tangential_reaction.segment(point * tangents, tangents).isZero(0.0);
 }
 
-SpaceVector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point) {
-  SpaceVector force = forces.normal_reaction[point] * contact.normals.col(point);
-  const Index tangents = contact.dimension - 1;
-  if (forces.tangential_reaction.size() > 0) {
-    force.noalias() -= contact.tangents[static_cast<std::size_t>(point)] *
-                       forces.tangential_reaction.segment(point * tangents, tangents);
-  }
-  return force;
-}
-
 }  // namespace ricochet

@@ -52,14 +52,14 @@ class Sensor {
 
 // For those who write sensors:
 
-/// A vector of space, never on the heap.
-using SpaceVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
 /// "name_x", "name_y", … appended.
 void add_vector_columns(std::vector<std::string>& columns, const std::string& name, int dimension);
 /// False for the many points that are open.
 [[nodiscard]] bool carries_force(const StepForces& forces, Index point);
 /// The force of a contact point on the body: r_N n − t r_T.
-[[nodiscard]] SpaceVector contact_force(const ContactBoundary& contact, const StepForces& forces, Index point);
+[[nodiscard]] inline SpaceVector contact_force(const StepForces& forces, Index point) {
+  return forces.rows->force(point, forces.normal_reaction, forces.tangential_reaction);
+}
 template <class Values>
 void append(const Values& values, std::vector<double>& row) {
   for (Index k = 0; k < values.size(); ++k) row.push_back(values[k]);

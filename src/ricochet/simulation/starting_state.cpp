@@ -59,6 +59,7 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const 
   StageSolution solution;
   solver->solve(0, stage, solution);
   state.displacement += solution.increment;
+  state.forces.rows = stage.rows;
   add_reactions(solution, state);
   const double change = largest(solution.increment);
   if (change > 0.0) {
@@ -75,15 +76,18 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
   if (problem.has_singular_mass()) return resting;
   Vector gap, rate_rounding;
   problem.gaps(state.displacement, 0.0, gap);
-  Vector rate = problem.contact.gap_operator * state.velocity;
-  const ObstacleMotion obstacle = obstacle_at_start(problem, state.displacement);
+  const Stage here = contact_stage(problem, state.displacement, {});
+  Vector rate;
+  here.rows->normal_motion(state.velocity, rate);
+  ObstacleMotion obstacle = obstacle_at_start(problem, state.displacement);
+  project_motion(*here.rows, obstacle);
   problem.trace_rounding(state.velocity, rate_rounding);
   if (obstacle.normal.size() > 0) {
     rate -= obstacle.normal;
     rate_rounding += 8.0 * std::numeric_limits<double>::epsilon() * obstacle.normal.cwiseAbs();
   }
   for (Index i = 0; i < problem.contact.size(); ++i) {
-    const bool closed = gap[i] <= problem.contact.gap_rounding[i] || (pressed.size() > 0 && pressed[i] > 0.0);
+    const bool closed = gap[i] <= problem.contact.rows->gap_rounding[i] || (pressed.size() > 0 && pressed[i] > 0.0);
     resting[static_cast<std::size_t>(i)] = closed && std::abs(rate[i]) <= rate_rounding[i] ? 1 : 0;
   }
   return resting;
@@ -112,6 +116,18 @@ bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vecto
   return true;
 }
 
+/// Part of the gaps' second derivative in time that the velocity makes, by differences over a step: zero against
+/// planes.
+void find_curvature_term(const SemidiscreteProblem& problem, const State& state, double step, Vector& term) {
+  term.setZero();
+  if (!problem.contact.follows_motion()) return;
+  Vector before, now, after;
+  problem.gaps(state.displacement - step * state.velocity, -step, before);
+  problem.gaps(state.displacement, 0.0, now);
+  problem.gaps(state.displacement + step * state.velocity, step, after);
+  term = (before - 2.0 * now + after) / (step * step);
+}
+
 /// Friction acts on the slip rate at the end of a step of this acceleration.
 void find_acceleration(const SemidiscreteProblem& problem, const Vector& support_acceleration, const Vector& pressed,
                        double step, const StepSolverOptions& options, State& state) {
@@ -121,12 +137,14 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   stage.prescribed = support_acceleration;
   stage.eligible = std::move(resting);
-  stage.gap_offset.setZero();  // the condition is on G a
+  stage.motion.reset();
+  find_curvature_term(problem, state, step, stage.gap_offset);  // the condition is on G a and this
   stage.gap_offset_rounding.setZero();
   require_friction(problem, state.velocity, obstacle_at_start(problem, state.displacement), step, stage);
   StageSolution solution;
   solver->solve(0, stage, solution);
   state.acceleration = solution.increment;
+  state.forces.rows = stage.rows;
   for (const Index dof : problem.massless_dofs) state.acceleration[dof] = 0.0;
   add_reactions(solution, state);
 }
@@ -136,7 +154,7 @@ void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
   Vector force;
   problem.mass.multiply(state.acceleration, force);
   force -= residual_force(problem, state.displacement, state.velocity);
-  problem.add_contact_force(-state.forces.normal_reaction, -state.forces.tangential_reaction, force);
+  state.forces.rows->add_force(-state.forces.normal_reaction, -state.forces.tangential_reaction, force);
   state.forces.support_reaction.resize(problem.supports.size());
   for (Index i = 0; i < problem.supports.size(); ++i) {
     state.forces.support_reaction[i] = force[problem.supports.dofs()[static_cast<std::size_t>(i)]];
@@ -165,7 +183,7 @@ PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& dis
   problem.gaps(displacement, 0.0, gap);
   PointsInside inside;
   for (Index i = 0; i < gap.size(); ++i) {
-    if (!(gap[i] < -problem.contact.gap_rounding[i])) continue;
+    if (!(gap[i] < -problem.contact.rows->gap_rounding[i])) continue;
     inside.points.push_back(i);
     inside.deepest = std::max(inside.deepest, -gap[i]);
   }
@@ -187,6 +205,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   }
   state.velocity = initial.velocity;
   state.acceleration.setZero(problem.dof_count());
+  state.forces.rows = problem.contact.rows;
   state.forces.normal_reaction.setZero(problem.contact.size());
   if (problem.contact.has_friction()) {
     state.forces.tangential_reaction.setZero(problem.contact.size() * (problem.dimension - 1));

@@ -23,6 +23,7 @@ CondensedContact::CondensedContact(const SemidiscreteProblem& problem, std::vect
       scale_(factor.scale()),
       friction_(problem.contact.has_friction()),
       all_points_(all_points),
+      rows_(problem.contact.rows.get()),
       candidates_(problem.contact.size()),
       columns_(factor) {
   contact_.reaction_scale = scale_;
@@ -40,18 +41,15 @@ Index CondensedContact::rows_of(Index point) const {
 /// Calls enter(row of the point, dof, value) for the entries of H.
 template <class Enter>
 void CondensedContact::visit_rows(Index point, const Enter& enter) const {
-  const ContactBoundary& contact = problem_.contact;
   const Index tangents = problem_.dimension - 1;
-  for (SparseRowMatrix::InnerIterator entry(contact.gap_operator, point); entry; ++entry)
-    enter(Index{0}, static_cast<Index>(entry.col()), entry.value());
-  for (Index k = 1; k < rows_of(point); ++k) {
-    for (SparseRowMatrix::InnerIterator entry(contact.tangential_trace, point * tangents + k - 1); entry; ++entry)
-      enter(k, static_cast<Index>(entry.col()), entry.value());
-  }
+  rows_->visit_normal(point, [&](Index dof, double value) { enter(Index{0}, dof, value); });
+  for (Index k = 1; k < rows_of(point); ++k)
+    rows_->visit_tangential(point * tangents + k - 1, [&](Index dof, double value) { enter(k, dof, value); });
 }
 
 void CondensedContact::start_again_with(const std::vector<Index>& points) {
   candidates_.clear();
+  revision_.clear();
   taken_up_.clear();
   columns_.clear();
   contact_.contact_operator.reset();
@@ -136,7 +134,8 @@ void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
   contact_solution_.reaction = start.head(contact_.first.back());
 }
 
-void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& w) {
+/// Hᵀ of some points, one after the other: unknowns × rows.
+SparseMatrix CondensedContact::transposed_rows(const std::vector<Index>& points) const {
   std::vector<Eigen::Triplet<double>> entries;
   Index row = 0;
   for (const Index point : points) {
@@ -145,11 +144,42 @@ void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& 
       if (unknown >= 0) entries.emplace_back(unknown, static_cast<int>(row + k), value);
     });
     row += rows_of(point);
-    contact_.first.push_back(contact_.first.back() + rows_of(point));
   }
   SparseMatrix transposed(factor_.size(), row);
   transposed.setFromTriplets(entries.begin(), entries.end());
-  columns_.append(transposed, w);
+  return transposed;
+}
+
+void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& w) {
+  for (const Index point : points) {
+    contact_.first.push_back(contact_.first.back() + rows_of(point));
+    if (!rows_->revision.empty()) revision_.push_back(rows_->revision[static_cast<std::size_t>(point)]);
+  }
+  columns_.append(transposed_rows(points), w);
+}
+
+/// The rows of the stage: of candidates whose rows are others than the last time, columns and W are made anew.
+void CondensedContact::take_rows(const Stage& stage) {
+  rows_ = stage.rows.get();
+  if (rows_->revision.empty() || candidates_.points().empty()) return;
+  std::vector<char> is_new(static_cast<std::size_t>(contact_.first.back()), 0);
+  bool any = false;
+  for (std::size_t i = 0; i < revision_.size(); ++i) {
+    const long revision = rows_->revision[static_cast<std::size_t>(candidates_.points()[i])];
+    if (revision == revision_[i]) continue;
+    revision_[i] = revision;
+    std::fill(is_new.begin() + contact_.first[i], is_new.begin() + contact_.first[i + 1], char{1});
+    any = true;
+  }
+  if (!any) return;
+  Matrix w = *contact_.contact_operator->dense();
+  columns_.renew(transposed_rows(candidates_.points()), is_new, w);
+  append_supported();
+  hold_directions_without_trace(w);
+  contact_.contact_operator = make_dense_operator(std::move(w));
+  const Vector start = solver_->warm_start();
+  solver_->analyse(contact_);
+  solver_->set_warm_start(start);
 }
 
 void CondensedContact::append_supported() {
@@ -204,6 +234,7 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
   if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
   asked_ = false;
+  take_rows(stage);
   if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
   if (!all_points_ && !choose_candidates(stage)) return;
   find_offsets(stage, y);
@@ -237,7 +268,7 @@ void CondensedContact::give(StageSolution& solution) const {
 }
 
 bool CondensedContact::take_up_penetrating(const Stage& stage, const Vector& increment) {
-  motion_.noalias() = problem_.contact.gap_operator * increment;
+  stage.rows->normal_motion(increment, motion_);
   std::vector<Index> found = candidates_.penetrating(stage, motion_, !asked_);
   must_ask_ = !found.empty();
   if (!must_ask_) {
@@ -276,14 +307,14 @@ void CondensedContact::solve_contact() {
   const Timer timer;
   solver_->solve(contact_, {.record = log::enabled(log::Level::debug)}, contact_solution_);
   solver_seconds_ += timer.seconds();
-  if (log::enabled(log::Level::debug)) tell_iterations();
+  if (log::enabled(log::Level::debug)) log_iterations();
   if (contact_solution_.solved()) return;
   if (observer_) observer_(contact_, contact_solution_);
   throw_not_solved();
 }
 
 /// A line per iteration, for those who want to see where a step spends its time or why it fails.
-void CondensedContact::tell_iterations() const {
+void CondensedContact::log_iterations() const {
   if (contact_solution_.record.empty()) {
     log::debug(fmt::format("contact: {} points, none that iterations were needed for", contact_.points()));
     return;
@@ -312,11 +343,10 @@ void CondensedContact::throw_contradiction(const std::vector<Index>& contradicti
   for (const Index candidate : contradiction) {
     const Index point = candidates_.points()[static_cast<std::size_t>(candidate)];
     Vector at = Vector::Zero(problem_.dimension);
-    for (SparseRowMatrix::InnerIterator entry(problem_.contact.trace, point); entry; ++entry)
-      at += entry.value() * problem_.nodes.col(entry.col());
+    problem_.contact.visit_nodes(point, [&](Index node, double weight) { at += weight * problem_.nodes.col(node); });
     places.insert(as_text(at));
     contacts.insert(fmt::format("contact.{} (normal {})", problem_.contact.pair[static_cast<std::size_t>(point)],
-                                as_text(problem_.contact.normals.col(point))));
+                                as_text(rows_->normals.col(point))));
   }
   constexpr std::size_t shown = 3;
   std::vector<std::string> some(places.begin(), places.end());

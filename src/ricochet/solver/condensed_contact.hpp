@@ -48,17 +48,19 @@ class CondensedContact {
   [[nodiscard]] Index rows_of(Index point) const;
   template <class Enter>
   void visit_rows(Index point, const Enter& enter) const;
+  void take_rows(const Stage& stage);
   void take_up(const std::vector<Index>& points);
   bool choose_candidates(const Stage& stage);
   void start_again_with(const std::vector<Index>& points);
   void sort_by_place(std::vector<Index>& points) const;
+  [[nodiscard]] SparseMatrix transposed_rows(const std::vector<Index>& points) const;
   void append_columns(const std::vector<Index>& points, Matrix& w);
   void append_supported();
   void hold_directions_without_trace(Matrix& w) const;
   void find_offsets(const Stage& stage, const Vector& y);
   void choose_friction(const Stage& stage);
   void solve_contact();
-  void tell_iterations() const;
+  void log_iterations() const;
   [[nodiscard]] std::size_t closed_points() const;
   void give(StageSolution& solution) const;
   [[noreturn]] void throw_not_solved() const;
@@ -70,8 +72,10 @@ class CondensedContact {
   double scale_;
   bool friction_;
   bool all_points_;
-  bool must_ask_ = false;  ///< points have penetrated where none was thought to touch
-  bool asked_ = false;     ///< the candidates took part in the last stage
+  bool must_ask_ = false;       ///< points have penetrated where none was thought to touch
+  bool asked_ = false;          ///< the candidates took part in the last stage
+  const ContactRows* rows_;     ///< those of the stage that is being solved
+  std::vector<long> revision_;  ///< of each candidate's rows in the columns; empty where rows never change
   ContactCandidates candidates_;
   std::vector<Index> taken_up_;  ///< how many candidates there were after each call of take_up
   ContactColumns columns_;

@@ -43,6 +43,21 @@ std::size_t ContactColumns::entries() const {
   return sum;
 }
 
+/// The columns of a block from the rows `begin`… of H.
+void ContactColumns::fill(Block& block, const SparseMatrix& transposed, Index begin) const {
+  const auto on_path = [&](Index place) {
+    const auto& first = block.path.first;
+    const auto k = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), place) - first.begin()) - 1;
+    return block.path.offsets[k] + place - first[k];
+  };
+  block.columns.setZero();
+  for (Index column = 0; column < block.columns.cols(); ++column) {
+    for (SparseMatrix::InnerIterator entry(transposed, begin + column); entry; ++entry)
+      block.columns(on_path(factor_.place(entry.row())), column) = entry.value();
+  }
+  factor_.supernodal().forward_on_path(block.path, block.columns);
+}
+
 void ContactColumns::append_block(const SparseMatrix& transposed, Index begin, Index end) {
   Block block;
   block.first = row_count_;
@@ -52,19 +67,29 @@ void ContactColumns::append_block(const SparseMatrix& transposed, Index begin, I
       reached.push_back(factor_.place(entry.row()));
   }
   block.path = factor_.supernodal().path(reached);
-  block.columns.setZero(block.path.rows(), end - begin);
-  const auto on_path = [&](Index place) {
-    const auto& first = block.path.first;
-    const auto k = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), place) - first.begin()) - 1;
-    return block.path.offsets[k] + place - first[k];
-  };
-  for (Index row = begin; row < end; ++row) {
-    for (SparseMatrix::InnerIterator entry(transposed, row); entry; ++entry)
-      block.columns(on_path(factor_.place(entry.row())), row - begin) = entry.value();
-  }
-  factor_.supernodal().forward_on_path(block.path, block.columns);
+  block.columns.resize(block.path.rows(), end - begin);
+  fill(block, transposed, begin);
   row_count_ += end - begin;
   blocks_.push_back(std::move(block));
+}
+
+void ContactColumns::renew(const SparseMatrix& transposed, const std::vector<char>& is_new, Matrix& w) {
+  std::vector<char> renewed(blocks_.size(), 0);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    Block& block = blocks_[i];
+    const auto begin = is_new.begin() + block.first;
+    if (std::find(begin, begin + block.columns.cols(), 1) == begin + block.columns.cols()) continue;
+    fill(block, transposed, block.first);
+    renewed[i] = 1;
+  }
+  for (std::size_t j = 0; j < blocks_.size(); ++j) {
+    for (std::size_t i = 0; i <= j; ++i) {
+      if (renewed[i] == 0 && renewed[j] == 0) continue;
+      w.block(blocks_[i].first, blocks_[j].first, blocks_[i].columns.cols(), blocks_[j].columns.cols()).setZero();
+      add_product(blocks_[i], blocks_[j], w);
+    }
+  }
+  w.triangularView<Eigen::StrictlyLower>() = w.transpose();
 }
 
 /// Adds YᵀY of two blocks: paths meet in whole supernodes.

@@ -23,6 +23,10 @@ class ContactColumns {
   /// and columns of YᵀY, symmetric to the bit. Columns that lie close in the tree should follow each other.
   void append(const SparseMatrix& transposed, Matrix& w);
 
+  /// Makes columns anew where rows of H have other values on the same dofs: `transposed` holds all rows, `is_new` marks
+  /// those that changed. `w` is that of all rows.
+  void renew(const SparseMatrix& transposed, const std::vector<char>& is_new, Matrix& w);
+
   /// Yᵀ y, per row.
   void motion(const Vector& y, Vector& result);
   /// y += Y r: columns of rows with r = 0 are not read.
@@ -38,6 +42,7 @@ class ContactColumns {
     Matrix columns;
   };
   void append_block(const SparseMatrix& transposed, Index begin, Index end);
+  void fill(Block& block, const SparseMatrix& transposed, Index begin) const;
   static void add_product(const Block& left, const Block& right, Matrix& w);
 
   const SparseCholesky& factor_;

@@ -39,11 +39,12 @@ ContactZone::ContactZone(const SemidiscreteProblem& problem, const OperatorCoeff
 /// The stage on the correction: q and p at x instead of at δ = 0.
 void ContactZone::state_locally(const Stage& stage, const Vector& x) {
   stage_ = stage;  // its right-hand side is not looked at; members that come later are not forgotten
+  stage_.rows_in_store.clear();
   stage_.prescribed.setZero(stage.prescribed.size());
-  motion_.noalias() = problem_.contact.gap_operator * x;
+  stage.rows->normal_motion(x, motion_);
   stage_.gap_offset += stage.gap_factor * motion_;
   if (stage.slip_offset.size() > 0) {
-    slip_.noalias() = problem_.contact.tangential_trace * x;
+    stage.rows->tangential_motion(x, slip_);
     stage_.slip_offset += stage.slip_factor * slip_;
   }
   for (std::size_t i = 0; i < has_.size(); ++i) {

@@ -43,7 +43,7 @@ void DirectStage::recover_support_reaction(const Stage& stage, StageSolution& so
   solution.support_reaction.resize(problem_.supports.size());
   if (dofs.empty()) return;
   contact_force_.setZero(problem_.dof_count());
-  problem_.add_contact_force(solution.normal_reaction, solution.tangential_reaction, contact_force_);
+  stage.rows->add_force(solution.normal_reaction, solution.tangential_reaction, contact_force_);
   supported_force_.noalias() = supported_ * solution.increment;
   for (Index i = 0; i < problem_.supports.size(); ++i) {
     const Index dof = dofs[static_cast<std::size_t>(i)];

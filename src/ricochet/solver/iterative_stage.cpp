@@ -48,7 +48,7 @@ class IterativeStage final : public StageSolver {
   void make_zone_of(const std::vector<Index>& points, const std::vector<Index>& nodes);
   [[nodiscard]] std::vector<Index> with_neighbours(const std::vector<Index>& nodes) const;
   void find_residual(const Stage& stage);
-  void add_reactions(const StageSolution& solution, Vector& force) const;
+  void add_reactions(const Stage& stage, const StageSolution& solution, Vector& force) const;
   void mask(Vector& values) const;
   [[nodiscard]] double forces(const Stage& stage, const StageSolution& solution);
   void solve_linear(double target);
@@ -99,8 +99,8 @@ std::vector<Index> IterativeStage::with_neighbours(const std::vector<Index>& nod
   std::vector<Index> result;
   for (Index point = 0; point < problem_.contact.size(); ++point) {
     bool inside = near_.number(point) >= 0;
-    for (SparseRowMatrix::InnerIterator entry(problem_.contact.trace, point); entry; ++entry)
-      inside = inside || reached[static_cast<std::size_t>(entry.col())] != 0;
+    problem_.contact.visit_nodes(
+        point, [&](Index node, double) { inside = inside || reached[static_cast<std::size_t>(node)] != 0; });
     if (inside) result.push_back(point);
   }
   return result;
@@ -181,8 +181,8 @@ void IterativeStage::find_residual(const Stage& stage) {
   mask(residual_);
 }
 
-void IterativeStage::add_reactions(const StageSolution& solution, Vector& force) const {
-  problem_.add_contact_force(solution.normal_reaction, solution.tangential_reaction, force);
+void IterativeStage::add_reactions(const Stage& stage, const StageSolution& solution, Vector& force) const {
+  stage.rows->add_force(solution.normal_reaction, solution.tangential_reaction, force);
   mask(force);
 }
 
@@ -198,7 +198,7 @@ double IterativeStage::forces(const Stage& stage, const StageSolution& solution)
   mask(work_);
   const double given = gradients_.norm(*preconditioner_, work_);
   work_.setZero();
-  add_reactions(solution, work_);
+  add_reactions(stage, solution, work_);
   return std::max(given, gradients_.norm(*preconditioner_, work_));
 }
 
@@ -225,12 +225,12 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
     if (touches) {
       zone_->solve(stage, residual_, guess_, solution);
       find_residual(stage);
-      add_reactions(solution, residual_);
+      add_reactions(stage, solution, residual_);
     }
     if (target == 0.0) target = options_.tolerance * forces(stage, solution);
     const double norm = gradients_.norm(*preconditioner_, residual_);
     if (norm <= target) {
-      motion_.noalias() = problem_.contact.gap_operator * guess_;
+      stage.rows->normal_motion(guess_, motion_);
       const std::vector<Index> penetrating = near_.penetrating(stage, motion_, !touches);
       if (penetrating.empty()) {
         if (touches) zone_->report();
@@ -263,7 +263,7 @@ void IterativeStage::end(const Stage& stage, StageSolution& solution) {
   if (supported.empty()) return;
   product_.multiply(guess_, work_);
   work_ -= stage.right_hand_side;
-  problem_.add_contact_force(-solution.normal_reaction, -solution.tangential_reaction, work_);
+  stage.rows->add_force(-solution.normal_reaction, -solution.tangential_reaction, work_);
   for (std::size_t i = 0; i < supported.size(); ++i)
     solution.support_reaction[static_cast<Index>(i)] = work_[supported[i]];
 }

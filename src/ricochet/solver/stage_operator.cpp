@@ -34,7 +34,7 @@ std::vector<Index> nodes_near(const SemidiscreteProblem& problem, const SparseMa
     nodes.push_back(node);
   };
   for (const Index point : points) {
-    for (SparseRowMatrix::InnerIterator entry(problem.contact.trace, point); entry; ++entry) reach(entry.col());
+    problem.contact.visit_nodes(point, [&](Index node, double) { reach(node); });
   }
   const Index d = problem.dimension;
   std::size_t begin = 0;

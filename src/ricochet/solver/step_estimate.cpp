@@ -52,10 +52,10 @@ double column_entries(const SemidiscreteProblem& problem, const OperatorCoeffici
   double sum = 0.0;
   for (Index k = 0; k < samples; ++k) {
     int longest = 0;
-    for (SparseRowMatrix::InnerIterator entry(problem.contact.gap_operator, k * points / samples); entry; ++entry) {
-      const int unknown = number[static_cast<std::size_t>(entry.col())];
+    problem.contact.rows->visit_normal(k * points / samples, [&](Index dof, double) {
+      const int unknown = number[static_cast<std::size_t>(dof)];
       if (unknown >= 0) longest = std::max(longest, length[static_cast<std::size_t>(analysed.factor.place(unknown))]);
-    }
+    });
     sum += rows * longest;
   }
   return sum / static_cast<double>(samples);

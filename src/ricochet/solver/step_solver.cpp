@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/solver/choose_method.hpp"
 #include "ricochet/solver/stage_solver.hpp"
 
@@ -14,14 +18,14 @@ namespace {
 /// Operations of a factorization that takes seconds: it is worth a message.
 constexpr double long_factorization = 1e11;
 
-void tell_factorization(const ChosenMethod& chosen, std::size_t unknowns) {
+void log_factorization(const ChosenMethod& chosen, std::size_t unknowns) {
   if (chosen.predicted_operations < long_factorization) return;
   log::info(fmt::format("factorizing an operator of {} unknowns: {:.3g} entries ({:.2g} GB), {:.2g} operations",
                         unknowns, chosen.predicted_entries, 1e-9 * sizeof(double) * chosen.predicted_entries,
                         chosen.predicted_operations));
 }
 
-void tell_iterations(const ChosenMethod& chosen) {
+void log_iterations(const ChosenMethod& chosen) {
   log::info(fmt::format("solved by iterations: a factor would take {:.2g} GB and {:.2g} operations to make",
                         1e-9 * sizeof(double) * chosen.predicted_entries, chosen.predicted_operations));
 }
@@ -29,12 +33,15 @@ void tell_iterations(const ChosenMethod& chosen) {
 class StagesStepSolver final : public StepSolver {
  public:
   StagesStepSolver(const SemidiscreteProblem& problem, const std::vector<OperatorCoefficients>& operators,
-                   const StepSolverOptions& options) {
+                   const StepSolverOptions& options)
+      : problem_(problem) {
     for (const OperatorCoefficients& coefficients : operators) add_stage(problem, coefficients, options);
   }
 
-  void solve(std::size_t number, const Stage& stage, StageSolution& solution) override {
-    stages_.at(number)->solve(stage, solution);
+  void solve(std::size_t number, Stage& stage, StageSolution& solution) override {
+    StageSolver& solver = *stages_.at(number);
+    solver.solve(stage, solution);
+    if (stage.motion) follow_motion(solver, stage, solution);
   }
   void observe_contact(const ContactObserver& observer) override {
     for (const auto& stage : stages_) stage->observe_contact(observer);
@@ -67,10 +74,10 @@ class StagesStepSolver final : public StepSolver {
       analysed = analyse_operator(problem, coefficients);
       chosen = choose_method(analysed.factor.predicted(), coefficients, options);
       chosen.ordering_seconds = timer.restart();
-      if (chosen.method == SolverMethod::iterative) tell_iterations(chosen);
+      if (chosen.method == SolverMethod::iterative) log_iterations(chosen);
     }
     if (chosen.method == SolverMethod::direct) {
-      tell_factorization(chosen, analysed.dofs.size());
+      log_factorization(chosen, analysed.dofs.size());
       stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options));
       chosen.factorization_seconds = timer.seconds();
     } else {
@@ -80,6 +87,28 @@ class StagesStepSolver final : public StepSolver {
     methods_.push_back(chosen);
   }
 
+  /// Tangent planes at the solution, until they leave no more than rounding in the gaps: Newton's method on these,
+  /// whose error is squared by each round.
+  void follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
+    constexpr int most_rounds = 30;
+    int iterations = solution.iterations;
+    double error = linearization_error(problem_, solution, stage, gap_);
+    for (int round = 0; error > 0.0; ++round) {
+      if (round == most_rounds || !std::isfinite(error)) {
+        throw Error(
+            ErrorKind::not_converged,
+            fmt::format("the gaps to curved obstacles did not settle in {} rounds: {:.3g} is left", round, error));
+      }
+      linearize_contact(problem_, solution.increment, stage);
+      solver.solve(stage, solution);
+      iterations += solution.iterations;
+      error = linearization_error(problem_, solution, stage, gap_);
+    }
+    solution.iterations = iterations;
+  }
+
+  const SemidiscreteProblem& problem_;
+  Vector gap_;
   std::vector<std::unique_ptr<StageSolver>> stages_;
   std::vector<ChosenMethod> methods_;
 };

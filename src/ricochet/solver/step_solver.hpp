@@ -39,8 +39,9 @@ struct ChosenMethod {
 class StepSolver {
  public:
   virtual ~StepSolver() = default;
-  /// Solves stage `number` (of the operators given at the start). Throws Error(not_converged) which says what failed.
-  virtual void solve(std::size_t number, const Stage& stage, StageSolution& solution) = 0;
+  /// Solves stage `number` (of the operators given at the start). Where its rows follow the motion they are,
+  /// afterwards, those that hold at the solution. Throws Error(not_converged) which says what failed.
+  virtual void solve(std::size_t number, Stage& stage, StageSolution& solution) = 0;
   /// Shows every contact problem that is solved from now on, and its solution, to the observer; none if it is empty.
   virtual void observe_contact(const ContactObserver& observer) = 0;
   /// Spent so far in contact solvers, for the summary.

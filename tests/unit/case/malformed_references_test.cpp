@@ -53,32 +53,38 @@ TEST(MalformedCase, References) {
        "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
        "\"floor\"\n[[contact]]\ngroup = \"low\"\nobstacle = \"floor\"",
        "20:9: the group \"low\" is in another [[contact]] already, at 17:9"},
-      {0, "[obstacle.floor]\ntype = \"sphere\"\npoint = [0, 0]\nnormal = [0, 1]",
-       "13:8: \"type\" must be \"plane\"; found the text \"sphere\". This version has planes only, each with a "
-       "half-space behind it: curved obstacles are not supported. Several planes approximate a hollow (a trough, a "
-       "bowl); nothing replaces a round obstacle."},
+      {0, "[obstacle.floor]\ntype = \"torus\"\npoint = [0, 0]\nnormal = [0, 1]",
+       "13:8: \"type\" must be \"plane\" or \"sphere\"; found the text \"torus\". A plane with a half-space behind it, "
+       "or a "
+       "sphere: a ball or, seen from inside, a bowl. Other curved obstacles are not supported."},
       // What belongs to another shape is no further problem.
       {0,
-       "[obstacle.ball]\ntype = \"sphere\"\ncentre = [0, 0, 0]\nradius = 1.0\nside = \"inside\"\n[[contact]]\ngroup = "
-       "\"low\"\nobstacle = \"ball\"",
-       "13:8: \"type\" must be \"plane\"; found the text \"sphere\". This version has planes only, each with a "
-       "half-space behind it: curved obstacles are not supported. Several planes approximate a hollow (a trough, a "
-       "bowl); nothing replaces a round obstacle."},
+       "[obstacle.ring]\ntype = \"torus\"\ncentre = [0, 0, 0]\nminor = 1.0\n[[contact]]\ngroup = "
+       "\"low\"\nobstacle = \"ring\"",
+       "13:8: \"type\" must be \"plane\" or \"sphere\"; found the text \"torus\". A plane with a half-space behind it, "
+       "or a "
+       "sphere: a ball or, seen from inside, a bowl. Other curved obstacles are not supported."},
+      {0, "[obstacle.ball]\ntype = \"sphere\"\npoint = [0, 0]\nradius = -1\nside = \"within\"",
+       "12:1: [obstacle.ball] has no \"centre\": a vector of 2 or 3 numbers (unit: length). Centre of the sphere; in "
+       "two "
+       "dimensions of the circle.\n14:9: \"point\" is for the type \"plane\" only; the type is \"sphere\"\n15:10: "
+       "\"radius\" must be a positive number (unit: length); found the integer -1\n16:8: \"side\" must be \"outside\" "
+       "or "
+       "\"inside\"; found the text \"within\""},
       {0, "[obstacle.floor]\ntype = \"plain\"\nnrmal = [0, 1]",
-       "13:8: \"type\" must be \"plane\"; found the text \"plain\"; did you mean \"plane\"?"},
+       "13:8: \"type\" must be \"plane\" or \"sphere\"; found the text \"plain\"; did you mean \"plane\"?"},
       {0, "[obstacle.floor]\ntype = 3",
-       "13:8: \"type\" must be \"plane\"; found the integer 3. This version has planes "
-       "only, each with a half-space behind it: curved obstacles are not supported. Several planes approximate a "
-       "hollow (a trough, a bowl); nothing replaces a round obstacle."},
+       "13:8: \"type\" must be \"plane\" or \"sphere\"; found the integer 3. A plane with a half-space behind it, or a "
+       "sphere: a ball or, seen from inside, a bowl. Other curved obstacles are not supported."},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 0]",
        "15:10: \"normal\" must not be zero: it points out of the obstacle"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 0, 1]",
        "15:10: \"normal\" of [obstacle.floor] has 3 entries, but \"point\" of [obstacle.floor] at 14:9 has 2: all "
        "vectors must have as many as the mesh has dimensions"},
       {0, "[obstacle.floor]\npoint = [0]\nnormal = [0, 1, 2, 3]",
-       "12:1: [obstacle.floor] has no \"type\": \"plane\". This version has planes only, each with a half-space behind "
-       "it: curved obstacles are not supported. Several planes approximate a hollow (a trough, a bowl); nothing "
-       "replaces a round obstacle.\n13:9: \"point\" "
+       "12:1: [obstacle.floor] has no \"type\": \"plane\" or \"sphere\". A plane with a half-space behind it, or a "
+       "sphere: "
+       "a ball or, seen from inside, a bowl. Other curved obstacles are not supported.\n13:9: \"point\" "
        "must be a vector of 2 or 3 numbers (unit: length); found a list of 1 value\n14:10: \"normal\" must be a vector "
        "of 2 or 3 numbers; found a list of 4 values"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, \"a\"]\nnormal = [nan, 1]",
@@ -166,7 +172,8 @@ TEST(MalformedCase, References) {
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"time.shceme\" = \"midpoint\" }",
        "15:10: \"when\" names \"time.shceme\": unknown key \"shceme\" in [time]; did you mean \"scheme\"?"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"time.scheme\" = \"midpont\" }",
-       "15:26: \"time.scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\" or \"semi-explicit\"; "
+       "15:26: \"time.scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\", \"semi-explicit\" or "
+       "\"contact-stabilized\"; "
        "found the text "
        "\"midpont\"; did you mean \"midpoint\"?"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"contact.0.friction\" = 0 }",

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "case_text.hpp"
@@ -29,7 +30,9 @@ void expect_keys(const Json& schema, const std::vector<Key>& keys) {
     EXPECT_NE(found.at("description").get<std::string>().find(key.doc), std::string::npos);
     EXPECT_EQ(found.contains("default"), key.standard.has_value());
     const Json required = schema.value("required", Json::array());
-    EXPECT_EQ(std::find(required.begin(), required.end(), key.name) != required.end(), key.required);
+    // A key of one type among several is required where that type is named.
+    const bool always = key.required && key.only_for.empty();
+    EXPECT_EQ(std::find(required.begin(), required.end(), key.name) != required.end(), always);
     if (key.type == KeyType::table) expect_keys(found, key.keys);
   }
 }
@@ -54,6 +57,18 @@ TEST(CaseSchema, HasEveryKeyAndNoOther) {
     const std::size_t sections = section.kind == SectionKind::top ? case_sections().size() - 1 : 0;
     EXPECT_EQ(entry.at("properties").size(), section.keys.size() + sections);
   }
+}
+
+TEST(CaseSchema, AsksForTheKeysOfTheTypeThatIsNamed) {
+  const Json& obstacle = Json::parse(case_schema()).at("properties").at("obstacle").at("additionalProperties");
+  std::map<std::string, Json> required;
+  for (const Json& condition : obstacle.at("allOf")) {
+    const Json& type = condition.at("if").at("properties").at("type").at("const");
+    required[type.get<std::string>()] = condition.at("then").at("required");
+    EXPECT_TRUE(condition.at("then").contains("not")) << "keys of other types";
+  }
+  EXPECT_EQ(required.at("plane"), (Json{"point", "normal"}));
+  EXPECT_EQ(required.at("sphere"), (Json{"centre", "radius"}));
 }
 
 TEST(CaseSchema, CarriesBoundsChoicesAndUnits) {

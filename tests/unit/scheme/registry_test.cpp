@@ -85,14 +85,14 @@ TEST_F(OutsideScheme, IsReadFromACaseAndMadeWithItsParameter) {
   state.displacement = Vector::Zero(2);
   state.velocity = Vector::Constant(2, 1.05);
   Vector increment;
-  scheme->advance({}, state, stages, increment);
+  scheme->advance(SemidiscreteProblem(), state, stages, increment);
   EXPECT_NEAR(state.velocity[0], 1.0, 1e-15);
   EXPECT_NEAR(state.displacement[1], 0.1, 1e-15);
 }
 
 TEST_F(OutsideScheme, HasItsDefaultAndItsRange) {
   EXPECT_EQ(problem_of(case_text, {"time.drag=-1"}),
-            "--set time.drag=-1: \"drag\" must be a number of at least 0 (unit: 1/time); found the number -1");
+            "--set time.drag=-1: \"drag\" must be a number of at least 0 (unit: 1/time); found the integer -1");
   std::string without = case_text;
   without.replace(without.find("drag = 0.5\n"), 11, "");
   EXPECT_EQ(read_case_text(without, "a.toml", {}).time.parameters.number("drag"), 2.0);
@@ -125,7 +125,8 @@ TEST(Registry, MakesByNameWithParametersInCode) {
     }
   };
   EXPECT_EQ(message("euler", {}),
-            "unknown scheme \"euler\"; known: \"midpoint\", \"klr-conserving\", \"newmark\" and \"semi-explicit\"");
+            "unknown scheme \"euler\"; known: \"midpoint\", \"klr-conserving\", \"newmark\", \"semi-explicit\" and "
+            "\"contact-stabilized\"");
   EXPECT_EQ(message("midpoint", {{"beta", 0.25}}), "scheme \"midpoint\" has no parameter \"beta\"; it has none");
   EXPECT_EQ(message("newmark", {{"beta", 0.25}}), "the parameter \"gamma\" is missing");
   EXPECT_EQ(message("newmark", {{"beta", "a"}, {"gamma", 0.5}}),

@@ -111,8 +111,8 @@ TEST(ContactBoundary, HasNoFrictionWhereSupportsLeaveNoIndependentSlipIn2D) {
     ASSERT_EQ(boundary.size(), 4);
     for (Index i = 0; i < boundary.size(); ++i) {
       const bool at_support = test->space.nodes(0, boundary.nodes[static_cast<std::size_t>(i)]) == 0.0;
-      EXPECT_EQ(boundary.tangential_trace.row(i).nonZeros(), at_support ? 0 : 2);
-      EXPECT_EQ(boundary.gap_operator.row(i).nonZeros(), 2);
+      EXPECT_EQ(boundary.rows->tangential_trace.row(i).nonZeros(), at_support ? 0 : 2);
+      EXPECT_EQ(boundary.rows->gap_operator.row(i).nonZeros(), 2);
     }
   }
 }
@@ -127,14 +127,14 @@ TEST(ContactBoundary, KeepsTheSlipThatOneHeldComponentLeavesIn3D) {
     ASSERT_EQ(boundary.size(), 16);
     for (Index i = 0; i < boundary.size(); ++i) {
       Matrix frame(3, 3);
-      frame << boundary.normals.col(i), boundary.tangents[static_cast<std::size_t>(i)];
+      frame << boundary.rows->normals.col(i), boundary.rows->tangents[static_cast<std::size_t>(i)];
       EXPECT_LE((frame.transpose() * frame - Matrix::Identity(3, 3)).norm(), 1e-15 * 8);
       const bool at_support = test->space.nodes(0, boundary.nodes[static_cast<std::size_t>(i)]) == 0.0;
       const bool one = at_support && held.size() == 1;
       const double along_held_axis = one ? frame(held.front(), 1) : 0.0;
       EXPECT_EQ(along_held_axis, 0.0);
-      EXPECT_EQ(boundary.tangential_trace.row(2 * i).nonZeros(), !at_support || one ? 3 : 0);
-      EXPECT_EQ(boundary.tangential_trace.row(2 * i + 1).nonZeros(), at_support ? 0 : 3);
+      EXPECT_EQ(boundary.rows->tangential_trace.row(2 * i).nonZeros(), !at_support || one ? 3 : 0);
+      EXPECT_EQ(boundary.rows->tangential_trace.row(2 * i + 1).nonZeros(), at_support ? 0 : 3);
     }
   }
 }
@@ -159,13 +159,13 @@ TEST(ContactBoundary, HasIndependentConditionsWhateverIsHeld) {
           const ContactBoundary boundary = make_contact_boundary(
               test->body, {pair_of(*test, d == 2 ? "y0" : "z0", *obstacle, multipliers)}, is_free);
           Matrix rows(boundary.size() * d, test->space.dof_count());
-          rows << Matrix(boundary.gap_operator), Matrix(boundary.tangential_trace);
+          rows << Matrix(boundary.rows->gap_operator), Matrix(boundary.rows->tangential_trace);
           for (Index dof = 0; dof < rows.cols(); ++dof) {
             if (!is_free(dof / d, static_cast<int>(dof % d))) rows.col(dof).setZero();
           }
           std::vector<Index> used;
           for (Index row = 0; row < rows.rows(); ++row) {
-            if (row < boundary.size() || boundary.tangential_trace.row(row - boundary.size()).nonZeros() > 0) {
+            if (row < boundary.size() || boundary.rows->tangential_trace.row(row - boundary.size()).nonZeros() > 0) {
               used.push_back(row);
             }
           }
@@ -184,7 +184,7 @@ TEST(ContactBoundary, GivesAFacetTheFrictionOfItsFreestNode) {
   const auto obstacle = plane(Vector::Unit(2, 1));
   const ContactBoundary boundary =
       make_contact_boundary(test->body, {pair_of(*test, "y0", *obstacle, "p0")}, held_at_x0(*test, {0}));
-  for (Index i = 0; i < boundary.size(); ++i) EXPECT_EQ(boundary.tangential_trace.row(i).nonZeros(), 6);
+  for (Index i = 0; i < boundary.size(); ++i) EXPECT_EQ(boundary.rows->tangential_trace.row(i).nonZeros(), 6);
 }
 
 TEST(ContactBoundary, JoinsGroupsThatShareAnObstacle) {
@@ -255,7 +255,7 @@ TEST(ContactBoundary, RefusesWhatIsNotDetermined) {
       return message_of(
           *test, {pair_of(*test, "y0", *floor, multipliers, one), pair_of(*test, "x0", *other, multipliers, two)});
     };
-    EXPECT_NE(rubbing({0.3, 0.0}, {0.2, 0.0}).find("are one and the same plane at the node at ("), std::string::npos);
+    EXPECT_NE(rubbing({0.3, 0.0}, {0.2, 0.0}).find("are one and the same surface at the node at ("), std::string::npos);
     EXPECT_NE(rubbing({0.3, 0.0}, {}).find("different friction or motion"), std::string::npos);
     EXPECT_EQ(rubbing({0.3, 0.0}, {0.3, 0.0}), "no error");
   }
@@ -311,10 +311,10 @@ TEST(ContactBoundary, HasNoUnit) {
       const ContactBoundary b =
           make_contact_boundary(other->body, {pair_of(*other, "boundary", *large, multipliers, {0.0, 1.0})}, all_free);
       const double area = std::pow(scale, d - 1);
-      EXPECT_EQ(Matrix(a.gap_operator), Matrix(b.gap_operator));
-      EXPECT_EQ(Matrix(a.tangential_trace), Matrix(b.tangential_trace));
+      EXPECT_EQ(Matrix(a.rows->gap_operator), Matrix(b.rows->gap_operator));
+      EXPECT_EQ(Matrix(a.rows->tangential_trace), Matrix(b.rows->tangential_trace));
       EXPECT_EQ(a.initial_gap * scale, b.initial_gap);
-      EXPECT_EQ(a.gap_rounding * scale, b.gap_rounding);
+      EXPECT_EQ(a.rows->gap_rounding * scale, b.rows->gap_rounding);
       EXPECT_EQ(a.weights * area, b.weights);
       EXPECT_EQ(a.friction_bound * area, b.friction_bound);
       EXPECT_EQ(Matrix(a.pressure_recovery), Matrix(area * b.pressure_recovery));

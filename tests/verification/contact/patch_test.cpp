@@ -87,7 +87,7 @@ class PressedBlock {
         add(entry.row(), column, entry.value());
     }
     for (Index i = 0; i < points; ++i) {
-      for (SparseRowMatrix::InnerIterator entry(problem_.contact.gap_operator, i); entry; ++entry) {
+      for (SparseRowMatrix::InnerIterator entry(problem_.contact.rows->gap_operator, i); entry; ++entry) {
         add(dofs + i, entry.col(), entry.value());
         add(entry.col(), dofs + i, -entry.value());
       }

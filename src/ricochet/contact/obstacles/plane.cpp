@@ -30,12 +30,13 @@ class Plane final : public Obstacle {
     if (rotation_rate_ != 0.0 && normal_.size() != 3) throw Error(ErrorKind::invalid_input, turns_in_space_only);
   }
 
-  [[nodiscard]] double gap(const Vector& position) const override { return (position - point_).dot(normal_); }
-  [[nodiscard]] Vector normal(const Vector&) const override { return normal_; }
-  [[nodiscard]] double gap_rounding(const Vector& position) const override {
+  [[nodiscard]] double gap(const SpaceVector& position) const override { return (position - point_).dot(normal_); }
+  [[nodiscard]] SpaceVector normal(const SpaceVector&) const override { return normal_; }
+  [[nodiscard]] double gap_rounding(const SpaceVector& position) const override {
     const double size = (position.cwiseAbs() + point_.cwiseAbs()).dot(normal_.cwiseAbs());
     return 8.0 * std::numeric_limits<double>::epsilon() * size;
   }
+  [[nodiscard]] bool is_flat() const override { return true; }
   [[nodiscard]] bool moves() const override { return rotation_rate_ != 0.0 || !velocity_.isZero(0.0); }
   [[nodiscard]] SpaceVector translation(double time) const override { return time * velocity_; }
   /// What moves along the plane is not seen, what turns is.

@@ -52,7 +52,7 @@ void ContactFields::evaluate(const State& state) {
   std::fill(status_.begin(), status_.end(), -1);
   const ContactBoundary& contact = problem_.contact;
   problem_.node_gaps(state.displacement, state.time, node_gap_);
-  node_pressure_ = contact.pressure_recovery * state.forces.normal_reaction;
+  contact.recover_pressure(state.forces.normal_reaction, node_pressure_);
   for (Index i = 0; i < node_gap_.size(); ++i) {
     const std::size_t node = number(contact.nodes[static_cast<std::size_t>(i)]);
     pressure_[node] = std::max(pressure_[node], node_pressure_[i]);
@@ -69,9 +69,9 @@ void ContactFields::evaluate(const State& state) {
       take(own);
       continue;
     }
-    for (SparseRowMatrix::InnerIterator entry(contact.pressure_recovery, i); entry; ++entry) {
-      if (entry.value() != 0.0) take(entry.col());
-    }
+    contact.visit_recovery(i, [&](Index point, double value) {
+      if (value != 0.0) take(point);
+    });
   }
   if (has_friction_) evaluate_friction(state);
 }
@@ -82,11 +82,10 @@ void ContactFields::evaluate_friction(const State& state) {
   const int d = problem_.dimension;
   node_traction_.setZero(problem_.dof_count());
   for (std::size_t i = 0; i < contact.nodes.size() && state.forces.tangential_reaction.size() > 0; ++i) {
-    for (SparseRowMatrix::InnerIterator entry(contact.pressure_recovery, static_cast<Index>(i)); entry; ++entry) {
+    contact.visit_recovery(static_cast<Index>(i), [&](Index point, double value) {
       node_traction_.segment(contact.nodes[i] * d, d) -=
-          entry.value() * contact.tangents[static_cast<std::size_t>(entry.col())] *
-          state.forces.tangential_reaction.segment(entry.col() * (d - 1), d - 1);
-    }
+          value * state.forces.rows->along_tangents(point, state.forces.tangential_reaction);
+    });
   }
   take_vector(space_, node_traction_, traction_);
 }

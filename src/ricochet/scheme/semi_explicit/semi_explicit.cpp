@@ -60,7 +60,7 @@ class SemiExplicit final : public Scheme {
     motion_.move(problem, solution != nullptr ? solution->increment : no_correction_, h, state, increment);
     problem.internal_force->evaluate(state.displacement, state.memory.at(internal_force));
     motion_.accelerate(state.memory.at(internal_force), load(problem), h, state);
-    if (solution != nullptr) equations_.take_contact(*solution, h, state);
+    if (solution != nullptr) equations_.take_contact(stages.stage(0), *solution, h, state);
     supports_.advance(problem, motion_.mass(), motion_.damping(), state.memory.at(internal_force), load(problem),
                       increment, h, state);
     for (const Index dof : problem.massless_dofs) state.velocity[dof] = increment[dof] / h;

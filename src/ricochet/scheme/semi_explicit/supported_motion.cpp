@@ -23,7 +23,7 @@ void SupportedMotion::advance(const SemidiscreteProblem& problem, const Vector& 
   problem.supports.values(state.time + 2.0 * step, next);
   if (contact_force_.size() == 0) contact_force_.setZero(problem.dof_count());
   for (const Index dof : contact_node_dofs_) contact_force_[dof] = 0.0;
-  problem.add_contact_force(state.forces.normal_reaction, state.forces.tangential_reaction, contact_force_);
+  state.forces.rows->add_force(state.forces.normal_reaction, state.forces.tangential_reaction, contact_force_);
   state.forces.support_reaction.resize(problem.supports.size());
   for (Index i = 0; i < problem.supports.size(); ++i) {
     const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];

@@ -26,11 +26,11 @@ class BoundarySensor final : public Sensor {
     // Of a point's force the part Σ c_ij acts on these nodes, with the moment Σ c_ij X_j × force.
     for (Index point = 0; point < problem.contact.size(); ++point) {
       Point own{point, 0.0, Eigen::Vector3d::Zero()};
-      for (SparseRowMatrix::InnerIterator entry(problem.contact.trace, point); entry; ++entry) {
-        if (inside[static_cast<std::size_t>(entry.col())] == 0) continue;
-        own.part += entry.value();
-        own.arm += entry.value() * arm(entry.col());
-      }
+      problem.contact.visit_nodes(point, [&](Index node, double weight) {
+        if (inside[static_cast<std::size_t>(node)] == 0) return;
+        own.part += weight;
+        own.arm += weight * arm(node);
+      });
       if (own.part != 0.0 || !own.arm.isZero(0.0)) points_.push_back(own);
     }
   }
@@ -54,7 +54,7 @@ class BoundarySensor final : public Sensor {
     }
     for (const Point& point : points_) {
       Eigen::Vector3d own = Eigen::Vector3d::Zero();
-      own.head(d) = contact_force(problem_.contact, forces, point.number);
+      own.head(d) = contact_force(forces, point.number);
       force += point.part * own;
       moment += point.arm.cross(own);
     }

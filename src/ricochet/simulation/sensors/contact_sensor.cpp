@@ -28,13 +28,13 @@ class ContactSensor final : public Sensor {
     SpaceVector force = SpaceVector::Zero(d), centre = SpaceVector::Zero(d);
     double pressing = 0.0, area = 0.0;
     for (const Index point : points_) {
-      if (carries_force(state.forces, point)) force += contact_force(contact, state.forces, point);
+      if (carries_force(state.forces, point)) force += contact_force(state.forces, point);
       const double normal = state.forces.normal_reaction[point];
       if (!(normal > 0.0)) continue;
       pressing += normal;
       area += contact.weights[point];
-      for (SparseRowMatrix::InnerIterator entry(contact.trace, point); entry; ++entry)
-        centre += normal * entry.value() * problem_.nodes.col(entry.col());
+      contact.visit_nodes(point,
+                          [&](Index node, double weight) { centre += normal * weight * problem_.nodes.col(node); });
     }
     if (pressing > 0.0) centre /= pressing;
     append(force, row);

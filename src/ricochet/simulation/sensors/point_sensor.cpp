@@ -15,9 +15,9 @@ class PointSensor final : public Sensor {
     const int pair = contact.node_pair[static_cast<std::size_t>(probe_.contact_node)];
     for (Index point = 0; point < contact.size(); ++point) {
       if (problem.obstacle_of_point(point) != problem.obstacles[static_cast<std::size_t>(pair)]) continue;
-      for (SparseRowMatrix::InnerIterator entry(contact.trace, point); entry; ++entry) {
-        if (entry.col() == probe_.node) points_.emplace_back(point, entry.value());
-      }
+      contact.visit_nodes(point, [&](Index node, double weight) {
+        if (node == probe_.node) points_.emplace_back(point, weight);
+      });
     }
   }
 
@@ -39,8 +39,8 @@ class PointSensor final : public Sensor {
     append(state.velocity.segment(probe_.node * d, d), row);
     if (probe_.contact_node < 0) return;
     SpaceVector force = SpaceVector::Zero(d);
-    for (const auto& [point, weight] : points_) force += weight * contact_force(problem_.contact, state.forces, point);
-    const SpaceVector normal = problem_.contact.node_normals.col(probe_.contact_node);
+    for (const auto& [point, weight] : points_) force += weight * contact_force(state.forces, point);
+    const SpaceVector normal = problem_.node_normal(probe_.contact_node, state.displacement, state.time);
     const double normal_force = normal.dot(force);
     for (const double value :
          {observation.gap[probe_.contact_node], observation.pressure[probe_.contact_node], normal_force})

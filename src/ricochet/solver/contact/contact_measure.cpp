@@ -46,6 +46,7 @@ ContactSystem::Floor ContactSystem::floor_of(const ContactPoint& point, const Co
     double& of_row = k == 0 ? floor.normal : floor.tangential;
     of_row = std::max(of_row, offset_rounding_[row] + of_sum);
     floor.of_sums = std::max(floor.of_sums, of_sum);
+    floor.of_offset = std::max(floor.of_offset, offset_rounding_[row]);
   }
   return floor;
 }
@@ -62,7 +63,9 @@ ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) con
     result.residual = std::max(result.residual, value);
     result.rounding_floor = std::max(result.rounding_floor, floor);
     const bool is_finite = std::isfinite(value) && std::isfinite(floor);
-    const bool is_hidden = is_finite && value <= floor && value > loosest_residual * data_;
+    // What q is rounded to excuses all; what the sums are rounded to, only so much.
+    const double known = (1.0 + point.coefficient) * of_motion.of_offset / std::sqrt(point.diagonal);
+    const bool is_hidden = is_finite && value <= floor && value > std::max(loosest_residual * data_, known);
     const bool is_steep = point.coefficient > steep_coefficient;
     const bool is_violated = (is_hidden || is_steep) && violation(point, iterate) > excused;
     if (!is_finite) {

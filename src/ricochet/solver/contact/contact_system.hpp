@@ -102,7 +102,8 @@ class ContactSystem {
   /// The floor of u at a point: normal, and tangential.
   struct Floor {
     double normal = 0.0, tangential = 0.0;
-    double of_sums = 0.0;  ///< largest part that is not the rounding of q
+    double of_offset = 0.0;  ///< largest part that is the rounding of q
+    double of_sums = 0.0;    ///< and that is not
   };
   [[nodiscard]] Floor floor_of(const ContactPoint& point, const ContactIterate& iterate) const;
 

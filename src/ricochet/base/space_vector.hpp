@@ -1,0 +1,10 @@
+#pragma once
+
+#include "ricochet/base/types.hpp"
+
+namespace ricochet {
+
+/// A point or a displacement of space, of two or three components: making one allocates nothing.
+using SpaceVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
+
+}  // namespace ricochet

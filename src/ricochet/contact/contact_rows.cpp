@@ -1,0 +1,29 @@
+#include "ricochet/contact/contact_rows.hpp"
+
+namespace ricochet {
+
+SpaceVector ContactRows::along_tangents(Index point, const Vector& components) const {
+  const Index count = normals.rows() - 1;
+  return tangents[static_cast<std::size_t>(point)] * components.segment(point * count, count);
+}
+
+SpaceVector ContactRows::force(Index point, const Vector& normal, const Vector& tangential) const {
+  SpaceVector force = normal[point] * normals.col(point);
+  const Index count = normals.rows() - 1;
+  if (tangential.size() > 0)
+    force.noalias() -= tangents[static_cast<std::size_t>(point)] * tangential.segment(point * count, count);
+  return force;
+}
+
+void ContactRows::add_force(const Vector& normal, const Vector& tangential, Vector& force) const {
+  // Row by row: few points carry a force, and nothing is allocated.
+  for (Index i = 0; i < normal.size(); ++i) {
+    if (normal[i] != 0.0) visit_normal(i, [&](Index dof, double value) { force[dof] += value * normal[i]; });
+  }
+  for (Index i = 0; i < tangential.size(); ++i) {
+    if (tangential[i] != 0.0)
+      visit_tangential(i, [&](Index dof, double value) { force[dof] -= value * tangential[i]; });
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/base/space_vector.hpp"
+
+/// @file The conditions of the contact points, linear in the displacement. Against planes they hold for a whole run;
+/// where a surface is curved they are those at one displacement and time.
+namespace ricochet {
+
+/// Row i of the gap operator G = c ⊗ nᵀ and rows (d−1)i … of B_T = c ⊗ tᵀ are the derivatives of point i's gap and of
+/// its displacements along the surface. Contact solvers read the matrices; all others ask the functions.
+struct ContactRows {
+  Points normals;                    ///< unit normal out of the obstacle, d × points
+  std::vector<Points> tangents;      ///< d × (d−1), orthonormal with the normal
+  std::vector<char> slips;           ///< per row of B_T; 0: supports hold the body in that direction, no friction acts
+  Vector gap_rounding;               ///< a gap up to this is zero to rounding
+  SparseRowMatrix gap_operator;      ///< G, points × dofs
+  SparseRowMatrix tangential_trace;  ///< B_T, (d−1)·points × dofs; a row is zero where nothing slips
+  std::vector<long> revision;        ///< per point: another number, another row; empty where rows never change
+
+  [[nodiscard]] Index size() const { return normals.cols(); }
+  [[nodiscard]] int dimension() const { return static_cast<int>(normals.rows()); }
+  [[nodiscard]] SpaceVector normal(Index point) const { return normals.col(point); }
+  /// Of components along the tangents of a point, (d−1) per point, the vector in space.
+  [[nodiscard]] SpaceVector along_tangents(Index point, const Vector& components) const;
+  /// The force of a point on the body: r_N n − t r_T. `tangential` may be empty.
+  [[nodiscard]] SpaceVector force(Index point, const Vector& normal, const Vector& tangential) const;
+  /// Adds Gᵀ r_N − B_Tᵀ r_T to a force vector. `tangential` may be empty (frictionless).
+  void add_force(const Vector& normal, const Vector& tangential, Vector& force) const;
+  /// G v and B_T v: of velocities or of displacements.
+  void normal_motion(const Vector& values, Vector& result) const { result.noalias() = gap_operator * values; }
+  void tangential_motion(const Vector& values, Vector& result) const { result.noalias() = tangential_trace * values; }
+  /// Calls visit(dof, value) for the entries of a row of G or B_T.
+  template <class Visit>
+  void visit_normal(Index point, const Visit& visit) const {
+    for (SparseRowMatrix::InnerIterator entry(gap_operator, point); entry; ++entry)
+      visit(static_cast<Index>(entry.col()), entry.value());
+  }
+  template <class Visit>
+  void visit_tangential(Index row, const Visit& visit) const {
+    for (SparseRowMatrix::InnerIterator entry(tangential_trace, row); entry; ++entry)
+      visit(static_cast<Index>(entry.col()), entry.value());
+  }
+};
+
+}  // namespace ricochet

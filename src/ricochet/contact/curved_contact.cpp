@@ -1,0 +1,95 @@
+#include "ricochet/contact/curved_contact.hpp"
+
+#include <algorithm>
+
+#include "ricochet/contact/contact_directions.hpp"
+
+namespace ricochet {
+
+namespace {
+
+class CurvedContact final : public ContactGeometry {
+ public:
+  explicit CurvedContact(CurvedContactData data) : data_(std::move(data)) {}
+
+  void gaps(const Vector& displacement, double time, Vector& gap) const override {
+    for (const CurvedContactData::Point& point : data_.points)
+      gap[point.number] = point.obstacle->gap(position(point, displacement, time));
+  }
+
+  void node_gaps(const Vector& displacement, double time, Vector& gap) const override {
+    for (const CurvedContactData::Node& node : data_.nodes)
+      gap[node.entry] = node.obstacle->gap(position(node, displacement, time));
+  }
+
+  [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const override {
+    const auto curved = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
+                                         [](const CurvedContactData::Node& node, Index e) { return node.entry < e; });
+    if (curved == data_.nodes.end() || curved->entry != entry) return data_.node_normals.col(entry);
+    return curved->obstacle->normal(position(*curved, displacement, time));
+  }
+
+  void update(const Vector& displacement, double time, ContactRows& rows) const override {
+    ++revision_;
+    for (const CurvedContactData::Point& point : data_.points)
+      write_rows(point, point.obstacle->normal(position(point, displacement, time)), rows);
+  }
+
+  void restore(const Points& normals, ContactRows& rows) const override {
+    ++revision_;
+    for (const CurvedContactData::Point& point : data_.points) write_rows(point, normals.col(point.number), rows);
+  }
+
+ private:
+  [[nodiscard]] SpaceVector position(const CurvedContactData::Point& point, const Vector& displacement,
+                                     double time) const {
+    const Index d = data_.node_positions.rows();
+    SpaceVector result = SpaceVector::Zero(d);
+    for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
+      result += entry.value() * (data_.node_positions.col(entry.col()) + displacement.segment(entry.col() * d, d));
+    if (point.obstacle->moves()) result -= point.obstacle->translation(time);
+    return result;
+  }
+  [[nodiscard]] SpaceVector position(const CurvedContactData::Node& node, const Vector& displacement,
+                                     double time) const {
+    const Index d = data_.node_positions.rows();
+    SpaceVector result = data_.node_positions.col(node.node) + displacement.segment(node.node * d, d);
+    if (node.obstacle->moves()) result -= node.obstacle->translation(time);
+    return result;
+  }
+
+  /// Tangents, and the values of the rows of G and B_T, whose pattern is that of the trace.
+  void write_rows(const CurvedContactData::Point& point, const SpaceVector& normal, ContactRows& rows) const {
+    if (rows.normals.col(point.number) == normal) return;
+    rows.normals.col(point.number) = normal;
+    rows.revision[static_cast<std::size_t>(point.number)] = revision_;
+    const Index d = normal.size();
+    const auto is_free = [&](Index, int component) { return point.is_free[static_cast<std::size_t>(component)]; };
+    const ContactTangents tangents = tangents_at(0, normal, is_free);
+    rows.tangents[static_cast<std::size_t>(point.number)] = tangents.directions;
+    double* gap = rows.gap_operator.valuePtr() + rows.gap_operator.outerIndexPtr()[point.number];
+    for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry) {
+      for (Index k = 0; k < d; ++k) *gap++ = entry.value() * normal[k];
+    }
+    for (Index j = 0; j < d - 1; ++j) {
+      const Index row = point.number * (d - 1) + j;
+      const bool slips = tangents.slips[static_cast<std::size_t>(j)];
+      rows.slips[static_cast<std::size_t>(row)] = slips ? 1 : 0;
+      double* slip = rows.tangential_trace.valuePtr() + rows.tangential_trace.outerIndexPtr()[row];
+      for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry) {
+        for (Index k = 0; k < d; ++k) *slip++ = slips ? entry.value() * tangents.directions(k, j) : 0.0;
+      }
+    }
+  }
+
+  CurvedContactData data_;
+  mutable long revision_ = 0;  ///< of the last update: no two rows that differ have the same
+};
+
+}  // namespace
+
+std::unique_ptr<ContactGeometry> make_curved_contact(CurvedContactData data) {
+  return std::make_unique<CurvedContact>(std::move(data));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "ricochet/contact/contact_boundary.hpp"
+
+/// @file Contact with curved obstacles. A contact point is at x_i = Σ_j c_ij (X + U)_j, its gap is that of the obstacle
+/// there, and its rows are c ⊗ n(x_i) and c ⊗ t(x_i): G is the derivative of the gap, exactly.
+namespace ricochet {
+
+struct CurvedContactData {
+  struct Point {
+    Index number = 0;  ///< among all contact points
+    const Obstacle* obstacle = nullptr;
+    std::array<bool, 3> is_free{};  ///< components that no support holds
+  };
+  struct Node {
+    Index entry = 0;  ///< of the contact boundary's nodes
+    Index node = 0;
+    const Obstacle* obstacle = nullptr;
+  };
+  std::vector<Point> points;
+  std::vector<Node> nodes;
+  Points node_positions;  ///< of all nodes, reference
+  Points node_normals;    ///< of the contact boundary's nodes, at the start
+  SparseRowMatrix trace;  ///< c
+};
+
+[[nodiscard]] std::unique_ptr<ContactGeometry> make_curved_contact(CurvedContactData data);
+
+}  // namespace ricochet

@@ -1,0 +1,79 @@
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/scheme.hpp"
+#include "ricochet/scheme/step_equations.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// The contact-stabilized Newmark scheme (P. Deuflhard, R. Krause, S. Ertel, Int. J. Numer. Meth. Engng. 73 (2008)
+/// 1274–1290): the free flight is projected onto the admissible displacements in the norm of the mass, then the
+/// trapezoidal rule is taken with the contact forces wholly at the end of the step:
+///   M (Û − U₀ − hV₀) = Gᵀμ,   0 ≤ μ ⟂ g(Û) ≥ 0;
+///   (2/h²) M (U₁ − Û) + C (U₁−U₀)/h + K (U₀+U₁)/2 = L_½ + Gᵀ r_N − B_Tᵀ r_T,   0 ≤ r_N ⟂ g(U₁) ≥ 0,
+///   friction on B_T (U₁−U₀)/h;   V₁ = V₀ + (2/h)(U₁ − Û).
+/// The second stage depends on the first. J changes in a step by ΔUᵀ(Gᵀr_N − …) − (2/h²)(Û−U₀−hV₀)ᵀM(U₁−Û), without
+/// friction by −r_N·g₀ − (2/h²) μ·g₁ ≤ 0: no step, however long, creates energy.
+class ContactStabilized final : public Scheme {
+ public:
+  using Scheme::Scheme;
+
+  [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
+    const double h = step();
+    return {{1.0, 0.0, 0.0}, {2.0 / (h * h), 0.5, 1.0 / h}};
+  }
+  [[nodiscard]] double force_instant() const override { return -0.5; }
+  [[nodiscard]] double numerical_dissipation(const SemidiscreteProblem&) const override { return dissipation_; }
+
+  void analyse(const SemidiscreteProblem& problem) override {
+    if (!problem.has_singular_mass()) return;
+    throw Error(ErrorKind::invalid_input,
+                "scheme \"contact-stabilized\" needs inertia on the contact nodes, in whose norm it projects: set "
+                "mass.type = \"consistent\" (or \"lumped\"), or use scheme \"newmark\" with this mass");
+  }
+
+  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
+    const double h = step(), end = state.time + h;
+    base_ = state.displacement + h * state.velocity;
+    Stage& projection = stages.stage(0);
+    projection.right_hand_side.setZero(problem.dof_count());
+    projection.prescribed.setZero(problem.supports.size());
+    require_no_penetration(problem, base_, end, projection);
+    const Vector& shift = stages.solve(0).increment;  // Û − U₀ − hV₀
+
+    Stage& stage = stages.stage(1);
+    flight_ = h * state.velocity + shift;  // Û − U₀
+    base_ += shift;
+    middle_ = state.displacement + 0.5 * flight_;
+    if (problem.has_damping()) rate_ = flight_ / h;
+    equations_.balance(problem, state.time + 0.5 * h, middle_, rate_, stage);
+    equations_.prescribe(
+        problem, end, [&](Index dof, double value) { return value - base_[dof]; }, stage);
+    require_no_penetration(problem, base_, end, stage);
+    equations_.require_friction_over_step(problem, state, flight_, h, stage);
+    const StageSolution& solution = stages.solve(1);
+
+    problem.mass.multiply(solution.increment, momentum_);
+    dissipation_ = 2.0 / (h * h) * shift.dot(momentum_);
+    increment = flight_ + solution.increment;
+    state.displacement += increment;
+    state.velocity += (2.0 / h) * solution.increment;
+    state.acceleration = (2.0 / (h * h)) * solution.increment;  // (V₁−V₀)/h
+    equations_.take_forces(problem, stage, solution, h, increment, 1.0 / h, state);
+  }
+
+ private:
+  double dissipation_ = 0.0;
+  Vector base_, flight_, middle_, rate_, momentum_;
+  StepEquations equations_;
+};
+
+}  // namespace
+
+SchemeRegistration contact_stabilized_scheme() {
+  return {"contact-stabilized",
+          [](double step, const Parameters&) { return std::make_unique<ContactStabilized>(step); }};
+}
+
+}  // namespace ricochet

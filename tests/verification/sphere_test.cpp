@@ -1,0 +1,175 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/case_run.hpp"
+
+/// @file Curved obstacles: a small block that slides in a bowl is a point mass on a circle.
+namespace ricochet::test_support {
+namespace {
+
+constexpr double gravity = 9.81;
+constexpr double start_angle = 0.3;
+
+/// A block of width 2b and height b, two corners on a circle of radius 1 about (0, 1), turned by the start angle.
+std::string bowl_case(double b, double step, double friction, const std::string& time) {
+  const double sagitta = 1.0 - std::sqrt(1.0 - b * b);
+  std::string geometry = "Rectangle(1) = {-" + std::to_string(b) + ", 0, 0, " + std::to_string(2 * b) + ", " +
+                         std::to_string(b) + "}; Physical Surface(\"body\") = {1}; Physical Curve(\"bottom\") = {1};";
+  const std::string mesh = mesh_geometry("block", geometry, 0.5 * b, 1);
+  const double angle = start_angle, d = 1.0 - sagitta;
+  std::string text = "[mesh]\nfile = \"" + mesh + "\"\n";
+  char place[200];
+  std::snprintf(place, sizeof place, "turn = { angle = %.17g }\nmove = [%.17g, %.17g]\n", angle * 180.0 / M_PI,
+                d * std::sin(angle), 1.0 - d * std::cos(angle));
+  text += place;
+  text += R"([[material]]
+group = "body"
+density = 1000
+young = 1e5
+poisson = 0.3
+[obstacle.bowl]
+type = "sphere"
+centre = [0, 1]
+radius = 1
+side = "inside"
+[[contact]]
+group = "bottom"
+obstacle = "bowl"
+friction = )" +
+          std::to_string(friction) +
+          R"(
+[load]
+gravity = [0, -9.81]
+[time]
+end = 3
+step = )" +
+          std::to_string(step) + "\n" + time;
+  return text;
+}
+
+const std::string dissipative = "scheme = \"newmark\"\nbeta = 0.3025\ngamma = 0.6\n";
+
+/// Mean velocity and angle of the block about the centre of the circle, from its mass and momentum.
+struct Pendulum {
+  explicit Pendulum(const CaseRun& run) : run_(run), u_(run.problem().dof_count()) {
+    for (Index i = 0; i < u_.size(); ++i) u_[i] = i % 2 == 0 ? 1.0 : 0.0;
+    run.problem().mass.multiply(u_, weight_);
+    mass_ = weight_.dot(u_);
+    Vector x(u_.size());
+    for (Index i = 0; i < u_.size(); ++i) x[i] = run.problem().nodes(i % 2, i / 2);
+    start_ = weight_.dot(x) / mass_;
+  }
+  [[nodiscard]] double x() const { return start_ + weight_.dot(run_.state().displacement) / mass_; }
+  [[nodiscard]] double velocity() const { return weight_.dot(run_.state().velocity) / mass_; }
+
+  const CaseRun& run_;
+  Vector u_, weight_;
+  double mass_ = 0.0, start_ = 0.0;
+};
+
+struct Swing {
+  std::vector<double> times, angles;  ///< of the turning points
+  double residual = 0.0, penetration = 0.0, largest_energy = 0.0;
+};
+
+Swing swing(CaseRun& run, double length) {
+  Swing result;
+  const Pendulum pendulum(run);
+  double before = 0.0, time_before = 0.0;
+  Vector gap;
+  run.run([&] {
+    const double v = pendulum.velocity();
+    const double time = run.state().time;
+    if (before * v < 0.0) {
+      result.times.push_back(time_before - before * (time - time_before) / (v - before));
+      result.angles.push_back(std::asin(pendulum.x() / length));
+    }
+    before = v;
+    time_before = time;
+    EnergyAccount& account = run.simulation().account();
+    const Energies now = account.energies(run.state());
+    result.residual = std::max(result.residual, std::abs(account.residual(now)));
+    result.largest_energy = std::max(result.largest_energy, now.kinetic);
+    run.problem().gaps(run.state().displacement, time, gap);
+    for (Index i = 0; i < gap.size(); ++i)
+      result.penetration = std::max(result.penetration, -gap[i] - run.problem().contact.rows->gap_rounding[i]);
+  });
+  return result;
+}
+
+/// Of the physical pendulum without friction: length l of the centre of gravity, radius of gyration k, amplitude a.
+double half_period(double l, double k_squared, double a) {
+  // Quarter periods by the arithmetic-geometric mean.
+  double x = 1.0, y = std::cos(0.5 * a);
+  for (int i = 0; i < 8; ++i) {
+    const double mean = 0.5 * (x + y);
+    y = std::sqrt(x * y);
+    x = mean;
+  }
+  return M_PI / x * std::sqrt((l * l + k_squared) / (gravity * l));
+}
+
+TEST(Sphere, ABlockSwingsInABowlWithThePeriodOfItsPointMass) {
+  std::vector<double> errors;
+  for (const double b : {4e-3, 2e-3}) {
+    CaseRun run(bowl_case(b, 1e-4, 0.0, dissipative));
+    const double l = std::sqrt(1.0 - b * b) - 0.5 * b;
+    const Swing found = swing(run, l);
+    ASSERT_GE(found.times.size(), 2u);
+    const double exact = half_period(l, (4 * b * b + b * b) / 12.0, start_angle);
+    errors.push_back(std::abs(found.times[1] - found.times[0] - exact) / exact);
+    EXPECT_LE(found.residual, 1e-10 * found.largest_energy);
+    EXPECT_LE(found.penetration, 0.0);
+    EXPECT_NEAR(std::abs(found.angles[1]), start_angle, 5e-3);
+  }
+  // Small strain makes a body that turns larger: an error of the size of the block.
+  EXPECT_LE(errors[1], 1e-3);
+  EXPECT_NEAR(errors[0] / errors[1], 2.0, 0.3);
+}
+
+/// θ'' = −(g/l) sin θ − F sgn(θ') ((g/l) cos θ + θ'²): turning points, by Runge and Kutta's rule.
+std::vector<double> turning_points(double l, double friction) {
+  double angle = start_angle, rate = -1e-12;
+  std::vector<double> result;
+  const double h = 1e-5;
+  for (int step = 0; step < 300000; ++step) {
+    const double sign = rate > 0.0 ? 1.0 : -1.0;
+    const auto acceleration = [&](double x, double v) {
+      return -gravity / l * std::sin(x) - friction * sign * (gravity / l * std::cos(x) + v * v);
+    };
+    const double a1 = acceleration(angle, rate), v1 = rate;
+    const double v2 = rate + 0.5 * h * a1, a2 = acceleration(angle + 0.5 * h * v1, v2);
+    const double v3 = rate + 0.5 * h * a2, a3 = acceleration(angle + 0.5 * h * v2, v3);
+    const double v4 = rate + h * a3, a4 = acceleration(angle + h * v3, v4);
+    angle += h / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4);
+    const double next = rate + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    if (next * rate < 0.0 && step > 10) {
+      result.push_back(angle);
+      if (std::abs(std::tan(angle)) <= friction) return result;
+    }
+    rate = next;
+  }
+  return result;
+}
+
+class BowlScheme : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(BowlScheme, ABlockLosesItsAmplitudeToFrictionAsItsPointMassDoes) {
+  const double b = 2e-3, friction = 0.05;
+  CaseRun run(bowl_case(b, 4e-5, friction, GetParam()));
+  const double l = std::sqrt(1.0 - b * b) - 0.5 * b;
+  const Swing found = swing(run, l);
+  const std::vector<double> exact = turning_points(l, friction);
+  ASSERT_GE(found.angles.size(), 2u);
+  EXPECT_NEAR(found.angles[0], exact[0], 2e-3);
+  EXPECT_NEAR(found.angles[1], exact[1], 2e-3);
+  EXPECT_LE(found.residual, 1e-10 * found.largest_energy);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BowlScheme,
+                         ::testing::Values(dissipative, "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
+                                           "scheme = \"klr-conserving\"\n[mass]\ntype = \"consistent\"\n"));
+
+}  // namespace
+}  // namespace ricochet::test_support
