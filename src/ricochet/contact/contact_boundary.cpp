@@ -319,6 +319,7 @@ void follow_curved_obstacles(const Body& body, const std::vector<Patch>& patches
   Vector gap = boundary.initial_gap;
   boundary.geometry->gaps(Vector::Zero(body.space->dof_count()), 0.0, gap);
   boundary.initial_gap = gap;
+  rows.gap = gap;
 }
 
 }  // namespace

@@ -19,10 +19,11 @@ class ContactGeometry {
   virtual void node_gaps(const Vector& displacement, double time, Vector& gap) const = 0;
   /// The normal at a node of the contact boundary; that of the start where it is constant.
   [[nodiscard]] virtual SpaceVector node_normal(Index entry, const Vector& displacement, double time) const = 0;
-  /// Makes the rows those at this displacement and time; rows that change get another revision.
+  /// Makes the rows those at this displacement and time; rows that change get another revision. Points that are far
+  /// from touching beside what gaps have changed since the last look keep theirs.
   virtual void update(const Vector& displacement, double time, ContactRows& rows) const = 0;
-  /// Makes them those that had these normals (d × points).
-  virtual void restore(const Points& normals, ContactRows& rows) const = 0;
+  /// Makes them those that had these normals (d × points) and gaps.
+  virtual void restore(const Points& normals, const Vector& gap, ContactRows& rows) const = 0;
 };
 
 }  // namespace ricochet

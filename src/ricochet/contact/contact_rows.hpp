@@ -18,6 +18,7 @@ struct ContactRows {
   Vector gap_rounding;               ///< a gap up to this is zero to rounding
   SparseRowMatrix gap_operator;      ///< G, points × dofs
   SparseRowMatrix tangential_trace;  ///< B_T, (d−1)·points × dofs; a row is zero where nothing slips
+  Vector gap;                        ///< where rows may change: at the last look
   std::vector<long> revision;        ///< per point: another number, another row; empty where rows never change
 
   [[nodiscard]] Index size() const { return normals.cols(); }

@@ -8,6 +8,9 @@ namespace ricochet {
 
 namespace {
 
+/// Gaps up to so many times what they have changed by: points that may touch soon.
+constexpr double ahead = 4.0;
+
 class CurvedContact final : public ContactGeometry {
  public:
   explicit CurvedContact(CurvedContactData data) : data_(std::move(data)) {}
@@ -31,12 +34,18 @@ class CurvedContact final : public ContactGeometry {
 
   void update(const Vector& displacement, double time, ContactRows& rows) const override {
     ++revision_;
-    for (const CurvedContactData::Point& point : data_.points)
+    gap_ = rows.gap;
+    gaps(displacement, time, rows.gap);
+    const double reach = ahead * (rows.gap - gap_).lpNorm<Eigen::Infinity>();
+    for (const CurvedContactData::Point& point : data_.points) {
+      if (rows.gap[point.number] > std::max(reach, rows.gap_rounding[point.number])) continue;
       write_rows(point, point.obstacle->normal(position(point, displacement, time)), rows);
+    }
   }
 
-  void restore(const Points& normals, ContactRows& rows) const override {
+  void restore(const Points& normals, const Vector& gap, ContactRows& rows) const override {
     ++revision_;
+    rows.gap = gap;
     for (const CurvedContactData::Point& point : data_.points) write_rows(point, normals.col(point.number), rows);
   }
 
@@ -83,6 +92,7 @@ class CurvedContact final : public ContactGeometry {
   }
 
   CurvedContactData data_;
+  mutable Vector gap_;         ///< at the look before
   mutable long revision_ = 0;  ///< of the last update: no two rows that differ have the same
 };
 

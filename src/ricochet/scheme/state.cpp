@@ -16,6 +16,7 @@ void save(const State& state, Snapshot& snapshot, const std::string& name) {
   const bool follows = !state.forces.rows->revision.empty();
   const Points& normals = state.forces.rows->normals;
   snapshot.save(name + ".normals", follows ? Vector(normals.reshaped()) : Vector());
+  snapshot.save(name + ".gap", follows ? state.forces.rows->gap : Vector());
   snapshot.save(name + ".contact_status", state.contact_status);
   snapshot.save(name + ".obstacle_increment.normal", state.obstacle_increment.normal);
   snapshot.save(name + ".obstacle_increment.tangential", state.obstacle_increment.tangential);
@@ -47,7 +48,8 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   if (problem.contact.follows_motion()) {
     const auto rows = std::make_shared<ContactRows>(*problem.contact.rows);
     const Vector& normals = snapshot.reals(name + ".normals", points * problem.dimension);
-    problem.contact.geometry->restore(normals.reshaped(problem.dimension, points), *rows);
+    problem.contact.geometry->restore(normals.reshaped(problem.dimension, points),
+                                      snapshot.reals(name + ".gap", points), *rows);
     state.forces.rows = rows;
   }
   state.contact_status = snapshot.statuses(name + ".contact_status", points);

@@ -71,6 +71,10 @@ const StageSolution& Simulation::solve(std::size_t number) {
 
 void Simulation::advance() {
   iterations_ = 0;
+  // Rows that follow the motion go on from those of the state, whatever was solved in between.
+  if (problem_.contact.follows_motion()) {
+    for (SolvedStage& each : stages_) each.stage.rows = state_.forces.rows;
+  }
   try {
     scheme_.advance(problem_, state_, *this, increment_);
   } catch (const Error& problem) {

@@ -60,7 +60,8 @@ TEST(CaseSchema, HasEveryKeyAndNoOther) {
 }
 
 TEST(CaseSchema, AsksForTheKeysOfTheTypeThatIsNamed) {
-  const Json& obstacle = Json::parse(case_schema()).at("properties").at("obstacle").at("additionalProperties");
+  const Json schema = Json::parse(case_schema());
+  const Json& obstacle = schema.at("properties").at("obstacle").at("additionalProperties");
   std::map<std::string, Json> required;
   for (const Json& condition : obstacle.at("allOf")) {
     const Json& type = condition.at("if").at("properties").at("type").at("const");

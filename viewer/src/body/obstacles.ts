@@ -58,9 +58,12 @@ export class ObstacleView {
       let at = cells.slice(c, c + corners).map(point);
       if (corners === 2 && cells.length === 2) at = longer(at[0], at[1]); // a plane goes on beyond the picture
       if (corners === 2) {
-        const behind = this.behind(at[0], at[1]);
+        const before = c >= 2 && cells[c - 1] === cells[c] ? cells.slice(c - 2, c).map(point) : at;
+        const after = c + 3 < cells.length && cells[c + 2] === cells[c + 1] ? cells.slice(c + 2, c + 4).map(point) : at;
+        const reach = Math.min(this.depth(at, before), this.depth(at, after));
+        const behind = [between(at, before, reach), between(at, after, reach)];
         for (const [corner, depth] of [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]])
-          faces.setXYZ(face++, at[corner][0] + depth * behind[0], at[corner][1] + depth * behind[1], 0);
+          faces.setXYZ(face++, at[corner][0] + depth * behind[corner][0], at[corner][1] + depth * behind[corner][1], 0);
         for (const corner of [0, 1]) lines.setXYZ(line++, at[corner][0], at[corner][1], 0);
       } else {
         // Seen from the free side only: from behind one looks at what touches.
@@ -80,13 +83,25 @@ export class ObstacleView {
     return normal.dot(at(this.middle).sub(at(a))) > 0;
   }
 
-  /** From an obstacle's line into the obstacle: away from the body. */
-  private behind(a: Float64Array, b: Float64Array): [number, number] {
-    const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
-    const normal: [number, number] = [(a[1] - b[1]) / length, (b[0] - a[0]) / length];
-    const side = normal[0] * (this.middle[0] - a[0]) + normal[1] * (this.middle[1] - a[1]) > 0 ? -1 : 1;
-    return [side * normal[0] * 4 * this.size, side * normal[1] * 4 * this.size];
+  /** How far an obstacle's line is shown into the obstacle, which is to its right: not beyond the middle of a round one. */
+  private depth(piece: Float64Array[], other: Float64Array[]): number {
+    const [own, next] = [rightOf(piece), rightOf(other)];
+    const apart = [other[0][0] - piece[0][0], other[0][1] - piece[0][1]];
+    const isRound = apart[0] * (next[0] - own[0]) + apart[1] * (next[1] - own[1]) < 0;
+    const radius = Math.hypot(apart[0], apart[1]) / Math.hypot(own[0] - next[0], own[1] - next[1]);
+    return isRound ? Math.min(4 * this.size, 0.95 * radius) : 4 * this.size;
   }
+}
+
+/** Into the obstacle where two pieces meet, so that both end on the same line. */
+function between(piece: Float64Array[], other: Float64Array[], depth: number): [number, number] {
+  const [own, next] = [rightOf(piece), rightOf(other)];
+  return [0.5 * depth * (own[0] + next[0]), 0.5 * depth * (own[1] + next[1])];
+}
+
+function rightOf([a, b]: Float64Array[]): [number, number] {
+  const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+  return [(b[1] - a[1]) / length, (a[0] - b[0]) / length];
 }
 
 function longer(a: Float64Array, b: Float64Array): Float64Array[] {

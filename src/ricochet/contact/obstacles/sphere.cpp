@@ -37,28 +37,34 @@ class Sphere final : public Obstacle {
   [[nodiscard]] SpaceVector translation(double time) const override { return time * velocity_; }
   [[nodiscard]] SpaceVector surface_velocity(const SpaceVector&, double) const override { return velocity_; }
 
-  /// An arc, or a cap of quadrilaterals, around the point nearest to `centre`.
+  /// An arc, or a cap of quadrilaterals, around the point nearest to `centre`; wider than asked for, since bodies slide
+  /// and roll on it. The obstacle is to the right of the arc, and behind the quadrilaterals.
   [[nodiscard]] Points surface(const Vector& centre, double radius, double time) const override {
     const SpaceVector middle = centre_ + translation(time);
     const SpaceVector towards = sign_ * normal(centre - translation(time));
-    const double angle = std::min(radius / radius_, std::numbers::pi);
-    return towards.size() == 2 ? arc(middle, towards, angle) : cap(middle, towards, angle);
+    const bool in_plane = towards.size() == 2;
+    const double angle = std::min((in_plane ? 20.0 : 4.0) * radius / radius_, std::numbers::pi);
+    // Chords whose sagitta is small beside the body.
+    const double chord = std::min(std::sqrt(0.04 * radius / radius_), 0.1);
+    const int pieces = std::clamp(static_cast<int>(std::ceil(angle / chord)), 8, in_plane ? 256 : 32);
+    return in_plane ? arc(middle, towards, angle, pieces) : cap(middle, towards, angle, pieces);
   }
 
  private:
-  [[nodiscard]] Points arc(const Eigen::Vector2d& middle, const Eigen::Vector2d& towards, double angle) const {
-    constexpr int pieces = 64;
-    Points result(2, pieces + 1);
-    for (int k = 0; k <= pieces; ++k) {
-      const double turned = angle * (2.0 * k / pieces - 1.0);
+  [[nodiscard]] Points arc(const Eigen::Vector2d& middle, const Eigen::Vector2d& towards, double angle,
+                           int pieces) const {
+    Points result(2, 2 * pieces + 1);
+    for (int k = 0; k <= 2 * pieces; ++k) {
+      const double turned = -sign_ * angle * (static_cast<double>(k) / pieces - 1.0);
       result.col(k) = middle + radius_ * (Eigen::Rotation2Dd(turned) * towards);
     }
     return result;
   }
 
-  [[nodiscard]] Points cap(const Eigen::Vector3d& middle, const Eigen::Vector3d& towards, double angle) const {
-    constexpr int rings = 16, sectors = 32;
-    const Eigen::Vector3d first = towards.unitOrthogonal(), second = towards.cross(first);
+  [[nodiscard]] Points cap(const Eigen::Vector3d& middle, const Eigen::Vector3d& towards, double angle,
+                           int rings) const {
+    constexpr int sectors = 48;
+    const Eigen::Vector3d first = towards.unitOrthogonal(), second = sign_ * towards.cross(first);
     const auto at = [&](int ring, int sector) -> Eigen::Vector3d {
       const double polar = angle * ring / rings, around = 2.0 * std::numbers::pi * sector / sectors;
       return middle + radius_ * (std::cos(polar) * towards +
