@@ -36,7 +36,7 @@ void Problems::add_info(const SourceLocation& location, const std::string& messa
   infos_.push_back(location.text() + ": " + message);
 }
 
-void Problems::tell_remarks() const {
+void Problems::log_remarks() const {
   for (const std::string& message : warnings_) log::warning(message);
   for (const std::string& message : infos_) log::info(message);
 }

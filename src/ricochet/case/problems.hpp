@@ -18,7 +18,7 @@ class Problems {
   void add_warning(const SourceLocation& location, const std::string& message);
   void add_info(const SourceLocation& location, const std::string& message);
   /// Told to the log.
-  void tell_remarks() const;
+  void log_remarks() const;
 
  private:
   struct Problem {

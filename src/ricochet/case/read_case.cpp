@@ -111,7 +111,7 @@ Case read_case_text(const std::string& text, const std::string& path, const std:
   warn_of_unused_parameters(root, problems);
   list_values(root, "", result);
   list_effective_values("time", *find_section("time"), result.time.parameters, result);
-  problems.tell_remarks();
+  problems.log_remarks();
   return result;
 }
 

@@ -1,7 +1,10 @@
 #include "ricochet/fem/assembly.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/cell_integration.hpp"
 #include "ricochet/fem/element_matrices.hpp"
@@ -107,7 +110,7 @@ SparseMatrix stiffness(const Body& body, const NodeGraph& graph, const std::vect
     const auto material_number = static_cast<std::size_t>(body.cell_material[number]);
     const Material& material = body.materials[material_number];
     const double factor = weight.empty() ? 1.0 : weight[material_number];
-    const IsotropicElasticity law = *material.law->constant_tangent(is_plane_stress(body));
+    const IsotropicElasticity law = linear_law(body, material);
     element_stiffness<d>(rules[b], body.mesh->nodes, body.mesh->cells[b].cell(cell),
                          {factor * law.lambda, factor * law.mu}, blocks);
   });
@@ -140,6 +143,13 @@ void cell_load(const Body& body, const ForceDensity& force, Vector& load) {
 }
 
 }  // namespace
+
+IsotropicElasticity linear_law(const Body& body, const Material& material) {
+  if (const auto law = material.law->constant_tangent(is_plane_stress(body))) return *law;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("material \"{}\": its law is not linear: what was asked for needs a constant stiffness",
+                          material.name));
+}
 
 SparseMatrix assemble_scalar_mass(const Body& body, const NodeGraph& graph, const std::vector<double>& weight) {
   return body.mesh->dimension == 2 ? scalar_mass<2>(body, graph, weight) : scalar_mass<3>(body, graph, weight);

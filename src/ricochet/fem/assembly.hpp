@@ -22,11 +22,13 @@ struct Body {
 [[nodiscard]] inline bool is_plane_stress(const Body& body) {
   return body.mesh->dimension == 2 && body.plane == PlaneState::stress;
 }
+/// The law of a material of which the tangent is constant; throws Error(invalid_input) for one that is not linear.
+[[nodiscard]] IsotropicElasticity linear_law(const Body& body, const Material& material);
 [[nodiscard]] inline const Material& material_of(const Body& body, Index cell) {
   return body.materials[static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(cell)])];
 }
 
-/// ∫ w ρ N_i N_j, one scalar per pair of nodes: the mass matrix is M = m ⊗ I. `weight` is per material (empty: 1).
+/// ∫ w ρ φ_i φ_j, one scalar per pair of nodes: the mass matrix is M = m ⊗ I. `weight` is per material (empty: 1).
 /// Exactly symmetric.
 [[nodiscard]] SparseMatrix assemble_scalar_mass(const Body& body, const NodeGraph& graph,
                                                 const std::vector<double>& weight = {});

@@ -8,7 +8,7 @@
 /// @file The mass of single cells, for what needs more than their sum.
 namespace ricochet {
 
-/// ∫ wρ N_i N_j over one cell at a time, with w per material (empty: 1), as assemble_scalar_mass adds them. Keeps a
+/// ∫ wρ φ_i φ_j over one cell at a time, with w per material (empty: 1), as assemble_scalar_mass adds them. Keeps a
 /// reference to the body. Not for two threads at once.
 class CellMasses {
  public:

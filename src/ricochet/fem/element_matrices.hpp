@@ -22,7 +22,7 @@ struct MassIntegration {
   BlockIntegration block;
   /// The map is affine, with one Jacobian per cell.
   bool affine = false;
-  /// ∫ N_i N_j over the reference cell, per pair.
+  /// ∫ φ_i φ_j over the reference cell, per pair.
   std::vector<double> reference;
 
   MassIntegration(CellShape shape, int geometry_degree, int displacement_degree)
@@ -40,7 +40,7 @@ struct MassIntegration {
   }
 };
 
-/// ∫ ρ N_i N_j over a cell: one number per pair of nodes. `nodes` are the geometry's.
+/// ∫ ρ φ_i φ_j over a cell: one number per pair of nodes. `nodes` are the geometry's.
 template <int d>
 void element_mass(const MassIntegration& integration, const Points& coordinates, const Index* nodes, double density,
                   double* result) {
@@ -75,7 +75,7 @@ void add_elastic_pairs(const double* gradients, int count, const IsotropicElasti
   }
 }
 
-/// ∫ A ε(N_i e_a) : ε(N_j e_b) over a cell, d × d numbers per pair of nodes. `nodes` are the geometry's.
+/// ∫ A ε(φ_i e_a) : ε(φ_j e_b) over a cell, d × d numbers per pair of nodes. `nodes` are the geometry's.
 template <int d>
 void element_stiffness(const BlockIntegration& integration, const Points& coordinates, const Index* nodes,
                        const IsotropicElasticity& law, double* result) {

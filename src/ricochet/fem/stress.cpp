@@ -53,7 +53,7 @@ class StressLaw {
 
   StressLaw(const Body& body, Index cell)
       : has_out_of_plane_stress_(d == 2 && !is_plane_stress(body)),
-        elasticity_(*material_of(body, cell).law->constant_tangent(is_plane_stress(body))) {}
+        elasticity_(linear_law(body, material_of(body, cell))) {}
 
   [[nodiscard]] double energy_density(const Tensor& strain) const { return elasticity_.energy(strain); }
   void write_stress(const Tensor& strain, double* to) const {

@@ -52,6 +52,7 @@ struct SparseCholesky::Implementation {
   }
 
   void order(const SparseMatrix& matrix);
+  void take_ordered(const SparseMatrix& matrix);
   void analyse();
   void factorize();
   void take_factor();
@@ -109,6 +110,11 @@ void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
   places.resize(permutation.size());
   for (std::size_t i = 0; i < permutation.size(); ++i)
     places[static_cast<std::size_t>(permutation[i])] = static_cast<int>(i);
+  take_ordered(matrix);
+}
+
+void SparseCholesky::Implementation::take_ordered(const SparseMatrix& matrix) {
+  cholmod_sparse upper = view(matrix);
   cholmod_free_sparse(&ordered, &common);
   ordered = cholmod_ptranspose(&upper, 1, permutation.data(), nullptr, 0, &common);
   if (ordered == nullptr) throw std::bad_alloc();
@@ -207,6 +213,13 @@ void SparseCholesky::factorize(TriangularSolve solve) {
   if (size() == 0) return;
   implementation_->factorize();
   if (solve == TriangularSolve::own) implementation_->take_factor();
+}
+
+void SparseCholesky::refactorize(const SparseMatrix& matrix) {
+  if (size() == 0) return;
+  implementation_->take_ordered(matrix);
+  implementation_->analyse();  // the pattern of the factor, in the given order: quick beside finding that order
+  factorize(implementation_->solve);
 }
 
 SparseCholesky::Prediction SparseCholesky::predicted() const {

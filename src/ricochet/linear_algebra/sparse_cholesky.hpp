@@ -30,6 +30,9 @@ class SparseCholesky {
   /// of the matrix is kept.
   void analyse(const SparseMatrix& matrix);
   void factorize(TriangularSolve solve = TriangularSolve::own);
+  /// Factorizes another matrix of the same pattern, in the order that was found for the first: the bits of a new
+  /// factor.
+  void refactorize(const SparseMatrix& matrix);
   struct Prediction {
     bool possible = true;     ///< false: more entries than the library can count
     double entries = 0.0;     ///< of L

@@ -192,7 +192,7 @@ class LumpedEquivalentMass final : public MassConstruction {
  public:
   [[nodiscard]] bool removes_contact_inertia() const override { return true; }
 
-  /// Damping keeps the rate of each node: c_i = m_i (∫aρ N_i²)/(∫ρ N_i²).
+  /// Damping keeps the rate of each node: c_i = m_i (∫aρ φ_i²)/(∫ρ φ_i²).
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
     const bool warns = input.consistent == &input.inertia_matrix();  // once, not for damping again
     const Vector mass = build_diagonal({&input.inertia_matrix(), input.nodes, input.contact_nodes}, warns);

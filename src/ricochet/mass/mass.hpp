@@ -16,10 +16,10 @@ class CellMasses;
 
 /// What a mass is built from.
 struct MassInput {
-  const SparseMatrix* consistent = nullptr;  ///< ∫ρ N_i N_j, nodes × nodes; or ∫aρ N_i N_j, damping with rates a ≥ 0
+  const SparseMatrix* consistent = nullptr;  ///< ∫ρ φ_i φ_j, nodes × nodes; or ∫aρ φ_i φ_j, damping with rates a ≥ 0
   const Points* nodes = nullptr;             ///< positions, d × nodes
-  std::vector<Index> contact_nodes;          ///< ascending, each once
-  /// ∫ρ N_i N_j when `consistent` is damping, which may vanish somewhere; null: the same.
+  std::vector<Index> contact_nodes;  ///< ascending, each once
+  /// ∫ρ φ_i φ_j when `consistent` is damping, which may vanish somewhere; null: the same.
   const SparseMatrix* inertia = nullptr;
   /// The cells that `consistent` is the sum of; null where nobody works cell by cell.
   const CellMasses* cells = nullptr;

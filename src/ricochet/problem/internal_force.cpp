@@ -1,6 +1,13 @@
 #include "ricochet/problem/internal_force.hpp"
 
+#include "ricochet/base/error.hpp"
+
 namespace ricochet {
+
+void require_linear(const InternalForce& internal_force, const std::string& who) {
+  if (internal_force.is_linear()) return;
+  throw Error(ErrorKind::invalid_input, who + " needs a linear material law: set material.law = \"linear\"");
+}
 
 LinearElasticity::LinearElasticity(const SparseMatrix& stiffness, const Points& nodes)
     : rigid_(nodes, stiffness), stiffness_(stiffness, static_cast<int>(nodes.rows())) {}

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "ricochet/base/types.hpp"
 #include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/rigid_motion.hpp"
@@ -15,10 +17,16 @@ class InternalForce {
   virtual void evaluate(const Vector& displacement, Vector& force) const = 0;
   /// Strain energy (½UᵀKU).
   [[nodiscard]] virtual double energy(const Vector& displacement) const = 0;
-  /// ∂force/∂U, symmetric. Made anew by every call, which takes the time of some tens of evaluations: ask once, and do
-  /// not keep it longer than needed.
-  [[nodiscard]] virtual SparseMatrix tangent() const = 0;
+  /// The force is a linear function of U: the tangent is the same everywhere. Who relies on that asks (require_linear).
+  [[nodiscard]] virtual bool is_linear() const = 0;
+  /// ∂force/∂U at a displacement (empty: the undeformed body), symmetric, of one pattern. Made anew by every call,
+  /// which takes the time of some tens of evaluations: ask once, and do not keep it longer than needed.
+  [[nodiscard]] virtual SparseMatrix tangent(const Vector& displacement) const = 0;
+  [[nodiscard]] SparseMatrix tangent() const { return tangent(Vector()); }
 };
+
+/// Throws Error(invalid_input) that names who needs it, unless the force is linear.
+void require_linear(const InternalForce& internal_force, const std::string& who);
 
 /// K U, computed from U less its rigid motion, which has no part in it.
 class LinearElasticity final : public InternalForce {
@@ -27,7 +35,9 @@ class LinearElasticity final : public InternalForce {
   LinearElasticity(const SparseMatrix& stiffness, const Points& nodes);
   void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
-  [[nodiscard]] SparseMatrix tangent() const override { return stiffness_.whole(); }
+  [[nodiscard]] bool is_linear() const override { return true; }
+  using InternalForce::tangent;
+  [[nodiscard]] SparseMatrix tangent(const Vector&) const override { return stiffness_.whole(); }
 
  private:
   RigidMotion rigid_;

@@ -8,6 +8,7 @@
 namespace ricochet {
 
 double bound_frequency_squared(const SemidiscreteProblem& problem) {
+  require_linear(*problem.internal_force, "the bound of the highest frequency");
   Vector inverse_root = problem.mass.diagonal();
   for (const Index dof : problem.supports.dofs()) inverse_root[dof] = 0.0;
   const double heaviest = inverse_root.size() > 0 ? inverse_root.maxCoeff() : 0.0;

@@ -44,6 +44,8 @@ class Scheme {
   /// A limit on the step that it asks for with this problem, before analyse(); none where every step is stable or where
   /// the problem is none that it takes.
   [[nodiscard]] virtual std::optional<double> stability_limit(const SemidiscreteProblem&) const { return std::nullopt; }
+  /// Its steps are right where the internal force is no linear function of the displacement.
+  [[nodiscard]] virtual bool takes_nonlinear_force() const { return false; }
   /// With a mass without inertia on contact nodes its contact forces create hardly any energy.
   [[nodiscard]] virtual bool suits_singular_mass() const { return false; }
   /// Nodes with inertia that friction holds keep a velocity of alternating sign.

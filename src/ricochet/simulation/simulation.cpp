@@ -23,6 +23,7 @@ bool is_finite(const SemidiscreteProblem& problem, StageDofs dofs, const Vector&
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
                        const StepSolverOptions& options)
     : problem_(problem), scheme_(scheme) {
+  if (!scheme_.takes_nonlinear_force()) require_linear(*problem_.internal_force, "this time scheme");
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
   scheme_.start(problem_, state_);

@@ -252,6 +252,7 @@ bool find_sliding_equilibrium(const SemidiscreteProblem& problem, const StaticFr
 
 StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const Vector& guess, const Vector& velocity,
                                      const StepSolverOptions& step_options) {
+  require_linear(*problem.internal_force, "initial.displacement = \"static\"");
   // Without inertia iterations converge badly, and not at all where contact alone holds a body: a factor where it fits.
   StepSolverOptions options = step_options;
   if (options.method == SolverMethod::iterative) options.method = SolverMethod::automatic;

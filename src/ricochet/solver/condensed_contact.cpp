@@ -171,7 +171,20 @@ void CondensedContact::take_rows(const Stage& stage) {
     std::fill(is_new.begin() + contact_.first[i], is_new.begin() + contact_.first[i + 1], char{1});
     any = true;
   }
-  if (!any) return;
+  if (any) renew_columns(is_new);
+}
+
+void CondensedContact::take_factor() {
+  if (scale_ != factor_.scale()) {
+    scale_ = contact_.reaction_scale = factor_.scale();
+    const std::vector<Index> points = candidates_.points();
+    start_again_with(points);
+  } else if (!candidates_.points().empty()) {
+    renew_columns(std::vector<char>(static_cast<std::size_t>(contact_.first.back()), 1));
+  }
+}
+
+void CondensedContact::renew_columns(const std::vector<char>& is_new) {
   Matrix w = *contact_.contact_operator->dense();
   columns_.renew(transposed_rows(candidates_.points()), is_new, w);
   append_supported();

@@ -31,6 +31,9 @@ class CondensedContact {
   /// and the stage must be solved again.
   bool take_up_penetrating(const Stage& stage, const Vector& increment);
 
+  /// The factor has been made anew: so are columns and W.
+  void take_factor();
+
   /// The candidates with the order in which they came, which decides the bits of W, and the contact solver's warm
   /// start.
   void save(Snapshot& snapshot, const std::string& name) const;
@@ -49,6 +52,7 @@ class CondensedContact {
   template <class Enter>
   void visit_rows(Index point, const Enter& enter) const;
   void take_rows(const Stage& stage);
+  void renew_columns(const std::vector<char>& is_new);
   void take_up(const std::vector<Index>& points);
   bool choose_candidates(const Stage& stage);
   void start_again_with(const std::vector<Index>& points);

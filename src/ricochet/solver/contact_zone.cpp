@@ -9,11 +9,11 @@ namespace {
 
 /// A on the zone, whole only until then.
 SparseCholesky analysed_zone(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                             const std::vector<int>& dofs) {
+                             const std::vector<int>& dofs, const Vector& displacement) {
   const std::vector<int> number = number_dofs(problem, dofs);
   const auto count = static_cast<Index>(dofs.size());
   SparseCholesky factor;
-  factor.analyse(extract(combine_operator(problem, coefficients), number, count, number, count));
+  factor.analyse(extract(combine_operator(problem, coefficients, displacement), number, count, number, count));
   return factor;
 }
 
@@ -21,7 +21,7 @@ SparseCholesky analysed_zone(const SemidiscreteProblem& problem, const OperatorC
 
 ContactZone::ContactZone(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                          const std::vector<char>& solved, const std::vector<Index>& nodes,
-                         const std::vector<Index>& points, bool all_candidates)
+                         const std::vector<Index>& points, bool all_candidates, const Vector& displacement)
     : problem_(problem), has_(static_cast<std::size_t>(problem.contact.size()), 0) {
   for (const Index point : points) has_[static_cast<std::size_t>(point)] = 1;
   std::vector<int> dofs;
@@ -31,8 +31,8 @@ ContactZone::ContactZone(const SemidiscreteProblem& problem, const OperatorCoeff
     }
   }
   // A principal block of a positive definite matrix is one; where A is not, conjugate gradients say so too.
-  zone_ = std::make_unique<FactoredStage>(problem, coefficients, dofs, analysed_zone(problem, coefficients, dofs),
-                                          all_candidates);
+  zone_ = std::make_unique<FactoredStage>(problem, coefficients, dofs,
+                                          analysed_zone(problem, coefficients, dofs, displacement), all_candidates);
   correction_.setZero(problem.dof_count());
 }
 

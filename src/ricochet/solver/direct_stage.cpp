@@ -9,6 +9,28 @@ namespace ricochet {
 
 namespace {
 
+/// A's rows of supported dofs.
+SparseRowMatrix supported_rows(const SemidiscreteProblem& problem, const SparseMatrix& matrix) {
+  std::vector<int> every(static_cast<std::size_t>(problem.dof_count())), support(every.size(), -1);
+  std::iota(every.begin(), every.end(), 0);
+  for (Index i = 0; i < problem.supports.size(); ++i)
+    support[static_cast<std::size_t>(problem.supports.dofs()[static_cast<std::size_t>(i)])] = static_cast<int>(i);
+  return extract(matrix, support, problem.supports.size(), every, problem.dof_count());
+}
+
+/// A on some dofs; empties `matrix` where these are all.
+SparseMatrix on_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs, SparseMatrix& matrix) {
+  const auto count = static_cast<Index>(dofs.size());
+  SparseMatrix result;
+  if (count == problem.dof_count()) {
+    result.swap(matrix);
+  } else {
+    const std::vector<int> number = number_dofs(problem, dofs);
+    extract(matrix, number, count, number, count).swap(result);
+  }
+  return result;
+}
+
 /// A factor of the whole operator. Supports are on the right-hand side.
 class DirectStage final : public StageSolver {
  public:
@@ -16,6 +38,7 @@ class DirectStage final : public StageSolver {
               const StepSolverOptions& options);
 
   void solve(const Stage& stage, StageSolution& solution) override;
+  void refactorize(const Vector& displacement) override;
   void observe_contact(const ContactObserver& observer) override { stage_.observe(observer); }
   void save(Snapshot& snapshot, const std::string& name) const override { stage_.save(snapshot, name); }
   void load(const Snapshot& snapshot, const std::string& name) override { stage_.load(snapshot, name); }
@@ -27,6 +50,7 @@ class DirectStage final : public StageSolver {
   void recover_support_reaction(const Stage& stage, StageSolution& solution);
 
   const SemidiscreteProblem& problem_;
+  OperatorCoefficients coefficients_;
   SparseRowMatrix supported_;  ///< A's rows of supported dofs: supports × dofs
   FactoredStage stage_;
   Vector right_hand_side_, supported_force_, contact_force_;
@@ -35,8 +59,15 @@ class DirectStage final : public StageSolver {
 DirectStage::DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                          AnalysedOperator analysed, const StepSolverOptions& options)
     : problem_(problem),
+      coefficients_(coefficients),
       supported_(std::move(analysed.supported)),
       stage_(problem, coefficients, analysed.dofs, std::move(analysed.factor), options.all_points) {}
+
+void DirectStage::refactorize(const Vector& displacement) {
+  SparseMatrix matrix = combine_operator(problem_, coefficients_, displacement);
+  supported_ = supported_rows(problem_, matrix);
+  stage_.refactorize(problem_, coefficients_, on_dofs(problem_, solved_dofs(problem_, coefficients_.dofs), matrix));
+}
 
 void DirectStage::recover_support_reaction(const Stage& stage, StageSolution& solution) {
   const std::vector<Index>& dofs = problem_.supports.dofs();
@@ -75,17 +106,10 @@ AnalysedOperator analyse_operator(const SemidiscreteProblem& problem, const Oper
   AnalysedOperator result;
   result.dofs = solved_dofs(problem, coefficients.dofs);
   SparseMatrix matrix = combine_operator(problem, coefficients);
-  std::vector<int> every(static_cast<std::size_t>(problem.dof_count())), support(every.size(), -1);
-  std::iota(every.begin(), every.end(), 0);
-  for (Index i = 0; i < problem.supports.size(); ++i)
-    support[static_cast<std::size_t>(problem.supports.dofs()[static_cast<std::size_t>(i)])] = static_cast<int>(i);
-  result.supported = extract(matrix, support, problem.supports.size(), every, problem.dof_count());
-  const auto count = static_cast<Index>(result.dofs.size());
-  if (count < problem.dof_count()) {
-    const std::vector<int> number = number_dofs(problem, result.dofs);
-    extract(matrix, number, count, number, count).swap(matrix);
-  }
-  result.factor.analyse(matrix);
+  result.supported = supported_rows(problem, matrix);
+  const SparseMatrix unknown = on_dofs(problem, result.dofs, matrix);
+  matrix = SparseMatrix();  // ordering takes memory
+  result.factor.analyse(unknown);
   return result;
 }
 

@@ -26,6 +26,18 @@ FactoredStage::FactoredStage(const SemidiscreteProblem& problem, const OperatorC
   factor_vector_.setZero(factor_.work_size());
 }
 
+void FactoredStage::refactorize(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                                const SparseMatrix& matrix) {
+  factor_.refactorize(matrix);
+  if (!factor_.positive_definite()) {
+    std::vector<int> dofs(dof_at_.size());
+    for (std::size_t i = 0; i < dof_at_.size(); ++i)
+      dofs[static_cast<std::size_t>(factor_.permutation()[i])] = dof_at_[i];
+    refuse_operator(problem, coefficients, dofs[static_cast<std::size_t>(factor_.failed_unknown())]);
+  }
+  contact_.take_factor();
+}
+
 /// y = L⁻¹P 2ᵏ b, y += Yρ, δ = Pᵀ L⁻ᵀ y; again with more contact points where others have penetrated.
 void FactoredStage::solve(const Stage& stage, const Vector& right_hand_side, StageSolution& solution,
                           Vector& increment) {

@@ -22,6 +22,10 @@ class FactoredStage {
   /// stay as they are, and are part of the motion that the gaps of points outside the contact problem are judged by.
   void solve(const Stage& stage, const Vector& right_hand_side, StageSolution& solution, Vector& increment);
 
+  /// With other values of A on the dofs of the factor, of the same pattern.
+  void refactorize(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                   const SparseMatrix& matrix);
+
   /// In the order of the factor.
   [[nodiscard]] const std::vector<int>& dofs() const { return dof_at_; }
   /// What the contact conditions leave for later stages.

@@ -31,6 +31,7 @@ class IterativeStage final : public StageSolver {
                  const StepSolverOptions& options);
 
   void solve(const Stage& stage, StageSolution& solution) override;
+  void refactorize(const Vector& displacement) override;
   void observe_contact(const ContactObserver& observer) override {
     observer_ = observer;
     if (zone_) zone_->observe(observer);
@@ -66,6 +67,7 @@ class IterativeStage final : public StageSolver {
   std::unique_ptr<ContactZone> zone_;
   ContactObserver observer_;
   double earlier_contact_seconds_ = 0.0;
+  Vector displacement_;          ///< of the tangent; empty: the undeformed body
   Vector increment_, previous_;  ///< of this stage and the last one, for the guess
   bool has_previous_ = false;
   Vector guess_, residual_, work_, motion_, prescribed_, supported_force_;
@@ -80,11 +82,20 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
   for (std::size_t dof = 0; dof < count; ++dof) {
     if (solved_[dof] == 0) unsolved_.push_back(static_cast<int>(dof));
   }
-  const SparseMatrix matrix = combine_operator(problem, coefficients);
-  product_ = StageProduct(problem, coefficients, matrix);
-  preconditioner_ = make_block_jacobi(matrix, problem.dimension, solved_);
+  refactorize(Vector());
   increment_.setZero(problem.dof_count());
   previous_ = increment_;
+}
+
+/// The zone is made for the new operator when it is needed next.
+void IterativeStage::refactorize(const Vector& displacement) {
+  displacement_ = displacement;
+  const SparseMatrix matrix = combine_operator(problem_, coefficients_, displacement);
+  product_ = StageProduct(problem_, coefficients_, matrix, displacement);
+  preconditioner_ = make_block_jacobi(matrix, problem_.dimension, solved_);
+  if (zone_) earlier_contact_seconds_ += zone_->contact_seconds();
+  zone_.reset();
+  near_.clear();
 }
 
 void IterativeStage::mask(Vector& values) const {
@@ -130,7 +141,8 @@ void IterativeStage::make_zone_of(const std::vector<Index>& points, const std::v
   zone_.reset();
   near_.clear();
   near_.take_up(points);
-  zone_ = std::make_unique<ContactZone>(problem_, coefficients_, solved_, nodes, points, options_.all_points);
+  zone_ = std::make_unique<ContactZone>(problem_, coefficients_, solved_, nodes, points, options_.all_points,
+                                        displacement_);
   zone_->observe(observer_);
 }
 

@@ -9,7 +9,8 @@
 
 namespace ricochet {
 
-SparseMatrix combine_operator(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients) {
+SparseMatrix combine_operator(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                              const Vector& displacement) {
   SparseMatrix result;
   const auto add = [&](double factor, const auto& matrix) {
     if (factor == 0.0) return;
@@ -18,7 +19,7 @@ SparseMatrix combine_operator(const SemidiscreteProblem& problem, const Operator
     if (result.cols() > 0) add_sparse(result, term).swap(term);
     result.swap(term);
   };
-  add(coefficients.stiffness, [&] { return problem.internal_force->tangent(); });
+  add(coefficients.stiffness, [&] { return problem.internal_force->tangent(displacement); });
   add(coefficients.mass, [&] { return problem.mass.whole(); });
   if (problem.has_damping()) add(coefficients.damping, [&] { return problem.damping; });
   return result;

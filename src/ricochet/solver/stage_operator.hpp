@@ -8,9 +8,9 @@
 /// @file The matrix of a stage and the dofs it is solved for.
 namespace ricochet {
 
-/// A = αM + κK + ηC on all dofs.
+/// A = αM + κK(U) + ηC on all dofs; U empty: the undeformed body.
 [[nodiscard]] SparseMatrix combine_operator(const SemidiscreteProblem& problem,
-                                            const OperatorCoefficients& coefficients);
+                                            const OperatorCoefficients& coefficients, const Vector& displacement = {});
 
 /// The dofs that a stage solves for, ascending: no supported ones, and of the others those that it names.
 [[nodiscard]] std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs);

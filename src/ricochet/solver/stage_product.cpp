@@ -10,10 +10,10 @@ constexpr double most_growth = 1.3;
 }  // namespace
 
 StageProduct::StageProduct(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                           const SparseMatrix& matrix) {
+                           const SparseMatrix& matrix, const Vector& displacement) {
   const bool is_damped = coefficients.damping != 0.0 && problem.has_damping();
   if (coefficients.mass != 0.0 && coefficients.stiffness != 0.0 && !is_damped) {
-    SparseMatrix stiffness = problem.internal_force->tangent();
+    SparseMatrix stiffness = problem.internal_force->tangent(displacement);
     if (static_cast<double>(matrix.nonZeros()) > most_growth * static_cast<double>(stiffness.nonZeros())) {
       stiffness *= coefficients.stiffness;
       matrix_ = NodeMatrix(stiffness, problem.dimension);

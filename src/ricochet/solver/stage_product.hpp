@@ -12,9 +12,9 @@ namespace ricochet {
 class StageProduct {
  public:
   StageProduct() = default;
-  /// Keeps a reference to the problem. `matrix`: A.
-  StageProduct(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-               const SparseMatrix& matrix);
+  /// Keeps a reference to the problem. `matrix`: A at this displacement.
+  StageProduct(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, const SparseMatrix& matrix,
+               const Vector& displacement = {});
 
   /// y = A x. Allocates on the first call only.
   void multiply(const Vector& x, Vector& y) const;

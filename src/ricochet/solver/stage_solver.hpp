@@ -17,6 +17,8 @@ class StageSolver {
   virtual ~StageSolver() = default;
   /// Throws Error(not_converged) which says what failed.
   virtual void solve(const Stage& stage, StageSolution& solution) = 0;
+  /// As of StepSolver.
+  virtual void refactorize(const Vector& displacement) = 0;
   virtual void observe_contact(const ContactObserver& observer) = 0;
   /// As of StepSolver.
   virtual void save(Snapshot& snapshot, const std::string& name) const = 0;

@@ -43,6 +43,9 @@ class StagesStepSolver final : public StepSolver {
     solver.solve(stage, solution);
     if (stage.motion) follow_motion(solver, stage, solution);
   }
+  void refactorize(std::size_t number, const Vector& displacement) override {
+    stages_.at(number)->refactorize(displacement);
+  }
   void observe_contact(const ContactObserver& observer) override {
     for (const auto& stage : stages_) stage->observe_contact(observer);
   }

@@ -42,6 +42,9 @@ class StepSolver {
   /// Solves stage `number` (of the operators given at the start). Where its rows follow the motion they are,
   /// afterwards, those that hold at the solution. Throws Error(not_converged) which says what failed.
   virtual void solve(std::size_t number, Stage& stage, StageSolution& solution) = 0;
+  /// Where the internal force is not linear: the stages of this number are solved with the tangent at this displacement
+  /// from now on. Throws Error(invalid_input) when the operator is not positive definite there.
+  virtual void refactorize(std::size_t number, const Vector& displacement) = 0;
   /// Shows every contact problem that is solved from now on, and its solution, to the observer; none if it is empty.
   virtual void observe_contact(const ContactObserver& observer) = 0;
   /// Spent so far in contact solvers, for the summary.

@@ -18,6 +18,7 @@ constexpr double safe_fraction = 0.9;
 }  // namespace
 
 void require_semi_explicit(const SemidiscreteProblem& problem) {
+  require_linear(*problem.internal_force, "scheme \"semi-explicit\"");
   const char* const advice = "set mass.type = \"equivalent-lumped\", or use scheme \"newmark\", which takes any mass";
   if (!problem.mass.is_diagonal()) {
     throw Error(ErrorKind::invalid_input,

@@ -10,13 +10,13 @@ namespace ricochet {
 
 namespace {
 
-/// A node of the group with ∫ N_i over it, which for second-order elements may be zero or negative.
+/// A node of the group with ∫ φ_i over it, which for second-order elements may be zero or negative.
 struct WeightedNode {
   Index node;
   double weight;
 };
 
-/// ∫ N_i over some cells of one dimension, numbered through all blocks. `measure`: of a cell, per reference measure.
+/// ∫ φ_i over some cells of one dimension, numbered through all blocks. `measure`: of a cell, per reference measure.
 template <class Measure>
 std::vector<WeightedNode> weighted_nodes(const std::vector<CellBlock>& geometry, const std::vector<CellBlock>& cells,
                                          int geometry_degree, int displacement_degree,
