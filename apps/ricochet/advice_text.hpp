@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ricochet/case/model.hpp"
+#include "ricochet/model/model.hpp"
 
 /// @file What `ricochet info` says of meshes and cases besides what is written in them: sizes, places, times.
 namespace ricochet::program {

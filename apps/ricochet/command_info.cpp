@@ -14,14 +14,14 @@
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/case/model.hpp"
 #include "ricochet/case/read_case.hpp"
-#include "ricochet/case/run_case.hpp"
-#include "ricochet/case/run_description.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
+#include "ricochet/model/model.hpp"
+#include "ricochet/run/run_case.hpp"
+#include "ricochet/run/run_description.hpp"
 
 namespace ricochet::program {
 

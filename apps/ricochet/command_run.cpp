@@ -12,12 +12,11 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/run_name.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/case/old_run.hpp"
-#include "ricochet/case/read_case.hpp"
-#include "ricochet/case/run_case.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/io/run_directory.hpp"
+#include "ricochet/run/old_run.hpp"
+#include "ricochet/run/session.hpp"
 #include "stop_signal.hpp"
 
 namespace ricochet::program {
@@ -117,8 +116,8 @@ int run(const RunArguments& given) {
         (std::filesystem::path("out") / std::filesystem::path(arguments.case_file).stem()).string();
   }
   if (options.quiet) log::set_run_name(options.output_directory);
-  const Case input = read_case(arguments.case_file, arguments.overrides);
-  const RunSummary summary = run_case(input, options);
+  Session session(arguments.case_file, arguments.overrides);
+  const RunSummary summary = run_case(session, options);
   print_summary(summary, options.output_directory);
   if (summary.status == "interrupted") return 128 + stop_signal();
   for (const ExpectationResult& e : summary.expectations) {

@@ -5,11 +5,11 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/case/model.hpp"
 #include "ricochet/case/read_case.hpp"
-#include "ricochet/case/run_case.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
+#include "ricochet/model/model.hpp"
+#include "ricochet/run/session.hpp"
 #include "ricochet/simulation/simulation.hpp"
 #include "ricochet/solver/step_estimate.hpp"
 
@@ -81,7 +81,8 @@ bool has_mesh(const Case& input, const ValidateArguments& arguments) {
 
 int validate(const ValidateArguments& arguments) {
   const std::string& case_file = arguments.case_file;
-  const Case input = read_case(case_file, arguments.overrides);
+  Session session(case_file, arguments.overrides);
+  const Case& input = session.input();
   warn_of_end(input.time);
   if (!has_mesh(input, arguments)) {
     fmt::print("{}: valid, as far as can be told without a mesh of {}\n", case_file, input.mesh.file);
@@ -95,18 +96,17 @@ int validate(const ValidateArguments& arguments) {
             : "");
     return 0;
   }
-  const std::unique_ptr<Model> model = build_model(input);
-  check_expected_columns(input, *model);
-  const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
-  scheme->analyse(model->problem);
-  const double start_seconds = estimate(input, model->problem, *scheme);
+  const Model& model = session.model();
+  check_expected_columns(input, model);
+  session.scheme().analyse(model.problem);
+  const double start_seconds = estimate(input, model.problem, session.scheme());
   // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.
   const bool starts = start_seconds <= longest_start;
-  if (starts) (void)Simulation(model->problem, *scheme, model->initial, step_solver_options(input));
-  fmt::print("{}: valid: {}, {}, {}, {}, {}\n", case_file, counted(model->space.node_count(), "node"),
-             counted(model->mesh.cell_count(), "cell"), counted(model->problem.contact.size(), "contact point"),
-             counted(model->problem.supports.size(), "supported dof"), counted(step_count(input.time), "step"));
-  print_place(input, *model);
+  if (starts) session.start();
+  fmt::print("{}: valid: {}, {}, {}, {}, {}\n", case_file, counted(model.space.node_count(), "node"),
+             counted(model.mesh.cell_count(), "cell"), counted(model.problem.contact.size(), "contact point"),
+             counted(model.problem.supports.size(), "supported dof"), counted(step_count(input.time), "step"));
+  print_place(input, model);
   if (!starts) {
     fmt::print(
         "{}: not checked: the start of the run (whether its operators can be factorized, and its initial state), "

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ricochet/case/model.hpp"
+#include "ricochet/model/model.hpp"
 
 /// @file Where a mesh lies when a run starts.
 namespace ricochet::program {

@@ -15,11 +15,8 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/base/timer.hpp"
-#include "ricochet/case/model.hpp"
-#include "ricochet/case/read_case.hpp"
-#include "ricochet/case/run_case.hpp"
+#include "ricochet/run/session.hpp"
 #include "ricochet/simulation/history.hpp"
-#include "ricochet/simulation/simulation.hpp"
 
 // What the time steps of a case cost, next to the limits that a step with contact should approach (limits.hpp). Steps
 // and limits take turns, so that both see the same machine. Prints one JSON object.
@@ -90,20 +87,20 @@ void print_phase(const std::string& name, const Phase& phase) {
 
 /// Steps in groups, each followed by the limits.
 double run(const Options& options) {
-  const Case input = read_case(options.path);
-  Timer timer;
+  Session session(options.path);
   BuildTimes build;
-  const auto model = build_model(input, &build);
-  const auto scheme = make_scheme(input.time);
-  timer.restart();
-  Simulation simulation(model->problem, *scheme, model->initial, step_solver_options(input));
+  session.build(&build);
+  const Model& model = session.model();
+  const Timer timer;
+  session.start();
   const double start = timer.seconds();
-  HistoryRecorder recorder(model->problem, *model->rotation, model->sensors);
+  Simulation& simulation = session.simulation();
+  HistoryRecorder recorder(model.problem, *model.rotation, model.sensors);
   simulation.advance();
   const double peak_alone = peak_memory();
   std::unique_ptr<Limits> limits;
   if (options.compare)
-    limits = make_limits(model->problem, *scheme, static_cast<std::size_t>(simulation.factor_entries()));
+    limits = make_limits(model.problem, session.scheme(), static_cast<std::size_t>(simulation.factor_entries()));
 
   std::map<std::string, Phase> phases;
   long before = 0;
@@ -131,7 +128,7 @@ double run(const Options& options) {
   }
 
   const double peak = limits ? peak_alone : peak_memory();
-  const SemidiscreteProblem& problem = model->problem;
+  const SemidiscreteProblem& problem = model.problem;
   const double matrices = megabytes(problem.internal_force->tangent()) + megabytes(problem.mass.whole());
   fmt::print(R"({{"case": "{}", "dimension": {}, "dofs": {}, "contact_points": {}, "threads": {}, )", options.path,
              problem.dimension, problem.dof_count(), problem.contact.size(), thread_count());

@@ -8,7 +8,7 @@ import unittest
 from harness import SOURCE
 
 LAYERS = ["base", "linear_algebra", "mesh", "fem", "contact", "mass", "problem", "scheme", "solver", "simulation", "io",
-          "case", "report"]
+          "case", "model", "run", "report"]
 # linear_algebra is a tool of the layers from mass on: meshes, elements and contact do without it.
 WITHOUT_LINEAR_ALGEBRA = {"mesh", "fem", "contact"}
 # A scheme and a step solver speak of stages, which are in problem/: neither knows the other.

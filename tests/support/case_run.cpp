@@ -9,8 +9,6 @@
 #include <stdexcept>
 
 #include "ricochet/base/log.hpp"
-#include "ricochet/case/read_case.hpp"
-#include "ricochet/case/run_case.hpp"
 #include "support/paths.hpp"
 
 namespace ricochet::test_support {
@@ -49,19 +47,13 @@ std::string mesh_geometry(const std::string& name, const std::string& geometry, 
 
 CaseRun::CaseRun(const std::string& toml, const std::vector<std::string>& overrides) {
   log::set_level(log::Level::error);
-  input_ = read_case(write_temporary("case.toml", toml), overrides);
-  model_ = build_model(input_);
-  scheme_ = make_scheme(input_.time);
-  simulation_ = std::make_unique<Simulation>(model_->problem, *scheme_, model_->initial, step_solver_options(input_));
-  steps_ = step_count(input_.time);
+  session_ = std::make_unique<Session>(write_temporary("case.toml", toml), overrides);
+  session_->start();
 }
 
 void CaseRun::run(const std::function<void()>& each, bool with_start) {
   if (with_start) each();
-  while (simulation_->state().step < steps_) {
-    simulation_->advance();
-    each();
-  }
+  session_->run(each);
 }
 
 double total_energy(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {

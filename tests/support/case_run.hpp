@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/case/model.hpp"
-#include "ricochet/simulation/simulation.hpp"
+#include "ricochet/run/session.hpp"
 
 /// @file Running cases inside a test.
 namespace ricochet::test_support {
@@ -17,29 +16,26 @@ std::string write_temporary(const std::string& name, const std::string& text);
 /// Meshes a Gmsh geometry (OpenCASCADE kernel) and returns the path of the .msh.
 std::string mesh_geometry(const std::string& name, const std::string& geometry, double size, int order);
 
-/// A case, its model and its simulation.
+/// A session whose case is a text, and that has started.
 class CaseRun {
  public:
   /// From the text of a case file, with overrides.
   explicit CaseRun(const std::string& toml, const std::vector<std::string>& overrides = {});
 
-  [[nodiscard]] const Case& input() const { return input_; }
-  [[nodiscard]] const Model& model() const { return *model_; }
-  [[nodiscard]] const SemidiscreteProblem& problem() const { return model_->problem; }
-  [[nodiscard]] Scheme& scheme() { return *scheme_; }
-  [[nodiscard]] Simulation& simulation() { return *simulation_; }
-  [[nodiscard]] const State& state() const { return simulation_->state(); }
-  [[nodiscard]] long steps() const { return steps_; }
+  [[nodiscard]] Session& session() const { return *session_; }
+  [[nodiscard]] const Case& input() const { return session_->input(); }
+  [[nodiscard]] const Model& model() const { return session_->model(); }
+  [[nodiscard]] const SemidiscreteProblem& problem() const { return session_->problem(); }
+  [[nodiscard]] Scheme& scheme() { return session_->scheme(); }
+  [[nodiscard]] Simulation& simulation() { return session_->simulation(); }
+  [[nodiscard]] const State& state() const { return session_->state(); }
+  [[nodiscard]] long steps() const { return session_->steps(); }
 
   /// Runs to the end, calling `each` after every step (and once before the first when `with_start`).
   void run(const std::function<void()>& each, bool with_start = true);
 
  private:
-  Case input_;
-  std::unique_ptr<Model> model_;
-  std::unique_ptr<Scheme> scheme_;
-  std::unique_ptr<Simulation> simulation_;
-  long steps_ = 0;
+  std::unique_ptr<Session> session_;
 };
 
 /// J(U, V) = ½VᵀMV + ½UᵀKU − LᵀU with the constant loads, computed here and not by the energy account.

@@ -9,7 +9,7 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/read_case.hpp"
-#include "ricochet/case/run_case.hpp"
+#include "ricochet/run/run_case.hpp"
 #include "support/case_run.hpp"
 #include "support/paths.hpp"
 #include "support/thrown_body.hpp"
@@ -239,10 +239,8 @@ TEST(SpinningBall, RaisesTheWarningOfSmallStrain) {
   const std::filesystem::path directory =
       std::filesystem::path(test_support::write_temporary("marker", "")).parent_path() / "results";
   log::set_level(log::Level::error);
-  log::clear_warnings();
   const Case input = read_case(cases() + "ball-spin/ball-spin.toml", {"time.step=1e-3", "output.fields_every=0"});
   const RunSummary summary = run_case(input, {directory.string(), true, true});
-  log::clear_warnings();
   ASSERT_EQ(summary.warnings.size(), 2U);
   EXPECT_NE(summary.warnings[0].find("small strain no longer holds"), std::string::npos) << summary.warnings[0];
   const double rotation = summary.digest("max_rotation").maximum;

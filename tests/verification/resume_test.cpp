@@ -6,7 +6,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/case/names.hpp"
-#include "ricochet/case/run_case.hpp"
+#include "ricochet/run/run_case.hpp"
 #include "support/case_run.hpp"
 #include "support/thrown_body.hpp"
 

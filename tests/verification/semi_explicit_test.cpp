@@ -133,13 +133,12 @@ TEST(SemiExplicit, RefusesAStepAboveTheCriticalOneAndWarnsNearIt) {
         << problem.what();
     EXPECT_NE(std::string(problem.what()).find("set time.step = "), std::string::npos) << problem.what();
   }
-  log::clear_warnings();
-  const CaseRun near(bar(), {fmt::format("time.step={:.17g}", 0.95 * critical)});
-  ASSERT_EQ(log::warnings().size(), 1u);
-  EXPECT_NE(log::warnings().front().find("0.95 of the critical step"), std::string::npos) << log::warnings().front();
-  log::clear_warnings();
-  const CaseRun well_below(bar(), {fmt::format("time.step={:.17g}", 0.85 * critical)});
-  EXPECT_TRUE(log::warnings().empty());
+  CaseRun near(bar(), {fmt::format("time.step={:.17g}", 0.95 * critical)});
+  ASSERT_EQ(near.session().warnings().size(), 1u);
+  const std::string warning = near.session().warnings().front();
+  EXPECT_NE(warning.find("0.95 of the critical step"), std::string::npos) << warning;
+  CaseRun well_below(bar(), {fmt::format("time.step={:.17g}", 0.85 * critical)});
+  EXPECT_TRUE(well_below.session().warnings().empty());
 }
 
 void expect_refusal(const std::string& toml, const std::vector<std::string>& overrides, const std::string& part) {

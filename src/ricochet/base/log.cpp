@@ -30,9 +30,9 @@ spdlog::logger& logger() {
   return *instance;
 }
 
-std::vector<std::string>& remembered_warnings() {
-  static std::vector<std::string> messages;
-  return messages;
+std::vector<std::string>*& collected_warnings() {
+  static std::vector<std::string>* list = nullptr;
+  return list;
 }
 
 std::string& run_name() {
@@ -82,7 +82,7 @@ void info(const std::string& message) {
   logger().info("{}", message);
 }
 void warning(const std::string& message) {
-  remembered_warnings().push_back(message);
+  if (collected_warnings() != nullptr) collected_warnings()->push_back(message);
   logger().warn("{}", with_run_name(message));
 }
 void error(const std::string& message) {
@@ -98,14 +98,11 @@ std::string with_run_name(const std::string& message) {
   return says ? message : run_name() + ": " + message;
 }
 
-const std::vector<std::string>& warnings() {
-  return remembered_warnings();
+CollectWarnings::CollectWarnings(std::vector<std::string>& list) : before_(collected_warnings()) {
+  collected_warnings() = &list;
 }
-void clear_warnings() {
-  remembered_warnings().clear();
-}
-void set_warnings(std::vector<std::string> messages) {
-  remembered_warnings() = std::move(messages);
+CollectWarnings::~CollectWarnings() {
+  collected_warnings() = before_;
 }
 
 }  // namespace ricochet::log

@@ -4,8 +4,7 @@
 #include <string_view>
 #include <vector>
 
-/// @file Messages to the user, on standard error. Warnings are also remembered, so that the summary of a run repeats
-/// them.
+/// @file Messages to the user, on standard error. Warnings can be collected, so that the summary of a run repeats them.
 namespace ricochet::log {
 
 enum class Level { trace, debug, info, warning, error, off };
@@ -20,10 +19,16 @@ void info(const std::string& message);
 void warning(const std::string& message);
 void error(const std::string& message);
 
-/// All warnings since the last call of clear_warnings, in order.
-[[nodiscard]] const std::vector<std::string>& warnings();
-void clear_warnings();
-/// Replaces them, without saying them again: those of an interrupted run that goes on.
-void set_warnings(std::vector<std::string> messages);
+/// While it lives, warnings are appended to a list besides being said; of several the last one made.
+class CollectWarnings {
+ public:
+  explicit CollectWarnings(std::vector<std::string>& list);
+  ~CollectWarnings();
+  CollectWarnings(const CollectWarnings&) = delete;
+  CollectWarnings& operator=(const CollectWarnings&) = delete;
+
+ private:
+  std::vector<std::string>* before_;
+};
 
 }  // namespace ricochet::log

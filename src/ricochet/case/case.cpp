@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace ricochet {
 
 std::string SourceLocation::text() const {
@@ -16,6 +19,11 @@ SourceLocation Case::where(const std::string& key_path) const {
     enclosing = dot == std::string::npos ? "" : enclosing.substr(0, dot);
   }
   return {path, 0, 0};
+}
+
+long step_count(const TimeSection& time) {
+  // An end that is a whole number of steps to rounding is that number of steps.
+  return std::max(1L, static_cast<long>(std::ceil(time.end / time.step * (1.0 - 1e-12))));
 }
 
 }  // namespace ricochet

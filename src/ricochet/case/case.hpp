@@ -94,6 +94,9 @@ struct TimeSection {
   double end = 0.0;
 };
 
+/// Number of steps to the end time; the last step ends at or after it.
+[[nodiscard]] long step_count(const TimeSection& time);
+
 /// One of: a point, a segment, a boundary, a group, a contact.
 struct ProbeSection {
   std::string name;

@@ -18,8 +18,8 @@ namespace ricochet {
 
 /// Columns of history.csv that every run may have, in 2D or 3D. No probe may be named like one of them.
 [[nodiscard]] inline std::vector<std::string> history_column_names() {
-  std::vector<std::string> names = HistoryRecorder::standard_columns(2);
-  for (std::string& name : HistoryRecorder::standard_columns(3)) names.push_back(std::move(name));
+  std::vector<std::string> names = names_of(HistoryRecorder::standard_columns(2));
+  for (std::string& name : names_of(HistoryRecorder::standard_columns(3))) names.push_back(std::move(name));
   return names;
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "ricochet/base/ranks.hpp"
 #include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/internal_force.hpp"
@@ -31,6 +32,7 @@ struct SemidiscreteProblem {
   Supports supports;
   ContactBoundary contact;
   std::vector<const Obstacle*> obstacles;  ///< of each contact pair
+  const Ranks* ranks = &one_rank();        ///< that the body is divided among; never null
 
   /// Dofs without inertia: those of the contact nodes when the mass is an equivalent one, else none. Ascending.
   std::vector<Index> massless_dofs;

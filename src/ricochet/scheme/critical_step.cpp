@@ -11,7 +11,7 @@ double bound_frequency_squared(const SemidiscreteProblem& problem) {
   require_linear(*problem.internal_force, "the bound of the highest frequency");
   Vector inverse_root = problem.mass.diagonal();
   for (const Index dof : problem.supports.dofs()) inverse_root[dof] = 0.0;
-  const double heaviest = inverse_root.size() > 0 ? inverse_root.maxCoeff() : 0.0;
+  const double heaviest = problem.ranks->maximum(inverse_root.size() > 0 ? inverse_root.maxCoeff() : 0.0);
   if (!(heaviest > 0.0)) return 0.0;
   // Roots are taken of masses brought near 1 by a power of two: units that differ by powers of two give the same bits.
   int exponent = 0;

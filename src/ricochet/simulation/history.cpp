@@ -48,27 +48,26 @@ std::size_t column_index(const std::vector<std::string>& columns, const std::str
   return static_cast<std::size_t>(found - columns.begin());
 }
 
-std::vector<std::string> HistoryRecorder::standard_columns(int dimension) {
-  std::vector<std::string> columns{
-      "step", "time", "kinetic_energy", "elastic_energy", "load_potential", "algorithmic_energy", "total_energy"};
-  columns.insert(columns.end(), work_columns.begin(), work_columns.end());
-  columns.insert(columns.end(), {"numerical_dissipation", "energy_residual"});
+Columns HistoryRecorder::standard_columns(int dimension) {
+  Columns columns{{"step", Reduction::same}, {"time", Reduction::same}, "kinetic_energy", "elastic_energy",
+                  "load_potential",          "algorithmic_energy",      "total_energy"};
+  for (const char* const work : work_columns) columns.emplace_back(work);
+  for (const char* const name : {"numerical_dissipation", "energy_residual"}) columns.emplace_back(name);
   add_vector_columns(columns, "contact_force", dimension);
   add_vector_columns(columns, "momentum", dimension);
   if (dimension == 2) columns.emplace_back("angular_momentum_z");
   if (dimension == 3) add_vector_columns(columns, "angular_momentum", 3);
-  for (const char* name :
-       {"max_rotation", "active_contacts", "sticking", "slipping", "max_penetration", "iterations"}) {
-    columns.emplace_back(name);
-  }
+  columns.emplace_back("max_rotation", Reduction::maximum);
+  for (const char* const name : {"active_contacts", "sticking", "slipping"}) columns.emplace_back(name);
+  columns.emplace_back("max_penetration", Reduction::maximum);
+  columns.emplace_back("iterations", Reduction::same);
   return columns;
 }
 
-std::vector<std::string> HistoryRecorder::columns_of(int dimension,
-                                                     const std::vector<std::shared_ptr<Sensor>>& sensors) {
-  std::vector<std::string> columns = standard_columns(dimension);
+Columns HistoryRecorder::columns_of(int dimension, const std::vector<std::shared_ptr<Sensor>>& sensors) {
+  Columns columns = standard_columns(dimension);
   for (const auto& sensor : sensors) {
-    for (const std::string& column : sensor->columns()) columns.push_back(column);
+    for (const Column& column : sensor->columns()) columns.push_back(column);
   }
   return columns;
 }
@@ -79,7 +78,8 @@ HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const Rotat
       rotation_(rotation),
       observer_(problem),
       sensors_(std::move(sensors)),
-      columns_(columns_of(problem.dimension, sensors_)),
+      columns_(names_of(columns_of(problem.dimension, sensors_))),
+      reductions_(reductions_of(columns_of(problem.dimension, sensors_))),
       momentum_of_(momenta_of_rigid_velocities(problem)) {
   row_.reserve(columns_.size());
 }
@@ -95,6 +95,7 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
   const Observation observation = observer_.observe(state);
   add_contact_state(observation);
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
+  problem_.ranks->reduce(row_, reductions_);
   return row_;
 }
 
@@ -144,10 +145,13 @@ Observation Observer::observe(const State& state) {
 }
 
 SensorRecorder::SensorRecorder(const SemidiscreteProblem& problem, std::vector<std::shared_ptr<Sensor>> sensors)
-    : observer_(problem), sensors_(std::move(sensors)), columns_{"step", "time"} {
+    : problem_(problem), observer_(problem), sensors_(std::move(sensors)) {
+  Columns columns{{"step", Reduction::same}, {"time", Reduction::same}};
   for (const auto& sensor : sensors_) {
-    for (const std::string& column : sensor->columns()) columns_.push_back(column);
+    for (const Column& column : sensor->columns()) columns.push_back(column);
   }
+  columns_ = names_of(columns);
+  reductions_ = reductions_of(columns);
   row_.reserve(columns_.size());
 }
 
@@ -155,6 +159,7 @@ const std::vector<double>& SensorRecorder::row(const State& state) {
   row_.assign({static_cast<double>(state.step), state.time});
   const Observation observation = observer_.observe(state);
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
+  problem_.ranks->reduce(row_, reductions_);
   return row_;
 }
 

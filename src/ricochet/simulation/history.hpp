@@ -33,9 +33,11 @@ class SensorRecorder {
   [[nodiscard]] const std::vector<double>& row(const State& state);
 
  private:
+  const SemidiscreteProblem& problem_;
   Observer observer_;
   std::vector<std::shared_ptr<Sensor>> sensors_;
   std::vector<std::string> columns_;
+  std::vector<Reduction> reductions_;
   std::vector<double> row_;
 };
 
@@ -50,10 +52,9 @@ class HistoryRecorder {
   /// Names of the columns, in the order of a row.
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
   /// The same of a history that is yet to come.
-  [[nodiscard]] static std::vector<std::string> columns_of(int dimension,
-                                                           const std::vector<std::shared_ptr<Sensor>>& sensors);
+  [[nodiscard]] static Columns columns_of(int dimension, const std::vector<std::shared_ptr<Sensor>>& sensors);
   /// The standard columns alone (no sensors), for a body of this dimension: names that a probe cannot have.
-  [[nodiscard]] static std::vector<std::string> standard_columns(int dimension);
+  [[nodiscard]] static Columns standard_columns(int dimension);
   /// The row of a state. The reference stays valid until the next call.
   [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
 
@@ -67,6 +68,7 @@ class HistoryRecorder {
   Observer observer_;
   std::vector<std::shared_ptr<Sensor>> sensors_;
   std::vector<std::string> columns_;
+  std::vector<Reduction> reductions_;
   std::vector<double> row_;
   /// M times the rigid velocities: translations along the axes, and rotations about the axes through the origin (in 2D
   /// about z). Products of the velocity with them are the momenta, since M is symmetric. dofs × 3 or 6.

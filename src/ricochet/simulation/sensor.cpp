@@ -4,9 +4,21 @@
 
 namespace ricochet {
 
-void add_vector_columns(std::vector<std::string>& columns, const std::string& name, int dimension) {
+void add_vector_columns(Columns& columns, const std::string& name, int dimension, Reduction by) {
   constexpr std::array<const char*, 3> axis_suffix{"_x", "_y", "_z"};
-  for (int k = 0; k < dimension; ++k) columns.push_back(name + axis_suffix[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < dimension; ++k) columns.emplace_back(name + axis_suffix[static_cast<std::size_t>(k)], by);
+}
+
+std::vector<std::string> names_of(const Columns& columns) {
+  std::vector<std::string> names;
+  for (const Column& column : columns) names.push_back(column.name);
+  return names;
+}
+
+std::vector<Reduction> reductions_of(const Columns& columns) {
+  std::vector<Reduction> result;
+  for (const Column& column : columns) result.push_back(column.by);
+  return result;
 }
 
 bool carries_force(const StepForces& forces, Index point) {

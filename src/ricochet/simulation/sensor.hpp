@@ -7,6 +7,7 @@
 #include "ricochet/fem/assembly.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/simulation/column.hpp"
 #include "ricochet/simulation/probe.hpp"
 
 /// @file What is watched besides the whole body: points, boundaries, groups, contacts. To add a kind: a file in
@@ -23,8 +24,8 @@ struct Observation {
 class Sensor {
  public:
   virtual ~Sensor() = default;
-  /// Names of its columns: the sensor's name, a dot, and what it is.
-  [[nodiscard]] virtual std::vector<std::string> columns() const = 0;
+  /// Its columns, named by the sensor's name, a dot, and what it is.
+  [[nodiscard]] virtual Columns columns() const = 0;
   /// Appends their values; allocates nothing after the first time.
   virtual void observe(const Observation& observation, std::vector<double>& row) = 0;
 };
@@ -52,8 +53,6 @@ class Sensor {
 
 // For those who write sensors:
 
-/// "name_x", "name_y", … appended.
-void add_vector_columns(std::vector<std::string>& columns, const std::string& name, int dimension);
 /// False for the many points that are open.
 [[nodiscard]] bool carries_force(const StepForces& forces, Index point);
 /// The force of a contact point on the body: r_N n − t r_T.

@@ -61,7 +61,7 @@ Stage& Simulation::stage(std::size_t number) {
 const StageSolution& Simulation::solve(std::size_t number) {
   auto& [stage, solution, dofs] = stages_.at(number);
   solver_->solve(number, stage, solution);
-  if (!is_finite(problem_, dofs, solution.increment)) {
+  if (problem_.ranks->any(!is_finite(problem_, dofs, solution.increment))) {
     throw Error(ErrorKind::not_converged,
                 "the displacement is no longer finite, so the motion has grown beyond all bounds; use a stable scheme "
                 "or mass (newmark with mass \"equivalent\")");

@@ -4,8 +4,8 @@
 
 namespace ricochet {
 
-double largest(const Vector& values) {
-  return values.size() > 0 ? values.lpNorm<Eigen::Infinity>() : 0.0;
+double largest(const SemidiscreteProblem& problem, const Vector& values) {
+  return problem.ranks->maximum(values.size() > 0 ? values.lpNorm<Eigen::Infinity>() : 0.0);
 }
 
 Vector residual_force(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {

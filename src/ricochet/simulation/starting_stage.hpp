@@ -18,6 +18,6 @@ namespace ricochet {
 [[nodiscard]] ObstacleMotion obstacle_at_start(const SemidiscreteProblem& problem, const Vector& displacement);
 
 /// The largest absolute value; 0 without entries.
-[[nodiscard]] double largest(const Vector& values);
+[[nodiscard]] double largest(const SemidiscreteProblem& problem, const Vector& values);
 
 }  // namespace ricochet

@@ -61,7 +61,7 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const 
   state.displacement += solution.increment;
   state.forces.rows = stage.rows;
   add_reactions(solution, state);
-  const double change = largest(solution.increment);
+  const double change = largest(problem, solution.increment);
   if (change > 0.0) {
     log::info(fmt::format(
         "contact nodes have no inertia: their initial displacement was moved by up to {:.3g} to equilibrium", change));
@@ -199,7 +199,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
         static_equilibrium(problem, Vector::Zero(problem.dof_count()), initial.velocity, options);
     state.displacement = std::move(equilibrium.displacement);
     pressed = std::move(equilibrium.normal_reaction);
-    log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(state.displacement)));
+    log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(problem, state.displacement)));
   } else {
     state.displacement = initial.displacement;
   }

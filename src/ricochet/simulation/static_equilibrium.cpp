@@ -43,19 +43,20 @@ class EquilibriumTest {
   [[nodiscard]] bool passed(const Vector& displacement, const Vector& left_over) const {
     Vector deformation;
     rigid_.remove(displacement, deformation);
-    const double terms = largest(magnitude_ * deformation.cwiseAbs()) + load_;
-    const double left = largest(left_over);
+    const double terms = largest(problem_, magnitude_ * deformation.cwiseAbs()) + load_;
+    const double left = largest(problem_, left_over);
     return left <= 1e-13 * terms && (load_ == 0.0 || left <= 1e-6 * load_);
   }
 
  private:
   EquilibriumTest(const SemidiscreteProblem& problem, const SparseMatrix& stiffness)
-      : magnitude_(stiffness.cwiseAbs()), rigid_(problem.nodes, stiffness) {
+      : problem_(problem), magnitude_(stiffness.cwiseAbs()), rigid_(problem.nodes, stiffness) {
     Vector load;
     problem.loads.total(0.0, load);
-    load_ = largest(load);
+    load_ = largest(problem, load);
   }
 
+  const SemidiscreteProblem& problem_;
   SparseMatrix magnitude_;  ///< |K|
   RigidMotion rigid_;
   double load_ = 0.0;  ///< the largest
@@ -140,6 +141,7 @@ class ProximalPoint {
 
   /// The force that is not in equilibrium yet.
   [[nodiscard]] const Vector& left_over() const { return left_over_; }
+  [[nodiscard]] double largest_left_over() const { return largest(problem_, left_over_); }
 
  private:
   const SemidiscreteProblem& problem_;
@@ -189,13 +191,13 @@ std::string as_text(const Vector& vector) {
   }
   const std::string force = fmt::format("({:.3g}, {:.3g}{})", resultant[0], resultant[1],
                                         resultant.size() == 3 ? fmt::format(", {:.3g}", resultant[2]) : "");
-  if (largest(left_over) <= 1e-3 * largest(load)) {
+  if (largest(problem, left_over) <= 1e-3 * largest(problem, load)) {
     throw Error(
         ErrorKind::not_converged,
         fmt::format("initial.displacement = \"static\": the equilibrium was not found to rounding; a force of {:.2g} "
                     "of the largest load is left. {}tiffnesses that differ by many orders of magnitude or very slender "
                     "bodies are likely causes; give the displacement by expressions instead",
-                    largest(left_over) / largest(load),
+                    largest(problem, left_over) / largest(problem, load),
                     problem.contact.has_friction() ? "Friction that just does not hold the body, s" : "S"));
   }
   throw Error(
@@ -214,7 +216,7 @@ bool converges(ProximalPoint& point, const EquilibriumTest& test, bool give_up_e
   for (int k = 0; k < rounds; ++k) {
     point.iterate(at);
     if (test.passed(at.displacement, point.left_over())) return true;
-    const double now = largest(point.left_over());
+    const double now = point.largest_left_over();
     if (give_up_early && k >= 5 && now > 0.95 * before) return false;
     before = now;
   }

@@ -24,7 +24,7 @@ CondensedContact::CondensedContact(const SemidiscreteProblem& problem, std::vect
       friction_(problem.contact.has_friction()),
       all_points_(all_points),
       rows_(problem.contact.rows.get()),
-      candidates_(problem.contact.size()),
+      candidates_(problem.contact.size(), *problem.ranks),
       columns_(factor) {
   contact_.reaction_scale = scale_;
   std::vector<Index> points(all_points ? static_cast<std::size_t>(problem.contact.size()) : 0);

@@ -60,7 +60,7 @@ double ContactCandidates::reach(const Stage& stage) const {
   for (Index i = 0; i < stage.gap_offset.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] != 0) deepest = std::max(deepest, -stage.gap_offset[i]);
   }
-  return reserve * std::max(deepest, stage.gap_factor * largest_motion_);
+  return reserve * std::max(ranks_->maximum(deepest), stage.gap_factor * largest_motion_);
 }
 
 bool ContactCandidates::is_below(const Stage& stage, Index point, double limit, bool candidates) const {
@@ -137,6 +137,7 @@ void ContactCandidates::learn(const Stage& stage, const Vector& motion, std::siz
     if (stage.eligible[static_cast<std::size_t>(i)] != 0)
       largest_motion_ = std::max(largest_motion_, std::abs(motion[i]));
   }
+  largest_motion_ = ranks_->maximum(largest_motion_);
 }
 
 std::vector<Index> ContactCandidates::worth_keeping(const Stage& stage) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "ricochet/base/ranks.hpp"
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/problem/stage.hpp"
 
@@ -12,7 +13,8 @@ namespace ricochet {
 
 class ContactCandidates {
  public:
-  explicit ContactCandidates(Index points) : number_(static_cast<std::size_t>(points), -1) {}
+  explicit ContactCandidates(Index points, const Ranks& ranks = one_rank())
+      : ranks_(&ranks), number_(static_cast<std::size_t>(points), -1) {}
 
   /// In the order in which they were taken up.
   [[nodiscard]] const std::vector<Index>& points() const { return points_; }
@@ -51,6 +53,7 @@ class ContactCandidates {
   [[nodiscard]] std::size_t count_below(const Stage& stage, double limit, bool candidates) const;
   [[nodiscard]] std::size_t most() const;
 
+  const Ranks* ranks_;
   std::vector<Index> points_;
   std::vector<Index> number_;  ///< per point
   double largest_motion_ = 0.0;

@@ -75,7 +75,7 @@ class IterativeStage final : public StageSolver {
 
 IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                                const StepSolverOptions& options)
-    : problem_(problem), coefficients_(coefficients), options_(options), near_(problem.contact.size()) {
+    : problem_(problem), coefficients_(coefficients), options_(options), near_(problem.contact.size(), *problem.ranks) {
   const auto count = static_cast<std::size_t>(problem.dof_count());
   solved_.assign(count, 0);
   for (const int dof : solved_dofs(problem, coefficients.dofs)) solved_[static_cast<std::size_t>(dof)] = 1;

@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "ricochet/case/read_case.hpp"
-#include "ricochet/case/run_case.hpp"
+#include "ricochet/run/run_case.hpp"
 #include "ricochet/version.hpp"
 
 int main(int, char** arguments) {

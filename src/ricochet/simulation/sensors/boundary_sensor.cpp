@@ -35,10 +35,10 @@ class BoundarySensor final : public Sensor {
     }
   }
 
-  [[nodiscard]] std::vector<std::string> columns() const override {
-    std::vector<std::string> columns;
+  [[nodiscard]] Columns columns() const override {
+    Columns columns;
     add_vector_columns(columns, name_ + ".force", problem_.dimension);
-    if (problem_.dimension == 2) columns.push_back(name_ + ".moment_z");
+    if (problem_.dimension == 2) columns.emplace_back(name_ + ".moment_z");
     if (problem_.dimension == 3) add_vector_columns(columns, name_ + ".moment", 3);
     return columns;
   }

@@ -13,11 +13,11 @@ class ContactSensor final : public Sensor {
     }
   }
 
-  [[nodiscard]] std::vector<std::string> columns() const override {
-    std::vector<std::string> columns;
+  [[nodiscard]] Columns columns() const override {
+    Columns columns;
     add_vector_columns(columns, name_ + ".force", problem_.dimension);
-    add_vector_columns(columns, name_ + ".centre", problem_.dimension);
-    columns.push_back(name_ + ".area");
+    add_vector_columns(columns, name_ + ".centre", problem_.dimension, Reduction::same);
+    columns.emplace_back(name_ + ".area");
     return columns;
   }
 
@@ -36,6 +36,9 @@ class ContactSensor final : public Sensor {
       contact.visit_nodes(point,
                           [&](Index node, double weight) { centre += normal * weight * problem_.nodes.col(node); });
     }
+    // A ratio of sums: the sensor sees to it itself.
+    pressing = problem_.ranks->sum(pressing);
+    for (double& component : centre) component = problem_.ranks->sum(component);
     if (pressing > 0.0) centre /= pressing;
     append(force, row);
     append(centre, row);

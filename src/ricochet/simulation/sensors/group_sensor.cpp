@@ -61,15 +61,17 @@ class GroupSensor final : public Sensor {
     for (const Index cell : cells_) cell_weights_.push_back(volumes[cell] / sum);
   }
 
-  [[nodiscard]] std::vector<std::string> columns() const override {
-    std::vector<std::string> columns;
+  [[nodiscard]] Columns columns() const override {
+    Columns columns;
+    const std::array<Column, 3> statistics{
+        {{"_average"}, {"_minimum", Reduction::minimum}, {"_maximum", Reduction::maximum}}};
     for (const char* motion : {".displacement", ".velocity"}) {
-      for (const char* statistic : {"_average", "_minimum", "_maximum"})
-        add_vector_columns(columns, name_ + motion + statistic, dimension_);
+      for (const Column& statistic : statistics)
+        add_vector_columns(columns, name_ + motion + statistic.name, dimension_, statistic.by);
     }
     if (!cells_.empty()) {
-      for (const char* statistic : {"_average", "_minimum", "_maximum"})
-        columns.push_back(name_ + ".von_mises" + statistic);
+      for (const Column& statistic : statistics)
+        columns.emplace_back(name_ + ".von_mises" + statistic.name, statistic.by);
     }
     return columns;
   }

@@ -21,13 +21,13 @@ class PointSensor final : public Sensor {
     }
   }
 
-  [[nodiscard]] std::vector<std::string> columns() const override {
-    std::vector<std::string> columns;
+  [[nodiscard]] Columns columns() const override {
+    Columns columns;
     const int d = problem_.dimension;
     add_vector_columns(columns, probe_.name + ".displacement", d);
     add_vector_columns(columns, probe_.name + ".velocity", d);
     if (probe_.contact_node < 0) return columns;
-    for (const char* name : {".gap", ".pressure", ".reaction_normal"}) columns.push_back(probe_.name + name);
+    for (const char* name : {".gap", ".pressure", ".reaction_normal"}) columns.emplace_back(probe_.name + name);
     add_vector_columns(columns, probe_.name + ".reaction_tangential", d);
     return columns;
   }

@@ -1,4 +1,4 @@
-#include "ricochet/case/run_judgement.hpp"
+#include "ricochet/run/run_judgement.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "ricochet/base/log.hpp"
-#include "ricochet/case/rotation_watch.hpp"
+#include "ricochet/run/rotation_watch.hpp"
 
 namespace ricochet {
 

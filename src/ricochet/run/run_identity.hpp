@@ -4,7 +4,7 @@
 #include <string>
 
 #include "ricochet/base/snapshot.hpp"
-#include "ricochet/case/model.hpp"
+#include "ricochet/model/model.hpp"
 
 /// @file Which run a checkpoint belongs to. A run goes on only with what would have given the same results so far.
 namespace ricochet {

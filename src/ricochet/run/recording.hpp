@@ -3,12 +3,12 @@
 #include <memory>
 
 #include "ricochet/base/timer.hpp"
-#include "ricochet/case/model.hpp"
-#include "ricochet/case/rotation_watch.hpp"
-#include "ricochet/case/run_checks.hpp"
 #include "ricochet/io/history_file.hpp"
 #include "ricochet/io/results_file.hpp"
 #include "ricochet/io/summary.hpp"
+#include "ricochet/model/model.hpp"
+#include "ricochet/run/rotation_watch.hpp"
+#include "ricochet/run/run_checks.hpp"
 #include "ricochet/simulation/impacts.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
 #include "ricochet/simulation/penetration_watch.hpp"

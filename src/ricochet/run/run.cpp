@@ -1,4 +1,4 @@
-#include "ricochet/case/run.hpp"
+#include "ricochet/run/run.hpp"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,13 @@
 #include <filesystem>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/run_name.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/case/old_run.hpp"
-#include "ricochet/case/run_description.hpp"
-#include "ricochet/case/run_identity.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/line_checksums.hpp"
-#include "ricochet/io/progress.hpp"
+#include "ricochet/run/old_run.hpp"
+#include "ricochet/run/run_description.hpp"
+#include "ricochet/run/run_identity.hpp"
 
 namespace ricochet {
 
@@ -23,26 +23,56 @@ constexpr double report_interval = 2.0;
 /// Dofs from which on the start of a run takes seconds, and says so.
 constexpr Index large_body = 20000;
 
+/// Fails early: a run of hours should not end because its last step cannot be written.
+void check_export(const Case& input, const RunOptions& options, long steps) {
+  if (options.export_contact.empty()) return;
+  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
+    if (!(input.contacts[i].friction_bound > 0.0)) continue;
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: contact problems with a friction_bound cannot be exported: FCLib's files state "
+                            "Coulomb's law only",
+                            input.where(fmt::format("contact.{}.friction_bound", i)).text()));
+  }
+  const auto& asked = options.export_contact;
+  const bool some = std::any_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.first <= steps; });
+  const bool all = std::all_of(asked.begin(), asked.end(), [&](const StepRange& r) { return r.last <= steps; });
+  if (!some)
+    throw Error(ErrorKind::usage, fmt::format("--export-contact: the run has {} only", counted(steps, "step")));
+  if (!all)
+    log::warning(fmt::format("--export-contact: the run has {}; those after it are left out", counted(steps, "step")));
+}
+
 }  // namespace
 
-Run::Run(const Case& input, const RunOptions& options)
-    : input_(input),
+Run::Run(Session& session, const RunOptions& options)
+    : session_(session),
+      input_(session.input()),
       options_(options),
       directory_(options.output_directory),
-      steps_(step_count(input.time)),
+      steps_(session.steps()),
+      of_reading_(static_cast<std::ptrdiff_t>(session.warnings().size())),
       at_interruption_([this] { end_early(); }) {}
 
-RunSummary Run::go() {
+void Run::begin() {
+  // Of runs that are silent but for their warnings there may be many at once.
+  log::set_run_name(options_.quiet ? options_.output_directory : "");
+  check_export(input_, options_, steps_);
   if (options_.resume) {
-    if (is_complete()) return summary_;
+    has_nothing_to_do_ = is_complete();
+    if (has_nothing_to_do_) return;
     find_checkpoint();
   } else if (!options_.force) {
     refuse_old_run(directory_, options_);
   }
-  begin();
+  begin_session();
   open_files();
-  take_steps();
-  finish();
+  progress_.emplace(steps_, options_.quiet, session_.state().step);
+  since_checkpoint_.restart();
+}
+
+RunSummary Run::finish() {
+  if (has_nothing_to_do_) return summary_;
+  write_end();
   if (failure_) throw Error(*failure_);
   return summary_;
 }
@@ -105,23 +135,23 @@ void Run::refuse_earlier_end(long reached) const {
                   options_.output_directory));
 }
 
-void Run::begin() {
-  const std::vector<std::string> resume_warnings = log::warnings();
+void Run::begin_session() {
+  // What reading the case said is among those of the run that goes on.
+  const std::vector<std::string> resume_warnings(session_.warnings().begin() + of_reading_, session_.warnings().end());
   BuildTimes build;
-  model_ = build_model(input_, &build);
+  session_.build(&build);
   times_.add_build(build);
-  check_expected_columns(input_, *model_);
-  if (model_->problem.dof_count() >= large_body) {
-    log::info(fmt::format("{}, {}; preparing the steps", counted(model_->problem.dof_count(), "dof"),
-                          counted(model_->problem.contact.size(), "contact point")));
+  check_expected_columns(input_, session_.model());
+  if (session_.model().problem.dof_count() >= large_body) {
+    log::info(fmt::format("{}, {}; preparing the steps", counted(session_.model().problem.dof_count(), "dof"),
+                          counted(session_.model().problem.contact.size(), "contact point")));
   }
   std::string difference;
-  if (snapshot_) difference = compare_model(input_, *model_, *snapshot_);
+  if (snapshot_) difference = compare_model(input_, session_.model(), *snapshot_);
   Timer timer;
-  scheme_ = make_scheme(input_.time);
   begin_simulation();
-  times_.add_start(timer.seconds(), simulation_->methods());
-  summary_ = describe_run(input_, *model_, *scheme_, *simulation_);
+  times_.add_start(timer.seconds(), session_.simulation().methods());
+  summary_ = describe_run(input_, session_.model(), session_.scheme(), session_.simulation());
   summary_.case_path = std::filesystem::absolute(input_.path).lexically_normal().string();
   summary_.settings = options_.settings;
   stopping_points_.emplace();  // the steps are near
@@ -131,14 +161,14 @@ void Run::begin() {
     warnings.insert(warnings.end(), resume_warnings.begin(), resume_warnings.end());
     // The end may have been moved.
     std::erase_if(warnings, [](const std::string& warning) { return warning.starts_with(end_warning); });
-    log::set_warnings(std::move(warnings));
+    session_.warnings() = std::move(warnings);
     if (!difference.empty()) log::warning(difference);
     const Snapshot::Integers& resumed_at = snapshot_->integers("run.resumed_at");
     summary_.resumed_at.assign(resumed_at.begin(), resumed_at.end());
-    summary_.resumed_at.push_back(simulation_->state().step);
-    summary_.checkpoint_step = simulation_->state().step;
+    summary_.resumed_at.push_back(session_.simulation().state().step);
+    summary_.checkpoint_step = session_.simulation().state().step;
     times_.load(*snapshot_, "run.times");
-    log::info(fmt::format("resumed after step {} of {}", simulation_->state().step, steps_));
+    log::info(fmt::format("resumed after step {} of {}", session_.simulation().state().step, steps_));
   } else {
     const std::lock_guard files(files_);
     replace_old_run(directory_, options_, summary_);
@@ -156,7 +186,7 @@ void Run::open_files() {
     if (snapshot_) throw;  // the run is as it was
     summary_.status = "failed";
     summary_.message = problem.what();
-    summary_.steps = simulation_->state().step;
+    summary_.steps = session_.simulation().state().step;
     try {
       write_summary(summary_path(), summary_);
     } catch (const Error&) {  // what has failed first is what a user must hear
@@ -170,67 +200,79 @@ void Run::start_recording() {
   if (!options_.export_contact.empty())
     contact_export_.emplace(options_.export_contact, export_directory(options_), provenance);
   failure_bundle_.emplace(options_.output_directory, provenance);
-  simulation_->observe_contact([this](const ContactProblem& problem, const ContactSolution& solution) {
-    if (!solution.solved()) failure_bundle_->take_problem(problem, solution, simulation_->state().step + 1);
+  session_.simulation().observe_contact([this](const ContactProblem& problem, const ContactSolution& solution) {
+    if (!solution.solved()) failure_bundle_->take_problem(problem, solution, session_.simulation().state().step + 1);
     if (contact_export_) contact_export_->write(problem, solution);
   });
-  recording_.emplace(input_, *model_, *scheme_, simulation_->state(), options_.output_directory, steps_,
-                     simulation_->factor_entries(), snapshot_ ? &*snapshot_ : nullptr);
-  if (!snapshot_) recording_->record(simulation_->state(), simulation_->account());
+  recording_.emplace(input_, session_.model(), session_.scheme(), session_.simulation().state(),
+                     options_.output_directory, steps_, session_.simulation().factor_entries(),
+                     snapshot_ ? &*snapshot_ : nullptr);
+  if (!snapshot_) recording_->record(session_.simulation().state(), session_.simulation().account());
   // Only now, when the run has found its files as it left them.
-  if (snapshot_) remove_files(directory_.left_behind(simulation_->state().step));
+  if (snapshot_) remove_files(directory_.left_behind(session_.simulation().state().step));
   snapshot_.reset();
-  contact_before_ = simulation_->contact_seconds();
+  contact_before_ = session_.simulation().contact_seconds();
   report_progress();
 }
 
 void Run::begin_simulation() {
   if (snapshot_) {
-    simulation_.emplace(model_->problem, *scheme_, *snapshot_, step_solver_options(input_));
+    session_.resume(*snapshot_);
   } else {
-    simulation_.emplace(model_->problem, *scheme_, model_->initial, step_solver_options(input_));
+    session_.start();
   }
 }
 
-/// All steps, recorded, until the end, an error or a signal.
-void Run::take_steps() {
-  Simulation& simulation = *simulation_;
-  Progress progress(steps_, options_.quiet, simulation.state().step);
-  since_checkpoint_.restart();
-  const auto checkpoint_is_due = [&] {
-    const OutputSection& output = input_.output;
-    return (output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
-           (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds);
-  };
-  long step = simulation.state().step;
+bool Run::take_step() {
+  if (has_nothing_to_do_ || has_ended_) return false;
   try {
-    while (simulation.state().step < steps_) {
-      if (const int signal = options_.stop_signal ? options_.stop_signal() : 0; signal != 0) return stop(signal);
-      keep_state_before_step();
-      const Timer timer;
-      ++step;
-      if (log::enabled(log::Level::debug))
-        log::debug(fmt::format("step {}, t = {:.9g}", step, static_cast<double>(step) * scheme_->step()));
-      if (contact_export_) contact_export_->begin_step(step);
-      simulation.advance();
-      step_seconds_ = timer.seconds();
-      times_.steps += step_seconds_;
-      const std::lock_guard files(files_);
-      recording_->record(simulation.state(), simulation.account());
-      progress.update(simulation.state().step, simulation.state().time);
-      if (simulation.state().step < steps_ && checkpoint_is_due()) write_checkpoint();
-      if (since_report_.seconds() >= report_interval) report_progress();
-    }
-    const std::lock_guard files(files_);
-    before_step_.reset();
-    // Before what is written at the end only: from here the run can go on to a later end.
-    const bool checkpoints = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
-    if (checkpoints && summary_.checkpoint_step != steps_) write_checkpoint();
-    recording_->record_end(simulation.state(), simulation.account());
+    if (session_.state().step < steps_ && advance()) return true;
+    end_steps();
   } catch (const Error& problem) {
     failure_ = problem;
-    if (problem.kind() == ErrorKind::not_converged) write_failure_bundle(step);
+    if (problem.kind() == ErrorKind::not_converged) write_failure_bundle(step_);
   }
+  has_ended_ = true;
+  return false;
+}
+
+/// False: a signal asks for the end.
+bool Run::advance() {
+  if (const int signal = options_.stop_signal ? options_.stop_signal() : 0; signal != 0) {
+    stop(signal);
+    return false;
+  }
+  Simulation& simulation = session_.simulation();
+  keep_state_before_step();
+  const Timer timer;
+  step_ = simulation.state().step + 1;
+  if (log::enabled(log::Level::debug))
+    log::debug(fmt::format("step {}, t = {:.9g}", step_, static_cast<double>(step_) * session_.scheme().step()));
+  if (contact_export_) contact_export_->begin_step(step_);
+  simulation.advance();
+  step_seconds_ = timer.seconds();
+  times_.steps += step_seconds_;
+  const std::lock_guard files(files_);
+  recording_->record(simulation.state(), simulation.account());
+  progress_->update(simulation.state().step, simulation.state().time);
+  const OutputSection& output = input_.output;
+  const bool checkpoint_is_due =
+      (output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
+      (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds);
+  if (simulation.state().step < steps_ && checkpoint_is_due) write_checkpoint();
+  if (since_report_.seconds() >= report_interval) report_progress();
+  return true;
+}
+
+/// What the last state leaves, where all steps were taken.
+void Run::end_steps() {
+  if (session_.state().step < steps_) return;
+  const std::lock_guard files(files_);
+  before_step_.reset();
+  // Before what is written at the end only: from here the run can go on to a later end.
+  const bool checkpoints = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
+  if (checkpoints && summary_.checkpoint_step != steps_) write_checkpoint();
+  recording_->record_end(session_.state(), session_.simulation().account());
 }
 
 }  // namespace ricochet

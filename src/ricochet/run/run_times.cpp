@@ -1,4 +1,4 @@
-#include "ricochet/case/run_times.hpp"
+#include "ricochet/run/run_times.hpp"
 
 namespace ricochet {
 

@@ -9,6 +9,7 @@
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/starting_state.hpp"
+#include "ricochet/solver/step_solver.hpp"
 
 /// @file A case together with its mesh: everything a run needs, built and checked.
 namespace ricochet {
@@ -36,6 +37,8 @@ struct Model {
 
 /// The scheme that [time] asks for.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const TimeSection& time);
+/// What [solver] asks for.
+[[nodiscard]] StepSolverOptions step_solver_options(const Case& input);
 /// The scheme with its parameters: "newmark (beta 0.25, gamma 0.5)".
 [[nodiscard]] std::string scheme_text(const TimeSection& time);
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "ricochet/case/model.hpp"
 #include "ricochet/io/contact_export.hpp"
 #include "ricochet/io/summary.hpp"
+#include "ricochet/model/model.hpp"
 #include "ricochet/simulation/simulation.hpp"
 
 /// @file What a run is, in words and numbers, before it has run.

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/case/model.hpp"
 #include "ricochet/io/summary.hpp"
+#include "ricochet/model/model.hpp"
 #include "ricochet/simulation/momentum_account.hpp"
 
 /// @file What a run must keep: its accounts of energy, momentum and angular momentum. Section [check] of a case.

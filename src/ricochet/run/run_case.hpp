@@ -13,9 +13,7 @@
 namespace ricochet {
 
 struct Model;
-
-/// What [solver] asks for.
-[[nodiscard]] StepSolverOptions step_solver_options(const Case& input);
+class Session;
 
 struct RunOptions {
   std::string output_directory;
@@ -36,9 +34,8 @@ struct RunOptions {
 /// that are asked for. Throws Error; when a step fails, what came before it is in the files and summary.json says what
 /// happened. A run that was stopped has the status "interrupted".
 RunSummary run_case(const Case& input, const RunOptions& options);
-
-/// Number of steps to the end time; the last step ends at or after it.
-[[nodiscard]] long step_count(const TimeSection& time);
+/// Of a session that has not begun; its warnings, those of reading the case among them, are in the summary.
+RunSummary run_case(Session& session, const RunOptions& options);
 
 /// Warns where the end time is no whole number of steps, in words that begin so.
 inline constexpr const char* end_warning = "time.end = ";

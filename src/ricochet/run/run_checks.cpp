@@ -1,4 +1,4 @@
-#include "ricochet/case/run_checks.hpp"
+#include "ricochet/run/run_checks.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
-#include "ricochet/case/run_judgement.hpp"
+#include "ricochet/run/run_judgement.hpp"
 #include "ricochet/simulation/history.hpp"
 
 namespace ricochet {

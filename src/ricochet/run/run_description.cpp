@@ -1,12 +1,12 @@
-#include "ricochet/case/run_description.hpp"
+#include "ricochet/run/run_description.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "ricochet/case/run_case.hpp"
 #include "ricochet/linear_algebra/library_versions.hpp"
+#include "ricochet/run/run_case.hpp"
 #include "ricochet/version.hpp"
 
 namespace ricochet {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ricochet/case/model.hpp"
+#include "ricochet/model/model.hpp"
 
 /// @file The pieces of build_model, one file each. Not part of the public interface.
 namespace ricochet {

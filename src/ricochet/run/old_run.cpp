@@ -1,4 +1,4 @@
-#include "ricochet/case/old_run.hpp"
+#include "ricochet/run/old_run.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/case/recording.hpp"
+#include "ricochet/run/recording.hpp"
 
 #include <fmt/format.h>
 

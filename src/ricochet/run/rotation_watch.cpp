@@ -1,4 +1,4 @@
-#include "ricochet/case/rotation_watch.hpp"
+#include "ricochet/run/rotation_watch.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "ricochet/case/model.hpp"
+#include "ricochet/model/model.hpp"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,10 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
-#include "ricochet/case/model_parts.hpp"
 #include "ricochet/fem/exterior_facets.hpp"
 #include "ricochet/mesh/place_mesh.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
+#include "ricochet/model/model_parts.hpp"
 
 namespace ricochet {
 
@@ -236,6 +236,16 @@ bool is_curved(const Mesh& mesh) {
 
 std::unique_ptr<Scheme> make_scheme(const TimeSection& time) {
   return make_scheme(time.scheme, time.step, time.parameters);
+}
+
+StepSolverOptions step_solver_options(const Case& input) {
+  StepSolverOptions options;
+  if (input.solver.method == "direct") options.method = SolverMethod::direct;
+  if (input.solver.method == "iterative") options.method = SolverMethod::iterative;
+  options.tolerance = input.solver.tolerance;
+  options.memory = 1e9 * input.solver.memory.value_or(0.0);
+  options.all_points = input.solver.contact_points == "all";
+  return options;
 }
 
 std::string scheme_text(const TimeSection& time) {

@@ -1,4 +1,4 @@
-#include "ricochet/case/run_identity.hpp"
+#include "ricochet/run/run_identity.hpp"
 
 #include <fmt/format.h>
 

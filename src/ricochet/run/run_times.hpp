@@ -6,7 +6,7 @@
 
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/base/timer.hpp"
-#include "ricochet/case/model.hpp"
+#include "ricochet/model/model.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 /// @file Where the time of a run goes, in seconds, all of its sessions together.

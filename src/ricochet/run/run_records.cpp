@@ -5,10 +5,10 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/run_name.hpp"
-#include "ricochet/case/run.hpp"
-#include "ricochet/case/run_identity.hpp"
-#include "ricochet/case/run_judgement.hpp"
 #include "ricochet/io/checkpoint.hpp"
+#include "ricochet/run/run.hpp"
+#include "ricochet/run/run_identity.hpp"
+#include "ricochet/run/run_judgement.hpp"
 
 namespace ricochet {
 
@@ -25,8 +25,8 @@ constexpr double long_step = 0.5, snapshot_share = 0.05;
 /// the message tells where they are.
 void Run::write_failure_bundle(long step) {
   Snapshot snapshot;
-  simulation_->save(snapshot);
-  save_identity(input_, *model_, snapshot);
+  session_.simulation().save(snapshot);
+  save_identity(input_, session_.model(), snapshot);
   try {
     const std::string note = failure_bundle_->write(step, snapshot, failure_->what());
     failure_ = Error(failure_->kind(), fmt::format("{}\n{}", failure_->what(), note));
@@ -41,7 +41,7 @@ void Run::stop(int signal) {
   write_checkpoint();
   summary_.status = "interrupted";
   summary_.message = fmt::format("stopped by SIG{} after step {} of {}; run --resume goes on from there",
-                                 sigabbrev_np(signal), simulation_->state().step, steps_);
+                                 sigabbrev_np(signal), session_.simulation().state().step, steps_);
 }
 
 /// On another thread, while this run is in the middle of something that takes too long. What is on the disk is good
@@ -77,7 +77,7 @@ void Run::keep_state_before_step() {
 
 RunTimes Run::times_until_now() const {
   RunTimes times = times_;
-  times.contact += simulation_->contact_seconds() - contact_before_;
+  times.contact += session_.simulation().contact_seconds() - contact_before_;
   times.output += recording_->seconds();
   times.watch += recording_->watch_seconds();
   return times;
@@ -85,11 +85,11 @@ RunTimes Run::times_until_now() const {
 
 Snapshot Run::take_snapshot() {
   Snapshot snapshot;
-  simulation_->save(snapshot);
+  session_.simulation().save(snapshot);
   recording_->save(snapshot);
-  save_identity(input_, *model_, snapshot);
+  save_identity(input_, session_.model(), snapshot);
   times_until_now().save(snapshot, "run.times");
-  snapshot.save("run.warnings", log::warnings());
+  snapshot.save("run.warnings", session_.warnings());
   snapshot.save("run.case_path", summary_.case_path);
   snapshot.save("run.settings", Snapshot::Texts(summary_.settings));
   snapshot.save("run.resumed_at", Snapshot::Integers(summary_.resumed_at.begin(), summary_.resumed_at.end()));
@@ -98,7 +98,7 @@ Snapshot Run::take_snapshot() {
 
 void Run::write_checkpoint() {
   const Timer timer;
-  const long step = simulation_->state().step;
+  const long step = session_.simulation().state().step;
   ricochet::write_checkpoint(options_.output_directory, step, take_snapshot());
   summary_.checkpoint_step = step;
   times_.checkpoints += timer.seconds();
@@ -107,12 +107,12 @@ void Run::write_checkpoint() {
 
 void Run::describe_progress(RunSummary& summary) const {
   recording_->describe(summary);
-  summary.factor_entries = simulation_->factor_entries();
-  summary.steps = simulation_->state().step;
+  summary.factor_entries = session_.simulation().factor_entries();
+  summary.steps = session_.simulation().state().step;
   const RunTimes times = times_until_now();
   summary.timings = times.phases();
   summary.time_per_step = summary.steps > 0 ? times.steps / static_cast<double>(summary.steps) : 0.0;
-  summary.warnings = log::warnings();
+  summary.warnings = session_.warnings();
 }
 
 /// For those who look at a run that goes on.
@@ -125,7 +125,7 @@ void Run::report_progress() {
   since_report_.restart();
 }
 
-void Run::finish() {
+void Run::write_end() {
   const std::lock_guard files(files_);
   reported_.reset();
   if (failure_) {
@@ -134,9 +134,9 @@ void Run::finish() {
   }
   describe_progress(summary_);
   if (summary_.status == "done") {
-    judge_energy(summary_, *scheme_, model_->problem, simulation_->state());
-    judge_strain(summary_, model_->body);
-    summary_.warnings = log::warnings();
+    judge_energy(summary_, session_.scheme(), session_.model().problem, session_.simulation().state());
+    judge_strain(summary_, session_.model().body);
+    summary_.warnings = session_.warnings();
   }
   if (contact_export_) summary_.contact_export = contact_export_->report();
   if (summary_.status == "done")

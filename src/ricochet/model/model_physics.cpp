@@ -10,11 +10,11 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/case/model_parts.hpp"
-#include "ricochet/case/run_case.hpp"
 #include "ricochet/contact/multiplier_space.hpp"
 #include "ricochet/fem/cell_masses.hpp"
 #include "ricochet/mass/mass.hpp"
+#include "ricochet/model/model_parts.hpp"
+#include "ricochet/solver/step_solver.hpp"
 
 namespace ricochet {
 

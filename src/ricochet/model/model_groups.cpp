@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/case/model_parts.hpp"
 #include "ricochet/case/problems.hpp"
 #include "ricochet/mesh/derived_groups.hpp"
+#include "ricochet/model/model_parts.hpp"
 
 /// @file The groups that a case names, in its mesh.
 namespace ricochet {

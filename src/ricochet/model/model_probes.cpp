@@ -4,7 +4,7 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/case/model_parts.hpp"
+#include "ricochet/model/model_parts.hpp"
 
 /// @file What [[probe]] asks for.
 namespace ricochet {

@@ -5,11 +5,11 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/case/model.hpp"
 #include "ricochet/case/problems.hpp"
 #include "ricochet/case/quantity.hpp"
-#include "ricochet/case/run_case.hpp"
 #include "ricochet/io/history_file.hpp"
+#include "ricochet/model/model.hpp"
+#include "ricochet/run/run_case.hpp"
 
 namespace ricochet {
 
@@ -99,7 +99,8 @@ bool holds(const ExpectSection& expect, double value) {
 }  // namespace
 
 void check_expected_columns(const Case& input, const Model& model) {
-  const std::vector<std::string> columns = HistoryRecorder::columns_of(model.problem.dimension, model.sensors);
+  const std::vector<std::string> columns =
+      names_of(HistoryRecorder::columns_of(model.problem.dimension, model.sensors));
   Problems problems;
   for (std::size_t i = 0; i < input.expectations.size(); ++i) {
     const ExpectSection& expect = input.expectations[i];

@@ -8,14 +8,15 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/interruption.hpp"
 #include "ricochet/base/timer.hpp"
-#include "ricochet/case/model.hpp"
-#include "ricochet/case/recording.hpp"
-#include "ricochet/case/run_case.hpp"
-#include "ricochet/case/run_times.hpp"
 #include "ricochet/io/contact_export.hpp"
 #include "ricochet/io/failure_bundle.hpp"
+#include "ricochet/io/progress.hpp"
 #include "ricochet/io/run_directory.hpp"
-#include "ricochet/simulation/simulation.hpp"
+#include "ricochet/model/model.hpp"
+#include "ricochet/run/recording.hpp"
+#include "ricochet/run/run_case.hpp"
+#include "ricochet/run/run_times.hpp"
+#include "ricochet/run/session.hpp"
 
 /// @file One run: how it starts or goes on and takes its steps (run.cpp), and what it leaves on the way, checkpoints
 /// and summaries (run_records.cpp).
@@ -24,19 +25,27 @@ namespace ricochet {
 /// A run from its directory to its summary.
 class Run {
  public:
-  Run(const Case& input, const RunOptions& options);
+  /// Keeps references to both.
+  Run(Session& session, const RunOptions& options);
 
-  RunSummary go();
+  /// Looks at what is in the directory, builds and starts the session, and opens the files. Nothing is left to do where
+  /// the run that is to be resumed is complete.
+  void begin();
+  /// One step, recorded. False: the end, a failure, or a signal.
+  bool take_step();
+  /// The summary; throws the error that ended the steps.
+  RunSummary finish();
 
  private:
   [[nodiscard]] bool is_complete();
   void find_checkpoint();
   [[noreturn]] void refuse_earlier_end(long reached) const;
-  void begin();
   void begin_simulation();
+  void begin_session();
   void open_files();
   void start_recording();
-  void take_steps();
+  bool advance();
+  void end_steps();
   void stop(int signal);
   void end_early();
   void keep_state_before_step();
@@ -46,27 +55,30 @@ class Run {
   void report_progress();
   [[nodiscard]] RunTimes times_until_now() const;
   void describe_progress(RunSummary& summary) const;
-  void finish();
+  void write_end();
   [[nodiscard]] std::string summary_path() const { return directory_.file("summary.json"); }
 
+  Session& session_;
   const Case& input_;
   const RunOptions& options_;
   RunDirectory directory_;
   long steps_;
+  std::ptrdiff_t of_reading_;  ///< warnings that there were before
   RunTimes times_;
-  std::unique_ptr<Model> model_;
-  std::unique_ptr<Scheme> scheme_;
+  bool has_nothing_to_do_ = false;  ///< to be resumed: the run is complete
+  bool has_ended_ = false;
   bool knows_what_ran_ = false;       ///< to be resumed: there is a summary, and it is that of this case
   bool was_complete_ = false;         ///< to be resumed: to a later end
   std::optional<Snapshot> snapshot_;  ///< that the run goes on from
-  std::optional<Simulation> simulation_;
   std::optional<ContactExport> contact_export_;
   std::optional<FailureBundle> failure_bundle_;
   std::optional<Recording> recording_;
+  std::optional<Progress> progress_;
   double contact_before_ = 0.0;
   RunSummary summary_;
   std::optional<Error> failure_;
   Timer since_checkpoint_, since_report_;
+  long step_ = 0;                                       ///< that was begun last
   double step_seconds_ = 0.0, snapshot_seconds_ = 0.0;  ///< the last took
 
   /// Held while the files of the run change: whoever ends the run in the middle of its work waits for that.

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/case/run_case.hpp"
 #include "ricochet/io/run_directory.hpp"
+#include "ricochet/run/run_case.hpp"
 
 /// @file What an earlier run has left where a new one is to write.
 namespace ricochet {

@@ -1,0 +1,32 @@
+#include "ricochet/run/run_case.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/run/session.hpp"
+
+namespace ricochet {
+
+void warn_of_end(const TimeSection& time) {
+  const double end = static_cast<double>(step_count(time)) * time.step;
+  if (std::abs(end - time.end) <= 1e-9 * time.end) return;
+  log::warning(
+      fmt::format("{}{:.9g} is no whole number of steps of {:.9g}: the run ends at t = {:.9g}, after "
+                  "step {}",
+                  end_warning, time.end, time.step, end, step_count(time)));
+}
+
+RunSummary run_case(Session& session, const RunOptions& options) {
+  session.write_to(options);
+  session.run();
+  return session.finish();
+}
+
+RunSummary run_case(const Case& input, const RunOptions& options) {
+  Session session(input);
+  return run_case(session, options);
+}
+
+}  // namespace ricochet

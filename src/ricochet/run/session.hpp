@@ -1,0 +1,82 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ricochet/model/model.hpp"
+#include "ricochet/run/run_case.hpp"
+#include "ricochet/simulation/simulation.hpp"
+
+/// @file A case that is open: its model, its scheme, its simulation and its warnings, step by step.
+///
+///   Session session("case.toml", {"time.step=1e-4"});
+///   session.write_to({.output_directory = "out/a"});      // leave this out, and nothing is written
+///   while (session.step()) look(session.state());
+///   const RunSummary summary = session.finish();
+namespace ricochet {
+
+class Run;
+
+class Session {
+ public:
+  /// Reads a case file, with changes as --set makes them. Throws Error as read_case does.
+  explicit Session(const std::string& path, const std::vector<std::string>& changes = {});
+  explicit Session(Case input);
+  ~Session();
+  Session(const Session&) = delete;  // its parts keep references to each other
+  Session& operator=(const Session&) = delete;
+
+  [[nodiscard]] const Case& input() const { return input_; }
+  /// All that were said for this session, in order.
+  [[nodiscard]] std::vector<std::string>& warnings() { return warnings_; }
+
+  /// Reads the mesh and builds the problem, unless that is done. Everything below does so when it is needed.
+  void build(BuildTimes* times = nullptr);
+  /// Finds the state at t = 0 and factorizes, unless that is done or a state was taken up.
+  void start();
+  /// Instead: goes on from what save() has put into a snapshot, with the same bits as without an interruption. Before
+  /// the first step. Throws Error(invalid_input) where it does not fit.
+  void resume(const Snapshot& snapshot);
+  /// The state, and what the next steps depend on besides.
+  void save(Snapshot& snapshot);
+
+  [[nodiscard]] Model& model();
+  [[nodiscard]] const SemidiscreteProblem& problem() { return model().problem; }
+  [[nodiscard]] Scheme& scheme();
+  [[nodiscard]] Simulation& simulation();
+  [[nodiscard]] const State& state() { return simulation().state(); }
+  [[nodiscard]] double time() { return state().time; }
+  /// Of the run, and the number of steps until there.
+  [[nodiscard]] double end() const { return input_.time.end; }
+  [[nodiscard]] long steps() const { return step_count(input_.time); }
+
+  /// A force per dof that acts from now on besides the loads of the case, until it is set again. It enters the energy
+  /// account as load_work.
+  void set_load(const Vector& force);
+
+  /// One step. False, and nothing done: the run is at its end. Throws Error(not_converged); the state is then that
+  /// before the step. A session that writes says false there, and where a signal stopped it; finish() then says why.
+  bool step();
+  /// All steps that are left, calling `each` (if there is one) after every one.
+  void run(const std::function<void()>& each = {});
+
+  /// Before the first step: from here on the session writes what a run writes (history, fields, checkpoints, summary).
+  /// With `resume` among the options it goes on with the run that is there. Throws Error as run_case does.
+  void write_to(RunOptions options);
+  /// Ends what write_to has begun: the summary, with the expectations of the case.
+  RunSummary finish();
+
+ private:
+  Case input_;
+  std::vector<std::string> warnings_;
+  std::unique_ptr<Model> model_;
+  std::unique_ptr<Scheme> scheme_;
+  std::unique_ptr<Simulation> simulation_;
+  std::shared_ptr<Vector> load_;  ///< set_load's
+  RunOptions options_;
+  std::unique_ptr<Run> run_;
+};
+
+}  // namespace ricochet

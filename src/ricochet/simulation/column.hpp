@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/base/ranks.hpp"
+
+/// @file Columns of the history and of sensors.
+namespace ricochet {
+
+/// A name, and how the number comes from those of the ranks: of most quantities each rank has a part.
+struct Column {
+  std::string name;
+  Reduction by = Reduction::sum;
+
+  // NOLINTNEXTLINE(google-explicit-constructor): a name alone is a column that is a sum
+  Column(std::string of_name, Reduction reduction = Reduction::sum) : name(std::move(of_name)), by(reduction) {}
+  Column(const char* of_name, Reduction reduction = Reduction::sum) : name(of_name), by(reduction) {}
+};
+using Columns = std::vector<Column>;
+
+/// "name_x", "name_y", … appended.
+void add_vector_columns(Columns& columns, const std::string& name, int dimension, Reduction by = Reduction::sum);
+[[nodiscard]] std::vector<std::string> names_of(const Columns& columns);
+[[nodiscard]] std::vector<Reduction> reductions_of(const Columns& columns);
+
+}  // namespace ricochet

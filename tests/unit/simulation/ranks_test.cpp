@@ -1,0 +1,60 @@
+#include "ricochet/base/ranks.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ricochet/simulation/history.hpp"
+#include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
+
+/// @file What the numbers of a body that is divided among processes are made of.
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+
+/// Two ranks that have the same halves.
+class TwoAlike final : public Ranks {
+ public:
+  void reduce(std::span<double> values, std::span<const Reduction> by) const override {
+    ASSERT_EQ(values.size(), by.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] *= by[i] == Reduction::sum ? 2.0 : 1.0;
+  }
+};
+
+TEST(Ranks, OneAloneChangesNothing) {
+  std::vector<double> values{1.0, -2.0};
+  const std::vector<Reduction> by{Reduction::sum, Reduction::maximum};
+  one_rank().reduce(values, by);
+  EXPECT_EQ(values, (std::vector<double>{1.0, -2.0}));
+  EXPECT_EQ(one_rank().sum(3.0), 3.0);
+  EXPECT_FALSE(one_rank().any(false));
+  EXPECT_TRUE(one_rank().any(true));
+  EXPECT_TRUE(one_rank().is_owned(0));
+}
+
+/// Energies, works, forces, momenta and counts are sums; what is largest is not; the step, the time and the iterations
+/// are the same everywhere.
+TEST(Ranks, EveryColumnOfTheHistorySaysHowItIsReduced) {
+  CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "equivalent",
+                                        "scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "friction = 0.3\n"));
+  for (int step = 0; step < 60; ++step) run.simulation().advance();
+  SemidiscreteProblem divided = run.problem();
+  const TwoAlike two;
+  divided.ranks = &two;
+  HistoryRecorder alone(run.problem(), *run.model().rotation, {make_contact_sensor("c", run.problem(), 0)});
+  HistoryRecorder both(divided, *run.model().rotation, {make_contact_sensor("c", divided, 0)});
+  const std::vector<double> parts = alone.row(run.state(), run.simulation().account());
+  const std::vector<double> whole = both.row(run.state(), run.simulation().account());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string& name = alone.columns()[i];
+    const bool is_same = name == "step" || name == "time" || name == "iterations" || name.starts_with("max_") ||
+                         name.starts_with("c.centre");
+    EXPECT_DOUBLE_EQ(whole[i], (is_same ? 1.0 : 2.0) * parts[i]) << name;
+    largest = std::max(largest, std::abs(parts[i]));
+  }
+  EXPECT_GT(largest, 0.0);
+}
+
+}  // namespace
+}  // namespace ricochet

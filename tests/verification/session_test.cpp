@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/io/history_file.hpp"
+#include "ricochet/run/session.hpp"
+#include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
+
+/// @file Sessions: the run of a case in the hands of the program that opens it.
+namespace ricochet::test_support {
+namespace {
+
+std::string block_text() {
+  return thrown_case(one_sided_block(), "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
+                     "friction = 0.3\n");
+}
+
+class SessionTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    log::set_level(log::Level::error);
+    path_ = write_temporary("case.toml", block_text());
+    directory_ = (std::filesystem::path(path_).parent_path() / "out").string();
+  }
+  std::string path_, directory_;
+};
+
+TEST_F(SessionTest, StepsToTheEndOfTheRun) {
+  Session session(path_, {"time.end=0.5"});
+  EXPECT_EQ(session.steps(), 50);
+  long steps = 0;
+  session.run([&] { ++steps; });
+  EXPECT_EQ(steps, 50);
+  EXPECT_FALSE(session.step());
+  EXPECT_DOUBLE_EQ(session.time(), session.end());
+}
+
+TEST_F(SessionTest, GoesOnFromASnapshotWithTheSameBits) {
+  Session first(path_);
+  Snapshot middle;
+  for (int k = 0; k < 40; ++k) ASSERT_TRUE(first.step());
+  first.save(middle);
+  for (int k = 0; k < 40; ++k) ASSERT_TRUE(first.step());
+  Session second(path_);
+  second.resume(middle);
+  EXPECT_EQ(second.state().step, 40);
+  for (int k = 0; k < 40; ++k) ASSERT_TRUE(second.step());
+  EXPECT_EQ(first.state().displacement, second.state().displacement);
+  EXPECT_EQ(first.state().velocity, second.state().velocity);
+  EXPECT_THROW(second.resume(middle), std::logic_error);
+}
+
+/// What a session writes step by step is what a run writes.
+TEST_F(SessionTest, WritesWhatARunWrites) {
+  (void)run_case(read_case(path_), {.output_directory = directory_, .quiet = true});
+  Session session(path_);
+  session.write_to({.output_directory = directory_ + "-session", .quiet = true});
+  while (session.step()) {
+  }
+  const RunSummary summary = session.finish();
+  EXPECT_EQ(summary.status, "done");
+  const HistoryTable one = read_history(directory_ + "/history.csv");
+  const HistoryTable other = read_history(directory_ + "-session/history.csv");
+  EXPECT_EQ(one.names, other.names);
+  EXPECT_EQ(one.columns, other.columns);
+}
+
+/// A spring that the program makes: its work is in the account, which closes.
+TEST_F(SessionTest, FeedsALoadBack) {
+  Session free(path_, {"time.end=1"}), held(path_, {"time.end=1"});
+  const Index dofs = held.problem().dof_count();
+  Vector weight, ones = Vector::Ones(dofs);
+  held.problem().mass.multiply(ones, weight);
+  double worst = 0.0, largest = 0.0;
+  do {
+    held.set_load(-4.0 * held.state().displacement.cwiseProduct(weight));
+    EnergyAccount& account = held.simulation().account();
+    const Energies now = account.energies(held.state());
+    worst = std::max(worst, std::abs(account.residual(now)));
+    largest = std::max({largest, now.kinetic, now.elastic, std::abs(now.total())});
+  } while (held.step());
+  free.run();
+  EXPECT_LE(worst, 1e-12 * largest);
+  EXPECT_NE(held.simulation().account().works().load, 0.0);
+  EXPECT_LT(held.state().displacement.norm(), 0.9 * free.state().displacement.norm());
+  EXPECT_THROW(held.set_load(Vector::Zero(dofs - 1)), Error);
+}
+
+/// Warnings are the session's own, those of reading its case among them.
+TEST_F(SessionTest, OwnsItsWarnings) {
+  Session quiet(path_);
+  Session warned(path_, {"initial.parameters.unused=1"});
+  EXPECT_TRUE(quiet.warnings().empty());
+  ASSERT_EQ(warned.warnings().size(), 1u);
+  EXPECT_NE(warned.warnings().front().find("no formula"), std::string::npos);
+  warned.write_to({.output_directory = directory_, .quiet = true});
+  warned.run();
+  EXPECT_EQ(warned.finish().warnings.front(), warned.warnings().front());
+}
+
+}  // namespace
+}  // namespace ricochet::test_support
