@@ -30,7 +30,6 @@ extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  ricochet::log::clear_warnings();
   try {
     (void)ricochet::read_case_text(text, "case.toml", overrides_in(text));
   } catch (const ricochet::Error& error) {

@@ -65,10 +65,9 @@ TEST(ReadTime, AFileForAnotherSchemeNeedsParametersForNewmark) {
 
 TEST(ReadTime, WarnsOfInstability) {
   const auto warnings_of = [](const std::string& keys) {
-    log::clear_warnings();
+    std::vector<std::string> warnings;
+    const log::CollectWarnings collect(warnings);
     static_cast<void>(read_text(with_scheme(newmark + keys)));
-    std::vector<std::string> warnings = log::warnings();
-    log::clear_warnings();
     return warnings;
   };
   EXPECT_TRUE(warnings_of("preset = \"trapezoidal\"").empty());

@@ -39,11 +39,11 @@ std::string fan(int turns, bool in_space) {
 }
 
 std::string warnings_of(const std::string& content) {
-  log::clear_warnings();
+  std::vector<std::string> warnings;
+  const log::CollectWarnings collect(warnings);
   static_cast<void>(mesh_of(content));
   std::string text;
-  for (const std::string& warning : log::warnings()) text += warning + "\n";
-  log::clear_warnings();
+  for (const std::string& warning : warnings) text += warning + "\n";
   return text;
 }
 
@@ -69,9 +69,10 @@ TEST(Overlaps, AreNotSeenWhereThereAreNone) {
       box.geometry_degree = degree;
       box.map = test_support::swirl_map(0.05);
       const Mesh mesh = test_support::make_checked_box_mesh(box);
-      log::clear_warnings();
+      std::vector<std::string> warnings;
+      const log::CollectWarnings collect(warnings);
       gmsh::warn_of_overlaps(mesh);
-      EXPECT_TRUE(log::warnings().empty()) << log::warnings().front();
+      EXPECT_TRUE(warnings.empty()) << warnings.front();
     }
   }
 }
