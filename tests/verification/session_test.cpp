@@ -97,9 +97,10 @@ TEST_F(SessionTest, OwnsItsWarnings) {
   EXPECT_TRUE(quiet.warnings().empty());
   ASSERT_EQ(warned.warnings().size(), 1u);
   EXPECT_NE(warned.warnings().front().find("no formula"), std::string::npos);
-  warned.write_to({.output_directory = directory_, .quiet = true});
+  warned.write_to({.output_directory = directory_, .force = true, .quiet = true});
   warned.run();
-  EXPECT_EQ(warned.finish().warnings.front(), warned.warnings().front());
+  const RunSummary summary = warned.finish();
+  EXPECT_EQ(summary.warnings.front(), warned.warnings().front());
 }
 
 }  // namespace
