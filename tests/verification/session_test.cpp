@@ -56,9 +56,9 @@ TEST_F(SessionTest, GoesOnFromASnapshotWithTheSameBits) {
 
 /// What a session writes step by step is what a run writes.
 TEST_F(SessionTest, WritesWhatARunWrites) {
-  (void)run_case(read_case(path_), {.output_directory = directory_, .quiet = true});
+  (void)run_case(read_case(path_), {.output_directory = directory_, .force = true, .quiet = true});
   Session session(path_);
-  session.write_to({.output_directory = directory_ + "-session", .quiet = true});
+  session.write_to({.output_directory = directory_ + "-session", .force = true, .quiet = true});
   while (session.step()) {
   }
   const RunSummary summary = session.finish();
