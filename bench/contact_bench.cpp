@@ -77,7 +77,7 @@ void print(const Arguments& arguments, const std::string& file, const ContactSol
       file.c_str(), arguments.solver.c_str(), arguments.tolerance, seconds, outcome_name(solution.outcome),
       solution.residual, solution.rounding_floor, solution.iterations, solution.newton_steps, solution.factorizations,
       counts[0], counts[1], counts[2], counts[3]);
-  for (const ContactIteration& line : solution.record) std::printf("# %-10s %.3e\n", line.phase, line.residual);
+  for (const IterationRecord& line : solution.record) std::printf("# %-10s %.3e\n", line.phase, line.residual);
   if (arguments.reactions.empty()) return;
   const std::string name = file.substr(file.find_last_of('/') + 1);
   if (std::FILE* out = std::fopen((arguments.reactions + "/" + name + ".txt").c_str(), "w")) {

@@ -195,7 +195,7 @@ int main(int count, char** values) {
   const auto seeds = static_cast<unsigned>(count > 1 ? std::atoi(values[1]) : 500);
   const auto seeds_of_others = static_cast<unsigned>(count > 2 ? std::atoi(values[2]) : 30);
   std::vector<std::string> solvers;
-  for (const ContactSolverDescription& solver : contact_solvers()) {
+  for (const auto& solver : contact_solver_registry().all()) {
     if (solver.name != "active-set") solvers.push_back(solver.name);  // for definite W without friction or in 2D only
   }
   std::string head = "| | problems |", rule = "|---|---|";

@@ -15,7 +15,7 @@ namespace ricochet::program {
 namespace {
 
 void list_solvers() {
-  for (const ContactSolverDescription& solver : contact_solvers()) fmt::print("{:<27} {}\n", solver.name, solver.text);
+  for (const auto& solver : contact_solver_registry().all()) fmt::print("{:<27} {}\n", solver.name, solver.type.text);
 }
 
 void print_row(const char* name, const std::string& value) {
@@ -65,7 +65,7 @@ void print_record(const ContactSolution& solution) {
   fmt::print("  {:>9}  {:<14} {:<9}  {:>6} {:>6} {:>6} {:>7}\n", "iteration", "phase", "residual", "closed", "stick",
              "slip", "changed");
   for (std::size_t k = 0; k < solution.record.size(); ++k) {
-    const ContactIteration& line = solution.record[k];
+    const IterationRecord& line = solution.record[k];
     fmt::print("  {:>9}  {:<14} {:.3e}  {:>6} {:>6} {:>6} {:>7}\n", k + 1, line.phase, line.residual, line.closed,
                line.sticking, line.slipping, line.changed);
   }
@@ -135,12 +135,10 @@ int contact(const ContactArguments& arguments) {
                                               "and below 1 is expected",
                                               arguments.tolerance));
   }
-  const std::vector<ContactSolverDescription> known = contact_solvers();
-  if (std::none_of(known.begin(), known.end(), [&](const auto& s) { return s.name == arguments.solver; })) {
-    std::string names;
-    for (const ContactSolverDescription& solver : known) names += (names.empty() ? "" : ", ") + solver.name;
-    throw Error(ErrorKind::usage,
-                fmt::format("--solver {}: there is no such solver; there are {}", arguments.solver, names));
+  const std::vector<std::string> known = contact_solver_registry().names();
+  if (std::find(known.begin(), known.end(), arguments.solver) == known.end()) {
+    throw Error(ErrorKind::usage, fmt::format("--solver {}: there is no such solver; there are {}", arguments.solver,
+                                              join_names(known, ", ", false)));
   }
   check_output(arguments.output);
   const auto solver = make_contact_solver(arguments.solver);

@@ -10,10 +10,10 @@
 namespace ricochet::test {
 
 FrictionProblem::FrictionProblem(const std::vector<Index>& sizes, double friction) {
-  for (const Index size : sizes) first.push_back(first.back() + size);
-  q.setZero(first.back());
-  rounding.setZero(first.back());
-  w.setIdentity(first.back(), first.back());
+  for (const Index size : sizes) row_offset.push_back(row_offset.back() + size);
+  q.setZero(row_offset.back());
+  rounding.setZero(row_offset.back());
+  w.setIdentity(row_offset.back(), row_offset.back());
   coefficient.setConstant(points(), friction);
   bound.setZero(points());
   eligible.assign(sizes.size(), 1);
@@ -24,7 +24,7 @@ ContactProblem FrictionProblem::contact(std::shared_ptr<const ContactOperator> c
   problem.contact_operator = contact_operator != nullptr ? std::move(contact_operator) : make_dense_operator(w);
   problem.offset = q;
   problem.offset_rounding = rounding;
-  problem.first = first;
+  problem.row_offset = row_offset;
   problem.eligible = eligible;
   problem.friction_coefficient = coefficient;
   problem.friction_bound = bound;
@@ -48,8 +48,8 @@ FrictionProblem random_problem(Index points, Index dimension, double friction, u
   std::vector<Index> sizes;
   for (Index i = 0; i < points; ++i) sizes.push_back(random() % 5 == 0 ? 1 : dimension);
   FrictionProblem problem(sizes, friction);
-  problem.w = random_operator(problem.first.back(), digits, random);
-  problem.q = uniform(problem.first.back(), random);
+  problem.w = random_operator(problem.row_offset.back(), digits, random);
+  problem.q = uniform(problem.row_offset.back(), random);
   return problem;
 }
 
@@ -81,9 +81,9 @@ FrictionProblem half_space_problem(Index side, double friction) {
 const ContactSolution& ContactRun::solve(const FrictionProblem& problem, const ContactOptions& options) {
   if (operator_ == nullptr) {
     operator_ = make_dense_operator(problem.w);
-    const Vector start = start_;
     solver_->analyse(problem.contact(operator_));
-    solver_->set_warm_start(start);
+    solver_->set_warm_start(start_reactions_);
+    if (start_) solver_->load(*start_, "solver");
   }
   solver_->solve(problem.contact(operator_), options, solution_);
   return solution_;
@@ -103,8 +103,8 @@ void expect_law(const FrictionProblem& problem, const ContactSolution& solution,
   for (Index i = 0; i < problem.points(); ++i) {
     SCOPED_TRACE(testing::Message() << "point " << i);
     const auto at = static_cast<std::size_t>(i);
-    const Index row = problem.first[at];
-    const Index tangents = problem.first[at + 1] - row - 1;
+    const Index row = problem.row_offset[at];
+    const Index tangents = problem.row_offset[at + 1] - row - 1;
     const ContactStatus status = solution.status[at];
     const auto force = rho.segment(row + 1, tangents);
     const auto slip = u.segment(row + 1, tangents);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -25,12 +26,12 @@ inline Vector uniform(Index size, std::mt19937& random) {
 struct FrictionProblem {
   Matrix w;
   Vector q, rounding, coefficient, bound;
-  std::vector<Index> first{0};
+  std::vector<Index> row_offset{0};
   std::vector<char> eligible;
 
   /// Points of these sizes; W and q are for the caller to fill.
   FrictionProblem(const std::vector<Index>& sizes, double friction);
-  [[nodiscard]] Index points() const { return static_cast<Index>(first.size()) - 1; }
+  [[nodiscard]] Index points() const { return static_cast<Index>(row_offset.size()) - 1; }
   /// As the solvers take it, with this operator or one of its own.
   [[nodiscard]] ContactProblem contact(std::shared_ptr<const ContactOperator> contact_operator = nullptr) const;
 };
@@ -52,19 +53,27 @@ class ContactRun {
   const ContactSolution& solve(const FrictionProblem& problem, const ContactOptions& options = {});
   void reset() {
     operator_.reset();
-    start_.resize(0);
+    start_.reset();
+    start_reactions_.resize(0);
   }
   [[nodiscard]] const ContactSolution& solution() const { return solution_; }
-  [[nodiscard]] Vector warm_start() const { return solver_->warm_start(); }
-  void set_warm_start(const Vector& start) {
-    start_ = start;
-    solver_->set_warm_start(start);
+  /// What it has come to; and the solver then starts its first problem from there.
+  [[nodiscard]] Snapshot saved() const {
+    Snapshot snapshot;
+    solver_->save(snapshot, "solver");
+    return snapshot;
+  }
+  void start_with(Snapshot snapshot) { start_ = std::move(snapshot); }
+  void set_warm_start(const Vector& reactions) {
+    start_reactions_ = reactions;
+    if (operator_ != nullptr) solver_->set_warm_start(reactions);
   }
 
  private:
   std::unique_ptr<ContactSolver> solver_;
   std::shared_ptr<const ContactOperator> operator_;
-  Vector start_;  ///< for the first problem
+  std::optional<Snapshot> start_;  ///< for the first problem
+  Vector start_reactions_;         ///< likewise
   ContactSolution solution_;
 };
 

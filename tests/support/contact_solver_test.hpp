@@ -31,7 +31,7 @@ class ContactSolverTest : public testing::TestWithParam<std::string> {
 /// For INSTANTIATE_TEST_SUITE_P.
 inline auto every_contact_solver() {
   std::vector<std::string> names;
-  for (const ContactSolverDescription& solver : contact_solvers()) names.push_back(solver.name);
+  for (const auto& solver : contact_solver_registry().all()) names.push_back(solver.name);
   return testing::ValuesIn(names);
 }
 inline std::string contact_solver_test_name(const testing::TestParamInfo<std::string>& parameter) {

@@ -121,7 +121,7 @@ FrictionProblem twice(const FrictionProblem& single) {
   for (Vector FrictionProblem::*member :
        {&FrictionProblem::q, &FrictionProblem::rounding, &FrictionProblem::coefficient, &FrictionProblem::bound})
     problem.*member = (single.*member).replicate(2, 1);
-  for (std::size_t i = 1; i < single.first.size(); ++i) problem.first.push_back(rows + single.first[i]);
+  for (std::size_t i = 1; i < single.row_offset.size(); ++i) problem.row_offset.push_back(rows + single.row_offset[i]);
   problem.eligible.insert(problem.eligible.end(), single.eligible.begin(), single.eligible.end());
   return problem;
 }
@@ -208,8 +208,8 @@ Judgement judge(const ContactProblem& problem, const Vector& reaction) {
   Long data = 0, residual = 0, beyond = 0, own = 0, outside = 0;
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
-    const Index row = problem.first[static_cast<std::size_t>(i)];
-    const Index rows = problem.first[static_cast<std::size_t>(i) + 1] - row;
+    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
+    const Index rows = problem.row_offset[static_cast<std::size_t>(i) + 1] - row;
     const Long friction = rows > 1 ? Long(problem.friction_coefficient[i]) : Long(0);
     const Index count = friction > 0 ? rows : 1;
     const Long w = problem.contact_operator->block(row, count).diagonal().cast<Long>().mean();

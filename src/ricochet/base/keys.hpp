@@ -51,6 +51,13 @@ struct Key {
   std::vector<std::string> only_for = {};
 };
 
+[[nodiscard]] inline std::vector<std::string> names_of(const std::vector<Key>& keys) {
+  std::vector<std::string> names;
+  names.reserve(keys.size());
+  for (const Key& key : keys) names.push_back(key.name);
+  return names;
+}
+
 /// Sets of keys of which exactly one must be given, whole.
 using KeySets = std::vector<std::vector<std::string>>;
 

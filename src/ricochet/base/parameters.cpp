@@ -48,10 +48,9 @@ const std::vector<double>& Parameters::vector(const std::string& name) const {
 void Parameters::complete(const std::vector<Key>& keys, const std::string& owner) {
   for (const auto& [name, value] : values_) {
     if (std::any_of(keys.begin(), keys.end(), [&n = name](const Key& key) { return key.name == n; })) continue;
-    std::vector<std::string> names;
-    for (const Key& key : keys) names.push_back(key.name);
-    throw Error(ErrorKind::invalid_input, fmt::format("{} has no parameter \"{}\"; {}", owner, name,
-                                                      names.empty() ? "it has none" : "it has " + join_names(names)));
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{} has no parameter \"{}\"; {}", owner, name,
+                            keys.empty() ? "it has none" : "it has " + join_names(names_of(keys))));
   }
   for (const Key& key : keys) {
     if (has(key.name)) continue;

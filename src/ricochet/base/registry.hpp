@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <functional>
 #include <string>
@@ -12,8 +10,8 @@
 #include "ricochet/base/parameters.hpp"
 #include "ricochet/base/text.hpp"
 
-/// @file Types that a case file names: schemes, masses, obstacles, material laws, multiplier spaces. A type is one file
-/// and one registration.
+/// @file Types that are asked for by name: schemes, masses, obstacles, material laws, multiplier spaces, contact
+/// solvers. A type is one file and one registration.
 namespace ricochet {
 
 /// A type by its name, with the keys that it alone has and what it does.
@@ -44,7 +42,7 @@ class Registry {
   void add(Registration<Type> added) {
     for (const Registration<Type>& entry : all_) {
       if (entry.name == added.name)
-        throw Error(ErrorKind::invalid_input, fmt::format("there is a {} \"{}\" already", noun_, added.name));
+        throw Error(ErrorKind::invalid_input, "there is a " + quoted(added.name) + " already");
     }
     all_.push_back(std::move(added));
     ++registry_revision();
@@ -67,19 +65,33 @@ class Registry {
     const auto same = [&](const Registration<Type>& entry) { return entry.name == name; };
     const auto found = std::find_if(all_.begin(), all_.end(), same);
     if (found != all_.end()) return *found;
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("unknown {} \"{}\"; known: {}", noun_, name, join_names(names())));
+    throw Error(ErrorKind::invalid_input, "unknown " + quoted(name) + "; known: " + join_names(names()));
   }
   /// The registration with its values: defaults added. Throws as Parameters::complete does.
   [[nodiscard]] const Registration<Type>& find(const std::string& name, Parameters& values) const {
     const Registration<Type>& entry = find(name);
-    values.complete(entry.keys, fmt::format("{} \"{}\"", noun_, name));
+    values.complete(entry.keys, quoted(name));
     return entry;
   }
 
  private:
+  [[nodiscard]] std::string quoted(const std::string& name) const { return noun_ + " \"" + name + '"'; }
+
   std::string noun_;
   std::vector<Registration<Type>> all_;
 };
+
+/// Defines `Registry<Type>& FUNCTION()`, which holds what the functions of LIST return. LIST is a macro that applies
+/// its argument to each of them, one line per type; each is defined in the file of its type as `Registration<Type>
+/// name()`.
+#define RICOCHET_DEFINE_REGISTRY(FUNCTION, Type, noun, LIST)           \
+  Registry<Type>& FUNCTION() {                                         \
+    using Entry = Registration<Type>;                                  \
+    LIST(RICOCHET_DECLARE_ENTRY)                                       \
+    static Registry<Type> registry(noun, {LIST(RICOCHET_MAKE_ENTRY)}); \
+    return registry;                                                   \
+  }
+#define RICOCHET_DECLARE_ENTRY(registration) extern Entry registration();
+#define RICOCHET_MAKE_ENTRY(registration) registration(),
 
 }  // namespace ricochet

@@ -8,13 +8,9 @@
 
 namespace ricochet {
 
-namespace {
-
-[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+void Snapshot::refuse(const std::string& name, const std::string& why) {
   throw Error(ErrorKind::invalid_input, fmt::format("the saved state does not fit: {} {}", name, why));
 }
-
-}  // namespace
 
 template <class Kind>
 const Kind& Snapshot::find(const std::string& name, const char* kind) const {

@@ -51,6 +51,9 @@ class Snapshot {
   [[nodiscard]] const std::map<std::string, Value>& values() const { return values_; }
   void set(const std::string& name, Value value) { values_[name] = std::move(value); }
 
+  /// For parts that check more: throws Error(invalid_input), "the saved state does not fit: NAME WHY".
+  [[noreturn]] static void refuse(const std::string& name, const std::string& why);
+
  private:
   template <class Kind>
   [[nodiscard]] const Kind& find(const std::string& name, const char* kind) const;

@@ -11,13 +11,6 @@ namespace ricochet {
 
 namespace {
 
-std::vector<std::string> names_of(const std::vector<Key>& keys) {
-  std::vector<std::string> names;
-  names.reserve(keys.size());
-  for (const Key& key : keys) names.push_back(key.name);
-  return names;
-}
-
 std::string with_range(const std::string& noun, const Range& range) {
   const std::string article = noun == "integer" ? "an" : "a";
   if (range.above == 0.0 && !range.below && !range.at_most) return fmt::format("a positive {}", noun);

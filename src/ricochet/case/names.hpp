@@ -12,7 +12,7 @@
 #include "ricochet/simulation/history.hpp"
 
 /// @file Names a case file may use that other parts of the program define: scheme_names(), mass_names(),
-/// multiplier_space_names(), obstacle_types() and field_names() come from their registries, so registering something is
+/// multiplier_space_names() and field_names() come from their registries, so registering something is
 /// all it takes to be allowed in a case.
 namespace ricochet {
 

@@ -26,4 +26,18 @@ void ContactRows::add_force(const Vector& normal, const Vector& tangential, Vect
   }
 }
 
+void project_motion(const ContactRows& rows, ObstacleMotion& motion) {
+  if (motion.in_space.size() == 0) return;
+  const Index tangents = rows.dimension() - 1;
+  for (Index i = 0; i < rows.size(); ++i) {
+    motion.normal[i] = rows.normals.col(i).dot(motion.in_space.col(i));
+    for (Index k = 0; k < tangents; ++k) {
+      const Index row = i * tangents + k;
+      const bool slips = rows.slips[static_cast<std::size_t>(row)] != 0;
+      motion.tangential[row] =
+          slips ? rows.tangents[static_cast<std::size_t>(i)].col(k).dot(motion.in_space.col(i)) : 0.0;
+    }
+  }
+}
+
 }  // namespace ricochet

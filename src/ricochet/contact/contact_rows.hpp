@@ -46,4 +46,14 @@ struct ContactRows {
   }
 };
 
+/// What obstacles do at the contact points: velocities, or increments over a step. All empty when no obstacle moves.
+struct ObstacleMotion {
+  Vector normal;      ///< n·v, per point
+  Vector tangential;  ///< tᵀv, (d−1) per point; 0 along rows of B_T that are zero
+  Points in_space;    ///< v, d × points, where rows follow the motion: others may be asked for; else empty
+};
+
+/// Components of a motion of the obstacles along the directions of these rows.
+void project_motion(const ContactRows& rows, ObstacleMotion& motion);
+
 }  // namespace ricochet

@@ -50,21 +50,25 @@ class CurvedContact final : public ContactGeometry {
   }
 
  private:
-  [[nodiscard]] SpaceVector position(const CurvedContactData::Point& point, const Vector& displacement,
-                                     double time) const {
+  [[nodiscard]] SpaceVector node_position(Index node, const Vector& displacement) const {
     const Index d = data_.node_positions.rows();
-    SpaceVector result = SpaceVector::Zero(d);
-    for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
-      result += entry.value() * (data_.node_positions.col(entry.col()) + displacement.segment(entry.col() * d, d));
-    if (point.obstacle->moves()) result -= point.obstacle->translation(time);
-    return result;
+    return data_.node_positions.col(node) + displacement.segment(node * d, d);
+  }
+  /// Seen from the obstacle where it was at t = 0.
+  [[nodiscard]] static SpaceVector seen_from(const Obstacle& obstacle, SpaceVector position, double time) {
+    if (obstacle.moves()) position -= obstacle.translation(time);
+    return position;
   }
   [[nodiscard]] SpaceVector position(const CurvedContactData::Node& node, const Vector& displacement,
                                      double time) const {
-    const Index d = data_.node_positions.rows();
-    SpaceVector result = data_.node_positions.col(node.node) + displacement.segment(node.node * d, d);
-    if (node.obstacle->moves()) result -= node.obstacle->translation(time);
-    return result;
+    return seen_from(*node.obstacle, node_position(node.node, displacement), time);
+  }
+  [[nodiscard]] SpaceVector position(const CurvedContactData::Point& point, const Vector& displacement,
+                                     double time) const {
+    SpaceVector result = SpaceVector::Zero(data_.node_positions.rows());
+    for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
+      result += entry.value() * node_position(entry.col(), displacement);
+    return seen_from(*point.obstacle, result, time);
   }
 
   /// Tangents, and the values of the rows of G and B_T, whose pattern is that of the trace.

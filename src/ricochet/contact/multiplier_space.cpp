@@ -16,16 +16,7 @@ namespace ricochet {
   space(dual_multipliers)
 // clang-format on
 
-#define RICOCHET_DECLARE(registration) MultiplierSpaceRegistration registration();
-RICOCHET_MULTIPLIER_SPACES(RICOCHET_DECLARE)
-#undef RICOCHET_DECLARE
-
-Registry<MultiplierSpaceType>& multiplier_space_registry() {
-#define RICOCHET_REGISTER(registration) registration(),
-  static Registry<MultiplierSpaceType> registry("multipliers", {RICOCHET_MULTIPLIER_SPACES(RICOCHET_REGISTER)});
-#undef RICOCHET_REGISTER
-  return registry;
-}
+RICOCHET_DEFINE_REGISTRY(multiplier_space_registry, MultiplierSpaceType, "multipliers", RICOCHET_MULTIPLIER_SPACES)
 
 std::unique_ptr<MultiplierSpace> make_multiplier_space(const std::string& name, const ContactPatch& patch) {
   return multiplier_space_registry().find(name).type.make(patch);

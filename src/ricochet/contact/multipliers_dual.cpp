@@ -1,7 +1,7 @@
-#include <Eigen/Cholesky>
 #include <map>
 
 #include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
@@ -89,7 +89,7 @@ class DualMultipliers final : public MultiplierSpace {
     const Vector weights = basis * facet.measure;
     const Matrix mass = basis * facet.measure.asDiagonal() * basis.transpose();
     result.anchors.assign(facet.nodes, facet.nodes + facet.node_count());
-    result.values = weights.asDiagonal() * mass.llt().solve(basis);
+    result.values = weights.asDiagonal() * SmallCholesky(mass).solve(basis);
   }
 
  private:

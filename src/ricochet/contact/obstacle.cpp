@@ -10,16 +10,7 @@ namespace ricochet {
   obstacle(sphere_obstacle)
 // clang-format on
 
-#define RICOCHET_DECLARE(registration) ObstacleRegistration registration();
-RICOCHET_OBSTACLES(RICOCHET_DECLARE)
-#undef RICOCHET_DECLARE
-
-Registry<ObstacleConstructor>& obstacle_registry() {
-#define RICOCHET_REGISTER(registration) registration(),
-  static Registry<ObstacleConstructor> registry("obstacle type", {RICOCHET_OBSTACLES(RICOCHET_REGISTER)});
-#undef RICOCHET_REGISTER
-  return registry;
-}
+RICOCHET_DEFINE_REGISTRY(obstacle_registry, ObstacleConstructor, "obstacle type", RICOCHET_OBSTACLES)
 
 std::unique_ptr<Obstacle> make_obstacle(const std::string& type, Parameters parameters) {
   return obstacle_registry().find(type, parameters).type(parameters);

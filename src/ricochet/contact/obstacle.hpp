@@ -42,9 +42,6 @@ using ObstacleRegistration = Registration<ObstacleConstructor>;
 
 /// All types of obstacles. A program of one's own may add to them.
 [[nodiscard]] Registry<ObstacleConstructor>& obstacle_registry();
-[[nodiscard]] inline std::vector<std::string> obstacle_types() {
-  return obstacle_registry().names();
-}
 /// By type, with the values of its keys; throws Error(invalid_input) that lists the types, or says which value is
 /// missing, too many or wrong.
 [[nodiscard]] std::unique_ptr<Obstacle> make_obstacle(const std::string& type, Parameters parameters);

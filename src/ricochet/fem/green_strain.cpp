@@ -1,10 +1,10 @@
 #include "ricochet/fem/green_strain.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "ricochet/fem/cell_integration.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 
 namespace ricochet {
 
@@ -25,8 +25,7 @@ double largest_of_block(const Body& body, std::size_t block, const Vector& displ
       gradient += displacement.segment<d>(cells.cell(cell)[k] * d) * (shape.template block<1, d>(k, 0) * inverse);
     const Tensor strain = 0.5 * (gradient + gradient.transpose() + gradient.transpose() * gradient);
     if (!strain.allFinite()) continue;
-    const Eigen::SelfAdjointEigenSolver<Tensor> principal(strain, Eigen::EigenvaluesOnly);
-    largest = std::max(largest, principal.eigenvalues().cwiseAbs().maxCoeff());
+    largest = std::max(largest, symmetric_eigenvalues(strain).cwiseAbs().maxCoeff());
   }
   return largest;
 }

@@ -6,10 +6,15 @@
 /// displacement's gradient. These formulas are all there is of the law: assembly and stress output call them.
 namespace ricochet {
 
-/// λ and μ as a body of this dimension has them: plane stress condenses the stress-free direction, λ := 2λμ/(λ+2μ).
+/// λ and μ as a body of this dimension has them.
 struct IsotropicElasticity {
   double lambda = 0.0;
   double mu = 0.0;
+
+  /// From those of three dimensions: plane stress condenses the stress-free direction, λ := 2λμ/(λ+2μ).
+  [[nodiscard]] static IsotropicElasticity of(double lambda, double mu, bool plane_stress) {
+    return {plane_stress ? 2.0 * lambda * mu / (lambda + 2.0 * mu) : lambda, mu};
+  }
 
   template <class Tensor>
   [[nodiscard]] double energy(const Eigen::MatrixBase<Tensor>& strain) const {

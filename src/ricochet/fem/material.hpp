@@ -23,8 +23,6 @@ struct Material {
   [[nodiscard]] double mu() const { return law->mu(); }          ///< shear modulus
   [[nodiscard]] double poisson() const { return lambda() / (2.0 * (lambda() + mu())); }
   [[nodiscard]] double young() const { return mu() * (3.0 * lambda() + 2.0 * mu()) / (lambda() + mu()); }
-  /// λ of the two-dimensional law: plane stress condenses the stress-free direction, 2λμ/(λ+2μ).
-  [[nodiscard]] double plane_stress_lambda() const { return 2.0 * lambda() * mu() / (lambda() + 2.0 * mu()); }
 };
 
 }  // namespace ricochet

@@ -8,16 +8,7 @@ namespace ricochet {
   law(linear_elasticity_law)
 // clang-format on
 
-#define RICOCHET_DECLARE(registration) MaterialLawRegistration registration();
-RICOCHET_MATERIAL_LAWS(RICOCHET_DECLARE)
-#undef RICOCHET_DECLARE
-
-Registry<MaterialLawConstructor>& material_law_registry() {
-#define RICOCHET_REGISTER(registration) registration(),
-  static Registry<MaterialLawConstructor> registry("material law", {RICOCHET_MATERIAL_LAWS(RICOCHET_REGISTER)});
-#undef RICOCHET_REGISTER
-  return registry;
-}
+RICOCHET_DEFINE_REGISTRY(material_law_registry, MaterialLawConstructor, "material law", RICOCHET_MATERIAL_LAWS)
 
 std::unique_ptr<MaterialLaw> make_material_law(const std::string& name, Parameters parameters) {
   return material_law_registry().find(name, parameters).type(parameters);

@@ -39,9 +39,6 @@ using MaterialLawRegistration = Registration<MaterialLawConstructor>;
 
 /// All laws. A program of one's own may add to them.
 [[nodiscard]] Registry<MaterialLawConstructor>& material_law_registry();
-[[nodiscard]] inline std::vector<std::string> material_law_names() {
-  return material_law_registry().names();
-}
 /// By name, with the values of its keys; throws Error(invalid_input) that lists the names, or says which value is
 /// missing or too many.
 [[nodiscard]] std::unique_ptr<MaterialLaw> make_material_law(const std::string& name, Parameters parameters);

@@ -1,11 +1,11 @@
 #include "ricochet/fem/nodal_recovery.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 
 namespace ricochet {
 
@@ -120,11 +120,10 @@ class Recovery {
           (centres_.col(patch[static_cast<std::size_t>(i)]) - body_.space->nodes.col(node)).transpose();
     }
     columns.rightCols(dimension_) /= columns.rightCols(dimension_).norm();
-    Eigen::ColPivHouseholderQR<Matrix> factor(columns);
-    factor.setThreshold(dependence);
+    const PivotedQr factor(columns, dependence);
     if (factor.rank() <= dimension_) return {};
     // a = e₀ᵀ (columns)⁺ values: the first row of the pseudo-inverse.
-    const Matrix inverse = factor.solve(Matrix::Identity(count, count));
+    const Matrix inverse = factor.solve(Matrix(Matrix::Identity(count, count)));
     Weights result;
     for (Index i = 0; i < count; ++i) result.emplace_back(patch[static_cast<std::size_t>(i)], inverse(0, i));
     return result;

@@ -1,10 +1,10 @@
 #include "ricochet/fem/stress.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/cell_integration.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 
 namespace ricochet {
 
@@ -216,10 +216,8 @@ double von_mises_stress(const double* s) {
 std::array<double, 3> principal_stresses(const double* s) {
   Eigen::Matrix3d tensor;
   tensor << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  // Not by the closed form, which loses half of the digits where two of them coincide.
-  solver.compute(tensor, Eigen::EigenvaluesOnly);
-  return {solver.eigenvalues()[2], solver.eigenvalues()[1], solver.eigenvalues()[0]};
+  const Eigen::Vector3d values = symmetric_eigenvalues(tensor);
+  return {values[2], values[1], values[0]};
 }
 
 Vector cell_volumes(const Body& body) {

@@ -5,8 +5,8 @@
 namespace ricochet {
 
 double compression_wave_speed(const Material& material, bool plane_stress) {
-  const double lambda = plane_stress ? material.plane_stress_lambda() : material.lambda();
-  return std::sqrt((lambda + 2.0 * material.mu()) / material.density);
+  const auto [lambda, mu] = IsotropicElasticity::of(material.lambda(), material.mu(), plane_stress);
+  return std::sqrt((lambda + 2.0 * mu) / material.density);
 }
 
 double shear_wave_speed(const Material& material) {

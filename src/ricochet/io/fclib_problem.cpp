@@ -63,8 +63,8 @@ Selection select_eligible(const ContactProblem& problem, Index dimension) {
   result.new_row.assign(static_cast<std::size_t>(problem.rows()), -1);
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
-    const Index first = problem.first[static_cast<std::size_t>(i)];
-    const Index size = problem.first[static_cast<std::size_t>(i + 1)] - first;
+    const Index first = problem.row_offset[static_cast<std::size_t>(i)];
+    const Index size = problem.row_offset[static_cast<std::size_t>(i + 1)] - first;
     if (problem.bound(i) > 0.0) {
       throw Error(ErrorKind::invalid_input,
                   fmt::format("point {} has a friction bound ({:g}): FCLib's files state Coulomb's law only, so this "

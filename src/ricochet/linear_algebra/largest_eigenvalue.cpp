@@ -1,6 +1,5 @@
 #include "ricochet/linear_algebra/largest_eigenvalue.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 
 namespace ricochet {
 
@@ -58,15 +58,13 @@ EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(c
   for (double& entry : diagonal) entry = std::ldexp(entry, -exponent);
   for (double& entry : beside) entry = std::ldexp(entry, -exponent);
   const auto count = static_cast<Index>(diagonal.size());
-  const Eigen::Map<const Vector> d(diagonal.data(), count);
-  const Eigen::Map<const Vector> e(beside.data(), count - 1);
-  Eigen::SelfAdjointEigenSolver<Matrix> solver;
-  solver.computeFromTridiagonal(d, e, Eigen::EigenvaluesOnly);
-  if (solver.info() != Eigen::Success) {
+  const std::optional<Vector> values = tridiagonal_eigenvalues(Eigen::Map<const Vector>(diagonal.data(), count),
+                                                               Eigen::Map<const Vector>(beside.data(), count - 1));
+  if (!values) {
     throw Error(ErrorKind::not_converged,
                 "the largest eigenvalue of the stiffness was not found: it may not be finite");
   }
-  bounds.lower = std::ldexp(solver.eigenvalues()[count - 1], exponent);
+  bounds.lower = std::ldexp((*values)[count - 1], exponent);
   bounds.upper = bounds.lower / (1.0 - spread);
   return bounds;
 }

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +6,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/fem/cell_masses.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
@@ -274,7 +274,7 @@ void Builder::extrapolate(const std::vector<Index>& nodes, CellExtension& extens
   }
   const double size = conditions.bottomRows(dimension).cwiseAbs().maxCoeff();
   conditions.bottomRows(dimension) /= size;
-  const Eigen::CompleteOrthogonalDecomposition<Matrix> solver(conditions * scale.asDiagonal());
+  const LeastNormSolver solver(conditions * scale.asDiagonal());
   if (solver.rank() <= dimension) return;
   extension.rows.setZero(static_cast<Index>(nodes.size()), count);
   Vector wanted(dimension + 1);

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 
@@ -204,7 +204,7 @@ class AffineFit {
     const Index size = conditions_.rows();
     if (conditions_.cols() < size) return false;
     const Matrix gram = conditions_ * trust_.asDiagonal() * conditions_.transpose();
-    const Eigen::LDLT<Matrix> factor(gram);
+    const PivotedCholesky factor(gram);
     if (!spans_space(gram, factor)) return false;
     const Vector wanted = Vector::Unit(size, 0);
     Vector solution = factor.solve(wanted);
@@ -222,9 +222,9 @@ class AffineFit {
 
  private:
   /// A pivot is what is left of a row's square without the rows before: of a row that depends on them, rounding.
-  static bool spans_space(const Matrix& gram, const Eigen::LDLT<Matrix>& factor) {
-    const Vector whole = factor.transpositionsP() * Vector(gram.diagonal());
-    return (factor.vectorD().array() > smallest_pivot * whole.array()).all();
+  static bool spans_space(const Matrix& gram, const PivotedCholesky& factor) {
+    const Vector whole = factor.permuted(gram.diagonal());
+    return (factor.pivots().array() > smallest_pivot * whole.array()).all();
   }
 
   static constexpr double rounding = 1e-13;

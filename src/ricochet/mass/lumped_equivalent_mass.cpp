@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 
@@ -82,7 +80,7 @@ double apply(const Vector& change, Vector& mass) {
 double correct_centre(const Moments& moments, Vector& mass) {
   const auto affine = moments.functions.leftCols(moments.affine);
   const Matrix gram = affine.transpose() * (mass / mass.sum()).asDiagonal() * affine;
-  return apply(affine * gram.ldlt().solve(defect(moments, mass).head(moments.affine)), mass);
+  return apply(affine * PivotedCholesky(gram).solve(Vector(defect(moments, mass).head(moments.affine))), mass);
 }
 
 /// Moments of inertia likewise, total mass and centre being right already, by a p in the span of the quadratic
@@ -90,15 +88,14 @@ double correct_centre(const Moments& moments, Vector& mass) {
 double correct_inertia(const Moments& moments, Vector& mass) {
   const auto affine = moments.functions.leftCols(moments.affine);
   const Vector weight = mass / mass.sum();
-  const Eigen::LDLT<Matrix> gram(affine.transpose() * weight.asDiagonal() * affine);
+  const PivotedCholesky gram(affine.transpose() * weight.asDiagonal() * affine);
   Matrix part = moments.functions.rightCols(moments.wanted.size() - moments.affine);
   const Vector lacking = defect(moments, mass).tail(part.cols());
   // Twice, for rounding.
-  for (int round = 0; round < 2; ++round) part -= affine * gram.solve(affine.transpose() * weight.asDiagonal() * part);
+  for (int round = 0; round < 2; ++round)
+    part -= affine * gram.solve(Matrix(affine.transpose() * weight.asDiagonal() * part));
   // Rank-revealing: where all nodes are at two values of x, x² is an affine function on them and cannot be corrected.
-  Eigen::CompleteOrthogonalDecomposition<Matrix> factor;
-  factor.setThreshold(1e-10);
-  factor.compute(part.transpose() * weight.asDiagonal() * part);
+  const LeastNormSolver factor(part.transpose() * weight.asDiagonal() * part, 1e-10);
   return apply(part * factor.solve(lacking), mass);
 }
 
@@ -128,10 +125,9 @@ InertiaCheck check_inertia(const MassBody& body, const Moments& moments, const V
   };
   const Matrix own = second(found), wanted = second(moments.wanted);
   // (1 + ratio) J_wanted ω = J_own ω
-  const Eigen::LLT<Matrix> factor(inertia_tensor(wanted));
-  const Matrix half = factor.matrixL().solve(inertia_tensor(own - wanted));
-  const Matrix relative = factor.matrixL().solve(half.transpose());
-  const Vector ratios = Eigen::SelfAdjointEigenSolver<Matrix>(relative, Eigen::EigenvaluesOnly).eigenvalues();
+  const SmallCholesky factor(inertia_tensor(wanted));
+  const Matrix half = factor.solve_lower(inertia_tensor(own - wanted));
+  const Vector ratios = symmetric_eigenvalues(factor.solve_lower(half.transpose()));
   return {1.0 + ratios.minCoeff(),
           std::max(ratios.cwiseAbs().maxCoeff(), (own - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().maxCoeff())};
 }
@@ -240,7 +236,7 @@ class LumpedEquivalentMass final : public MassConstruction {
     const Vector weight = mass / mass.sum();
     const Vector centre = positions.transpose() * weight;
     const Matrix spread = positions.transpose() * weight.asDiagonal() * positions - centre * centre.transpose();
-    const Vector sizes = Eigen::SelfAdjointEigenSolver<Matrix>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+    const Vector sizes = symmetric_eigenvalues(spread);
     if (sizes[0] > least_spread * least_spread) return;
     std::vector<Index> free;
     for (Index i = 0; i < mass.size(); ++i) {

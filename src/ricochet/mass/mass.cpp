@@ -16,16 +16,7 @@ namespace ricochet {
   mass(lumped_equivalent_mass)
 // clang-format on
 
-#define RICOCHET_DECLARE(registration) MassRegistration registration();
-RICOCHET_MASSES(RICOCHET_DECLARE)
-#undef RICOCHET_DECLARE
-
-Registry<MassConstructor>& mass_registry() {
-#define RICOCHET_REGISTER(registration) registration(),
-  static Registry<MassConstructor> registry("mass", {RICOCHET_MASSES(RICOCHET_REGISTER)});
-#undef RICOCHET_REGISTER
-  return registry;
-}
+RICOCHET_DEFINE_REGISTRY(mass_registry, MassConstructor, "mass", RICOCHET_MASSES)
 
 std::unique_ptr<MassConstruction> make_mass(const std::string& name, Parameters parameters) {
   return mass_registry().find(name, parameters).type(parameters);

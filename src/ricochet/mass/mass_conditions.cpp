@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/linear_algebra/graph_components.hpp"
 
 namespace ricochet {
@@ -37,13 +36,13 @@ void normalize(const SparseMatrix& mass, MassFrames& frames, MassBody& body) {
   const Matrix moments = mass_moments(mass, frames, body);
   if (!(moments(0, 0) > 0.0)) return;
   const Vector shift = moments.col(0).tail(d) / moments(0, 0);
-  const Eigen::LLT<Matrix> spread(moments.bottomRightCorner(d, d) / moments(0, 0) - shift * shift.transpose());
-  if (spread.info() != Eigen::Success) return;
+  const SmallCholesky spread(moments.bottomRightCorner(d, d) / moments(0, 0) - shift * shift.transpose());
+  if (!spread.positive_definite()) return;
   body.centre += body.axes * shift;
-  body.axes = (body.axes * Matrix(spread.matrixL())).eval();
+  body.axes = (body.axes * spread.lower()).eval();
   for (const Index node : body.nodes) {
     const Vector relative = frames.monomials.col(node).tail(d) - shift;
-    frames.monomials.col(node).tail(d) = spread.matrixL().solve(relative);
+    frames.monomials.col(node).tail(d) = spread.solve_lower(relative);
   }
 }
 
@@ -111,9 +110,7 @@ std::string degeneracy(const Points& nodes, const std::vector<Index>& points) {
   for (Index k = 0; k < relative.cols(); ++k)
     relative.col(k) = nodes.col(points[static_cast<std::size_t>(k)]) - nodes.col(points.front());
   // Coordinates of single precision are told from positions that matter.
-  Eigen::ColPivHouseholderQR<Matrix> factor(d, relative.cols());
-  factor.setThreshold(1e-6);
-  factor.compute(relative);
+  const PivotedQr factor(relative, 1e-6);
   const char* const words[] = {"at one point", "on one line", "in one plane"};
   return factor.rank() < d ? words[factor.rank()] : "";
 }
@@ -129,15 +126,11 @@ bool span_space(const Points& nodes, const std::vector<Index>& body, const std::
   Vector centre = Vector::Zero(d);
   for (const Index node : body) centre += nodes.col(node) / static_cast<double>(body.size());
   // X Xᵀ = Rᵀ R: R⁻ᵀ makes the body round, without the squares that lose half of the digits of flat bodies.
-  const Eigen::HouseholderQR<Matrix> shape(relative_to(centre, body).transpose());
-  const Matrix axes = shape.matrixQR().topRows(d).triangularView<Eigen::Upper>();
+  const Matrix axes = upper_of_qr(relative_to(centre, body).transpose());
   if (axes.diagonal().cwiseAbs().minCoeff() == 0.0) return false;  // nor does the body
   const Matrix relative =
       axes.transpose().triangularView<Eigen::Lower>().solve(relative_to(nodes.col(points.front()), points));
-  Eigen::ColPivHouseholderQR<Matrix> factor(d, relative.cols());
-  factor.setThreshold(1e-6);
-  factor.compute(relative);
-  return factor.rank() == d;
+  return PivotedQr(relative, 1e-6).rank() == d;
 }
 
 std::string describe_free_nodes(const Points& nodes, const std::vector<Index>& points) {

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <vector>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 
@@ -91,7 +91,7 @@ class NearestEquivalentMass final : public MassConstruction {
         gram.noalias() += row * row.transpose();
       }
     }
-    const Eigen::LDLT<Matrix> factor(gram);
+    const PivotedCholesky factor(gram);
     // The second round takes away what rounding left of the first.
     for (int round = 0; round < 2; ++round) {
       const Matrix missing = mass_moments(consistent, frames, body) - mass_moments(mass, frames, body);

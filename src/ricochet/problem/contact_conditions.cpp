@@ -34,6 +34,14 @@ void take_rows(const SemidiscreteProblem& problem, const Vector& displacement, d
   problem.contact.geometry->update(displacement, time, own_rows(problem, stage));
 }
 
+/// The obstacles' velocities along the rows of the stage.
+const ObstacleMotion& along_rows(const ObstacleMotion& velocity, Stage& stage) {
+  if (velocity.in_space.size() == 0) return velocity;
+  stage.obstacle = velocity;
+  project_motion(*stage.rows, stage.obstacle);
+  return stage.obstacle;
+}
+
 /// The slip rate at δ = 0, and its rounding.
 void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const Vector& obstacle, Stage& stage) {
   stage.rows->tangential_motion(velocity, stage.slip_offset);
@@ -75,49 +83,33 @@ void require_no_approach(const SemidiscreteProblem& problem, const Vector& displ
   problem.trace_rounding(velocity, stage.gap_offset_rounding);
   stage.gap_offset_rounding += stage.gap_offset / step;
   stage.rows->normal_motion(velocity, stage.gap_offset);
-  if (obstacle.normal.size() == 0) return;
-  if (obstacle.in_space.size() == 0) {
-    stage.gap_offset -= obstacle.normal;
-  } else {
-    for (Index i = 0; i < problem.contact.size(); ++i)
-      stage.gap_offset[i] -= stage.rows->normals.col(i).dot(obstacle.in_space.col(i));
-  }
+  if (obstacle.normal.size() > 0) stage.gap_offset -= along_rows(obstacle, stage).normal;
 }
 
 void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, const ObstacleMotion& obstacle,
                       double slip_factor, Stage& stage) {
   if (!problem.contact.has_friction()) return;
   stage.slip_factor = slip_factor;
-  if (obstacle.in_space.size() == 0) {
-    take_slip(problem, velocity, obstacle.tangential, stage);
-  } else {
-    ObstacleMotion here = obstacle;
-    project_motion(*stage.rows, here);
-    take_slip(problem, velocity, here.tangential, stage);
-  }
-  if (!stage.motion) return;
-  stage.motion->velocity = velocity;
-  stage.motion->obstacle_velocity = obstacle.in_space;
+  take_slip(problem, velocity, along_rows(obstacle, stage).tangential, stage);
+  if (stage.motion) stage.motion->velocity = velocity;
 }
 
 void linearize_contact(const SemidiscreteProblem& problem, const Vector& increment, Stage& stage) {
-  const ContactMotion& motion = *stage.motion;
-  const Vector displacement = motion.displacement + increment;
-  problem.contact.geometry->update(displacement, motion.time, own_rows(problem, stage));
-  problem.gaps(displacement, motion.time, stage.gap_offset);
-  Vector moved;
-  stage.rows->normal_motion(increment, moved);
-  stage.gap_offset -= moved;
+  ContactMotion& motion = *stage.motion;
+  motion.solution = motion.displacement + increment;
+  problem.contact.geometry->update(motion.solution, motion.time, own_rows(problem, stage));
+  problem.gaps(motion.solution, motion.time, stage.gap_offset);
+  stage.rows->normal_motion(increment, motion.gap_change);
+  stage.gap_offset -= motion.gap_change;
   if (stage.slip_offset.size() == 0) return;
-  ObstacleMotion obstacle{Vector::Zero(problem.contact.size()), Vector::Zero(stage.slip_offset.size()),
-                          motion.obstacle_velocity};
-  project_motion(*stage.rows, obstacle);
-  take_slip(problem, motion.velocity, motion.obstacle_velocity.size() > 0 ? obstacle.tangential : Vector(), stage);
+  project_motion(*stage.rows, stage.obstacle);
+  take_slip(problem, motion.velocity, stage.obstacle.tangential, stage);
 }
 
 double linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution, const Stage& stage,
                            Vector& gap) {
-  problem.gaps(stage.motion->displacement + solution.increment, stage.motion->time, gap);
+  const Vector& displacement = stage.motion->displacement;
+  problem.gaps(displacement + solution.increment, stage.motion->time, gap);
   double error = -std::numeric_limits<double>::infinity();
   for (Index i = 0; i < gap.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] == 0) continue;

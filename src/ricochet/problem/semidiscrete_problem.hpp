@@ -15,13 +15,6 @@
 /// Where an obstacle translates by s(t), the gap is g₀ + G U − n·s(t).
 namespace ricochet {
 
-/// What obstacles do at the contact points: velocities, or increments over a step. All empty when no obstacle moves.
-struct ObstacleMotion {
-  Vector normal;      ///< n·v, per point
-  Vector tangential;  ///< tᵀv, (d−1) per point; 0 along rows of B_T that are zero
-  Points in_space;    ///< v, d × points, where rows follow the motion: others may be asked for; else empty
-};
-
 struct SemidiscreteProblem {
   int dimension = 2;
   Points nodes;          ///< reference positions, d × nodes
@@ -60,9 +53,6 @@ struct SemidiscreteProblem {
   /// products.
   void trace_rounding(const Vector& values, Vector& rounding) const;
 };
-
-/// Components of a motion of the obstacles along the directions of other rows.
-void project_motion(const ContactRows& rows, ObstacleMotion& motion);
 
 /// Fills massless_dofs, is_massless and contact_dofs from contact and supports, and takes the mass: dofs × dofs,
 /// symmetric to the bit.

@@ -40,7 +40,7 @@ struct OperatorCoefficients {
 struct ContactMotion {
   Vector displacement, velocity;
   double time = 0.0;
-  Points obstacle_velocity;  ///< d × points; empty where none moves
+  Vector solution, gap_change;  ///< work space: displacement + δ, G δ
 };
 
 struct Stage {
@@ -49,6 +49,7 @@ struct Stage {
   /// hold at the solution.
   std::optional<ContactMotion> motion;
   std::vector<std::shared_ptr<ContactRows>> rows_in_store;  ///< memory for rows that follow the motion
+  ObstacleMotion obstacle;                                  ///< where rows follow the motion: velocities along them
   Vector right_hand_side;                                   ///< b, per dof
   Vector prescribed;                                        ///< δ on supported dofs, in the order of Supports::dofs()
   std::vector<char> eligible;                               ///< per contact point

@@ -42,10 +42,8 @@ class KlrConserving final : public Scheme {
     const double h = step();
     Vector& ahead = state.memory["increment_ahead"];
     ahead = h * state.velocity + (0.5 * h * h) * state.acceleration;
-    const std::vector<Index>& supported = problem.supports.dofs();
-    problem.supports.values(h, supported_);
-    for (std::size_t i = 0; i < supported.size(); ++i)
-      ahead[supported[i]] = supported_[static_cast<Index>(i)] - state.displacement[supported[i]];
+    const auto to_first = [&](Index dof, double first) { return ahead[dof] = first - state.displacement[dof]; };
+    equations_.prescribe(problem, h, to_first, supported_);
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {

@@ -13,16 +13,7 @@ namespace ricochet {
   scheme(contact_stabilized_scheme)
 // clang-format on
 
-#define RICOCHET_DECLARE(registration) SchemeRegistration registration();
-RICOCHET_SCHEMES(RICOCHET_DECLARE)
-#undef RICOCHET_DECLARE
-
-Registry<SchemeConstructor>& scheme_registry() {
-#define RICOCHET_REGISTER(registration) registration(),
-  static Registry<SchemeConstructor> registry("scheme", {RICOCHET_SCHEMES(RICOCHET_REGISTER)});
-#undef RICOCHET_REGISTER
-  return registry;
-}
+RICOCHET_DEFINE_REGISTRY(scheme_registry, SchemeConstructor, "scheme", RICOCHET_SCHEMES)
 
 std::unique_ptr<Scheme> make_scheme(const std::string& name, double step, Parameters parameters) {
   return scheme_registry().find(name, parameters).type(step, parameters);

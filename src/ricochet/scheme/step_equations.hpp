@@ -19,12 +19,16 @@ class StepEquations {
 
   /// δ on supported dofs: increment(dof, prescribed displacement at `time`).
   template <class Increment>
-  void prescribe(const SemidiscreteProblem& problem, double time, const Increment& increment, Stage& stage) {
-    problem.supports.values(time, stage.prescribed);
+  void prescribe(const SemidiscreteProblem& problem, double time, const Increment& increment, Vector& prescribed) {
+    problem.supports.values(time, prescribed);
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      stage.prescribed[i] = increment(dof, stage.prescribed[i]);
+      prescribed[i] = increment(dof, prescribed[i]);
     }
+  }
+  template <class Increment>
+  void prescribe(const SemidiscreteProblem& problem, double time, const Increment& increment, Stage& stage) {
+    prescribe(problem, time, increment, stage.prescribed);
   }
 
   /// The obstacles' velocities where the contact points are at a displacement and a time. They, and friction, act on

@@ -1,10 +1,10 @@
 #include "ricochet/simulation/rigid_equilibrium.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/linear_algebra/graph_components.hpp"
 
 namespace ricochet {
@@ -96,10 +96,10 @@ class FreeMotions {
     }
     modes_ = Matrix::Identity(motions, motions);
     if (square.isZero(0.0)) return;
-    const Eigen::SelfAdjointEigenSolver<Matrix> solver(square);
+    const SymmetricEigen eigen = symmetric_eigen(square);
     Index free = 0;
-    while (free < motions && solver.eigenvalues()[free] <= 1e-12 * solver.eigenvalues()[motions - 1]) ++free;
-    modes_ = solver.eigenvectors().leftCols(free).eval();
+    while (free < motions && eigen.values[free] <= 1e-12 * eigen.values[motions - 1]) ++free;
+    modes_ = eigen.vectors.leftCols(free);
   }
 
   const SemidiscreteProblem& problem_;
@@ -175,7 +175,7 @@ class NearestForce {
     while (true) {
       Matrix all(target_.size(), static_cast<Index>(columns_.size()));
       for (std::size_t k = 0; k < columns_.size(); ++k) all.col(static_cast<Index>(k)) = columns_[k];
-      const Vector wanted = all.colPivHouseholderQr().solve(target_);
+      const Vector wanted = PivotedQr(all).solve(target_);
       double part = 1.0;
       for (std::size_t k = 0; k < sizes_.size(); ++k) {
         const double to = wanted[static_cast<Index>(k)];

@@ -11,7 +11,6 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
-#include "ricochet/solver/contact/contact_iteration.hpp"
 
 namespace ricochet {
 
@@ -53,7 +52,7 @@ void CondensedContact::start_again_with(const std::vector<Index>& points) {
   taken_up_.clear();
   columns_.clear();
   contact_.contact_operator.reset();
-  contact_.first.assign(1, 0);
+  contact_.row_offset.assign(1, 0);
   solver_.reset();
   if (!points.empty()) take_up(points);
 }
@@ -98,15 +97,15 @@ void CondensedContact::take_up(const std::vector<Index>& points) {
   contact_.point_numbers = candidates_.points();
   contact_.friction_coefficient = coefficient_;
   contact_.friction_bound = bound_;
-  contact_.offset.setZero(contact_.first.back());
-  contact_.offset_rounding.setZero(contact_.first.back());
+  contact_.offset.setZero(contact_.row_offset.back());
+  contact_.offset_rounding.setZero(contact_.row_offset.back());
   contact_.eligible.assign(static_cast<std::size_t>(count), 1);
   contact_.contact_operator = make_dense_operator(std::move(w));
   if (solver_ == nullptr) solver_ = make_contact_solver();
   solver_->analyse(contact_);
   // The reactions of those that were there already, and none on the others.
   const Index before = start.size();
-  start.conservativeResize(contact_.first.back());
+  start.conservativeResize(contact_.row_offset.back());
   start.tail(start.size() - before).setZero();
   solver_->set_warm_start(start);
   contact_solution_.reaction = start;
@@ -116,7 +115,7 @@ void CondensedContact::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".candidates", candidates_.points());
   snapshot.save(name + ".taken_up", taken_up_);
   candidates_.save_history(snapshot, name);
-  snapshot.save(name + ".warm_start", solver_ != nullptr ? solver_->warm_start() : Vector());
+  if (solver_ != nullptr) solver_->save(snapshot, name + ".solver");
 }
 
 void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
@@ -129,9 +128,9 @@ void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
   }
   candidates_.load_history(snapshot, name);
   if (solver_ == nullptr) return;
-  const Vector& start = snapshot.reals(name + ".warm_start");
-  solver_->set_warm_start(start);
-  contact_solution_.reaction = start.head(contact_.first.back());
+  solver_->load(snapshot, name + ".solver");
+  contact_solution_.reaction = solver_->warm_start();
+  if (contact_solution_.reaction.size() == 0) contact_solution_.reaction.setZero(contact_.row_offset.back());
 }
 
 /// Hᵀ of some points, one after the other: unknowns × rows.
@@ -152,7 +151,7 @@ SparseMatrix CondensedContact::transposed_rows(const std::vector<Index>& points)
 
 void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& w) {
   for (const Index point : points) {
-    contact_.first.push_back(contact_.first.back() + rows_of(point));
+    contact_.row_offset.push_back(contact_.row_offset.back() + rows_of(point));
     if (!rows_->revision.empty()) revision_.push_back(rows_->revision[static_cast<std::size_t>(point)]);
   }
   columns_.append(transposed_rows(points), w);
@@ -162,13 +161,13 @@ void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& 
 void CondensedContact::take_rows(const Stage& stage) {
   rows_ = stage.rows.get();
   if (rows_->revision.empty() || candidates_.points().empty()) return;
-  std::vector<char> is_new(static_cast<std::size_t>(contact_.first.back()), 0);
+  std::vector<char> is_new(static_cast<std::size_t>(contact_.row_offset.back()), 0);
   bool any = false;
   for (std::size_t i = 0; i < revision_.size(); ++i) {
     const long revision = rows_->revision[static_cast<std::size_t>(candidates_.points()[i])];
     if (revision == revision_[i]) continue;
     revision_[i] = revision;
-    std::fill(is_new.begin() + contact_.first[i], is_new.begin() + contact_.first[i + 1], char{1});
+    std::fill(is_new.begin() + contact_.row_offset[i], is_new.begin() + contact_.row_offset[i + 1], char{1});
     any = true;
   }
   if (any) renew_columns(is_new);
@@ -180,7 +179,7 @@ void CondensedContact::take_factor() {
     const std::vector<Index> points = candidates_.points();
     start_again_with(points);
   } else if (!candidates_.points().empty()) {
-    renew_columns(std::vector<char>(static_cast<std::size_t>(contact_.first.back()), 1));
+    renew_columns(std::vector<char>(static_cast<std::size_t>(contact_.row_offset.back()), 1));
   }
 }
 
@@ -190,9 +189,10 @@ void CondensedContact::renew_columns(const std::vector<char>& is_new) {
   append_supported();
   hold_directions_without_trace(w);
   contact_.contact_operator = make_dense_operator(std::move(w));
-  const Vector start = solver_->warm_start();
+  Snapshot memory;
+  solver_->save(memory, "solver");
   solver_->analyse(contact_);
-  solver_->set_warm_start(start);
+  solver_->load(memory, "solver");
 }
 
 void CondensedContact::append_supported() {
@@ -202,19 +202,19 @@ void CondensedContact::append_supported() {
     visit_rows(candidates_.points()[i], [&](Index k, Index dof, double value) {
       const auto held = std::lower_bound(dofs.begin(), dofs.end(), dof);
       if (held == dofs.end() || *held != dof) return;
-      entries.emplace_back(static_cast<int>(contact_.first[i] + k), static_cast<int>(held - dofs.begin()), value);
+      entries.emplace_back(static_cast<int>(contact_.row_offset[i] + k), static_cast<int>(held - dofs.begin()), value);
     });
   }
-  supported_.resize(contact_.first.back(), problem_.supports.size());
+  supported_.resize(contact_.row_offset.back(), problem_.supports.size());
   supported_.setFromTriplets(entries.begin(), entries.end());
 }
 
 /// Where B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
 /// makes the friction along it zero.
 void CondensedContact::hold_directions_without_trace(Matrix& w) const {
-  for (std::size_t i = 0; i + 1 < contact_.first.size(); ++i) {
-    const Index row = contact_.first[i];
-    for (Index k = row + 1; k < contact_.first[i + 1]; ++k) {
+  for (std::size_t i = 0; i + 1 < contact_.row_offset.size(); ++i) {
+    const Index row = contact_.row_offset[i];
+    for (Index k = row + 1; k < contact_.row_offset[i + 1]; ++k) {
       if (w(k, k) == 0.0) w(k, k) = w(row, row);
     }
   }
@@ -226,8 +226,8 @@ void CondensedContact::find_offsets(const Stage& stage, const Vector& y) {
   const Index tangents = problem_.dimension - 1;
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     const Index point = candidates_.points()[i];
-    const Index row = contact_.first[i];
-    const Index count = contact_.first[i + 1] - row - 1;
+    const Index row = contact_.row_offset[i];
+    const Index count = contact_.row_offset[i + 1] - row - 1;
     contact_.offset[row] += stage.gap_offset[point] / stage.gap_factor;
     contact_.offset_rounding[row] = stage.gap_offset_rounding[point] / stage.gap_factor;
     if (count == 0) continue;
@@ -272,10 +272,10 @@ void CondensedContact::give(StageSolution& solution) const {
   const Index tangents = problem_.dimension - 1;
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     const Index point = candidates_.points()[i];
-    const Index row = contact_.first[i];
+    const Index row = contact_.row_offset[i];
     solution.contact_status[static_cast<std::size_t>(point)] = contact_solution_.status[i];
     solution.normal_reaction[point] = reaction[row] / scale_;
-    for (Index k = 1; row + k < contact_.first[i + 1]; ++k)
+    for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
       solution.tangential_reaction[point * tangents + k - 1] = -reaction[row + k] / scale_;
   }
 }
@@ -295,8 +295,8 @@ bool CondensedContact::take_up_penetrating(const Stage& stage, const Vector& inc
 
 std::size_t CondensedContact::closed_points() const {
   std::size_t count = 0;
-  for (std::size_t i = 0; i + 1 < contact_.first.size(); ++i)
-    count += contact_solution_.reaction[contact_.first[i]] > 0.0 ? 1 : 0;
+  for (std::size_t i = 0; i + 1 < contact_.row_offset.size(); ++i)
+    count += contact_solution_.reaction[contact_.row_offset[i]] > 0.0 ? 1 : 0;
   return count;
 }
 
@@ -333,7 +333,7 @@ void CondensedContact::log_iterations() const {
     return;
   }
   for (std::size_t k = 0; k < contact_solution_.record.size(); ++k) {
-    const ContactIteration& line = contact_solution_.record[k];
+    const IterationRecord& line = contact_solution_.record[k];
     log::debug(fmt::format("contact: {} points, iteration {} ({}): residual {:.2e}, {} closed{}, {} changed",
                            contact_.points(), k + 1, line.phase, line.residual, line.closed,
                            friction_ ? fmt::format(" ({} stick, {} slip)", line.sticking, line.slipping) : "",
@@ -378,8 +378,7 @@ void CondensedContact::throw_contradiction(const std::vector<Index>& contradicti
 }
 
 void CondensedContact::throw_not_solved() const {
-  const auto* const solver = dynamic_cast<const IterativeContactSolver*>(solver_.get());
-  if (solver != nullptr && !solver->contradiction().empty()) throw_contradiction(solver->contradiction());
+  if (!contact_solution_.contradiction.empty()) throw_contradiction(contact_solution_.contradiction);
   const bool tresca = ((bound_.array() > 0.0) && (coefficient_.array() == 0.0)).any();
   const char* const advice = tresca ? "; with a friction_bound alone a step need not have a solution: give a friction "
                                       "coefficient beside it"

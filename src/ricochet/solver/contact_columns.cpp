@@ -60,7 +60,7 @@ void ContactColumns::fill(Block& block, const SparseMatrix& transposed, Index be
 
 void ContactColumns::append_block(const SparseMatrix& transposed, Index begin, Index end) {
   Block block;
-  block.first = row_count_;
+  block.row = row_count_;
   std::vector<Index> reached;
   for (Index row = begin; row < end; ++row) {
     for (SparseMatrix::InnerIterator entry(transposed, row); entry; ++entry)
@@ -77,15 +77,15 @@ void ContactColumns::renew(const SparseMatrix& transposed, const std::vector<cha
   std::vector<char> renewed(blocks_.size(), 0);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     Block& block = blocks_[i];
-    const auto begin = is_new.begin() + block.first;
+    const auto begin = is_new.begin() + block.row;
     if (std::find(begin, begin + block.columns.cols(), 1) == begin + block.columns.cols()) continue;
-    fill(block, transposed, block.first);
+    fill(block, transposed, block.row);
     renewed[i] = 1;
   }
   for (std::size_t j = 0; j < blocks_.size(); ++j) {
     for (std::size_t i = 0; i <= j; ++i) {
       if (renewed[i] == 0 && renewed[j] == 0) continue;
-      w.block(blocks_[i].first, blocks_[j].first, blocks_[i].columns.cols(), blocks_[j].columns.cols()).setZero();
+      w.block(blocks_[i].row, blocks_[j].row, blocks_[i].columns.cols(), blocks_[j].columns.cols()).setZero();
       add_product(blocks_[i], blocks_[j], w);
     }
   }
@@ -104,7 +104,7 @@ void ContactColumns::add_product(const Block& left, const Block& right, Matrix& 
       const Index rows = left.path.offsets[i + 1] - left.path.offsets[i];
       add_transposed_product(rows, left.columns.cols(), right.columns.cols(), &left.columns(left.path.offsets[i], 0),
                              left.columns.rows(), &right.columns(right.path.offsets[j], 0), right.columns.rows(),
-                             &w(left.first, right.first), w.rows());
+                             &w(left.row, right.row), w.rows());
       ++i;
       ++j;
     }
@@ -134,17 +134,17 @@ void ContactColumns::motion(const Vector& y, Vector& result) {
   result.resize(row_count_);
   for (const Block& block : blocks_) {
     gather(block.path, y, gathered_);
-    multiply_transposed(block.columns, gathered_, result.data() + block.first);
+    multiply_transposed(block.columns, gathered_, result.data() + block.row);
   }
 }
 
 void ContactColumns::add_reaction(const Vector& r, Vector& y) {
   for (const Block& block : blocks_) {
     const Index count = block.columns.cols();
-    if (block.columns.rows() == 0 || r.segment(block.first, count).isZero(0.0)) continue;
+    if (block.columns.rows() == 0 || r.segment(block.row, count).isZero(0.0)) continue;
     gather(block.path, y, gathered_);
     for (Index k = 0; k < count; ++k) {
-      const double factor = r[block.first + k];
+      const double factor = r[block.row + k];
       if (factor == 0.0) continue;
       add_columns(block.columns.rows(), 1, &block.columns(0, k), block.columns.rows(), &factor, gathered_.data());
     }

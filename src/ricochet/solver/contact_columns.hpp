@@ -37,7 +37,7 @@ class ContactColumns {
  private:
   /// Columns with nearly the same path, stored on the union of their paths.
   struct Block {
-    Index first = 0;  ///< row of H
+    Index row = 0;  ///< of H, its first
     FactorPath path;
     Matrix columns;
   };

@@ -132,7 +132,7 @@ TEST(FclibFile, ConstraintsThatDependOnOneAnother) {
 TEST(FclibFile, OnlyEligiblePointsAndTangentsForAll) {
   std::mt19937 random(1);
   ContactProblem problem;
-  problem.first = {0, 1, 4, 7, 8};  // points 0 and 3 have no friction
+  problem.row_offset = {0, 1, 4, 7, 8};  // points 0 and 3 have no friction
   const Matrix w = random_operator(8, random);
   problem.contact_operator = make_dense_operator(w);
   problem.offset = uniform(8, random);

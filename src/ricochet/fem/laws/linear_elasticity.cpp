@@ -15,7 +15,7 @@ class LinearElasticityLaw final : public MaterialLaw {
   [[nodiscard]] double lambda() const override { return lambda_; }
   [[nodiscard]] double mu() const override { return mu_; }
   [[nodiscard]] std::optional<IsotropicElasticity> constant_tangent(bool plane_stress) const override {
-    return IsotropicElasticity{plane_stress ? 2.0 * lambda_ * mu_ / (lambda_ + 2.0 * mu_) : lambda_, mu_};
+    return IsotropicElasticity::of(lambda_, mu_, plane_stress);
   }
   [[nodiscard]] double energy(const Matrix& gradient, bool plane_stress) const override {
     return constant_tangent(plane_stress)->energy(strain(gradient));

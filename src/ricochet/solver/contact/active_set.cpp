@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "ricochet/solver/contact/alart_curnier.hpp"
-#include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/iteration_record.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
 namespace ricochet {
 
@@ -19,7 +19,7 @@ constexpr double trusted = 1e-9;
 double hidden_part(const ContactSystem& system, const ContactIterate& iterate) {
   double largest = 0.0;
   for (const ContactPoint& point : system.points())
-    largest = std::max(largest, sum_rounding * iterate.size[point.first] / std::sqrt(point.diagonal));
+    largest = std::max(largest, sum_rounding * iterate.size[point.row] / std::sqrt(point.diagonal));
   return largest / system.data();
 }
 }  // namespace
@@ -63,8 +63,8 @@ void PrimalDualActiveSet::find_violations(const ContactSystem& system, const Con
   violations_.clear();
   for (std::size_t k = 0; k < system.points().size(); ++k) {
     const ContactPoint& point = system.points()[k];
-    const bool wrong = active_[k] != 0 ? current.reaction[point.first] < 0.0
-                                       : current.motion[point.first] < -system.floor_of(point, current).normal;
+    const bool wrong = active_[k] != 0 ? current.reaction[point.row] < 0.0
+                                       : current.motion[point.row] < -system.floor_of(point, current).normal;
     if (wrong) violations_.push_back(k);
   }
 }
@@ -96,7 +96,7 @@ std::string PrimalDualActiveSet::pivot(const ContactSystem& system, ContactItera
     find_violations(system, current);
     for (const std::size_t k : violations_) active_[k] = 1;
   } else {
-    for (std::size_t k = 0; k < points.size(); ++k) active_[k] = current.reaction[points[k].first] > 0.0 ? 1 : 0;
+    for (std::size_t k = 0; k < points.size(); ++k) active_[k] = current.reaction[points[k].row] > 0.0 ? 1 : 0;
   }
   const int limit = 1000 + 20 * static_cast<int>(points.size());
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
@@ -104,7 +104,7 @@ std::string PrimalDualActiveSet::pivot(const ContactSystem& system, ContactItera
   for (int k = 0; k < limit; ++k) {
     indices_.clear();
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (active_[i] != 0) indices_.push_back(points[i].first);
+      if (active_[i] != 0) indices_.push_back(points[i].row);
     }
     ++iterations;
     if (!solve_active(system, current))
@@ -166,7 +166,7 @@ std::string ActiveSetSolver::iterate(const ContactSystem& system, const ContactO
   if (!friction) {
     const std::string reason =
         frictionless_.solve(system, options.tolerance, current, solution.newton_steps, solution.factorizations);
-    if (!reason.empty()) note_contradiction(frictionless_.contradiction());
+    if (!reason.empty()) solution.contradiction = frictionless_.contradiction();
     note_iteration(system, options, "active set", system.residual(current), current.reaction, solution);
     return reason;
   }
@@ -186,8 +186,10 @@ std::string ActiveSetSolver::iterate(const ContactSystem& system, const ContactO
 
 }  // namespace
 
-std::unique_ptr<ContactSolver> make_active_set() {
-  return std::make_unique<ActiveSetSolver>();
+ContactSolverRegistration active_set_solver() {
+  return {"active-set",
+          {[] { return std::make_unique<ActiveSetSolver>(); },
+           "primal-dual active set: without friction, and with friction in two dimensions"}};
 }
 
 }  // namespace ricochet

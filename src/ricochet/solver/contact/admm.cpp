@@ -1,15 +1,15 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "ricochet/linear_algebra/dense_cholesky.hpp"
+#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/contact/cone_formulation.hpp"
-#include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/iteration_record.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
 namespace ricochet {
 
@@ -46,14 +46,14 @@ bool PenaltyFactor::compute(const ContactSystem& system, double penalty) {
     sparse_.reset();
     matrix_ = *system.dense();
     for (const ContactPoint& point : system.points())
-      matrix_.diagonal().segment(point.first, point.size).array() += penalty * point.diagonal;
+      matrix_.diagonal().segment(point.row, point.size).array() += penalty * point.diagonal;
     return dense_.compute(matrix_);
   }
   rows_.clear();
   std::vector<int> number(static_cast<std::size_t>(system.rows()), -1);
   std::vector<double> added;
   for (const ContactPoint& point : system.points()) {
-    for (Index row = point.first; row < point.first + point.size; ++row) {
+    for (Index row = point.row; row < point.row + point.size; ++row) {
       number[static_cast<std::size_t>(row)] = static_cast<int>(rows_.size());
       rows_.push_back(row);
       added.push_back(penalty * point.diagonal);
@@ -85,7 +85,7 @@ double geometric_mean_eigenvalue(const ContactSystem& system) {
   Vector root = Vector::Zero(rows);
   Vector v = Vector::Zero(rows);
   for (const ContactPoint& point : system.points()) {
-    for (Index row = point.first; row < point.first + point.size; ++row) {
+    for (Index row = point.row; row < point.row + point.size; ++row) {
       root[row] = 1.0 / std::sqrt(point.diagonal);
       v[row] = 1.0 + 0.5 * std::sin(1.7 * static_cast<double>(row * row % 101));
     }
@@ -107,7 +107,7 @@ double geometric_mean_eigenvalue(const ContactSystem& system) {
     last = v;
     v = product / beta;
   }
-  const Vector values = Eigen::SelfAdjointEigenSolver<Matrix>(small.topLeftCorner(count, count)).eigenvalues();
+  const Vector values = symmetric_eigen(small.topLeftCorner(count, count)).values;
   const double largest = values[count - 1];
   return std::sqrt(std::max(values[0], smallest_part * largest) * largest);
 }
@@ -259,8 +259,10 @@ std::string Admm::iterate(const ContactSystem& system, const ContactOptions& opt
 
 }  // namespace
 
-std::unique_ptr<ContactSolver> make_admm() {
-  return std::make_unique<Admm>();
+ContactSolverRegistration admm_solver() {
+  return {
+      "admm",
+      {[] { return std::make_unique<Admm>(); }, "alternating direction method of multipliers with an adapted penalty"}};
 }
 
 }  // namespace ricochet

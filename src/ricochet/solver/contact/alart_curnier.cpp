@@ -49,7 +49,7 @@ void AlartCurnierStep::choose(const ContactSystem& system, const ContactPoint& p
   const double c = 1.0 / point.diagonal;
   const PaddedVector tau = r - c * padded(point, from.motion);
   if (!(tau[0] > 0.0)) return;
-  const ContactUnknown unknown{system.problem_row(point.first), point.first, point.size, {}, {}, 0.0};
+  const ContactUnknown unknown{system.problem_row(point.row), point.row, point.size, {}, {}, 0.0};
   const auto unit = [](Index k) { return PaddedVector(PaddedVector::Unit(k)); };
   if (!point.has_friction()) {
     add(unknown, unit(0), unit(0), 0.0, r[0]);
@@ -101,7 +101,7 @@ void AlartCurnierStep::expand(const Vector& x, Vector& reaction) const {
   for (std::size_t j = 0; j < unknowns_.size(); ++j) {
     const ContactUnknown& unknown = unknowns_[j];
     for (Index k = 0; k < unknown.size; ++k)
-      reaction[unknown.first + k] += x[static_cast<Index>(j)] * unknown.trial[static_cast<std::size_t>(k)];
+      reaction[unknown.row + k] += x[static_cast<Index>(j)] * unknown.trial[static_cast<std::size_t>(k)];
   }
 }
 
@@ -206,7 +206,7 @@ bool AlartCurnierStep::refine(const ContactIterate& full, Vector& reaction) {
     const double held = unknown.diagonal * solution_[i];
     left_[i] = -(test_motion(unknown, full.motion.data()) + held);
     double size = std::abs(held);
-    for (Index k = 0; k < unknown.size; ++k) size += full.size[unknown.first + k];
+    for (Index k = 0; k < unknown.size; ++k) size += full.size[unknown.row + k];
     rounding_only = rounding_only && std::abs(left_[i]) <= 4.0 * machine_epsilon * size;
   }
   if (rounding_only) return false;

@@ -51,8 +51,8 @@ class AlartCurnierStep {
   [[nodiscard]] static double iteration_work(double unknowns);
   /// The factor of many unknowns, see IterativeContactSolver.
   [[nodiscard]] const ReusedFactor& reused() const { return reused_; }
-  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory) {
-    return reused_.take_memory(first, memory);
+  void load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) {
+    reused_.load(row_offset, snapshot, name);
   }
   /// The last step needed a new factor.
   [[nodiscard]] bool has_factored() const { return has_factored_; }

@@ -9,10 +9,10 @@
 
 #include "ricochet/solver/contact/active_set.hpp"
 #include "ricochet/solver/contact/contact_costs.hpp"
-#include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/gauss_seidel.hpp"
 #include "ricochet/solver/contact/globalized_newton.hpp"
 #include "ricochet/solver/contact/iteration_record.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 #include "ricochet/solver/contact/other_solvers.hpp"
 
 namespace ricochet {
@@ -47,7 +47,7 @@ bool has_friction(const ContactSystem& system) {
 
 bool is_nearly_closed(const ContactSystem& system, const ContactIterate& iterate) {
   const auto closed = std::count_if(system.points().begin(), system.points().end(),
-                                    [&](const auto& p) { return iterate.reaction[p.first] > 0.0; });
+                                    [&](const auto& p) { return iterate.reaction[p.row] > 0.0; });
   return 10 * closed >= 9 * static_cast<std::ptrdiff_t>(system.points().size());
 }
 
@@ -79,15 +79,12 @@ class AutomaticSolver final : public IterativeContactSolver {
     frictionless_.reset();
     costs_ = {};
   }
-  /// The costs, the size of the frictionless factor's base set and that set, then the unknowns of the other factor.
-  void append_memory(std::vector<double>& memory) const override {
-    memory.push_back(costs_.of_sweeps);
-    memory.push_back(costs_.of_newton);
-    memory.push_back(static_cast<double>(frictionless_.base().size()));
-    for (const Index row : frictionless_.base()) memory.push_back(static_cast<double>(row));
-    newton_.step().reused().append_memory(memory);
+  void save_memory(Snapshot& snapshot, const std::string& name) const override {
+    snapshot.save(name + ".costs", Vector(Eigen::Vector2d(costs_.of_sweeps, costs_.of_newton)));
+    snapshot.save(name + ".active_set", frictionless_.base());
+    newton_.step().reused().save(snapshot, name);
   }
-  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory) override;
+  void load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) override;
   [[nodiscard]] bool keeps_row(Index problem_row) const override {
     return frictionless_.keeps_row(problem_row) || newton_.step().reused().keeps_row(problem_row);
   }
@@ -108,8 +105,8 @@ class AutomaticSolver final : public IterativeContactSolver {
   GaussSeidel sweeps_;
   AcceleratedGaussSeidel accelerated_;
   GlobalizedNewton newton_;
-  std::unique_ptr<ContactSolver> products_;  ///< where there are no entries of W
-  OtherSolvers others_;                      ///< where all else has failed
+  std::unique_ptr<IterativeContactSolver> products_;  ///< where there are no entries of W
+  OtherSolvers others_;                               ///< where all else has failed
   PrimalDualActiveSet frictionless_;
   DualActiveSet normals_;
   BestIterate best_;      ///< of a part of the iteration
@@ -120,21 +117,16 @@ class AutomaticSolver final : public IterativeContactSolver {
   ContactCosts costs_;
 };
 
-bool AutomaticSolver::take_memory(const std::vector<Index>& first, const std::vector<double>& memory) {
-  constexpr std::size_t head = 3;
-  if (memory.size() < head || !(memory[0] >= 0.0 && memory[1] >= 0.0)) return false;
-  costs_ = {memory[0], memory[1]};
-  std::vector<Index> base;
-  Index last_point = -1;
-  auto next = memory.begin() + head;
-  for (; static_cast<double>(base.size()) != memory[2]; ++next) {
-    const Index point = next != memory.end() ? point_with_first_row(first, *next) : -1;
-    if (point <= last_point) return false;
-    last_point = point;
-    base.push_back(first[static_cast<std::size_t>(point)]);
-  }
-  frictionless_.take_base(std::move(base));
-  return newton_.take_memory(first, std::vector<double>(next, memory.end()));
+void AutomaticSolver::load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot,
+                                  const std::string& name) {
+  const Vector& costs = snapshot.reals(name + ".costs", 2);
+  if (!(costs[0] >= 0.0 && costs[1] >= 0.0)) Snapshot::refuse(name + ".costs", "has negative entries");
+  costs_ = {costs[0], costs[1]};
+  const std::vector<Index>& base = snapshot.integers(name + ".active_set");
+  if (!are_first_rows(row_offset, base, true))
+    Snapshot::refuse(name + ".active_set", "has entries that are no points of this problem");
+  frictionless_.take_base(base);
+  newton_.load_memory(row_offset, snapshot, name);
 }
 
 /// Accelerated sweeps for as long as they promise to arrive sooner than Newton would.
@@ -207,9 +199,8 @@ bool AutomaticSolver::sweep(const ContactWork& work, int sweeps, double damping)
 
 /// W by its product alone: a first-order method that needs no more.
 std::string AutomaticSolver::iterate_with_products(const ContactWork& work) {
-  if (products_ == nullptr) products_ = make_contact_solver("accelerated-gradient");
-  return dynamic_cast<IterativeContactSolver&>(*products_)
-      .iterate(work.system, work.options, work.current, work.solution);
+  if (products_ == nullptr) products_ = make_iterative_contact_solver("accelerated-gradient");
+  return products_->iterate(work.system, work.options, work.current, work.solution);
 }
 
 /// Newton from `current`, with the line search, then whole steps from the best r.
@@ -277,8 +268,8 @@ std::string AutomaticSolver::iterate(const ContactSystem& system, const ContactO
     const std::string reason =
         frictionless_.solve(system, options.tolerance, current, solution.iterations, solution.factorizations, watch);
     if (reason.empty()) return "";
-    note_contradiction(frictionless_.contradiction());
-    if (!contradiction().empty()) return reason;
+    solution.contradiction = frictionless_.contradiction();
+    if (!solution.contradiction.empty()) return reason;
   }
   best_.restart(work);
   if (cold) best_.merit = std::numeric_limits<double>::infinity();
@@ -305,8 +296,8 @@ std::string AutomaticSolver::find_contradiction(const ContactWork& work) {
   int steps = 0;
   const std::string reason = normals_.solve(work.system, work.current, steps);
   work.current = best_.iterate;
-  note_contradiction(normals_.contradiction());
-  return contradiction().empty() ? "" : reason;
+  work.solution.contradiction = normals_.contradiction();
+  return work.solution.contradiction.empty() ? "" : reason;
 }
 
 void AutomaticSolver::begin_at_zero(const ContactWork& work) {
@@ -366,8 +357,10 @@ bool AutomaticSolver::sweep_on(const ContactWork& work) {
 
 }  // namespace
 
-std::unique_ptr<ContactSolver> make_automatic() {
-  return std::make_unique<AutomaticSolver>();
+ContactSolverRegistration automatic_solver() {
+  return {"automatic",
+          {[] { return std::make_unique<AutomaticSolver>(); },
+           "accelerated Gauss-Seidel, then Newton with a line search, then fallbacks; no parameter"}};
 }
 
 }  // namespace ricochet

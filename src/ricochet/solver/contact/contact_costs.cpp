@@ -30,7 +30,7 @@ double unknown_count(const ContactWork& work) {
 double sweep_work(const ContactWork& work) {
   double closed_rows = 0.0;
   for (const ContactPoint& point : work.system.points())
-    closed_rows += work.current.reaction[point.first] > 0.0 ? static_cast<double>(point.size) : 0.0;
+    closed_rows += work.current.reaction[point.row] > 0.0 ? static_cast<double>(point.size) : 0.0;
   return std::max(closed_rows, 1.0) * (static_cast<double>(work.system.rows()) + point_work);
 }
 

@@ -41,7 +41,7 @@ double ContactSystem::residual(const ContactIterate& iterate) const {
 ContactSystem::Floor ContactSystem::floor_of(const ContactPoint& point, const ContactIterate& iterate) const {
   Floor floor;
   for (Index k = 0; k < point.size; ++k) {
-    const Index row = point.first + k;
+    const Index row = point.row + k;
     const double of_sum = sum_rounding * iterate.size[row];
     double& of_row = k == 0 ? floor.normal : floor.tangential;
     of_row = std::max(of_row, offset_rounding_[row] + of_sum);
@@ -77,8 +77,8 @@ ContactSystem::Measure ContactSystem::measure(const ContactIterate& iterate) con
     }
     if (is_steep && is_violated) result.beyond_floor = std::max(result.beyond_floor, data_);
     // Where W has a zero block, r is in no sum.
-    const double of_reaction = sum_rounding * point.diagonal * iterate.reaction[point.first];
-    if (iterate.reaction[point.first] > 0.0 && std::max(of_motion.of_sums, of_reaction) > excused)
+    const double of_reaction = sum_rounding * point.diagonal * iterate.reaction[point.row];
+    if (iterate.reaction[point.row] > 0.0 && std::max(of_motion.of_sums, of_reaction) > excused)
       result.beyond_floor = std::max({result.beyond_floor, value, floor, of_reaction});
   }
   return result;

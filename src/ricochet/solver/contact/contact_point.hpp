@@ -19,7 +19,7 @@ using PaddedVector = Eigen::Vector3d;
 /// A point of the contact problem.
 struct ContactPoint {
   Index point = 0;           ///< its number
-  Index first = 0;           ///< its first row
+  Index row = 0;             ///< its first one
   Index size = 1;            ///< number of rows
   double coefficient = 0.0;  ///< F, zero where there are no tangents
   double bound = 0.0;        ///< of Tresca's law (F = 0) or of Coulomb's limited law (F > 0); zero: no bound
@@ -41,11 +41,11 @@ struct ContactPoint {
 
 /// The rows of a point out of a vector, padded, and back.
 inline PaddedVector padded(const ContactPoint& point, const Vector& rows) {
-  const double* at = rows.data() + point.first;
+  const double* at = rows.data() + point.row;
   return {at[0], point.size > 1 ? at[1] : 0.0, point.size > 2 ? at[2] : 0.0};
 }
 inline void enter(const ContactPoint& point, const PaddedVector& value, Vector& rows) {
-  for (Index k = 0; k < point.size; ++k) rows[point.first + k] = value[k];
+  for (Index k = 0; k < point.size; ++k) rows[point.row + k] = value[k];
 }
 
 /// The block of W of one point with its normal eliminated, in the principal axes of what remains.

@@ -31,7 +31,7 @@ ContactProblem::ContactProblem(Index dimension, std::shared_ptr<const ContactOpe
   if (offset.size() % dimension != 0) {
     fail(fmt::format("q has {} entries, which is not a multiple of the {} rows of a point", offset.size(), dimension));
   }
-  for (Index row = 0; row <= offset.size(); row += dimension) first.push_back(row);
+  for (Index row = 0; row <= offset.size(); row += dimension) row_offset.push_back(row);
   validate();
 }
 
@@ -41,14 +41,14 @@ ContactProblem::ContactProblem(Index dimension, Matrix w, Vector q, double frict
 
 void ContactProblem::validate() const {
   require(contact_operator != nullptr, "there is no operator W");
-  require(!first.empty() && first.front() == 0, "the first point must begin with row 0");
-  for (std::size_t i = 0; i + 1 < first.size(); ++i) {
-    const Index size = first[i + 1] - first[i];
+  require(!row_offset.empty() && row_offset.front() == 0, "the first point must begin with row 0");
+  for (std::size_t i = 0; i + 1 < row_offset.size(); ++i) {
+    const Index size = row_offset[i + 1] - row_offset[i];
     if (size < 1 || size > 3) fail(fmt::format("point {} has {} rows; there can be 1, 2 or 3", i, size));
   }
-  require_size(offset.size(), first.back(), "q");
-  if (contact_operator->rows() != first.back())
-    fail(fmt::format("W has {} rows, but the points have {}", contact_operator->rows(), first.back()));
+  require_size(offset.size(), row_offset.back(), "q");
+  if (contact_operator->rows() != row_offset.back())
+    fail(fmt::format("W has {} rows, but the points have {}", contact_operator->rows(), row_offset.back()));
   require_size(friction_coefficient.size(), points(), "the friction coefficients");
   if (friction_bound.size() > 0) require_size(friction_bound.size(), points(), "the friction bounds");
   if (offset_rounding.size() > 0) require_size(offset_rounding.size(), rows(), "the rounding of q");
@@ -64,11 +64,11 @@ void ContactProblem::validate() const {
   }
 }
 
-Index point_with_first_row(const std::vector<Index>& first, double row) {
-  const auto end = first.end() - 1;
-  const auto found = std::lower_bound(first.begin(), end, row,
-                                      [](Index one, double other) { return static_cast<double>(one) < other; });
-  return found != end && static_cast<double>(*found) == row ? found - first.begin() : -1;
+bool are_first_rows(const std::vector<Index>& row_offset, const std::vector<Index>& rows, bool distinct) {
+  const auto out_of_order = [&](Index one, Index next) { return distinct ? one >= next : one > next; };
+  if (std::adjacent_find(rows.begin(), rows.end(), out_of_order) != rows.end()) return false;
+  return std::all_of(rows.begin(), rows.end(),
+                     [&](Index row) { return std::binary_search(row_offset.begin(), row_offset.end() - 1, row); });
 }
 
 }  // namespace ricochet

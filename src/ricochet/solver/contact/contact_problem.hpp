@@ -9,8 +9,8 @@
 /// @file The contact problem of a step. Knows nothing of finite elements or time.
 namespace ricochet {
 
-/// Point i has the rows first[i] … first[i+1]−1: its normal, then (if it can have friction) its d−1 tangents. Find the
-/// reactions r and the motion u (velocities or gaps, whatever q is) with
+/// Point i has the rows row_offset[i] … row_offset[i+1]−1: its normal, then (if it can have friction) its d−1 tangents.
+/// Find the reactions r and the motion u (velocities or gaps, whatever q is) with
 ///   u = q + W r,
 /// and at every eligible point
 ///   0 ≤ r_N ⟂ u_N ≥ 0,   |r_T| ≤ b,   r_T = −b u_T/|u_T| where u_T ≠ 0,
@@ -26,7 +26,7 @@ namespace ricochet {
 struct ContactProblem {
   std::shared_ptr<const ContactOperator> contact_operator;  ///< W
   Vector offset;                                            ///< q, per row
-  std::vector<Index> first;                                 ///< points + 1
+  std::vector<Index> row_offset;                            ///< points + 1
   Vector friction_coefficient;                              ///< F ≥ 0, per point
   Vector friction_bound;                                    ///< per point, in units of r; 0: none. Empty: none anywhere
   Vector offset_rounding;            ///< size of the rounding error of q, per row. Empty: q is exact
@@ -39,7 +39,7 @@ struct ContactProblem {
   ContactProblem(Index dimension, Matrix w, Vector q, double friction);
   ContactProblem(Index dimension, std::shared_ptr<const ContactOperator> w, Vector q, Vector friction);
 
-  [[nodiscard]] Index points() const { return static_cast<Index>(first.size()) - 1; }
+  [[nodiscard]] Index points() const { return static_cast<Index>(row_offset.size()) - 1; }
   [[nodiscard]] Index rows() const { return offset.size(); }
   [[nodiscard]] bool is_eligible(Index point) const {
     return eligible.empty() || eligible[static_cast<std::size_t>(point)] != 0;
@@ -53,7 +53,8 @@ struct ContactProblem {
   void validate() const;
 };
 
-/// The point whose first row this is; −1: it is none's. `first` as above; `row` may be any number.
-[[nodiscard]] Index point_with_first_row(const std::vector<Index>& first, double row);
+/// Whether these are first rows of points, in the order of the points; `distinct`: each at most once. Any numbers may
+/// be asked for.
+[[nodiscard]] bool are_first_rows(const std::vector<Index>& row_offset, const std::vector<Index>& rows, bool distinct);
 
 }  // namespace ricochet

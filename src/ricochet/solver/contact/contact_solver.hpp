@@ -6,11 +6,14 @@
 #include <vector>
 
 #include "ricochet/base/contact_status.hpp"
+#include "ricochet/base/registry.hpp"
+#include "ricochet/base/snapshot.hpp"
 #include "ricochet/base/types.hpp"
 #include "ricochet/solver/contact/contact_problem.hpp"
 
 /// @file Solvers of the contact problem. To add one: a file with a class derived from IterativeContactSolver
-/// (contact_iteration.hpp) and one line in registry.cpp, from which the tests take its name.
+/// (iterative_contact_solver.hpp) and its registration, and one line in registry.cpp, from which the tests take its
+/// name.
 ///
 ///     ContactProblem problem(3, w, q, 0.3);        // W dense, three rows per point: normal, two tangents
 ///     const auto solver = make_contact_solver("automatic");
@@ -44,7 +47,7 @@ enum class ContactOutcome : char {
 };
 
 /// One line of the record.
-struct ContactIteration {
+struct IterationRecord {
   const char* phase = "";  ///< "sweep", "newton", …
   double residual = 0.0;   ///< after it, relative
   /// Points that press, of those with friction the ones on and off the limit, and points that do another thing than
@@ -61,6 +64,9 @@ struct ContactSolution {
   std::vector<ContactStatus> status;
   ContactOutcome outcome = ContactOutcome::not_converged;
   std::string reason;  ///< why not, when not solved
+  /// Points whose normal conditions no motion meets together, ascending, where that is why. Only solvers that know the
+  /// entries of W look for them.
+  std::vector<Index> contradiction;
   /// The measure, see contact_system.hpp: largest natural map of a point over that of r = 0.
   double residual = 0.0;
   /// What of `residual` may be rounding: a residual below it says nothing more.
@@ -68,7 +74,7 @@ struct ContactSolution {
   int iterations = 0;      ///< all, of every kind
   int newton_steps = 0;    ///< of them, those with a linear system
   int factorizations = 0;  ///< of those, the ones that could not use the factor of an earlier step
-  std::vector<ContactIteration> record;
+  std::vector<IterationRecord> record;
   std::vector<ContactStatus> record_status;  ///< per point, after the last iteration of the record: work space
 
   [[nodiscard]] bool solved() const { return outcome == ContactOutcome::solved; }
@@ -89,25 +95,31 @@ class ContactSolver {
   /// call to call.
   virtual void solve(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution) = 0;
 
-  /// What the next solve starts from: the last reactions, then what else decides its bits (kept factors, by what they
-  /// were made of). For a checkpoint: a solver that is given it goes on with the same bits. Empty before `analyse`.
-  [[nodiscard]] virtual Vector warm_start() const = 0;
-  /// Reactions (one per row), or what warm_start() gave. An empty vector forgets. Throws Error(invalid_input) for any
-  /// other length, for numbers that are not finite, and for what no warm_start() of this solver gives after the
-  /// reactions; the next start is a cold one then.
-  virtual void set_warm_start(const Vector& start) = 0;
+  /// The reactions that the next solve starts from, one per row; empty: from none.
+  [[nodiscard]] virtual const Vector& warm_start() const = 0;
+  /// After `analyse`. Throws Error(invalid_input) for another length and for numbers that are not finite; the next
+  /// start is a cold one then.
+  virtual void set_warm_start(const Vector& reactions) = 0;
+  /// The reactions, and what else decides bits of the next solve (kept factors, by what they were made of): a solver
+  /// that loads it, after `analyse`, goes on with the same bits. `load` throws Error(invalid_input) for what no solver
+  /// of its kind has saved on such points; the next start is a cold one then.
+  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
+  virtual void load(const Snapshot& snapshot, const std::string& name) = 0;
 };
 
 /// Is shown contact problems and what became of them: also those that were not solved.
 using ContactObserver = std::function<void(const ContactProblem&, const ContactSolution&)>;
 
-struct ContactSolverDescription {
-  std::string name;
-  std::string text;  ///< one line
-};
-
-/// By name; throws Error(usage) that lists the names. "automatic" needs no choice.
+/// By name; throws Error(invalid_input) that lists the names. "automatic" needs no choice.
 [[nodiscard]] std::unique_ptr<ContactSolver> make_contact_solver(const std::string& name = "automatic");
-[[nodiscard]] std::vector<ContactSolverDescription> contact_solvers();
+
+class IterativeContactSolver;
+struct ContactSolverType {
+  std::function<std::unique_ptr<IterativeContactSolver>()> make;
+  std::string text;  ///< what it is, one line
+};
+using ContactSolverRegistration = Registration<ContactSolverType>;
+/// All solvers. A program of one's own may add to them.
+[[nodiscard]] Registry<ContactSolverType>& contact_solver_registry();
 
 }  // namespace ricochet

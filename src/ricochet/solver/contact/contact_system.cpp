@@ -31,7 +31,7 @@ double power_of_two(double value) {
 
 void ContactSystem::analyse(const ContactProblem& problem) {
   operator_ = problem.contact_operator;
-  problem_first_ = problem.first;
+  problem_row_offset_ = problem.row_offset;
   gathered_.clear();
   row_of_.clear();
   points_.clear();
@@ -69,7 +69,8 @@ void ContactSystem::analyse(const ContactProblem& problem) {
   blocks_.clear();
   for (Index i = 0; i < points; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const PointMatrix block = operator_->block(problem.first[at], problem.first[at + 1] - problem.first[at]);
+    const PointMatrix block =
+        operator_->block(problem.row_offset[at], problem.row_offset[at + 1] - problem.row_offset[at]);
     blocks_.push_back(block);
     if (fault_.empty() && !(block.allFinite() && (block.diagonal().array() >= 0.0).all()))
       fault_ = fmt::format("W has an entry that is negative or no finite number in the diagonal block of point {}", i);
@@ -98,8 +99,8 @@ ContactPoint ContactSystem::make_point(const ContactProblem& problem, Index i) c
   const auto at = static_cast<std::size_t>(i);
   ContactPoint point;
   point.point = i;
-  point.first = problem.first[at];
-  point.size = problem.first[at + 1] - point.first;
+  point.row = problem.row_offset[at];
+  point.size = problem.row_offset[at + 1] - point.row;
   if (point.size > 1) {
     point.coefficient = problem.friction_coefficient[i];
     point.bound = problem.bound(i) * reaction_scale(i);
@@ -118,8 +119,8 @@ void ContactSystem::set_data(const ContactProblem& problem) {
   double largest = 0.0;
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
-    const Index row = problem.first[static_cast<std::size_t>(i)];
-    const auto q = problem.offset.segment(row, problem.first[static_cast<std::size_t>(i) + 1] - row);
+    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
+    const auto q = problem.offset.segment(row, problem.row_offset[static_cast<std::size_t>(i) + 1] - row);
     data_are_finite_ = data_are_finite_ && q.allFinite();
     largest = std::max(largest, scale_[static_cast<std::size_t>(i)] * q.lpNorm<Eigen::Infinity>());
   }
@@ -130,7 +131,7 @@ void ContactSystem::set_data(const ContactProblem& problem) {
     ContactPoint point = make_point(problem, i);
     PaddedVector q = PaddedVector::Zero();
     const double scale = range * scale_[static_cast<std::size_t>(i)];
-    for (Index k = 0; k < point.size; ++k) q[k] = scale * problem.offset[point.first + k];
+    for (Index k = 0; k < point.size; ++k) q[k] = scale * problem.offset[point.row + k];
     data_ = std::max(data_, residual(point, PaddedVector::Zero(), q));
   }
   const double unit = 1.0 / power_of_two(data_);
@@ -162,10 +163,10 @@ void ContactSystem::gather(const ContactProblem& problem) {
   rows_.clear();
   for (const Index i : chosen_) {
     ContactPoint point = make_point(problem, i);
-    const Index first = point.first;
+    const Index first = point.row;
     // Sparse and product operators keep all of their rows.
-    const Index size = mode_ == Mode::dense ? point.size : problem_first_[static_cast<std::size_t>(i) + 1] - first;
-    point.first = static_cast<Index>(rows_.size());
+    const Index size = mode_ == Mode::dense ? point.size : problem_row_offset_[static_cast<std::size_t>(i) + 1] - first;
+    point.row = static_cast<Index>(rows_.size());
     for (Index k = 0; k < size; ++k) rows_.push_back(first + k);
     if (problem.is_eligible(i)) points_.push_back(point);
   }
@@ -176,19 +177,17 @@ void ContactSystem::gather(const ContactProblem& problem) {
     row_scale_.assign(row_of_.size(), 1.0);
     std::size_t point = 0;
     for (std::size_t row = 0; row < row_of_.size(); ++row) {
-      while (problem_first_[point + 1] <= row_of_[row]) ++point;
+      while (problem_row_offset_[point + 1] <= row_of_[row]) ++point;
       row_scale_[row] = scale_[point];
     }
     if (mode_ == Mode::dense) copy_dense();
     if (mode_ == Mode::sparse) copy_sparse();
   }
-  const auto is_alike = [](const ContactPoint& a, const ContactPoint& b) {
-    return a.first == b.first && a.size == b.size;
-  };
+  const auto is_alike = [](const ContactPoint& a, const ContactPoint& b) { return a.row == b.row && a.size == b.size; };
   if (same && std::equal(points_.begin(), points_.end(), last_points_.begin(), last_points_.end(), is_alike)) return;
   point_operators_.clear();
   for (const ContactPoint& point : points_) {
-    const double scale = row_scale_[static_cast<std::size_t>(point.first)];
+    const double scale = row_scale_[static_cast<std::size_t>(point.row)];
     const PointMatrix& whole = blocks_[static_cast<std::size_t>(point.point)];
     const PointMatrix block = operator_scale_ * scale * scale * whole.topLeftCorner(point.size, point.size);
     point_operators_.push_back(make_point_operator(block));
@@ -247,20 +246,20 @@ void ContactSystem::copy_sparse() {
 
 void ContactSystem::add_change(const ContactPoint& point, const PaddedVector& change, Vector& motion) const {
   if (mode_ == Mode::dense) {
-    add_columns(motion.size(), point.size, matrix_.data() + point.first * matrix_.rows(), matrix_.rows(), change.data(),
+    add_columns(motion.size(), point.size, matrix_.data() + point.row * matrix_.rows(), matrix_.rows(), change.data(),
                 motion.data());
     return;
   }
   for (Index k = 0; k < point.size; ++k) {
     if (change[k] == 0.0) continue;
-    for (SparseMatrix::InnerIterator entry(sparse_, point.first + k); entry; ++entry)
+    for (SparseMatrix::InnerIterator entry(sparse_, point.row + k); entry; ++entry)
       motion[entry.row()] += change[k] * entry.value();
   }
 }
 
 void ContactSystem::add_change_roughly(const ContactPoint& point, const PaddedVector& change, Vector& motion) const {
   if (!has_rough_entries()) return add_change(point, change, motion);
-  add_columns(motion.size(), point.size, single_.data() + point.first * single_.rows(), single_.rows(), change.data(),
+  add_columns(motion.size(), point.size, single_.data() + point.row * single_.rows(), single_.rows(), change.data(),
               motion.data());
 }
 
@@ -275,7 +274,7 @@ void ContactSystem::multiply(const Vector& x, Vector& y) const {
   }
   product_argument_.setZero(operator_->rows());
   for (const ContactPoint& point : points_) {
-    for (Index row = point.first; row < point.first + point.size; ++row)
+    for (Index row = point.row; row < point.row + point.size; ++row)
       product_argument_[row] = row_scale_[static_cast<std::size_t>(row)] * x[row];
   }
   operator_->multiply(product_argument_, product_result_);
@@ -291,12 +290,12 @@ void ContactSystem::evaluate(ContactIterate& iterate) const {
     for (const ContactPoint& point : points_) {
       const PaddedVector r = padded(point, iterate.reaction);
       if (r.isZero(0.0)) continue;
-      add_columns(rows(), point.size, matrix_.data() + point.first * matrix_.rows(), matrix_.rows(), r.data(),
+      add_columns(rows(), point.size, matrix_.data() + point.row * matrix_.rows(), matrix_.rows(), r.data(),
                   iterate.motion.data(), iterate.size.data());
     }
   } else if (mode_ == Mode::sparse) {
     for (const ContactPoint& point : points_) {
-      for (Index k = point.first; k < point.first + point.size; ++k) {
+      for (Index k = point.row; k < point.row + point.size; ++k) {
         const double r = iterate.reaction[k];
         if (r == 0.0) continue;
         for (SparseMatrix::InnerIterator entry(sparse_, k); entry; ++entry) {
@@ -312,7 +311,7 @@ void ContactSystem::evaluate(ContactIterate& iterate) const {
     // Σ |W r| as far as it is known: the point's own part, and the others' together. The bound Σ_j 4 |r_j| would call
     // residuals of 1e-8 rounding where there are thousands of points.
     for (std::size_t k = 0; k < points_.size(); ++k) {
-      const Index first = points_[k].first;
+      const Index first = points_[k].row;
       const PaddedVector r = padded(points_[k], iterate.reaction);
       const PaddedVector own = point_operators_[k].block * r;
       const PaddedVector own_size = point_operators_[k].block.cwiseAbs() * r.cwiseAbs();
@@ -326,17 +325,17 @@ void ContactSystem::take_reaction(const Vector& reaction, Vector& scaled) const 
   scaled.setZero(rows());
   for (const ContactPoint& point : points_) {
     const double scale = reaction_scale(point.point);
-    const Index first = problem_first_[static_cast<std::size_t>(point.point)];
-    for (Index k = 0; k < point.size; ++k) scaled[point.first + k] = scale * reaction[first + k];
+    const Index first = problem_row_offset_[static_cast<std::size_t>(point.point)];
+    for (Index k = 0; k < point.size; ++k) scaled[point.row + k] = scale * reaction[first + k];
   }
 }
 
 void ContactSystem::give_reaction(const Vector& scaled, Vector& reaction) const {
-  reaction.setZero(problem_first_.back());
+  reaction.setZero(problem_row_offset_.back());
   for (const ContactPoint& point : points_) {
     const double scale = 1.0 / reaction_scale(point.point);
-    const Index first = problem_first_[static_cast<std::size_t>(point.point)];
-    for (Index k = 0; k < point.size; ++k) reaction[first + k] = scale * scaled[point.first + k];
+    const Index first = problem_row_offset_[static_cast<std::size_t>(point.point)];
+    for (Index k = 0; k < point.size; ++k) reaction[first + k] = scale * scaled[point.row + k];
   }
 }
 

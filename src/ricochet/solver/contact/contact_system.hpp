@@ -50,7 +50,7 @@ class ContactSystem {
   /// q_N is below `margin` times the largest data, in the unit of the residual.
   [[nodiscard]] bool is_near(const ContactProblem& problem, Index point, double margin) const {
     const auto at = static_cast<std::size_t>(point);
-    return motion_scale(point) * problem.offset[problem.first[at]] < margin * data_ * std::sqrt(normal_[at]);
+    return motion_scale(point) * problem.offset[problem.row_offset[at]] < margin * data_ * std::sqrt(normal_[at]);
   }
   [[nodiscard]] const std::vector<ContactPoint>& points() const { return points_; }
   [[nodiscard]] const PointOperator& point_operator(std::size_t k) const { return point_operators_[k]; }
@@ -132,7 +132,7 @@ class ContactSystem {
   Mode mode_ = Mode::dense;
   std::shared_ptr<const ContactOperator> operator_;
   std::shared_ptr<const ContactOperator> found_;  ///< a product operator of few rows, by its entries
-  std::vector<Index> problem_first_;
+  std::vector<Index> problem_row_offset_;
   std::vector<double> scale_;          ///< D, per point of the problem
   std::vector<PointMatrix> blocks_;    ///< W_ii, per point of the problem, as they are given
   std::vector<double> normal_, mean_;  ///< w, per point of the problem, scaled: of the normal, of the block

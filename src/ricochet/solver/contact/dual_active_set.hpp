@@ -33,7 +33,7 @@ class DualActiveSet {
   };
 
   [[nodiscard]] Index point_count() const { return static_cast<Index>(system_->points().size()); }
-  [[nodiscard]] Index row_of(Index point) const { return system_->points()[static_cast<std::size_t>(point)].first; }
+  [[nodiscard]] Index row_of(Index point) const { return system_->points()[static_cast<std::size_t>(point)].row; }
   [[nodiscard]] double floor_of(Index point, const ContactIterate& current) const;
   void start(const ContactIterate& current);
   Entry look_at(Index entering);

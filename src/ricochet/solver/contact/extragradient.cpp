@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "ricochet/solver/contact/cone_formulation.hpp"
-#include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/iteration_record.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
 namespace ricochet {
 
@@ -91,8 +91,10 @@ std::string Extragradient::iterate(const ContactSystem& system, const ContactOpt
 
 }  // namespace
 
-std::unique_ptr<ContactSolver> make_extragradient() {
-  return std::make_unique<Extragradient>();
+ContactSolverRegistration extragradient_solver() {
+  return {"extragradient",
+          {[] { return std::make_unique<Extragradient>(); },
+           "Korpelevich's extragradient with an adapted step: needs only products with W"}};
 }
 
 }  // namespace ricochet

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/iteration_record.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
 namespace ricochet {
 
@@ -73,8 +73,10 @@ class GaussSeidelSolver final : public IterativeContactSolver {
 
 }  // namespace
 
-std::unique_ptr<ContactSolver> make_gauss_seidel() {
-  return std::make_unique<GaussSeidelSolver>();
+ContactSolverRegistration gauss_seidel_solver() {
+  return {
+      "gauss-seidel",
+      {[] { return std::make_unique<GaussSeidelSolver>(); }, "projected block Gauss-Seidel with exact local solves"}};
 }
 
 }  // namespace ricochet

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/iteration_record.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
 namespace ricochet {
 

@@ -51,8 +51,8 @@ class GlobalizedNewton {
   /// The factors are of another W.
   void reset();
   [[nodiscard]] const AlartCurnierStep& step() const { return step_; }
-  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory) {
-    return step_.take_memory(first, memory);
+  void load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) {
+    step_.load_memory(row_offset, snapshot, name);
   }
 
  private:

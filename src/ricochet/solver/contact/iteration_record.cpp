@@ -6,17 +6,17 @@ namespace {
 
 /// What a point does, by its reaction alone.
 ContactStatus status_of(const ContactPoint& point, const Vector& reaction) {
-  if (!(reaction[point.first] > 0.0)) return ContactStatus::open;
+  if (!(reaction[point.row] > 0.0)) return ContactStatus::open;
   if (!point.has_friction()) return ContactStatus::closed;
-  const double limit = point.friction_limit(reaction[point.first]) * (1.0 - 1e-9);
-  const double length = reaction.segment(point.first + 1, point.size - 1).norm();
+  const double limit = point.friction_limit(reaction[point.row]) * (1.0 - 1e-9);
+  const double length = reaction.segment(point.row + 1, point.size - 1).norm();
   return length < limit ? ContactStatus::stick : ContactStatus::slip;
 }
 
 }  // namespace
 
-ContactIteration count_states(const ContactSystem& system, const Vector& reaction, ContactSolution& solution) {
-  ContactIteration counts;
+IterationRecord count_states(const ContactSystem& system, const Vector& reaction, ContactSolution& solution) {
+  IterationRecord counts;
   for (const ContactPoint& point : system.points()) {
     const ContactStatus status = status_of(point, reaction);
     ContactStatus& before = solution.record_status[static_cast<std::size_t>(point.point)];
@@ -38,7 +38,7 @@ void note_iteration(const ContactSystem& system, const ContactOptions& options, 
 void record_iteration(const ContactSystem& system, const ContactOptions& options, const char* phase, double residual,
                       const Vector& reaction, ContactSolution& solution) {
   if (!options.record) return;
-  ContactIteration line = count_states(system, reaction, solution);
+  IterationRecord line = count_states(system, reaction, solution);
   line.phase = phase;
   line.residual = residual / system.data();
   solution.record.push_back(line);

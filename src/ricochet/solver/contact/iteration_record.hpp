@@ -15,6 +15,6 @@ void record_iteration(const ContactSystem& system, const ContactOptions& options
                       const Vector& reaction, ContactSolution& solution);
 
 /// Takes the states of the points over into the solution's record; how many there are of each, and have changed.
-ContactIteration count_states(const ContactSystem& system, const Vector& reaction, ContactSolution& solution);
+IterationRecord count_states(const ContactSystem& system, const Vector& reaction, ContactSolution& solution);
 
 }  // namespace ricochet

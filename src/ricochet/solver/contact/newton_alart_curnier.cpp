@@ -29,9 +29,9 @@ class NewtonAlartCurnier final : public NewtonContactSolver {
     NewtonContactSolver::forget();
     step_.reset();
   }
-  void append_memory(std::vector<double>& memory) const override { step_.reused().append_memory(memory); }
-  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory) override {
-    return step_.take_memory(first, memory);
+  void save_memory(Snapshot& snapshot, const std::string& name) const override { step_.reused().save(snapshot, name); }
+  void load_memory(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) override {
+    step_.load_memory(row_offset, snapshot, name);
   }
   [[nodiscard]] bool keeps_row(Index problem_row) const override { return step_.reused().keeps_row(problem_row); }
 
@@ -42,8 +42,10 @@ class NewtonAlartCurnier final : public NewtonContactSolver {
 
 }  // namespace
 
-std::unique_ptr<ContactSolver> make_newton_alart_curnier() {
-  return std::make_unique<NewtonAlartCurnier>();
+ContactSolverRegistration newton_alart_curnier_solver() {
+  return {
+      "newton-alart-curnier",
+      {[] { return std::make_unique<NewtonAlartCurnier>(); }, "semi-smooth Newton on Alart and Curnier's equations"}};
 }
 
 }  // namespace ricochet

@@ -91,8 +91,10 @@ PointEquation NewtonFischerBurmeister::equation(const ContactPoint& point, const
 
 }  // namespace
 
-std::unique_ptr<ContactSolver> make_newton_fischer_burmeister() {
-  return std::make_unique<NewtonFischerBurmeister>();
+ContactSolverRegistration newton_fischer_burmeister_solver() {
+  return {"newton-fischer-burmeister",
+          {[] { return std::make_unique<NewtonFischerBurmeister>(); },
+           "semi-smooth Newton on the Fischer-Burmeister function of the second-order cone"}};
 }
 
 }  // namespace ricochet

@@ -36,14 +36,14 @@ void NewtonSystem::assemble_dense(const ContactSystem& system, const std::vector
   for (std::size_t b = 0; b < active_.size(); ++b) {
     const ContactPoint& column_point = points[active_[b]];
     for (Index k = 0; k < column_point.size; ++k) {
-      const double* column = w.data() + (column_point.first + k) * w.rows();
+      const double* column = w.data() + (column_point.row + k) * w.rows();
       double* to = matrix_.data() + (start_[b] + k) * count;
       for (const std::size_t a : active_) {
         const ContactPoint& point = points[a];
         const Eigen::Matrix3d& by_motion = equations[a].by_motion;
         for (Index i = 0; i < point.size; ++i) {
           double sum = 0.0;
-          for (Index j = 0; j < point.size; ++j) sum += by_motion(i, j) * column[point.first + j];
+          for (Index j = 0; j < point.size; ++j) sum += by_motion(i, j) * column[point.row + j];
           *to++ = sum;
         }
       }
@@ -89,7 +89,7 @@ bool NewtonSystem::solve_dense(const ContactSystem& system, const std::vector<Po
   factor_.solve(right_, solution_);
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const ContactPoint& point = points[active_[a]];
-    for (Index k = 0; k < point.size; ++k) change[point.first + k] = solution_[start_[a] + k];
+    for (Index k = 0; k < point.size; ++k) change[point.row + k] = solution_[start_[a] + k];
   }
   return true;
 }
@@ -103,7 +103,7 @@ void NewtonSystem::find_pattern(const ContactSystem& system) {
   last_point_of_.swap(point_of_);
   point_of_.assign(static_cast<std::size_t>(w.rows()), none);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    for (Index row = points[k].first; row < points[k].first + points[k].size; ++row)
+    for (Index row = points[k].row; row < points[k].row + points[k].size; ++row)
       point_of_[static_cast<std::size_t>(row)] = k;
   }
   if (same_operator && point_of_ == last_point_of_) return;
@@ -117,10 +117,10 @@ void NewtonSystem::find_pattern(const ContactSystem& system) {
     for (SparseMatrix::InnerIterator entry(w, column); entry; ++entry) {
       const std::size_t k = point_of_[static_cast<std::size_t>(entry.row())];
       if (k == none) continue;
-      for (Index row = points[k].first; row < points[k].first + points[k].size; ++row) add(row, column);
+      for (Index row = points[k].row; row < points[k].row + points[k].size; ++row) add(row, column);
     }
     const ContactPoint& own = points[point_of_[static_cast<std::size_t>(column)]];
-    for (Index row = own.first; row < own.first + own.size; ++row) add(row, column);
+    for (Index row = own.row; row < own.row + own.size; ++row) add(row, column);
   }
   sparse_matrix_.resize(w.rows(), w.cols());
   sparse_matrix_.setFromTriplets(entries.begin(), entries.end());
@@ -145,15 +145,15 @@ bool NewtonSystem::solve_sparse(const ContactSystem& system, const std::vector<P
       }
       const auto add = [&](const ContactPoint& point, const Eigen::Matrix3d& block, Index k, double factor) {
         const auto* at =
-            std::lower_bound(inner + outer[column], inner + outer[column + 1], static_cast<int>(point.first));
+            std::lower_bound(inner + outer[column], inner + outer[column + 1], static_cast<int>(point.row));
         double* to = values + (at - inner);
         for (Index i = 0; i < point.size; ++i) to[i] += factor * block(i, k);
       };
       for (SparseMatrix::InnerIterator entry(w, column); entry; ++entry) {
         const std::size_t k = point_of_[static_cast<std::size_t>(entry.row())];
-        if (k != none) add(points[k], equations[k].by_motion, entry.row() - points[k].first, entry.value());
+        if (k != none) add(points[k], equations[k].by_motion, entry.row() - points[k].row, entry.value());
       }
-      const Index k = column - points[own].first;
+      const Index k = column - points[own].row;
       add(points[own], equations[own].by_reaction, k, 1.0);
       if (proximal > 0.0) add(points[own], equations[own].by_motion, k, proximal * points[own].diagonal);
     }

@@ -6,7 +6,7 @@
 
 #include "ricochet/linear_algebra/dense_factor.hpp"
 #include "ricochet/linear_algebra/sparse_lu.hpp"
-#include "ricochet/solver/contact/contact_iteration.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
 /// @file Semi-smooth Newton on an equation per point.
 namespace ricochet {

@@ -18,8 +18,9 @@ class NewtonJeanMoreau final : public NewtonContactSolver {
 
 }  // namespace
 
-std::unique_ptr<ContactSolver> make_newton_jean_moreau() {
-  return std::make_unique<NewtonJeanMoreau>();
+ContactSolverRegistration newton_jean_moreau_solver() {
+  return {"newton-jean-moreau",
+          {[] { return std::make_unique<NewtonJeanMoreau>(); }, "semi-smooth Newton on Jean and Moreau's equations"}};
 }
 
 }  // namespace ricochet

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "ricochet/solver/contact/cone_formulation.hpp"
-#include "ricochet/solver/contact/contact_iteration.hpp"
 
 namespace ricochet {
 
@@ -32,10 +31,9 @@ bool OtherSolvers::solve(const ContactWork& work, const std::vector<Kind>& kinds
       if (options.iteration_limit < fewest_iterations) continue;
       work.current.reaction = cold ? Vector(Vector::Zero(work.system.rows())) : best.iterate.reaction;
       work.system.evaluate(work.current);
-      std::unique_ptr<ContactSolver>& solver = solvers_[kind.name];
-      if (solver == nullptr) solver = make_contact_solver(kind.name);
-      auto& iteration = dynamic_cast<IterativeContactSolver&>(*solver);
-      const bool solved = iteration.iterate(work.system, options, work.current, work.solution).empty();
+      std::unique_ptr<IterativeContactSolver>& solver = solvers_[kind.name];
+      if (solver == nullptr) solver = make_iterative_contact_solver(kind.name);
+      const bool solved = solver->iterate(work.system, options, work.current, work.solution).empty();
       if ((solved && work.options.tolerance > 0.0) || work.is_loosely_solved(work.current, on_law_)) return true;
       best.keep(work);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ricochet/solver/contact/globalized_newton.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
 /// @file What the automatic solver asks where its own sweeps and Newton steps have failed.
 namespace ricochet {
@@ -30,7 +31,7 @@ class OtherSolvers {
   void forget() { solvers_.clear(); }
 
  private:
-  std::map<std::string, std::unique_ptr<ContactSolver>> solvers_;
+  std::map<std::string, std::unique_ptr<IterativeContactSolver>> solvers_;
   ContactIterate on_law_;
 };
 

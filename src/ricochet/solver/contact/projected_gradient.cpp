@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "ricochet/solver/contact/cone_formulation.hpp"
-#include "ricochet/solver/contact/contact_iteration.hpp"
 #include "ricochet/solver/contact/iteration_record.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
 namespace ricochet {
 
@@ -147,8 +147,10 @@ std::string AcceleratedGradient::iterate(const ContactSystem& system, const Cont
 
 }  // namespace
 
-std::unique_ptr<ContactSolver> make_accelerated_gradient() {
-  return std::make_unique<AcceleratedGradient>();
+ContactSolverRegistration accelerated_gradient_solver() {
+  return {"accelerated-gradient",
+          {[] { return std::make_unique<AcceleratedGradient>(); },
+           "Nesterov's projected gradient with restarts: needs only products with W"}};
 }
 
 }  // namespace ricochet

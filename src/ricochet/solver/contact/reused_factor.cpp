@@ -15,7 +15,7 @@ void assemble_contact_matrix(const ContactSystem& system, const std::vector<Cont
   for (Index j = 0; j < count; ++j) {
     const ContactUnknown& unknown = unknowns[static_cast<std::size_t>(j)];
     column.setZero(w.rows());
-    add_columns(w.rows(), unknown.size, w.data() + unknown.first * w.rows(), w.rows(), unknown.trial.data(),
+    add_columns(w.rows(), unknown.size, w.data() + unknown.row * w.rows(), w.rows(), unknown.trial.data(),
                 column.data());
     double* to = matrix.data() + j * count;
     for (const ContactUnknown& row : unknowns) *to++ = test_motion(row, column.data());
@@ -32,9 +32,9 @@ bool ReusedFactor::compute(const Matrix& matrix, const std::vector<ContactUnknow
 
 bool ReusedFactor::place(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns) {
   for (ContactUnknown& unknown : unknowns_) {
-    unknown.first = system.system_row(unknown.problem_row);
+    unknown.row = system.system_row(unknown.problem_row);
     // Tangents are not there when a stage leaves friction out.
-    if (unknown.first < 0 || system.system_row(unknown.problem_row + unknown.size - 1) < 0) return false;
+    if (unknown.row < 0 || system.system_row(unknown.problem_row + unknown.size - 1) < 0) return false;
   }
   if (!is_factored_) {
     Matrix matrix;
@@ -46,50 +46,48 @@ bool ReusedFactor::place(const ContactSystem& system, const std::vector<ContactU
   same_ = present_ == unknowns_;
   compliance_.assign(static_cast<std::size_t>(system.rows()), 1.0);
   for (const ContactPoint& point : system.points()) {
-    for (Index k = 0; k < point.size; ++k)
-      compliance_[static_cast<std::size_t>(point.first + k)] = 1.0 / point.diagonal;
+    for (Index k = 0; k < point.size; ++k) compliance_[static_cast<std::size_t>(point.row + k)] = 1.0 / point.diagonal;
   }
   return true;
 }
 
-namespace {
-/// Numbers of an unknown in the memory.
-constexpr std::size_t unknown_size = 9;
-}  // namespace
-
-void ReusedFactor::append_memory(std::vector<double>& memory) const {
+void ReusedFactor::save(Snapshot& snapshot, const std::string& name) const {
+  std::vector<Index> rows, sizes;
+  Vector values(7 * static_cast<Index>(unknowns_.size()));
+  double* next = values.data();
   for (const ContactUnknown& unknown : unknowns_) {
-    memory.push_back(static_cast<double>(unknown.problem_row));
-    memory.push_back(static_cast<double>(unknown.size));
-    memory.insert(memory.end(), unknown.trial.begin(), unknown.trial.end());
-    memory.insert(memory.end(), unknown.test.begin(), unknown.test.end());
-    memory.push_back(unknown.diagonal);
+    rows.push_back(unknown.problem_row);
+    sizes.push_back(unknown.size);
+    next = std::copy(unknown.trial.begin(), unknown.trial.end(), next);
+    next = std::copy(unknown.test.begin(), unknown.test.end(), next);
+    *next++ = unknown.diagonal;
   }
+  snapshot.save(name + ".unknowns.rows", std::move(rows));
+  snapshot.save(name + ".unknowns.sizes", std::move(sizes));
+  snapshot.save(name + ".unknowns.values", values);
 }
 
-bool ReusedFactor::take_memory(const std::vector<Index>& first, const std::vector<double>& memory) {
+void ReusedFactor::load(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name) {
   unknowns_.clear();
   is_factored_ = false;
-  if (memory.size() % unknown_size != 0) return false;
-  Index last_point = 0;
-  for (std::size_t at = 0; at < memory.size(); at += unknown_size) {
-    const Index point = point_with_first_row(first, memory[at]);
-    if (point < last_point) return false;
-    last_point = point;
+  const std::vector<Index>& rows = snapshot.integers(name + ".unknowns.rows");
+  const std::vector<Index>& sizes = snapshot.integers(name + ".unknowns.sizes", 1, 3);
+  const Vector& values = snapshot.reals(name + ".unknowns.values", 7 * static_cast<Index>(rows.size()));
+  if (!are_first_rows(row_offset, rows, false) || sizes.size() != rows.size())
+    Snapshot::refuse(name + ".unknowns", "are not those of points of this problem");
+  const double* next = values.data();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto point = std::lower_bound(row_offset.begin(), row_offset.end(), rows[i]);
+    if (sizes[i] > point[1] - point[0]) Snapshot::refuse(name + ".unknowns", "have more rows than their points");
     ContactUnknown unknown;
-    unknown.problem_row = first[static_cast<std::size_t>(point)];
-    const Index rows = first[static_cast<std::size_t>(point) + 1] - unknown.problem_row;
-    const double size = memory[at + 1];
-    if (!(size >= 1.0 && size <= static_cast<double>(rows)) || size != std::floor(size)) return false;
-    unknown.size = static_cast<Index>(size);
-    for (std::size_t k = 0; k < 3; ++k) {
-      unknown.trial[k] = memory[at + 2 + k];
-      unknown.test[k] = memory[at + 5 + k];
-    }
-    unknown.diagonal = memory[at + 8];
+    unknown.problem_row = rows[i];
+    unknown.size = sizes[i];
+    std::copy(next, next + 3, unknown.trial.begin());
+    std::copy(next + 3, next + 6, unknown.test.begin());
+    unknown.diagonal = next[6];
+    next += 7;
     unknowns_.push_back(unknown);
   }
-  return true;
 }
 
 /// They are in the order of their points.
@@ -107,7 +105,7 @@ void ReusedFactor::apply(const Vector& right, Vector& z) const {
   }
   const auto add = [](const ContactUnknown& unknown, const std::array<double, 3>& direction, double factor,
                       Vector& to) {
-    for (Index k = 0; k < unknown.size; ++k) to[unknown.first + k] += factor * direction[static_cast<std::size_t>(k)];
+    for (Index k = 0; k < unknown.size; ++k) to[unknown.row + k] += factor * direction[static_cast<std::size_t>(k)];
   };
   motion_.setZero(static_cast<Index>(compliance_.size()));
   for (std::size_t i = 0; i < present_.size(); ++i)

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
+#include "ricochet/base/snapshot.hpp"
 #include "ricochet/linear_algebra/dense_factor.hpp"
 #include "ricochet/solver/contact/contact_system.hpp"
 
@@ -12,8 +14,8 @@ namespace ricochet {
 /// An unknown x of a Newton step: r = … + x trial, and the equation test·u + diagonal x = 0, on the rows of one point.
 /// The tests of a point are orthonormal, and test·trial = 1 for one and the same unknown, 0 for others.
 struct ContactUnknown {
-  Index problem_row = 0;  ///< the problem's row that is `first`
-  Index first = 0, size = 0;
+  Index problem_row = 0;  ///< the problem's row that is `row`
+  Index row = 0, size = 0;
   std::array<double, 3> trial{}, test{};
   double diagonal = 0.0;
   /// In whatever system: what a factor depends on.
@@ -24,7 +26,7 @@ struct ContactUnknown {
 };
 
 [[nodiscard]] inline double test_motion(const ContactUnknown& unknown, const double* motion) {
-  const double* at = motion + unknown.first;
+  const double* at = motion + unknown.row;
   double sum = unknown.test[0] * at[0];
   if (unknown.size > 1) sum += unknown.test[1] * at[1];
   if (unknown.size > 2) sum += unknown.test[2] * at[2];
@@ -41,15 +43,15 @@ class ReusedFactor {
   /// Takes the matrix of the system for these unknowns. False: singular.
   bool compute(const Matrix& matrix, const std::vector<ContactUnknown>& unknowns);
   /// Before `apply`: the rows of the earlier unknowns in this system. False: it does not have all of them, or (after
-  /// take_memory) their matrix is singular.
+  /// `load`) their matrix is singular.
   bool place(const ContactSystem& system, const std::vector<ContactUnknown>& unknowns);
   /// z ≈ (system of the unknowns given to `place`)⁻¹ b.
   void apply(const Vector& right, Vector& z) const;
 
-  /// The unknowns as numbers, and back: the factor is then made again at the next `place`, with the same bits. False:
-  /// these are no unknowns on points with these first rows (ContactProblem::first).
-  void append_memory(std::vector<double>& memory) const;
-  bool take_memory(const std::vector<Index>& first, const std::vector<double>& memory);
+  /// The unknowns, and back: the factor is then made again at the next `place`, with the same bits. Throws
+  /// Error(invalid_input) for what are no unknowns on points with these rows (ContactProblem::row_offset).
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const std::vector<Index>& row_offset, const Snapshot& snapshot, const std::string& name);
   /// One of the unknowns is of the point that begins with this row of the problem.
   [[nodiscard]] bool keeps_row(Index problem_row) const;
 

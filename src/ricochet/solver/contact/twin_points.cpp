@@ -24,7 +24,7 @@ bool have_one_law(const ContactProblem& problem, const std::vector<Index>& point
 }
 
 double normal_motion(const ContactProblem& problem, const Vector& motion, Index point) {
-  return motion[problem.first[static_cast<std::size_t>(point)]];
+  return motion[problem.row_offset[static_cast<std::size_t>(point)]];
 }
 
 Index deepest_of(const ContactProblem& problem, const Vector& motion, const std::vector<Index>& points) {
@@ -34,7 +34,7 @@ Index deepest_of(const ContactProblem& problem, const Vector& motion, const std:
 }
 
 bool penetrates(const ContactProblem& problem, const Vector& motion, Index point) {
-  const Index row = problem.first[static_cast<std::size_t>(point)];
+  const Index row = problem.row_offset[static_cast<std::size_t>(point)];
   const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
   return motion[row] < -(known + sum_rounding * std::abs(problem.offset[row]));
 }
@@ -78,15 +78,15 @@ bool TwinPoints::any(const ContactOperator& w, const std::vector<Index>& first) 
 void TwinPoints::replace(const ContactProblem& problem, Group& group, Index point, std::vector<char>& wanted,
                          Vector& reaction) {
   const auto at = static_cast<std::size_t>(point);
-  const Index size = problem.first[at + 1] - problem.first[at];
+  const Index size = problem.row_offset[at + 1] - problem.row_offset[at];
   PointVector sum = PointVector::Zero(size);
   for (const Index other : group.points) {
-    auto part = reaction.segment(problem.first[static_cast<std::size_t>(other)], size);
+    auto part = reaction.segment(problem.row_offset[static_cast<std::size_t>(other)], size);
     sum += part;
     part.setZero();
     wanted[static_cast<std::size_t>(other)] = 0;
   }
-  reaction.segment(problem.first[at], size) = sum;
+  reaction.segment(problem.row_offset[at], size) = sum;
   wanted[at] = 1;
   group.chosen = point;
 }

@@ -1,7 +1,9 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,7 +43,7 @@ TEST_P(ContactSolverData, RefuseOperatorsWithNumbersThatAreNone) {
     for (const double friction : {0.0, 0.3}) {
       for (const auto& [i, j] : {std::pair<Index, Index>{1, 2}, {0, 5}, {3, 3}, {0, 3}}) {
         FrictionProblem problem = random_problem(6, 2, friction, 3, 1.0);
-        for (Index k = 0; k < problem.points(); ++k) problem.q[problem.first[static_cast<std::size_t>(k)]] = -1.0;
+        for (Index k = 0; k < problem.points(); ++k) problem.q[problem.row_offset[static_cast<std::size_t>(k)]] = -1.0;
         problem.w(i, j) = problem.w(j, i) = value;
         const ContactSolution solution = solve(problem, {.tolerance = 1e-8});
         EXPECT_EQ(solution.outcome, ContactOutcome::invalid_data) << i << ' ' << j << ' ' << friction;
@@ -69,7 +71,7 @@ TEST_P(ContactSolverData, RefuseSizesAndOptionsThatDoNotFit) {
   expect_refused([](ContactProblem& p) { p.friction_coefficient[0] = -1.0; }, {});
   expect_refused([](ContactProblem& p) { p.friction_coefficient[0] = std::nan(""); }, {});
   expect_refused([](ContactProblem& p) { p.eligible = {1}; }, {});
-  expect_refused([](ContactProblem& p) { p.first[1] = 1; }, {});
+  expect_refused([](ContactProblem& p) { p.row_offset[1] = 1; }, {});
   expect_refused(nothing, {.tolerance = std::nan("")});
   expect_refused(nothing, {.tolerance = -1.0});
   expect_refused(nothing, {.tolerance = 1.0});
@@ -94,68 +96,59 @@ TEST_P(ContactSolverData, RefuseMemoriesThatAreNotTheirs) {
   ContactSolution cold, solution;
   solver->solve(problem, options, cold);
   ASSERT_TRUE(cold.solved()) << cold.reason;
-  const Vector start = solver->warm_start();
-  const auto with = [&](const std::vector<double>& memory) {
-    Vector result(problem.rows() + static_cast<Index>(memory.size()));
-    result << cold.reaction, Eigen::Map<const Vector>(memory.data(), static_cast<Index>(memory.size()));
-    return result;
+  Snapshot saved;
+  solver->save(saved, "solver");
+  const auto second = static_cast<Index>(dimension());
+  const auto with = [&](const std::map<std::string, Snapshot::Value>& changes) {
+    Snapshot changed = saved;
+    for (const auto& [name, value] : changes) changed.set("solver." + name, value);
+    return changed;
   };
-  const auto expect_refused = [&](const std::vector<double>& memory) {
-    SCOPED_TRACE(testing::PrintToString(memory));
-    solver->set_warm_start(start);
-    EXPECT_THROW(solver->set_warm_start(with(memory)), Error);
+  const auto expect_refused = [&](const std::string& what, const std::map<std::string, Snapshot::Value>& changes) {
+    SCOPED_TRACE(what);
+    solver->load(saved, "solver");
+    EXPECT_THROW(solver->load(with(changes), "solver"), Error);
     solver->solve(problem, options, solution);
     EXPECT_EQ(solution.reaction, cold.reaction);
     EXPECT_EQ(solution.iterations, cold.iterations);
   };
-  const auto unknown = [](double row, double size) {
-    return std::vector<double>{row, size, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  using Integers = Snapshot::Integers;
+  expect_refused("too few reactions", {{"reactions", Vector(Vector::Ones(problem.rows() - 1))}});
+  expect_refused("no numbers", {{"reactions", Vector(Vector::Constant(problem.rows(), std::nan("")))}});
+  expect_refused("another kind", {{"reactions", Integers{1, 2}}});
+  const auto unknowns = [](Integers rows, Integers sizes) {
+    const Vector one = (Vector(7) << 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0).finished();
+    const Vector values = one.replicate(static_cast<Index>(rows.size()), 1);
+    return std::map<std::string, Snapshot::Value>{
+        {"unknowns.rows", rows}, {"unknowns.sizes", sizes}, {"unknowns.values", values}};
   };
-  const auto joined = [](std::vector<double> one, const std::vector<double>& other) {
-    one.insert(one.end(), other.begin(), other.end());
-    return one;
-  };
-  std::vector<std::vector<double>> unknowns;  // that are none
-  unknowns.push_back({1.0});
-  unknowns.push_back(joined(unknown(0.0, 1.0), {0.0}));
-  for (const double row : {-1.0, 0.5, 1.0, static_cast<double>(problem.rows()), 1e300, -1e300})
-    unknowns.push_back(unknown(row, 1.0));
-  for (const double size : {-1.0, 0.0, 0.5, 1.5, 4.0, 1e300}) unknowns.push_back(unknown(0.0, size));
-  const auto second = static_cast<double>(dimension());
-  unknowns.push_back(unknown(second, 2.0));  // has one row
-  unknowns.push_back(joined(unknown(second, 1.0), unknown(0.0, 1.0)));
-  for (const std::vector<double>& memory : unknowns) {
-    expect_refused(memory);
-    expect_refused(joined({0.0, 0.0, 0.0}, memory));
+  const bool keeps_costs = saved.has("solver.costs"), keeps_factor = saved.has("solver.unknowns.rows");
+  if (keeps_factor) {
+    for (const Index row : {Index{-1}, Index{1}, problem.rows(), std::numeric_limits<Index>::max()})
+      expect_refused(fmt::format("row {}", row), unknowns({row}, {1}));
+    for (const Index size : {-1, 0, 4}) expect_refused(fmt::format("size {}", size), unknowns({0}, {size}));
+    expect_refused("a point with one row", unknowns({second}, {2}));
+    expect_refused("not in order", unknowns({second, 0}, {1, 1}));
+    expect_refused("a size is missing", unknowns({0, second}, {1}));
+    expect_refused("a value is missing", {{"unknowns.values", Vector(Vector::Ones(6))}});
+    solver->load(with(unknowns({second}, {1})), "solver");
   }
-  // The costs, the size of a set of points, and its rows.
-  const std::vector<std::vector<double>> heads{{1.0, 1.0},
-                                               {-1.0, 1.0, 0.0},
-                                               {1.0, -1.0, 0.0},
-                                               {1.0, 1.0, 1.0},
-                                               {1.0, 1.0, 4.0, 0.0, second, second + 1.0},
-                                               {1.0, 1.0, -1.0},
-                                               {1.0, 1.0, -1.0, 0.0},
-                                               {1.0, 1.0, 0.5, 0.0},
-                                               {1.0, 1.0, 1e300, 0.0},
-                                               {1.0, 1.0, 1.0, 1.0},
-                                               {1.0, 1.0, 1.0, -1.0},
-                                               {1.0, 1.0, 1.0, 0.5},
-                                               {1.0, 1.0, 1.0, 1e300},
-                                               {1.0, 1.0, 2.0, 0.0, 0.0},
-                                               {1.0, 1.0, 2.0, second, 0.0}};
-  for (const std::vector<double>& memory : heads) expect_refused(memory);
+  if (keeps_costs) {
+    expect_refused("one cost", {{"costs", Vector(Vector::Ones(1))}});
+    expect_refused("a negative cost", {{"costs", Vector(Vector::Constant(2, -1.0))}});
+    for (const Index row : {Index{-1}, Index{1}, problem.rows(), std::numeric_limits<Index>::max()})
+      expect_refused(fmt::format("active row {}", row), {{"active_set", Integers{row}}});
+    expect_refused("twice", {{"active_set", Integers{0, 0}}});
+    expect_refused("not in order", {{"active_set", Integers{second, 0}}});
+    solver->load(with({{"active_set", Integers{0, second}}}), "solver");
+  }
   // What is theirs is not.
-  solver->set_warm_start(start);
-  if (GetParam() == "newton-alart-curnier") solver->set_warm_start(with(unknown(second, 1.0)));
-  if (GetParam() == "automatic")
-    solver->set_warm_start(with(joined({1.0, 1.0, 2.0, 0.0, second}, unknown(second, 1.0))));
   solver->solve(problem, options, solution);
   EXPECT_TRUE(solution.solved());
 }
 
 /// Of a solver that has solved nothing, too.
-TEST_P(ContactSolverData, TakeTheWarmStartTheyGive) {
+TEST_P(ContactSolverData, TakeTheMemoryTheySave) {
   for (const Index points : {1, 2, 30}) {
     const ContactProblem problem = random_problem(points, dimension(), 0.3, 2).contact();
     const auto solver = make_contact_solver(GetParam());
@@ -165,7 +158,9 @@ TEST_P(ContactSolverData, TakeTheWarmStartTheyGive) {
     other->analyse(problem);
     ContactSolution solution, expected;
     for (int k = 0; k < 2; ++k) {
-      other->set_warm_start(solver->warm_start());
+      Snapshot saved;
+      solver->save(saved, "solver");
+      other->load(saved, "solver");
       solver->solve(problem, {.tolerance = 1e-6}, expected);
       other->solve(problem, {.tolerance = 1e-6}, solution);
       EXPECT_EQ(solution.reaction, expected.reaction);
@@ -207,7 +202,7 @@ TEST_P(ContactSolverData, DoNotTakePenetrationForRounding) {
       if (!solution.solved()) continue;
       const Vector u = problem.q + problem.w * solution.reaction;
       for (Index i = 0; i < problem.points(); ++i)
-        EXPECT_GE(u[problem.first[static_cast<std::size_t>(i)]], -0.02 * problem.q.lpNorm<Eigen::Infinity>())
+        EXPECT_GE(u[problem.row_offset[static_cast<std::size_t>(i)]], -0.02 * problem.q.lpNorm<Eigen::Infinity>())
             << friction << ' ' << seed;
     }
   }

@@ -39,9 +39,9 @@ Long measure(const FrictionProblem& problem, const LongVector& reaction) {
   for (Index i = 0; i < problem.points(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (problem.eligible[at] == 0) continue;
-    const Index row = problem.first[at];
-    const bool friction = problem.first[at + 1] - row > 1 && problem.coefficient[i] > 0.0;
-    const Index size = friction ? problem.first[at + 1] - row : 1;
+    const Index row = problem.row_offset[at];
+    const bool friction = problem.row_offset[at + 1] - row > 1 && problem.coefficient[i] > 0.0;
+    const Index size = friction ? problem.row_offset[at + 1] - row : 1;
     const Long w = problem.w.diagonal().segment(row, size).cast<Long>().mean();
     const LongVector r = reaction.segment(row, size);
     LongVector step = u.segment(row, size);
@@ -82,7 +82,7 @@ Vector point_scales(const FrictionProblem& problem, const std::function<double(I
   Vector result(problem.q.size());
   for (Index i = 0; i < problem.points(); ++i) {
     const auto at = static_cast<std::size_t>(i);
-    result.segment(problem.first[at], problem.first[at + 1] - problem.first[at]).setConstant(scale(i));
+    result.segment(problem.row_offset[at], problem.row_offset[at + 1] - problem.row_offset[at]).setConstant(scale(i));
   }
   return result;
 }
@@ -146,7 +146,7 @@ TEST_P(ContactSolvers, StartFromTheLastSolution) {
   // With the same start another solver finds the same bits.
   problem.q *= 1.01;
   test::ContactRun resumed(GetParam());
-  resumed.set_warm_start(run.warm_start());
+  resumed.start_with(run.saved());
   const ContactSolution expected = run.solve(problem, {.tolerance = 1e-6});
   EXPECT_EQ(resumed.solve(problem, {.tolerance = 1e-6}).reaction, expected.reaction);
 }
@@ -193,7 +193,7 @@ TEST_P(ContactSolvers, NeverCallALargeResidualSolved) {
         EXPECT_NE(solution.reason, "");
         EXPECT_GT(residual, 1e-8);
       }
-      for (const Index row : problem.first) {
+      for (const Index row : problem.row_offset) {
         if (row < problem.q.size()) {
           EXPECT_GE(solution.reaction[row], 0.0);
         }
@@ -337,10 +337,10 @@ TEST_P(ContactSolvers, FindTheMotionOfPointsThatAreThereTwice) {
     SCOPED_TRACE(seed);
     const FrictionProblem single = random_problem(15, dimension(), 0.3, seed);
     std::vector<Index> sizes, rows;
-    for (std::size_t i = 0; i + 1 < single.first.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < single.row_offset.size(); ++i) {
       for (int copy = 0; copy < 2; ++copy) {
-        sizes.push_back(single.first[i + 1] - single.first[i]);
-        for (Index row = single.first[i]; row < single.first[i + 1]; ++row) rows.push_back(row);
+        sizes.push_back(single.row_offset[i + 1] - single.row_offset[i]);
+        for (Index row = single.row_offset[i]; row < single.row_offset[i + 1]; ++row) rows.push_back(row);
       }
     }
     FrictionProblem twice(sizes, 0.3);

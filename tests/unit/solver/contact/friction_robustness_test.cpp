@@ -66,7 +66,7 @@ TEST(FrictionInTime, ResumesFromItsWarmStartWithTheSameBits) {
       problem.q *= 1.001;
     }
     ContactRun resumed;
-    resumed.set_warm_start(solver.warm_start());
+    resumed.start_with(solver.saved());
     ContactSolution other;
     solution = solver.solve(problem);
     other = resumed.solve(problem);
@@ -87,7 +87,7 @@ TEST(FrictionInTime, ResumesWithTheFactorOfAnEarlierStep) {
     if (step >= 3) {
       advance(problem);
       ContactRun resumed;
-      resumed.set_warm_start(solver.warm_start());
+      resumed.start_with(solver.saved());
       const ContactSolution other = resumed.solve(problem);
       EXPECT_EQ(other.reaction, solver.solve(problem).reaction) << "step " << step;
       EXPECT_EQ(other.iterations, solver.solution().iterations);
@@ -116,10 +116,10 @@ TEST(FrictionSingular, FindsTheMotionOfPointsThatAreThereTwice) {
       const FrictionProblem single = random_problem(15, 3, friction, seed);
       std::vector<Index> sizes;
       std::vector<Index> rows;
-      for (std::size_t i = 0; i + 1 < single.first.size(); ++i) {
+      for (std::size_t i = 0; i + 1 < single.row_offset.size(); ++i) {
         for (int copy = 0; copy < 2; ++copy) {
-          sizes.push_back(single.first[i + 1] - single.first[i]);
-          for (Index row = single.first[i]; row < single.first[i + 1]; ++row) rows.push_back(row);
+          sizes.push_back(single.row_offset[i + 1] - single.row_offset[i]);
+          for (Index row = single.row_offset[i]; row < single.row_offset[i + 1]; ++row) rows.push_back(row);
         }
       }
       FrictionProblem twice(sizes, friction);

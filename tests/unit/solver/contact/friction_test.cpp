@@ -77,7 +77,7 @@ std::vector<Vector> enumerate(const FrictionProblem& problem) {
     Matrix system = Matrix::Zero(rows, rows);
     Vector right = Vector::Zero(rows);
     const auto state = [&](Index i) { return code >> (2 * i) & 3; };
-    const auto row_of = [&](Index i) { return problem.first[static_cast<std::size_t>(i)]; };
+    const auto row_of = [&](Index i) { return problem.row_offset[static_cast<std::size_t>(i)]; };
     const auto has_tangent = [&](Index i) { return row_of(i + 1) - row_of(i) > 1; };
     bool possible = true;
     for (Index i = 0; i < points; ++i) {
@@ -133,7 +133,7 @@ TEST(Friction, AgreesWithTheActiveSetWithoutFriction) {
     FrictionProblem problem = random_problem(40, seed % 2 == 0 ? 2 : 3, 0.0, seed);
     const ContactSolution solution = solve(problem);
     FrictionProblem normals(std::vector<Index>(static_cast<std::size_t>(problem.points()), 1), 0.0);
-    const std::vector<Index> rows(problem.first.begin(), problem.first.end() - 1);
+    const std::vector<Index> rows(problem.row_offset.begin(), problem.row_offset.end() - 1);
     normals.w = problem.w(rows, rows);
     normals.q = problem.q(rows);
     const ContactSolution expected = solve(normals, {}, "active-set");
@@ -149,8 +149,8 @@ TEST(Friction, GivesTheSameBitsInUnitsThatArePowersOfTwoApart) {
   // Rows of very different size, as from points with areas of their own.
   for (Index i = 0; i < 30; ++i) {
     const double factor = std::pow(3.0, 0.2 * static_cast<double>(i));
-    for (Index row = problem.first[static_cast<std::size_t>(i)]; row < problem.first[static_cast<std::size_t>(i + 1)];
-         ++row) {
+    for (Index row = problem.row_offset[static_cast<std::size_t>(i)];
+         row < problem.row_offset[static_cast<std::size_t>(i + 1)]; ++row) {
       problem.w.row(row) *= factor;
       problem.w.col(row) *= factor;
       problem.q[row] *= factor;
@@ -176,10 +176,10 @@ TEST(Friction, GivesTheSameBitsInUnitsThatArePowersOfTwoApart) {
 TEST(Friction, TurnsWithTheTangentsFrames) {
   for (const FrictionProblem& problem : {random_problem(40, 3, 0.5, 8), half_space_problem(10, 0.3)}) {
     Matrix turn = Matrix::Identity(problem.q.size(), problem.q.size());
-    for (std::size_t i = 0; i + 1 < problem.first.size(); ++i) {
-      if (problem.first[i + 1] - problem.first[i] < 3) continue;
+    for (std::size_t i = 0; i + 1 < problem.row_offset.size(); ++i) {
+      if (problem.row_offset[i + 1] - problem.row_offset[i] < 3) continue;
       const double angle = 0.7 + 1.3 * static_cast<double>(i);
-      turn.block<2, 2>(problem.first[i] + 1, problem.first[i] + 1) << std::cos(angle), -std::sin(angle),
+      turn.block<2, 2>(problem.row_offset[i] + 1, problem.row_offset[i] + 1) << std::cos(angle), -std::sin(angle),
           std::sin(angle), std::cos(angle);
     }
     FrictionProblem turned = problem;
@@ -236,7 +236,7 @@ TEST(Friction, SolvesCoulombsLawWithALimit) {
         const ContactSolution solution = solve(problem);
         expect_law(problem, solution);
         for (Index i = 0; i < problem.points(); ++i) {
-          const double normal = solution.reaction[problem.first[static_cast<std::size_t>(i)]];
+          const double normal = solution.reaction[problem.row_offset[static_cast<std::size_t>(i)]];
           limited += friction * normal > problem.bound[i] ? 1 : 0;
         }
       }

@@ -70,11 +70,11 @@ TEST(TwinPoints, OneOfNearlyParallelPlanesPresses) {
 TEST(TwinPoints, AreFoundByW) {
   TwinPoints twins;
   FrictionProblem apart = test::random_problem(12, 3, 0.3, 1);
-  EXPECT_FALSE(twins.any(*apart.contact().contact_operator, apart.first));
+  EXPECT_FALSE(twins.any(*apart.contact().contact_operator, apart.row_offset));
   const FrictionProblem near = inclined_planes(4, 3, 2, 1e-9, 0.3, 1);
   twins.forget();
   const ContactProblem problem = near.contact();
-  ASSERT_TRUE(twins.any(*problem.contact_operator, problem.first));
+  ASSERT_TRUE(twins.any(*problem.contact_operator, problem.row_offset));
   std::vector<char> wanted(8, 1);
   Vector motion = near.q, reaction = Vector::Ones(24);
   motion[3] = motion[0] - 1.0;

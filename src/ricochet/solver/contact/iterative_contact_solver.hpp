@@ -16,11 +16,10 @@ class IterativeContactSolver : public ContactSolver {
  public:
   void analyse(const ContactProblem& problem) override;
   void solve(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution) override;
-  [[nodiscard]] Vector warm_start() const override;
-  void set_warm_start(const Vector& start) override;
-  /// After `solve`: points whose normal conditions no motion meets together, ascending, where that is why the problem
-  /// is not solved. Only solvers that know the entries of W look for them.
-  [[nodiscard]] const std::vector<Index>& contradiction() const { return contradiction_; }
+  [[nodiscard]] const Vector& warm_start() const override { return warm_reaction_; }
+  void set_warm_start(const Vector& reactions) override;
+  void save(Snapshot& snapshot, const std::string& name) const override;
+  void load(const Snapshot& snapshot, const std::string& name) override;
 
   /// From `current`, which is evaluated and satisfies the signs and limits of its law, towards a solution: until
   /// system.is_solved(current, tolerance), or for as long as it gets closer. Leaves the best r and its u in `current`.
@@ -38,11 +37,10 @@ class IterativeContactSolver : public ContactSolver {
   /// Another W, or another start: what was kept from earlier problems no longer holds.
   virtual void forget() {}
   /// What besides the reactions is kept from one problem to the next and decides bits (factors that are used again, by
-  /// what they were made of), and its return after `forget`. False: no append_memory gives this for a problem with
-  /// these points (ContactProblem::first); the caller then forgets what may have been taken.
-  virtual void append_memory(std::vector<double>&) const {}
-  virtual bool take_memory(const std::vector<Index>& /* first */, const std::vector<double>& memory) {
-    return memory.empty();
+  /// what they were made of), and its return after `forget`, for points with these rows (ContactProblem::row_offset).
+  /// Throws as `load` does; the caller then forgets what may have been taken.
+  virtual void save_memory(Snapshot&, const std::string& /* name */) const {}
+  virtual void load_memory(const std::vector<Index>& /* row_offset */, const Snapshot&, const std::string& /* name */) {
   }
   /// A point whose rows are wanted in the system though it may be open: something kept needs them.
   [[nodiscard]] virtual bool keeps_row(Index /* of the problem, a point's first */) const { return false; }
@@ -52,10 +50,7 @@ class IterativeContactSolver : public ContactSolver {
 
   /// True if `iterate` should give up before an expensive attempt: some points nearly coincide, and `solve` next tries
   /// one of each group of them. It comes back with all of them if that fails.
-  [[nodiscard]] bool may_leave_out_twins() { return has_all_points_ && twins_.any(*analysed_, analysed_first_); }
-
-  /// These contradict one another.
-  void note_contradiction(const std::vector<Index>& points) { contradiction_ = points; }
+  [[nodiscard]] bool may_leave_out_twins() { return has_all_points_ && twins_.any(*analysed_, analysed_row_offset_); }
 
  private:
   [[nodiscard]] bool is_open(const ContactProblem& problem) const;
@@ -71,19 +66,21 @@ class IterativeContactSolver : public ContactSolver {
   void solve_without_twins(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution);
   [[nodiscard]] bool is_accepted(const ContactOptions& options) const;
   void judge(const ContactProblem& problem, const ContactOptions& options, ContactSolution& solution);
-  void tell_states(const ContactProblem& problem, ContactSolution& solution) const;
+  void find_status(const ContactProblem& problem, ContactSolution& solution) const;
 
   ContactSystem system_;
   std::shared_ptr<const ContactOperator> analysed_;
-  std::vector<Index> analysed_first_;
+  std::vector<Index> analysed_row_offset_;
   Vector warm_reaction_;
   std::vector<char> wanted_;
-  std::vector<Index> contradiction_;
   TwinPoints twins_;
   bool has_all_points_ = false;  ///< the system may have points that are nearly one, and nothing else was tried yet
   ContactIterate current_, finished_;
   ContactIterate closest_;          ///< of several passes
   ContactSystem::Measure measure_;  ///< of `finished_`
 };
+
+/// As make_contact_solver.
+[[nodiscard]] std::unique_ptr<IterativeContactSolver> make_iterative_contact_solver(const std::string& name);
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "ricochet/solver/contact/contact_iteration.hpp"
+#include "ricochet/solver/contact/iterative_contact_solver.hpp"
 
 #include <fmt/format.h>
 
@@ -34,43 +34,38 @@ void IterativeContactSolver::analyse(const ContactProblem& problem) {
   problem.validate();
   system_.analyse(problem);
   analysed_ = problem.contact_operator;
-  analysed_first_ = problem.first;
+  analysed_row_offset_ = problem.row_offset;
   twins_.forget();
   set_warm_start({});
 }
 
-void IterativeContactSolver::set_warm_start(const Vector& start) {
+void IterativeContactSolver::set_warm_start(const Vector& reactions) {
   forget();
   warm_reaction_.resize(0);
-  const Index rows = analysed_ != nullptr ? analysed_->rows() : start.size();
-  if (start.size() > 0 && start.size() < rows) {
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("contact solver: the warm start has {} numbers, but there are {} reactions", start.size(), rows));
+  const Index rows = analysed_ != nullptr ? analysed_->rows() : 0;
+  if (reactions.size() > 0 && reactions.size() != rows) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("contact solver: the warm start has {} numbers, but there are {} reactions",
+                            reactions.size(), rows));
   }
-  if (!start.allFinite())
+  if (!reactions.allFinite())
     throw Error(ErrorKind::invalid_input, "contact solver: the warm start has entries that are no finite numbers");
-  if (start.size() > rows && !take_memory(analysed_first_, std::vector<double>(start.begin() + rows, start.end()))) {
-    forget();
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("contact solver: the warm start has {} numbers, which are neither the {} reactions nor what "
-                    "this solver's warm_start() gives",
-                    start.size(), rows));
-  }
-  warm_reaction_ = start.head(std::min(rows, start.size()));
+  warm_reaction_ = reactions;
 }
 
-Vector IterativeContactSolver::warm_start() const {
-  if (analysed_ == nullptr) return warm_reaction_;
-  std::vector<double> memory;
-  append_memory(memory);
-  const Index rows = analysed_->rows();
-  Vector start = Vector::Zero(rows + static_cast<Index>(memory.size()));  // without reactions: from zero
-  if (warm_reaction_.size() > 0) start.head(rows) = warm_reaction_;
-  start.tail(static_cast<Index>(memory.size())) =
-      Eigen::Map<const Vector>(memory.data(), static_cast<Index>(memory.size()));
-  return start;
+void IterativeContactSolver::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".reactions", warm_reaction_);
+  save_memory(snapshot, name);
+}
+
+void IterativeContactSolver::load(const Snapshot& snapshot, const std::string& name) {
+  try {
+    set_warm_start(snapshot.reals(name + ".reactions"));
+    load_memory(analysed_row_offset_, snapshot, name);
+  } catch (const Error&) {
+    set_warm_start({});
+    throw;
+  }
 }
 
 void ContactOptions::validate() const {
@@ -88,7 +83,7 @@ void ContactOptions::validate() const {
 bool IterativeContactSolver::is_open(const ContactProblem& problem) const {
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
-    const Index row = problem.first[static_cast<std::size_t>(i)];
+    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
     const double u = problem.offset[row];
     const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
     if (!(u >= -(known + sum_rounding * std::abs(u)))) return false;
@@ -100,7 +95,7 @@ void IterativeContactSolver::choose_points(const ContactProblem& problem) {
   const bool all = !works_on_candidates();
   wanted_.assign(static_cast<std::size_t>(problem.points()), 0);
   for (Index i = 0; i < problem.points(); ++i) {
-    const Index row = problem.first[static_cast<std::size_t>(i)];
+    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
     const bool had_reaction = warm_reaction_.size() == problem.rows() && warm_reaction_[row] != 0.0;
     const bool may_press = all || system_.is_near(problem, i, margin) || had_reaction;
     wanted_[static_cast<std::size_t>(i)] = (may_press && problem.is_eligible(i)) || keeps_row(row) ? 1 : 0;
@@ -111,7 +106,7 @@ void IterativeContactSolver::choose_points(const ContactProblem& problem) {
 /// The last r where it is still admissible.
 void IterativeContactSolver::start(Vector& reaction) const {
   for (const ContactPoint& point : system_.points()) {
-    auto r = reaction.segment(point.first, point.size);
+    auto r = reaction.segment(point.row, point.size);
     r[0] = std::max(r[0], 0.0);
     const double limit = point.friction_limit(r[0]);
     const double length = r.tail(point.size - 1).norm();
@@ -122,7 +117,7 @@ void IterativeContactSolver::start(Vector& reaction) const {
 void IterativeContactSolver::put_on_law(const ContactSystem& system, const Vector& motion, bool exactly,
                                         Vector& reaction) {
   for (const ContactPoint& point : system.points()) {
-    auto r = reaction.segment(point.first, point.size);
+    auto r = reaction.segment(point.row, point.size);
     const bool grazing = point.is_tresca() && r[0] == 0.0;
     if (grazing) continue;
     if (!(r[0] > 0.0)) {
@@ -134,7 +129,7 @@ void IterativeContactSolver::put_on_law(const ContactSystem& system, const Vecto
     const double limit = point.friction_limit(r[0]);
     // The measure knows of its direction, but weighs it by a force that may be small.
     if (!exactly && std::abs(friction.norm() - limit) <= 4.0 * machine_epsilon * limit) continue;
-    const PointVector u = motion.segment(point.first + 1, point.size - 1);
+    const PointVector u = motion.segment(point.row + 1, point.size - 1);
     const PointVector tau = friction - u / point.diagonal;
     const double length = tau.norm();
     if (length >= limit && length > 0.0) friction = tau * (limit / length);
@@ -157,8 +152,8 @@ void IterativeContactSolver::find_motion(const ContactProblem& problem, ContactS
   }
   solution.motion = problem.offset;
   for (Index i = 0; i < problem.points(); ++i) {
-    const Index row = problem.first[static_cast<std::size_t>(i)];
-    const Index size = problem.first[static_cast<std::size_t>(i) + 1] - row;
+    const Index row = problem.row_offset[static_cast<std::size_t>(i)];
+    const Index size = problem.row_offset[static_cast<std::size_t>(i) + 1] - row;
     if (solution.reaction.segment(row, size).isZero(0.0)) continue;
     add_columns(problem.rows(), size, w->data() + row * w->rows(), w->rows(), solution.reaction.data() + row,
                 solution.motion.data());
@@ -172,7 +167,7 @@ bool IterativeContactSolver::take_in_penetrating(const ContactProblem& problem, 
   for (Index i = 0; i < problem.points(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (wanted_[at] != 0 || !problem.is_eligible(i)) continue;
-    const Index row = problem.first[at];
+    const Index row = problem.row_offset[at];
     if (!(solution.motion[row] < 0.0)) continue;
     const double known = problem.offset_rounding.size() > 0 ? problem.offset_rounding[row] : 0.0;
     if (solution.motion[row] >= -(known + sum_rounding * std::abs(problem.offset[row]))) continue;
@@ -235,8 +230,8 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
   for (Index i = 0; i < problem.points(); ++i) {
     if (!problem.is_eligible(i)) continue;
     const auto at = static_cast<std::size_t>(i);
-    const Index row = problem.first[at];
-    finite = finite && solution.motion.segment(row, problem.first[at + 1] - row).allFinite();
+    const Index row = problem.row_offset[at];
+    finite = finite && solution.motion.segment(row, problem.row_offset[at + 1] - row).allFinite();
     if (wanted_[at] != 0 || solution.motion[row] >= 0.0) continue;
     largest = std::max(largest, system_.residual_of(problem, i, solution.reaction, solution.motion));
   }
@@ -264,11 +259,11 @@ void IterativeContactSolver::judge(const ContactProblem& problem, const ContactO
   }
 }
 
-void IterativeContactSolver::tell_states(const ContactProblem& problem, ContactSolution& solution) const {
+void IterativeContactSolver::find_status(const ContactProblem& problem, ContactSolution& solution) const {
   solution.status.assign(static_cast<std::size_t>(problem.points()), ContactStatus::open);
   for (const ContactPoint& point : system_.points()) {
     ContactStatus& status = solution.status[static_cast<std::size_t>(point.point)];
-    const auto r = finished_.reaction.segment(point.first, point.size);
+    const auto r = finished_.reaction.segment(point.row, point.size);
     if (r.isZero(0.0)) continue;
     status = ContactStatus::closed;
     if (!point.has_friction()) continue;
@@ -276,7 +271,7 @@ void IterativeContactSolver::tell_states(const ContactProblem& problem, ContactS
     const double limit = point.friction_limit(r[0]) * (1.0 - 8.0 * machine_epsilon);
     if (r.tail(point.size - 1).norm() < limit) continue;
     const double floor = system_.floor_of(point, finished_).tangential;
-    if (finished_.motion.segment(point.first + 1, point.size - 1).norm() > floor) status = ContactStatus::slip;
+    if (finished_.motion.segment(point.row + 1, point.size - 1).norm() > floor) status = ContactStatus::slip;
   }
 }
 
@@ -321,13 +316,13 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
                                    ContactSolution& solution) {
   if (problem.contact_operator != analysed_)
     throw Error(ErrorKind::invalid_input, "contact problem: W is another than the one that was analysed");
-  if (problem.first != analysed_first_)
+  if (problem.row_offset != analysed_row_offset_)
     throw Error(ErrorKind::invalid_input, "contact problem: the points are others than those that were analysed");
   problem.validate();
   options.validate();
   solution.outcome = ContactOutcome::not_converged;
   solution.reason.clear();
-  contradiction_.clear();
+  solution.contradiction.clear();
   solution.iterations = solution.newton_steps = solution.factorizations = 0;
   solution.residual = solution.rounding_floor = 0.0;
   solution.record.clear();
@@ -354,10 +349,11 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
   if (warm_reaction_.size() == problem.rows() && warm_reaction_.allFinite()) solution.reaction = warm_reaction_;
   has_all_points_ = works_on_candidates();
   solve_on_wanted(problem, options, false, solution);
-  if (has_all_points_ && !is_accepted(options) && contradiction_.empty() && twins_.any(*analysed_, analysed_first_))
+  if (has_all_points_ && !is_accepted(options) && solution.contradiction.empty() &&
+      twins_.any(*analysed_, analysed_row_offset_))
     solve_without_twins(problem, options, solution);
   judge(problem, options, solution);
-  tell_states(problem, solution);
+  find_status(problem, solution);
 }
 
 }  // namespace ricochet

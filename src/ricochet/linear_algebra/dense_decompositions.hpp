@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <optional>
+
+#include "ricochet/base/types.hpp"
+
+/// @file Eigen's decompositions of small dense matrices, instantiated once: every file that uses one by itself costs
+/// the compiler two to ten seconds.
+namespace ricochet {
+
+/// A = L Lᵀ. Reads the lower triangle.
+class SmallCholesky {
+ public:
+  explicit SmallCholesky(const Matrix& matrix);
+  [[nodiscard]] bool positive_definite() const { return factor_.info() == Eigen::Success; }
+  [[nodiscard]] Matrix lower() const;
+  [[nodiscard]] Matrix solve(const Matrix& right) const;
+  /// L⁻¹ B.
+  [[nodiscard]] Matrix solve_lower(const Matrix& right) const;
+
+ private:
+  Eigen::LLT<Matrix> factor_;
+};
+
+/// P A Pᵀ = L D Lᵀ, A symmetric and semi-definite. Reads the lower triangle.
+class PivotedCholesky {
+ public:
+  explicit PivotedCholesky(const Matrix& matrix);
+  [[nodiscard]] Vector solve(const Vector& right) const;
+  [[nodiscard]] Matrix solve(const Matrix& right) const;
+  /// D.
+  [[nodiscard]] Vector pivots() const;
+  /// P v.
+  [[nodiscard]] Vector permuted(const Vector& values) const;
+
+ private:
+  Eigen::LDLT<Matrix> factor_;
+};
+
+/// A P = Q R with decreasing pivots. The rank counts those above `threshold` times the largest; zero: the size of
+/// rounding.
+class PivotedQr {
+ public:
+  explicit PivotedQr(const Matrix& matrix, double threshold = 0.0);
+  [[nodiscard]] Index rank() const { return factor_.rank(); }
+  /// Of least squares.
+  [[nodiscard]] Vector solve(const Vector& right) const;
+  [[nodiscard]] Matrix solve(const Matrix& right) const;
+
+ private:
+  Eigen::ColPivHouseholderQR<Matrix> factor_;
+};
+
+/// The solution of least squares that is shortest, A of any rank; `threshold` as above.
+class LeastNormSolver {
+ public:
+  explicit LeastNormSolver(const Matrix& matrix, double threshold = 0.0);
+  [[nodiscard]] Index rank() const { return factor_.rank(); }
+  [[nodiscard]] Vector solve(const Vector& right) const;
+
+ private:
+  Eigen::CompleteOrthogonalDecomposition<Matrix> factor_;
+};
+
+/// R of A = Q R, square; A has at least as many rows as columns.
+[[nodiscard]] Matrix upper_of_qr(const Matrix& matrix);
+
+/// Eigenvalues, ascending, and unit eigenvectors of a symmetric matrix, whose lower triangle is read.
+struct SymmetricEigen {
+  Vector values;
+  Matrix vectors;
+};
+[[nodiscard]] SymmetricEigen symmetric_eigen(const Matrix& matrix);
+/// The eigenvalues alone.
+[[nodiscard]] Vector symmetric_eigenvalues(const Matrix& matrix);
+[[nodiscard]] Eigen::Vector2d symmetric_eigenvalues(const Eigen::Matrix2d& matrix);
+[[nodiscard]] Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& matrix);
+/// Of a tridiagonal matrix; none where the iteration does not end (entries that are no finite numbers).
+[[nodiscard]] std::optional<Vector> tridiagonal_eigenvalues(const Vector& diagonal, const Vector& beside);
+
+}  // namespace ricochet
