@@ -40,6 +40,16 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
   return best;
 }
 
+std::optional<std::string_view> between(std::string_view text, std::string_view begin, std::string_view end) {
+  if (text.size() < begin.size() + end.size() || !text.starts_with(begin) || !text.ends_with(end)) return std::nullopt;
+  return text.substr(begin.size(), text.size() - begin.size() - end.size());
+}
+
+bool is_digits(std::string_view text, std::size_t least, std::size_t most) {
+  const bool digits = text.find_first_not_of("0123456789") == std::string_view::npos;
+  return digits && text.size() >= least && text.size() <= most;
+}
+
 std::string join_names(std::span<const std::string> names, std::string_view last_separator, bool quoted) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {

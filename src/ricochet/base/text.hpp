@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,11 @@ namespace ricochet {
 /// The candidate nearest to `word` by edit distance (transpositions count one), or "" when none is near enough to be
 /// what was meant (more than max(2, length/3) edits away, or as many as the word has letters).
 std::string nearest_name(std::string_view word, std::span<const std::string> candidates);
+
+/// What stands between this beginning and this end; none where the text has another form.
+std::optional<std::string_view> between(std::string_view text, std::string_view begin, std::string_view end);
+/// Decimal digits alone, at least so many and at most so many.
+bool is_digits(std::string_view text, std::size_t least, std::size_t most = std::string_view::npos);
 
 /// "a", "a or b", "a, b or c"; with quotes around each when `quoted`.
 std::string join_names(std::span<const std::string> names, std::string_view last_separator = " and ",

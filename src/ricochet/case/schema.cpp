@@ -1,16 +1,14 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
+#include "ricochet/base/json.hpp"
 #include "ricochet/case/keys.hpp"
 #include "ricochet/case/read_case.hpp"
 
 namespace ricochet {
 
 namespace {
-
-using Json = nlohmann::ordered_json;  // keys stay in the order of the table
 
 Json number_schema(const char* type, const Range& range) {
   Json schema{{"type", type}};

@@ -7,12 +7,12 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/input_file.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/io/durable_file.hpp"
 
 namespace ricochet {
@@ -156,13 +156,12 @@ Snapshot decode_snapshot(const std::string& text) {
 }
 
 std::vector<CheckpointFile> checkpoint_files(const std::string& directory) {
-  static const std::regex pattern("checkpoint-([0-9]{9,15})\\.ckpt");
   std::vector<CheckpointFile> result;
   std::error_code problem;
   for (const fs::directory_entry& entry : fs::directory_iterator(directory, problem)) {
     const std::string name = entry.path().filename().string();
-    std::smatch match;
-    if (std::regex_match(name, match, pattern)) result.push_back({entry.path().string(), std::stol(match[1])});
+    const auto step = between(name, "checkpoint-", ".ckpt");
+    if (step && is_digits(*step, 9, 15)) result.push_back({entry.path().string(), std::stol(std::string(*step))});
   }
   std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
   return result;

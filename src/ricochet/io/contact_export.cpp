@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <regex>
 #include <utility>
 
 #include "ricochet/base/error.hpp"
@@ -76,11 +75,20 @@ std::vector<StepRange> parse_steps(const std::string& text) {
 }
 
 std::vector<std::string> exported_contact_problems(const std::string& directory) {
-  static const std::regex name("step-[0-9]{6,}(-stage-[0-9]+)?\\.hdf5");
+  // step-000012.hdf5, step-000012-stage-2.hdf5
+  const auto is_problem = [](const std::string& name) {
+    const auto middle = between(name, "step-", ".hdf5");
+    if (!middle) return false;
+    constexpr std::string_view stage = "-stage-";
+    const std::size_t at = middle->find(stage);
+    const bool is_one_of_several = at != std::string_view::npos;
+    return is_digits(middle->substr(0, at), 6) &&
+           (!is_one_of_several || is_digits(middle->substr(at + stage.size()), 1));
+  };
   std::vector<std::string> result;
   std::error_code problem;
   for (const fs::directory_entry& entry : fs::directory_iterator(directory, problem)) {
-    if (std::regex_match(entry.path().filename().string(), name)) result.push_back(entry.path().string());
+    if (is_problem(entry.path().filename().string())) result.push_back(entry.path().string());
   }
   std::sort(result.begin(), result.end());
   return result;

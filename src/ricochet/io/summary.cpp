@@ -10,33 +10,27 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/json.hpp"
 #include "ricochet/fem/rotation_gauge.hpp"
-#include "ricochet/io/json_number.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/io/summary_outcome.hpp"
 
 namespace ricochet {
 
-using Json = nlohmann::ordered_json;
-
 namespace {
-
-constexpr auto number = number_to_json<Json>;
-constexpr auto to_number = number_from_json<Json>;
 
 Json extrema_to_json(const RunSummary& summary) {
   Json result = Json::object();
   for (std::size_t i = 0; i < summary.digests.size() && i < summary.columns.size(); ++i) {
     const ColumnDigest& digest = summary.digests[i];
-    result[summary.columns[i]] = {{"first", number(digest.first)},
-                                  {"last", number(digest.last)},
-                                  {"minimum", number(digest.minimum)},
-                                  {"maximum", number(digest.maximum)},
-                                  {"total_variation", number(digest.total_variation)}};
+    result[summary.columns[i]] = {{"first", Json::number(digest.first)},
+                                  {"last", Json::number(digest.last)},
+                                  {"minimum", Json::number(digest.minimum)},
+                                  {"maximum", Json::number(digest.maximum)},
+                                  {"total_variation", Json::number(digest.total_variation)}};
   }
   return result;
 }
@@ -71,7 +65,7 @@ Json contacts_to_json(const RunSummary& summary) {
 Json checks_to_json(const RunSummary& summary) {
   Json result = Json::object();
   for (const CheckResult& check : summary.checks)
-    result[check.name] = {{"limit", number(check.limit)}, {"largest", number(check.largest)}};
+    result[check.name] = {{"limit", Json::number(check.limit)}, {"largest", Json::number(check.largest)}};
   return result;
 }
 
@@ -79,7 +73,7 @@ Json expectations_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (const ExpectationResult& e : summary.expectations) {
     result.push_back({{"quantity", e.quantity},
-                      {"value", number(e.value)},
+                      {"value", Json::number(e.value)},
                       {"wanted", e.wanted},
                       {"location", e.location},
                       {"checked", e.checked},
@@ -187,7 +181,7 @@ std::string to_json(const RunSummary& s) {
                {"frames", s.frames},
                {"timings_seconds", timings},
                {"seconds_per_step", s.time_per_step},
-               {"energy_scale", number(s.energy_scale())},
+               {"energy_scale", Json::number(s.energy_scale())},
                {"contacts", contacts_to_json(s)},
                {"probes", probes_to_json(s)},
                {"extrema", extrema_to_json(s)},
@@ -195,8 +189,8 @@ std::string to_json(const RunSummary& s) {
                {"warnings", s.warnings},
                {"expectations", expectations_to_json(s)},
                {"parameters", s.parameters}};
-  json.update(Json::parse(outcome_to_json(s)));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  json.update(outcome_to_json(s));
+  return json.dump(2) + "\n";
 }
 
 void write_summary(const std::string& path, const RunSummary& summary) {
@@ -231,7 +225,7 @@ RunSummary read_summary(const std::string& path) {
   if (!file) throw Error(ErrorKind::file_access, fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
   RunSummary s;
   try {
-    const Json json = Json::parse(file);
+    const Json json = Json::parse({std::istreambuf_iterator<char>(file), {}});
     s.status = json.at("status");
     s.message = json.at("message");
     s.title = json.at("title");
@@ -268,12 +262,8 @@ RunSummary read_summary(const std::string& path) {
     for (const auto& [phase, seconds] : json.at("timings_seconds").items()) s.timings.emplace_back(phase, seconds);
     const Json checks = json.value("checks", Json::object());
     for (const auto& [name, check] : checks.items())
-      s.checks.push_back({name, to_number(check.at("limit")), to_number(check.at("largest"))});
-    Json outcome = Json::object();
-    for (const char* entry : outcome_entries) {
-      if (json.contains(entry)) outcome[entry] = json.at(entry);
-    }
-    read_outcome(outcome.dump(), path, s);
+      s.checks.push_back({name, check.at("limit").to_number(), check.at("largest").to_number()});
+    read_outcome(json, path, s);
     for (const auto& contact : json.at("contacts")) {
       s.contacts.push_back({contact.at("group"), contact.at("obstacle"), contact.at("multipliers"),
                             contact.at("friction"), contact.at("friction_bound"), contact.at("obstacle_velocity"),
@@ -286,10 +276,11 @@ RunSummary read_summary(const std::string& path) {
     }
     for (const auto& [column, digest] : json.at("extrema").items()) {
       s.columns.push_back(column);
-      s.digests.push_back({to_number(digest.at("first")), to_number(digest.at("last")), to_number(digest.at("minimum")),
-                           to_number(digest.at("maximum")), to_number(digest.at("total_variation"))});
+      s.digests.push_back({digest.at("first").to_number(), digest.at("last").to_number(),
+                           digest.at("minimum").to_number(), digest.at("maximum").to_number(),
+                           digest.at("total_variation").to_number()});
     }
-  } catch (const Json::exception& problem) {
+  } catch (const Json::Exception& problem) {
     throw Error(ErrorKind::invalid_input, fmt::format("{}: not a summary of a run: {}", path, problem.what()));
   }
   return s;

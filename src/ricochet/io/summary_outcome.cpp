@@ -3,58 +3,52 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/io/json_number.hpp"
+#include "ricochet/base/json.hpp"
 #include "ricochet/simulation/restitution.hpp"
 
 namespace ricochet {
 
-using Json = nlohmann::ordered_json;
-
 namespace {
-
-constexpr auto number = number_to_json<Json>;
-constexpr auto to_number = number_from_json<Json>;
 
 Json numbers(const std::vector<double>& values) {
   Json result = Json::array();
-  for (const double value : values) result.push_back(number(value));
+  for (const double value : values) result.push_back(Json::number(value));
   return result;
 }
 
 std::vector<double> to_numbers(const Json& values) {
   std::vector<double> result;
-  for (const Json& value : values) result.push_back(to_number(value));
+  for (const Json& value : values) result.push_back(value.to_number());
   return result;
 }
 
 /// In the plane two components.
 Json components(const Eigen::Vector3d& values, int dimension) {
   Json result = Json::array();
-  for (int k = 0; k < dimension; ++k) result.push_back(number(values[k]));
+  for (int k = 0; k < dimension; ++k) result.push_back(Json::number(values[k]));
   return result;
 }
 
 /// An angular velocity: in the plane that about z.
 Json turning(const Eigen::Vector3d& values, int dimension) {
-  return dimension == 2 ? number(values[2]) : components(values, 3);
+  return dimension == 2 ? Json::number(values[2]) : components(values, 3);
 }
 
 Json bodies_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (const BodyDescription& body : summary.bodies) {
-    Json inertia = number(body.rigid.inertia(2, 2));
+    Json inertia = Json::number(body.rigid.inertia(2, 2));
     if (summary.dimension == 3) {
       inertia = Json::array();
       for (int k = 0; k < 3; ++k) inertia.push_back(components(body.rigid.inertia.row(k), 3));
     }
     result.push_back({{"name", body.name},
-                      {"mass", number(body.rigid.mass)},
+                      {"mass", Json::number(body.rigid.mass)},
                       {"centre", components(body.rigid.centre, summary.dimension)},
                       {"moment_of_inertia", inertia},
-                      {"separation_time", number(body.separation)}});
+                      {"separation_time", Json::number(body.separation)}});
   }
   return result;
 }
@@ -65,30 +59,30 @@ Json impact_to_json(const Impact& impact, int dimension) {
   const std::optional<double> restitution = impact.restitution();
   return {{"body", impact.body},
           {"obstacle", impact.obstacle},
-          {"begin", number(impact.begin)},
-          {"end", if_ended(number(impact.end))},
-          {"duration", number(impact.end - impact.begin)},
+          {"begin", Json::number(impact.begin)},
+          {"end", if_ended(Json::number(impact.end))},
+          {"duration", Json::number(impact.end - impact.begin)},
           {"ended", impact.ended},
           {"from_start", impact.from_start},
           {"from_inside", impact.from_inside},
           {"intervals", impact.intervals},
-          {"contact_time", number(impact.contact_time)},
+          {"contact_time", Json::number(impact.contact_time)},
           {"impulse", components(impact.impulse, dimension)},
           {"normal", components(impact.normal(), dimension)},
-          {"normal_impulse", number(impact.normal_impulse.norm())},
+          {"normal_impulse", Json::number(impact.normal_impulse.norm())},
           {"other_impulse", if_ended(components(impact.other_impulse(), dimension))},
-          {"largest_force", number(impact.largest_force)},
-          {"largest_force_time", number(impact.largest_force_time)},
-          {"mean_force", number(impact.mean_force())},
+          {"largest_force", Json::number(impact.largest_force)},
+          {"largest_force_time", Json::number(impact.largest_force_time)},
+          {"mean_force", Json::number(impact.mean_force())},
           {"contact_points", impact.contact_points},
           {"all_contact_points", impact.all_contact_points},
           {"coarse", impact.is_coarse()},
           {"first_place", numbers(impact.first_place)},
-          {"restitution", restitution ? number(*restitution) : Json()},
+          {"restitution", restitution ? Json::number(*restitution) : Json()},
           {"why_no_restitution", restitution ? Json() : Json(why_no_restitution(impact))},
-          {"normal_velocity_before", number(impact.normal_velocity_before())},
-          {"normal_velocity_after", if_ended(number(impact.normal_velocity_after()))},
-          {"obstacle_normal_velocity", number(impact.obstacle_velocity)},
+          {"normal_velocity_before", Json::number(impact.normal_velocity_before())},
+          {"normal_velocity_after", if_ended(Json::number(impact.normal_velocity_after()))},
+          {"obstacle_normal_velocity", Json::number(impact.obstacle_velocity)},
           {"obstacle_sliding_velocity", components(impact.obstacle_sliding, dimension)},
           {"tangential_velocity_before", components(impact.tangential_velocity_before(), dimension)},
           {"tangential_velocity_after", if_ended(components(impact.tangential_velocity_after(), dimension))},
@@ -96,12 +90,12 @@ Json impact_to_json(const Impact& impact, int dimension) {
           {"velocity_after", if_ended(components(impact.after.velocity, dimension))},
           {"spin_before", turning(impact.before.spin, dimension)},
           {"spin_after", if_ended(turning(impact.after.spin, dimension))},
-          {"kinetic_energy_before", number(impact.before.kinetic_energy)},
-          {"kinetic_energy_after", if_ended(number(impact.after.kinetic_energy))},
-          {"rigid_kinetic_energy_before", number(impact.before.rigid_kinetic_energy)},
-          {"rigid_kinetic_energy_after", if_ended(number(impact.after.rigid_kinetic_energy))},
+          {"kinetic_energy_before", Json::number(impact.before.kinetic_energy)},
+          {"kinetic_energy_after", if_ended(Json::number(impact.after.kinetic_energy))},
+          {"rigid_kinetic_energy_before", Json::number(impact.before.rigid_kinetic_energy)},
+          {"rigid_kinetic_energy_after", if_ended(Json::number(impact.after.rigid_kinetic_energy))},
           {"kinetic_energy_ratio", impact.ended && impact.before.kinetic_energy > 0.0
-                                       ? number(impact.after.kinetic_energy / impact.before.kinetic_energy)
+                                       ? Json::number(impact.after.kinetic_energy / impact.before.kinetic_energy)
                                        : Json()}};
 }
 
@@ -114,11 +108,11 @@ Json impacts_to_json(const RunSummary& summary) {
 Json found_to_json(const UnwatchedPenetration& p) {
   return {{"obstacle", p.obstacle.empty() ? Json() : Json(p.obstacle)},
           {"bodies", p.bodies},
-          {"depth", number(p.depth)},
-          {"relative_depth", number(p.relative_depth)},
-          {"time", number(p.time)},
+          {"depth", Json::number(p.depth)},
+          {"relative_depth", Json::number(p.relative_depth)},
+          {"time", Json::number(p.time)},
           {"place", numbers(p.place)},
-          {"first_time", number(p.first_time)},
+          {"first_time", Json::number(p.first_time)},
           {"groups", p.groups}};
 }
 
@@ -129,7 +123,7 @@ Json penetration_to_json(const PenetrationReport& report) {
   for (const ContactBeyondRim& rim : report.rims) {
     rims.push_back({{"group", rim.group},
                     {"obstacle", rim.obstacle},
-                    {"time", number(rim.time)},
+                    {"time", Json::number(rim.time)},
                     {"place", numbers(rim.place)},
                     {"groups", rim.groups}});
   }
@@ -137,8 +131,8 @@ Json penetration_to_json(const PenetrationReport& report) {
   return {{"checked", report.checked},
           {"looks_at_obstacles", report.looks_at_obstacles},
           {"looks_at_bodies", report.looks_at_bodies},
-          {"depth", number(deepest != nullptr ? deepest->depth : 0.0)},
-          {"relative_depth", number(deepest != nullptr ? deepest->relative_depth : 0.0)},
+          {"depth", Json::number(deepest != nullptr ? deepest->depth : 0.0)},
+          {"relative_depth", Json::number(deepest != nullptr ? deepest->relative_depth : 0.0)},
           {"found", found},
           {"contact_beyond_rim", rims}};
 }
@@ -146,16 +140,16 @@ Json penetration_to_json(const PenetrationReport& report) {
 Json rotation_to_json(const RunSummary& summary) {
   if (!summary.rotation) return {};
   const RotationReport& rotation = *summary.rotation;
-  return {{"limit", number(rotation.limit)},
-          {"time_beyond", std::isfinite(rotation.time_beyond) ? number(rotation.time_beyond) : Json()},
+  return {{"limit", Json::number(rotation.limit)},
+          {"time_beyond", std::isfinite(rotation.time_beyond) ? Json::number(rotation.time_beyond) : Json()},
           {"until_impact_end", numbers(rotation.until_impact_end)}};
 }
 
 Json peak_stress_to_json(const RunSummary& summary) {
   if (!summary.peak_stress) return {};
   const PeakStressDescription& d = *summary.peak_stress;
-  return {{"von_mises", number(d.peak.von_mises)},
-          {"time", number(d.peak.time)},
+  return {{"von_mises", Json::number(d.peak.von_mises)},
+          {"time", Json::number(d.peak.time)},
           {"step", d.peak.step},
           {"place", numbers(d.place)},
           {"material", d.material},
@@ -167,36 +161,36 @@ Json peak_stress_to_json(const RunSummary& summary) {
 
 Eigen::Vector3d vector_from(const Json& values) {
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < values.size() && k < 3; ++k) result[static_cast<Index>(k)] = to_number(values.at(k));
+  for (std::size_t k = 0; k < values.size() && k < 3; ++k) result[static_cast<Index>(k)] = values.at(k).to_number();
   return result;
 }
 
 RigidMotionState motion_from(const Json& impact, const std::string& when) {
   const Json& spin = impact.at("spin_" + when);
   return {vector_from(impact.at("velocity_" + when)),
-          spin.is_array() ? vector_from(spin) : Eigen::Vector3d(0.0, 0.0, to_number(spin)),
-          to_number(impact.at("kinetic_energy_" + when)), to_number(impact.at("rigid_kinetic_energy_" + when))};
+          spin.is_array() ? vector_from(spin) : Eigen::Vector3d(0.0, 0.0, spin.to_number()),
+          impact.at("kinetic_energy_" + when).to_number(), impact.at("rigid_kinetic_energy_" + when).to_number()};
 }
 
 Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies, const std::string& path) {
   Impact impact;
   impact.body = json.at("body");
   impact.obstacle = json.at("obstacle");
-  impact.begin = to_number(json.at("begin"));
-  impact.end = impact.begin + to_number(json.at("duration"));
+  impact.begin = json.at("begin").to_number();
+  impact.end = impact.begin + json.at("duration").to_number();
   impact.ended = json.at("ended");
   impact.from_start = json.at("from_start");
   impact.from_inside = json.value("from_inside", false);
   impact.intervals = json.at("intervals");
-  impact.contact_time = to_number(json.at("contact_time"));
+  impact.contact_time = json.at("contact_time").to_number();
   impact.impulse = vector_from(json.at("impulse"));
-  impact.normal_impulse = to_number(json.at("normal_impulse")) * vector_from(json.at("normal"));
-  impact.largest_force = to_number(json.at("largest_force"));
-  impact.largest_force_time = to_number(json.at("largest_force_time"));
+  impact.normal_impulse = json.at("normal_impulse").to_number() * vector_from(json.at("normal"));
+  impact.largest_force = json.at("largest_force").to_number();
+  impact.largest_force_time = json.at("largest_force_time").to_number();
   impact.contact_points = json.value("contact_points", 0L);
   impact.all_contact_points = json.value("all_contact_points", 0L);
   impact.first_place = to_numbers(json.value("first_place", Json::array()));
-  impact.obstacle_velocity = to_number(json.at("obstacle_normal_velocity"));
+  impact.obstacle_velocity = json.at("obstacle_normal_velocity").to_number();
   impact.obstacle_sliding = vector_from(json.value("obstacle_sliding_velocity", Json::array()));
   if (impact.body < 0 || impact.body >= static_cast<int>(bodies.size()))
     throw Error(
@@ -210,13 +204,13 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies,
 
 BodyDescription body_from(const Json& json) {
   BodyDescription body;
-  body.rigid.mass = to_number(json.at("mass"));
+  body.rigid.mass = json.at("mass").to_number();
   body.rigid.centre = vector_from(json.at("centre"));
   const Json& inertia = json.at("moment_of_inertia");
-  if (!inertia.is_array()) body.rigid.inertia(2, 2) = to_number(inertia);
+  if (!inertia.is_array()) body.rigid.inertia(2, 2) = inertia.to_number();
   for (std::size_t k = 0; inertia.is_array() && k < 3; ++k)
     body.rigid.inertia.row(static_cast<Index>(k)) = vector_from(inertia.at(k));
-  body.separation = to_number(json.at("separation_time"));
+  body.separation = json.at("separation_time").to_number();
   body.name = json.value("name", "");
   return body;
 }
@@ -225,27 +219,31 @@ PenetrationReport penetration_from(const Json& json) {
   PenetrationReport report{json.at("checked"), json.at("looks_at_obstacles"), json.at("looks_at_bodies")};
   for (const Json& p : json.at("found")) {
     report.found.push_back({p.at("obstacle").is_string() ? p.at("obstacle").get<std::string>() : "", p.at("bodies"),
-                            to_number(p.at("depth")), to_number(p.at("relative_depth")), to_number(p.at("time")),
-                            to_numbers(p.at("place")), to_number(p.at("first_time")), p.at("groups")});
+                            p.at("depth").to_number(), p.at("relative_depth").to_number(), p.at("time").to_number(),
+                            to_numbers(p.at("place")), p.at("first_time").to_number(), p.at("groups")});
   }
   for (const Json& rim : json.at("contact_beyond_rim"))
-    report.rims.push_back({rim.at("group"), rim.at("obstacle"), to_number(rim.at("time")), to_numbers(rim.at("place")),
+    report.rims.push_back({rim.at("group"), rim.at("obstacle"), rim.at("time").to_number(), to_numbers(rim.at("place")),
                            rim.at("groups")});
   return report;
 }
 
 RotationReport rotation_from(const Json& json) {
   RotationReport result;
-  result.limit = to_number(json.at("limit"));
-  if (json.at("time_beyond").is_number()) result.time_beyond = to_number(json.at("time_beyond"));
+  result.limit = json.at("limit").to_number();
+  if (json.at("time_beyond").is_number()) result.time_beyond = json.at("time_beyond").to_number();
   result.until_impact_end = to_numbers(json.at("until_impact_end"));
   return result;
 }
 
 PeakStressDescription peak_stress_from(const Json& json) {
   PeakStressDescription result;
-  result.peak = {to_number(json.at("von_mises")), to_number(json.at("time")), json.at("step"), json.at("cell"),
-                 json.at("states_looked_at"),     json.at("states")};
+  result.peak = {json.at("von_mises").to_number(),
+                 json.at("time").to_number(),
+                 json.at("step"),
+                 json.at("cell"),
+                 json.at("states_looked_at"),
+                 json.at("states")};
   result.place = to_numbers(json.at("place"));
   result.element = json.at("element");
   result.material = json.at("material");
@@ -254,32 +252,25 @@ PeakStressDescription peak_stress_from(const Json& json) {
 
 }  // namespace
 
-std::string outcome_to_json(const RunSummary& summary) {
-  const Json json = {{"unwatched_penetration", penetration_to_json(summary.penetration)},
-                     {"bodies", bodies_to_json(summary)},
-                     {"impacts", impacts_to_json(summary)},
-                     {"impacts_left_out", summary.impacts_left_out},
-                     {"rotation", rotation_to_json(summary)},
-                     {"peak_stress", peak_stress_to_json(summary)}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+Json outcome_to_json(const RunSummary& summary) {
+  return {{"unwatched_penetration", penetration_to_json(summary.penetration)},
+          {"bodies", bodies_to_json(summary)},
+          {"impacts", impacts_to_json(summary)},
+          {"impacts_left_out", summary.impacts_left_out},
+          {"rotation", rotation_to_json(summary)},
+          {"peak_stress", peak_stress_to_json(summary)}};
 }
 
-void read_outcome(const std::string& text, const std::string& path, RunSummary& summary) {
-  try {
-    const Json json = Json::parse(text);
-    if (json.contains("unwatched_penetration"))
-      summary.penetration = penetration_from(json.at("unwatched_penetration"));
-    for (const auto& body : json.value("bodies", Json::array())) summary.bodies.push_back(body_from(body));
-    for (const auto& impact : json.value("impacts", Json::array()))
-      summary.impacts.push_back(impact_from(impact, summary.bodies, path));
-    summary.impacts_left_out = json.value("impacts_left_out", 0L);
-    if (json.contains("rotation") && json.at("rotation").is_object())
-      summary.rotation = rotation_from(json.at("rotation"));
-    if (json.contains("peak_stress") && json.at("peak_stress").is_object())
-      summary.peak_stress = peak_stress_from(json.at("peak_stress"));
-  } catch (const Json::exception& problem) {
-    throw Error(ErrorKind::invalid_input, fmt::format("{}: not a summary of a run: {}", path, problem.what()));
-  }
+void read_outcome(const Json& json, const std::string& path, RunSummary& summary) {
+  if (json.contains("unwatched_penetration")) summary.penetration = penetration_from(json.at("unwatched_penetration"));
+  for (const Json& body : json.value("bodies", Json::array())) summary.bodies.push_back(body_from(body));
+  for (const Json& impact : json.value("impacts", Json::array()))
+    summary.impacts.push_back(impact_from(impact, summary.bodies, path));
+  summary.impacts_left_out = json.value("impacts_left_out", 0L);
+  if (json.contains("rotation") && json.at("rotation").is_object())
+    summary.rotation = rotation_from(json.at("rotation"));
+  if (json.contains("peak_stress") && json.at("peak_stress").is_object())
+    summary.peak_stress = peak_stress_from(json.at("peak_stress"));
 }
 
 }  // namespace ricochet

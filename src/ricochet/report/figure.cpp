@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/json.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/report/contact_line.hpp"
 #include "ricochet/report/history_part.hpp"
@@ -16,8 +16,6 @@
 namespace ricochet {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Points that a curve has at most: more are not seen, and make large files.
 constexpr std::size_t most_points = 20'000;
@@ -262,7 +260,7 @@ std::string describe_figure(const std::vector<RunData>& runs, const FigureOption
       figure["panels"].push_back(panel_of_curves(runs, labels, roughness, what, options));
     }
   }
-  return figure.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return figure.dump();
 }
 
 }  // namespace ricochet

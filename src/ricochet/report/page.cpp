@@ -6,13 +6,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/json.hpp"
 #include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/durable_file.hpp"
-#include "ricochet/io/json_number.hpp"
 #include "ricochet/report/body_part.hpp"
 #include "ricochet/report/history_part.hpp"
 #include "ricochet/report/judgement.hpp"
@@ -21,8 +20,6 @@
 namespace ricochet {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Where the viewer wants the data, and what every report begins with.
 constexpr std::string_view data_begin = "<script type=\"application/json\" id=\"ricochet-runs\">";
@@ -53,7 +50,7 @@ Json to_json(const PackedArray& array) {
 
 /// What is not finite is a word: null is what there is nothing to say of.
 Json to_json(double value) {
-  return number_to_json<Json>(value);
+  return Json::number(value);
 }
 
 Json to_json(const std::optional<double>& value) {
@@ -269,7 +266,7 @@ std::string PageBuilder::data() {
   most_bytes_ -= std::min(most_bytes_, text);
   for (std::size_t i = 0; i < runs_.size(); ++i) add_frames(runs_[i], page["runs"][i], left() / (runs_.size() - i));
   std::string html(data_begin);
-  for (const char c : page.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+  for (const char c : page.dump()) {
     if (c == '<') {
       html += "\\u003c";  // "</script>" in a title ends nothing
     } else {
@@ -307,13 +304,18 @@ bool is_report_of(const std::string& path, const std::vector<std::string>& direc
   const std::size_t begin = text.find(data_begin), end = text.find("</script>", begin);
   if (begin == std::string::npos || end == std::string::npos) return false;
   const std::size_t first = begin + data_begin.size();
-  const Json page = Json::parse(text.substr(first, end - first), nullptr, false);
+  Json page;
+  try {
+    page = Json::parse(text.substr(first, end - first));
+  } catch (const Json::Exception&) {
+    return false;
+  }
   const auto whole = [](const std::string& directory) {
     return (std::filesystem::absolute(directory) / "").lexically_normal();
   };
   std::set<std::filesystem::path> shown, wanted;
   if (page.is_object() && page.contains("runs")) {
-    for (const Json& run : page["runs"]) shown.insert(whole(run.value("directory", "")));
+    for (const Json& run : page.at("runs")) shown.insert(whole(run.value("directory", "")));
   }
   for (const std::string& directory : directories) wanted.insert(whole(directory));
   return shown == wanted;

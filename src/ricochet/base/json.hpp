@@ -1,0 +1,123 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <initializer_list>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+/// @file A JSON document. nlohmann's library reads and writes it in json.cpp, and only there: its templates cost every
+/// file that includes them ten seconds. Not part of the public interface.
+namespace ricochet {
+
+/// Objects keep the order in which their entries were made. A braced list makes an object where all of its elements are
+/// pairs that begin with a text, and an array otherwise:
+///   Json{{"name", "disc"}, {"sizes", {1, 2}}}.
+class Json {
+ public:
+  using Array = std::vector<Json>;
+  using Object = std::vector<std::pair<std::string, Json>>;
+  /// What all errors throw: a text that is no JSON, an entry that is missing or of another kind.
+  struct Exception : std::runtime_error {
+    using std::runtime_error::runtime_error;
+  };
+
+  Json() = default;
+  Json(std::nullptr_t) {}
+  Json(bool value) : value_(value) {}
+  Json(double value) : value_(value) {}
+  template <std::integral Integer>
+  Json(Integer value) : value_(static_cast<std::int64_t>(value)) {}
+  Json(const char* text) : value_(std::string(text)) {}
+  Json(std::string_view text) : value_(std::string(text)) {}
+  Json(std::string text) : value_(std::move(text)) {}
+  template <class Element>
+  Json(const std::vector<Element>& values) : value_(Array(values.begin(), values.end())) {}
+  Json(const std::map<std::string, std::string>& values) : value_(Object(values.begin(), values.end())) {}
+  Json(std::initializer_list<Json> elements);
+  [[nodiscard]] static Json array(std::initializer_list<Json> elements = {});
+  [[nodiscard]] static Json object();
+  /// Infinities and NaN, which JSON does not have, are said in words; and back. What is neither a number nor a text is
+  /// NaN.
+  [[nodiscard]] static Json number(double value);
+  [[nodiscard]] double to_number() const;
+
+  /// Throws Exception with line and column.
+  [[nodiscard]] static Json parse(const std::string& text);
+  /// `indent` negative: on one line. What is no UTF-8 in a text is replaced.
+  [[nodiscard]] std::string dump(int indent = -1) const;
+
+  [[nodiscard]] bool is_object() const { return std::holds_alternative<Object>(value_); }
+  [[nodiscard]] bool is_array() const { return std::holds_alternative<Array>(value_); }
+  [[nodiscard]] bool is_string() const { return std::holds_alternative<std::string>(value_); }
+  [[nodiscard]] bool is_number() const {
+    return std::holds_alternative<double>(value_) || std::holds_alternative<std::int64_t>(value_);
+  }
+
+  /// Of an object or array, else 0.
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] bool empty() const { return size() == 0; }
+  [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
+  [[nodiscard]] const Json& at(std::string_view name) const;
+  [[nodiscard]] const Json& at(std::size_t index) const;
+  /// Made where it is not there.
+  Json& operator[](std::string_view name);
+  /// Of an array; throws Exception where there are fewer elements.
+  Json& operator[](std::size_t index);
+  void push_back(Json element);
+  /// Takes the entries of another object.
+  void update(const Json& other);
+  /// The elements of an array; the entries of an object.
+  [[nodiscard]] Array::const_iterator begin() const { return elements().begin(); }
+  [[nodiscard]] Array::const_iterator end() const { return elements().end(); }
+  [[nodiscard]] const Object& items() const;
+
+  // Values by kind; numbers are converted among one another.
+  void get(bool& result) const;
+  void get(int& result) const;
+  void get(long& result) const;
+  void get(double& result) const;
+  void get(std::string& result) const;
+  template <class Element>
+  void get(std::vector<Element>& result) const {
+    result.clear();
+    for (const Json& element : elements()) result.push_back(element.get<Element>());
+  }
+  void get(std::map<std::string, std::string>& result) const;
+  template <class Type>
+  [[nodiscard]] Type get() const {
+    Type result{};
+    get(result);
+    return result;
+  }
+  template <class Type>
+  requires requires(const Json& json, Type& result) { json.get(result); }
+  operator Type() const { return get<Type>(); }
+  /// The entry, or the default where there is none.
+  template <class Type>
+  [[nodiscard]] Type value(std::string_view name, const Type& standard) const {
+    const Json* const found = find(name);
+    return found != nullptr ? found->get<Type>() : standard;
+  }
+  [[nodiscard]] std::string value(std::string_view name, const char* standard) const {
+    return value(name, std::string(standard));
+  }
+  [[nodiscard]] Json value(std::string_view name, const Json& standard) const {
+    const Json* const found = find(name);
+    return found != nullptr ? *found : standard;
+  }
+
+ private:
+  friend struct JsonConversion;
+  [[nodiscard]] const Json* find(std::string_view name) const;
+  [[nodiscard]] const Array& elements() const;
+
+  std::variant<std::nullptr_t, bool, std::int64_t, double, std::string, Array, Object> value_ = nullptr;
+};
+
+}  // namespace ricochet
