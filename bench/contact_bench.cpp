@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "processor_timer.hpp"
-#include "ricochet/io/fclib_file.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 
 // Times a contact solver on problems in FCLib's layout; one line of JSON per problem. Cold: analysis and solution from

@@ -8,7 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
-#include "ricochet/io/fclib_file.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
 
 namespace ricochet::program {
 

@@ -1,7 +1,7 @@
 #include <map>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/contact/multiplier_space.hpp"
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/fem/cell_integration.hpp"
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
 
 namespace ricochet {
 

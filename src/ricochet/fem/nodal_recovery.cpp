@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/parallel.hpp"
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
 
 namespace ricochet {
 

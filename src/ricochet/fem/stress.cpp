@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/cell_integration.hpp"
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
 
 namespace ricochet {
 

@@ -9,7 +9,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/io/fclib_file.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
 
 namespace ricochet {
 

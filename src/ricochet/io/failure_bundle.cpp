@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/durable_file.hpp"
-#include "ricochet/io/fclib_file.hpp"
 
 namespace ricochet {
 

@@ -14,8 +14,8 @@
 
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/hdf5/hdf5_handle.hpp"
 #include "ricochet/io/durable_file.hpp"
-#include "ricochet/io/hdf5_handle.hpp"
 
 namespace ricochet {
 

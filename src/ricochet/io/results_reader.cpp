@@ -6,8 +6,8 @@
 #include <array>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/hdf5/hdf5_file.hpp"
 #include "ricochet/io/file_lock.hpp"
-#include "ricochet/io/hdf5_file.hpp"
 #include "ricochet/io/vtk_order.hpp"
 
 namespace ricochet {

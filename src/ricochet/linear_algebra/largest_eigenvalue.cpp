@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
 
 namespace ricochet {
 

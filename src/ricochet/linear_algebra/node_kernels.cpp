@@ -9,7 +9,7 @@ namespace ricochet {
 namespace {
 
 /// How far ahead of the blocks to fetch, in numbers: from memory a product is a quarter to a third quicker for it.
-constexpr Index fetch_ahead = 640;
+constexpr Index fetch_blocks_ahead = 640;
 
 /// A block acts on the d numbers of a node. `Sums` collects A x of a row so that additions need not wait for one
 /// another, `Own` holds the numbers of the row's node for the products with transposed blocks.
@@ -111,12 +111,12 @@ RICOCHET_PART_OF_CALLER void multiply_in(const NodeRows& rows, const double* __r
       const typename Kind::Own own = Kind::own(x + i);
       for (Index k = 0; k < group.two_sided; ++k, block += Kind::numbers) {
         const Index other = Index{*column++} * d;
-        __builtin_prefetch(block + fetch_ahead);
+        __builtin_prefetch(block + fetch_blocks_ahead);
         Kind::add(block, x + other, sums);
         Kind::add_transposed(block, own, y + other);
       }
       for (Index k = 0; k < group.one_sided; ++k, block += Kind::numbers) {
-        __builtin_prefetch(block + fetch_ahead);
+        __builtin_prefetch(block + fetch_blocks_ahead);
         Kind::add(block, x + Index{*column++} * d, sums);
       }
       double total[d];
@@ -137,11 +137,11 @@ RICOCHET_PART_OF_CALLER double form_in(const NodeRows& rows, const double* x) {
     for (Index row = group.first_row; row < group.end_row(); ++row) {
       typename Kind::Sums two_sided, one_sided;
       for (Index k = 0; k < group.two_sided; ++k, block += Kind::numbers) {
-        __builtin_prefetch(block + fetch_ahead);
+        __builtin_prefetch(block + fetch_blocks_ahead);
         Kind::add(block, x + Index{*column++} * d, two_sided);
       }
       for (Index k = 0; k < group.one_sided; ++k, block += Kind::numbers) {
-        __builtin_prefetch(block + fetch_ahead);
+        __builtin_prefetch(block + fetch_blocks_ahead);
         Kind::add(block, x + Index{*column++} * d, one_sided);
       }
       double both[d], one[d];

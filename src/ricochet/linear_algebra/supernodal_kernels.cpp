@@ -10,7 +10,7 @@ namespace {
 
 constexpr Index block_columns = 8;
 /// How far ahead of the stream to fetch, in numbers.
-constexpr Index fetch_ahead = 512;
+constexpr Index fetch_stream_ahead = 512;
 /// Tall blocks are read in so many places at once: the processor fetches ahead in each of them, and one core gets a
 /// third more from memory than in one place.
 constexpr Index streams = 4;
@@ -93,7 +93,7 @@ RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index 
     const Index apart = panels * 8;
     for (; row < apart; row += 8, stream += 8 * C) {
       for (Index k = 0; k < streams; ++k) {
-        for (int j = 0; j < C; ++j) __builtin_prefetch(stream + k * apart * C + fetch_ahead + 8 * j);
+        for (int j = 0; j < C; ++j) __builtin_prefetch(stream + k * apart * C + fetch_stream_ahead + 8 * j);
         forward_panel<8, C>(stream + k * apart * C, x, w + k * apart + row);
       }
     }
@@ -101,7 +101,7 @@ RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index 
     row = streams * apart;
   }
   for (; row + 8 <= end; row += 8) {
-    for (int j = 0; j < C; ++j) __builtin_prefetch(stream + fetch_ahead + 8 * j);
+    for (int j = 0; j < C; ++j) __builtin_prefetch(stream + fetch_stream_ahead + 8 * j);
     stream = forward_panel<8, C>(stream, x, w + row);
   }
   if ((end & 4) != 0) {
@@ -133,7 +133,7 @@ RICOCHET_PART_OF_CALLER const double* backward_block(const double* stream, Index
   for (int j = 0; j < C; ++j) products[j] = Pack<8>{};
   const auto add_panel = [&](const double* panel, const double* rows) {
     const Pack<8> values = load<8>(rows);
-    for (int j = 0; j < C; ++j) __builtin_prefetch(panel - fetch_ahead + 8 * j);
+    for (int j = 0; j < C; ++j) __builtin_prefetch(panel - fetch_stream_ahead + 8 * j);
     for (int j = 0; j < C; ++j) products[j] += load<8>(panel + 8 * j) * values;
   };
   const Index panels = end / 8 / streams;

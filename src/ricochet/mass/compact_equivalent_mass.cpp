@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/fem/cell_masses.hpp"
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/parallel.hpp"
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/linear_algebra/graph_components.hpp"
 
 namespace ricochet {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "fclib_support.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/failure_bundle.hpp"
+#include "support/fclib_support.hpp"
 
 namespace ricochet::test {
 namespace {

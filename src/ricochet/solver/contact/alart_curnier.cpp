@@ -6,8 +6,6 @@
 namespace ricochet {
 
 namespace {
-/// Relative to W's diagonal; small enough to leave a few steps, large enough to hide what is rounding in W.
-constexpr double proximal_size = 0x1p-30;
 /// A diagonal of this many W leaves p = 0 to rounding.
 constexpr double rigid = 0x1p60;
 /// Up to this many unknowns LU in double precision is the fastest.

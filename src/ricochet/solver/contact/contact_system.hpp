@@ -13,6 +13,10 @@ namespace ricochet {
 
 /// Rounding of a sum, in units of the sum of absolute values.
 inline constexpr double sum_rounding = 32.0 * std::numeric_limits<double>::epsilon();
+/// What Newton's methods add to W's diagonal, relative to it, where the matrix is singular to rounding: a step of the
+/// proximal point algorithm, which has the same limits. Small enough to leave a few steps, large enough to hide what is
+/// rounding in W.
+inline constexpr double proximal_size = 0x1p-30;
 /// Residual that is accepted where rounding is asked for and nothing improves any more.
 inline constexpr double loosest_residual = 1e-12;
 /// Above this F the cone hardly sees a penetration: its residual is 1/F of it. The law itself is looked at besides.

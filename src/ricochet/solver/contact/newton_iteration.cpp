@@ -16,9 +16,6 @@ constexpr int cut_limit = 12;
 constexpr int jump_limit = 12;
 /// Part of the decrease to first order that is asked for.
 constexpr double sufficient = 1e-4;
-/// Added to W's diagonal, relative to it, where the matrix is singular to rounding: a step of the proximal point
-/// algorithm, which has the same limits.
-constexpr double proximal_size = 0x1p-30;
 constexpr auto none = static_cast<std::size_t>(-1);
 }  // namespace
 

@@ -8,9 +8,9 @@ namespace ricochet {
 
 namespace {
 /// At most so many operations of a factor, or entries of W.
-constexpr double factor_work = 1e11;
-constexpr double sweep_work = 4e9;
-constexpr int fewest_iterations = 5;
+constexpr double most_factor_work = 1e11;
+constexpr double most_sweep_work = 4e9;
+constexpr int fewest_worth_a_try = 5;
 }  // namespace
 
 const std::vector<OtherSolvers::Kind> OtherSolvers::first{{"newton-alart-curnier", true, 60},
@@ -25,10 +25,10 @@ bool OtherSolvers::solve(const ContactWork& work, const std::vector<Kind>& kinds
   const double rows = static_cast<double>(work.system.rows());
   for (const bool cold : {true, false}) {
     for (const Kind& kind : kinds) {
-      const double limit = kind.factorizes ? factor_work / (rows * rows * rows) : sweep_work / (rows * rows);
+      const double limit = kind.factorizes ? most_factor_work / (rows * rows * rows) : most_sweep_work / (rows * rows);
       ContactOptions options = work.options;
       options.iteration_limit = static_cast<int>(std::min(limit, static_cast<double>(kind.iteration_limit)));
-      if (options.iteration_limit < fewest_iterations) continue;
+      if (options.iteration_limit < fewest_worth_a_try) continue;
       work.current.reaction = cold ? Vector(Vector::Zero(work.system.rows())) : best.iterate.reaction;
       work.system.evaluate(work.current);
       std::unique_ptr<IterativeContactSolver>& solver = solvers_[kind.name];

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/io/fclib_file.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "support/hard_contact_problems.hpp"
 #include "support/paths.hpp"

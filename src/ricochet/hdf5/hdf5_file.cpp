@@ -1,4 +1,4 @@
-#include "ricochet/io/hdf5_file.hpp"
+#include "ricochet/hdf5/hdf5_file.hpp"
 
 #include <fmt/format.h>
 #include <hdf5.h>
@@ -16,7 +16,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
-#include "ricochet/io/hdf5_handle.hpp"
+#include "ricochet/hdf5/hdf5_handle.hpp"
 
 namespace ricochet {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/io/fclib_file.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
 
 namespace ricochet {
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/io/fclib_file.hpp"
-#include "ricochet/io/hdf5_file.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
+#include "ricochet/hdf5/hdf5_file.hpp"
 
 /// @file FCLib files for tests: whole ones, and ones written entry by entry, so that each entry can be wrong.
 namespace ricochet::test {

@@ -1,4 +1,4 @@
-#include "ricochet/io/fclib_file.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <random>
 
-#include "fclib_support.hpp"
+#include "support/fclib_support.hpp"
 
 namespace ricochet::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "ricochet/linear_algebra/dense_decompositions.hpp"
+#include "ricochet/base/dense_decompositions.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/io/hdf5_file.hpp"
-#include "ricochet/io/hdf5_handle.hpp"
+#include "ricochet/hdf5/hdf5_file.hpp"
+#include "ricochet/hdf5/hdf5_handle.hpp"
 
 namespace ricochet {
 

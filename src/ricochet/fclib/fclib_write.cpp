@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/io/fclib_file.hpp"
-#include "ricochet/io/hdf5_file.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
+#include "ricochet/hdf5/hdf5_file.hpp"
 
 namespace ricochet {
 

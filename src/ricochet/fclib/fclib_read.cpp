@@ -5,8 +5,8 @@
 #include <functional>
 #include <limits>
 
-#include "ricochet/io/fclib_file.hpp"
-#include "ricochet/io/hdf5_file.hpp"
+#include "ricochet/fclib/fclib_file.hpp"
+#include "ricochet/hdf5/hdf5_file.hpp"
 
 namespace ricochet {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "fclib_support.hpp"
+#include "support/fclib_support.hpp"
 
 namespace ricochet::test {
 namespace {
