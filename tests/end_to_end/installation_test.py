@@ -17,6 +17,13 @@ class Installation(TestCase):
         process = subprocess.run(list(map(str, arguments)), text=True, capture_output=True, cwd=self.folder)
         return self.expect_status(0, process).stdout
 
+    def documented_programs(self):
+        """The programs of docs/library.md: one that runs a case, one that steps, one that solves a contact problem."""
+        text = (SOURCE / "docs" / "library.md").read_text(encoding="utf-8")
+        programs = [block for block in re.findall(r"```cpp\n(.*?)```", text, re.S) if "int main" in block]
+        self.assertEqual(len(programs), 3)
+        return [self.write(f"example_{number}.cpp", program) for number, program in enumerate(programs)]
+
     def test_installed_prefix_is_enough(self):
         prefix = self.folder / "prefix"
         self.command("cmake", "--install", BUILD, "--prefix", prefix)
@@ -34,11 +41,12 @@ class Installation(TestCase):
         linked = re.search(r"libricochet\S* => (\S+)", self.command("ldd", program))
         self.assertTrue(pathlib.Path(linked[1]).resolve().is_relative_to(prefix), linked[0])
 
+        examples = self.documented_programs()
         build = self.folder / "build"
         # What uses a library with sanitizers needs them itself.
         flags = re.search(r"^CMAKE_CXX_FLAGS:STRING=(.*)$", (BUILD / "CMakeCache.txt").read_text(encoding="utf-8"), re.M)[1]
         self.command("cmake", "-S", SOURCE / "tests" / "end_to_end" / "consumer", "-B", build, "-G", "Ninja",
-                     f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_FLAGS={flags}",
+                     f"-DDOCUMENTED={';'.join(map(str, examples))}", f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_FLAGS={flags}",
                      "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", "-DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF")
         self.command("cmake", "--build", build)
         commands = (build / "compile_commands.json").read_text(encoding="utf-8")
@@ -48,6 +56,13 @@ class Installation(TestCase):
         self.assertRegex(said, r"^ricochet \d+\.\d+\.\d+: done, 30 steps\n$")
         self.assertEqual((self.folder / "by-consumer" / "history.csv").read_bytes(),
                          (self.folder / "by-program" / "history.csv").read_bytes())
+        whole, session, contact = (build / path.stem for path in examples)
+        self.assertRegex(self.command(whole, case), r"^energy \S+ at the end of \d+ steps\n$")
+        self.assertRegex(self.command(session, case), r"^done at t = \S+: the spring did \S+ J\n")
+        self.assertTrue((self.folder / "out" / "spring" / "history.csv").is_file())
+        self.assertEqual(self.command(contact), "reaction 1, friction -0.2\n")
+        # What solves contact problems alone needs no more.
+        self.assertNotRegex(self.command("ldd", contact), r"libricochet\.so|libbasix|libtomlplusplus")
 
     def test_every_installed_header_stands_alone(self):
         """Each public header compiles by itself with nothing but Eigen beside the installed ones."""
