@@ -35,11 +35,9 @@ MassRegistration consistent_mass() {
   return {"consistent", [](const Parameters&) { return std::make_unique<ConsistentMass>(); }};
 }
 
-/// On a ball of degree 2 with 9,054 contact nodes the factor is 4.7 times as large (docs/equivalent-mass.md).
 std::string mass_to_build(const std::string& asked, const MassInput& input) {
-  constexpr std::size_t many_contact_nodes = 2000;
-  const bool couples_many = input.nodes->rows() == 3 && input.contact_nodes.size() > many_contact_nodes;
-  return asked == "equivalent" && couples_many ? "equivalent-compact" : asked;
+  const std::string cheaper = make_mass(asked)->cheaper_for(input);
+  return cheaper.empty() ? asked : cheaper;
 }
 
 bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes) {

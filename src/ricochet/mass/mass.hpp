@@ -37,6 +37,8 @@ class MassConstruction {
   [[nodiscard]] virtual SparseMatrix build(const MassInput& input) const = 0;
   /// True when contact nodes get no inertia: the equivalent masses of the source's section 5.
   [[nodiscard]] virtual bool removes_contact_inertia() const { return false; }
+  /// The name of another mass that makes as much of this body for less; empty: none does.
+  [[nodiscard]] virtual std::string cheaper_for(const MassInput&) const { return {}; }
 };
 
 using MassConstructor = std::function<std::unique_ptr<MassConstruction>(const Parameters& parameters)>;
@@ -49,9 +51,7 @@ using MassRegistration = Registration<MassConstructor>;
 }
 /// By the name used in a case file, with the values of its keys; throws Error(invalid_input) that lists the names.
 [[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name, Parameters parameters = {});
-/// The name of the mass that is built for the one asked for: "equivalent-compact" where "equivalent" would couple so
-/// many nodes in space that a factor of the stage's operator is several times as large. Contact nodes of all bodies
-/// count together, as the factor is one; else what is asked for.
+/// The name of the mass that is built for the one asked for, see cheaper_for.
 [[nodiscard]] std::string mass_to_build(const std::string& asked, const MassInput& input);
 
 /// A diagonal mass: row sums where they are all positive (degree 1: total mass and centre of gravity are kept), else

@@ -36,13 +36,24 @@ void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
 }
 
 /// Nodal forces have no share of the area at the vertices of flat six-node triangles, and so no friction under a bound.
-void warn_of_bound_without_area(const ContactSection& section, const Model& model) {
-  if (section.friction_bound == 0.0 || section.multipliers != "nodal" || model.space.degree != 2) return;
-  if (model.mesh.dimension != 3) return;
-  log::warning(fmt::format(
-      "contact of group \"{}\": with nodal multipliers and a friction_bound no friction acts at the vertices of "
-      "triangles of degree 2, whose share of the area is zero; use multipliers \"dual\" or \"p1\"",
-      section.group));
+void warn_of_bounds_without_area(const Case& input, const ContactBoundary& contact) {
+  for (std::size_t k = 0; k < input.contacts.size(); ++k) {
+    const ContactSection& section = input.contacts[k];
+    if (section.friction_bound == 0.0) continue;
+    double largest = 0.0;
+    const auto of_pair = [&](Index point) {
+      return contact.pair[static_cast<std::size_t>(point)] == static_cast<int>(k);
+    };
+    for (Index i = 0; i < contact.size(); ++i)
+      largest = std::max(largest, of_pair(i) ? contact.friction_bound[i] : 0.0);
+    Index without = 0;
+    for (Index i = 0; i < contact.size(); ++i) without += of_pair(i) && contact.friction_bound[i] <= 1e-10 * largest;
+    if (without == 0) continue;
+    log::warning(fmt::format(
+        "contact of group \"{}\": with multipliers \"{}\" no friction acts at {}, whose share of the area is zero, "
+        "since friction_bound is a force per area; use multipliers \"dual\" or \"p1\"",
+        section.group, section.multipliers, counted(without, "contact point")));
+  }
 }
 
 void warn_of_creep(const Case& input, const Scheme& scheme, const SemidiscreteProblem& problem) {
@@ -155,7 +166,6 @@ void add_contacts(const Case& input, Model& model) {
                                    section.multipliers});
     model.problem.obstacles.push_back(model.contact_pairs.back().obstacle);
     check_stability(input, i, model);
-    warn_of_bound_without_area(section, model);
   }
   check_overlap(input, model.contact_pairs);
   const int d = model.mesh.dimension;
@@ -168,6 +178,7 @@ void add_contacts(const Case& input, Model& model) {
   } catch (const Error& problem) {
     refuse(input, "contact", problem.what());
   }
+  warn_of_bounds_without_area(input, model.problem.contact);
   if (held > 0) {
     log::warning(fmt::format("{} held by supports in the direction of the obstacle's normal: no contact {} there",
                              counted(held, "node of contact boundaries is", "nodes of contact boundaries are"),
