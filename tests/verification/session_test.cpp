@@ -51,7 +51,7 @@ TEST_F(SessionTest, GoesOnFromASnapshotWithTheSameBits) {
   for (int k = 0; k < 40; ++k) ASSERT_TRUE(second.step());
   EXPECT_EQ(first.state().displacement, second.state().displacement);
   EXPECT_EQ(first.state().velocity, second.state().velocity);
-  EXPECT_THROW(second.resume(middle), std::logic_error);
+  EXPECT_THROW(second.resume(middle), Error);
 }
 
 /// What a session writes step by step is what a run writes.
@@ -88,6 +88,64 @@ TEST_F(SessionTest, FeedsALoadBack) {
   EXPECT_NE(held.simulation().account().works().load, 0.0);
   EXPECT_LT(held.state().displacement.norm(), 0.9 * free.state().displacement.norm());
   EXPECT_THROW(held.set_load(Vector::Zero(dofs - 1)), Error);
+}
+
+/// What was set is part of what is saved; who does not set it again is refused.
+TEST_F(SessionTest, ResumesWithTheLoadThatWasSet) {
+  const auto spring = [](Session& session) { session.set_load(-4.0 * session.state().displacement); };
+  const RunOptions options{.output_directory = directory_ + "-loaded", .force = true, .quiet = true};
+  Session whole(path_, {"time.end=1", "output.checkpoint_every=10"});
+  while (true) {
+    spring(whole);
+    if (!whole.step()) break;
+  }
+  {
+    Session first(path_, {"time.end=1", "output.checkpoint_every=10"});
+    first.write_to(options);
+    for (int k = 0; k < 25; ++k) {
+      spring(first);
+      ASSERT_TRUE(first.step());
+    }
+  }  // gone in the middle
+  RunOptions resume = options;
+  resume.force = false;
+  resume.resume = true;
+  Session program(path_, {"time.end=1", "output.checkpoint_every=10"});
+  EXPECT_THROW((void)run_case(program, resume), Error);
+  Session second(path_, {"time.end=1", "output.checkpoint_every=10"});
+  second.write_to(resume);
+  EXPECT_EQ(second.state().step, 20);
+  while (true) {
+    spring(second);
+    if (!second.step()) break;
+  }
+  EXPECT_EQ(second.finish().status, "done");
+  EXPECT_EQ(second.state().displacement, whole.state().displacement);
+}
+
+TEST_F(SessionTest, RefusesWhatDoesNotFitTogether) {
+  Session session(path_, {"time.end=0.2"});
+  EXPECT_THROW((void)session.finish(), Error);
+  Snapshot snapshot;
+  ASSERT_TRUE(session.step());
+  session.save(snapshot);
+  EXPECT_THROW(session.write_to({.output_directory = directory_}), Error) << "the history would begin midway";
+  EXPECT_THROW(session.set_load(Vector::Constant(session.problem().dof_count(), std::nan(""))), Error);
+  Session other_step(path_, {"time.step=0.005"});
+  EXPECT_THROW(other_step.resume(snapshot), Error) << "a state of another case";
+  // A directory that holds a run: refused, and the session is as it was.
+  Session first(path_, {"time.end=0.2"});
+  (void)run_case(first, {.output_directory = directory_, .force = true, .quiet = true});
+  EXPECT_THROW((void)first.step(), Error) << "it has finished";
+  Session again(path_, {"time.end=0.2"});
+  EXPECT_THROW(again.write_to({.output_directory = directory_, .quiet = true}), Error);
+  EXPECT_TRUE(again.step());
+  // A run that is complete has no state.
+  Session complete(path_, {"time.end=0.2"});
+  complete.write_to({.output_directory = directory_, .quiet = true, .resume = true});
+  EXPECT_FALSE(complete.step());
+  EXPECT_THROW((void)complete.state(), Error);
+  EXPECT_EQ(complete.finish().status, "done");
 }
 
 /// Warnings are the session's own, those of reading its case among them.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace ricochet {
@@ -45,7 +46,9 @@ Json JsonConversion::from_library(const Library& json) {
     return result;
   }
   if (json.is_boolean()) return json.get<bool>();
-  if (json.is_number_integer()) return json.get<std::int64_t>();
+  const bool is_too_large =
+      json.is_number_unsigned() && json.get<std::uint64_t>() > std::numeric_limits<std::int64_t>::max();
+  if (json.is_number_integer() && !is_too_large) return json.get<std::int64_t>();
   if (json.is_number()) return json.get<double>();
   if (json.is_string()) return json.get<std::string>();
   return nullptr;
@@ -170,7 +173,8 @@ void Json::get(bool& result) const {
 void Json::get(long& result) const {
   if (const auto* value = std::get_if<std::int64_t>(&value_)) {
     result = *value;
-  } else if (const auto* number = std::get_if<double>(&value_); number != nullptr && std::abs(*number) < 0x1p62) {
+  } else if (const auto* number = std::get_if<double>(&value_);
+             number != nullptr && std::abs(*number) < 0x1p62 && *number == std::trunc(*number)) {
     result = static_cast<long>(*number);
   } else {
     throw Exception("a whole number is wanted in the place of " + dump());

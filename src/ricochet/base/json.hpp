@@ -16,23 +16,24 @@
 namespace ricochet {
 
 /// Objects keep the order in which their entries were made. A braced list makes an object where all of its elements are
-/// pairs that begin with a text, and an array otherwise:
-///   Json{{"name", "disc"}, {"sizes", {1, 2}}}.
+/// pairs that begin with a text, and an array otherwise, also of one document: Json{other} is an array.
+///   Json{{"name", "disc"}, {"sizes", {1, 2}}}
 class Json {
  public:
   using Array = std::vector<Json>;
   using Object = std::vector<std::pair<std::string, Json>>;
-  /// What all errors throw: a text that is no JSON, an entry that is missing or of another kind.
+  /// Thrown for every error: a text that is no JSON, an entry that is missing or of another kind.
   struct Exception : std::runtime_error {
     using std::runtime_error::runtime_error;
   };
 
   Json() = default;
   Json(std::nullptr_t) {}
-  Json(bool value) : value_(value) {}
+  template <std::same_as<bool> Bool>
+  Json(Bool value) : value_(value) {}
   Json(double value) : value_(value) {}
   template <std::integral Integer>
-  Json(Integer value) : value_(static_cast<std::int64_t>(value)) {}
+  requires(!std::same_as<Integer, bool>) Json(Integer value) : value_(static_cast<std::int64_t>(value)) {}
   Json(const char* text) : value_(std::string(text)) {}
   Json(std::string_view text) : value_(std::string(text)) {}
   Json(std::string text) : value_(std::move(text)) {}

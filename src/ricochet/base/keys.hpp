@@ -57,6 +57,9 @@ struct Key {
   for (const Key& key : keys) names.push_back(key.name);
   return names;
 }
+/// What a key wants: "a positive number", `one of "a" or "b"`, …
+[[nodiscard]] std::string wanted(const Key& key);
+[[nodiscard]] bool is_within(const Range& range, double value);
 
 /// Sets of keys of which exactly one must be given, whole.
 using KeySets = std::vector<std::vector<std::string>>;

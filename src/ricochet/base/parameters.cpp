@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "ricochet/base/error.hpp"
@@ -31,6 +32,25 @@ Parameters::Value standard_value(const Key& key) {
   return *key.standard;
 }
 
+bool fits(const Key& key, const Parameters::Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) {
+    const bool is_whole = key.type == KeyType::integer && *number == std::trunc(*number);
+    const bool is_choice =
+        key.choices.empty() || std::any_of(key.choices.begin(), key.choices.end(), [&](const std::string& choice) {
+          return std::strtod(choice.c_str(), nullptr) == *number;
+        });
+    return (key.type == KeyType::number || is_whole) && is_choice && std::isfinite(*number) &&
+           is_within(key.range, *number);
+  }
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    const bool is_choice = std::find(key.choices.begin(), key.choices.end(), *text) != key.choices.end();
+    return key.type == KeyType::text || (key.type == KeyType::choice && is_choice);
+  }
+  const auto& vector = std::get<std::vector<double>>(value);
+  return key.type == KeyType::vector && (vector.size() == 2 || vector.size() == 3) &&
+         std::all_of(vector.begin(), vector.end(), [](double component) { return std::isfinite(component); });
+}
+
 }  // namespace
 
 double Parameters::number(const std::string& name) const {
@@ -53,7 +73,13 @@ void Parameters::complete(const std::vector<Key>& keys, const std::string& owner
                             keys.empty() ? "it has none" : "it has " + join_names(names_of(keys))));
   }
   for (const Key& key : keys) {
-    if (has(key.name)) continue;
+    if (has(key.name)) {
+      if (!fits(key, values_.at(key.name))) {
+        throw Error(ErrorKind::invalid_input, fmt::format("{}: the parameter \"{}\" is {}; it must be {}", owner,
+                                                          key.name, as_text(values_.at(key.name)), wanted(key)));
+      }
+      continue;
+    }
     if (key.required)
       throw Error(ErrorKind::invalid_input, fmt::format("{} needs the parameter \"{}\"", owner, key.name));
     if (key.standard) set(key.name, standard_value(key));

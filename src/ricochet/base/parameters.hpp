@@ -12,7 +12,8 @@
 /// @file The values of a type's own keys, and how a type checks them while a case file is read.
 namespace ricochet {
 
-/// What a registered type is made from: values by the names of its keys.
+/// What a registered type is made from: values by the names of its keys. Numbers are doubles, also those of integers:
+/// {{"beta", 0.25}, {"stages", 2.0}}.
 class Parameters {
  public:
   using Value = std::variant<double, std::string, std::vector<double>>;
@@ -30,7 +31,8 @@ class Parameters {
   [[nodiscard]] const std::map<std::string, Value>& values() const { return values_; }
 
   /// Adds the defaults of keys that have no value. Throws Error(invalid_input) that names `owner` where a required
-  /// value is missing, or a value belongs to none of the keys.
+  /// value is missing, belongs to none of the keys, or is not what its key wants. (Checks that concern several keys are
+  /// made when a case file is read, see Registration::check.)
   void complete(const std::vector<Key>& keys, const std::string& owner);
 
  private:

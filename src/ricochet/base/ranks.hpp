@@ -4,8 +4,8 @@
 
 #include "ricochet/base/types.hpp"
 
-/// @file A body that is divided among processes, its ranks. Here is what the rest of the library asks of them; one
-/// process alone answers with what it was given.
+/// @file A body that is divided among processes, its ranks. Here is what the rest of the library asks of them, or will
+/// (`accumulate`, once there are several); one process alone answers with what it was given.
 namespace ricochet {
 
 /// How the number of the whole body comes from those of the ranks.

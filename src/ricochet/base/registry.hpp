@@ -25,33 +25,38 @@ struct Registration {
   std::function<void(const ParameterCheck& place, Parameters& values)> check = {};
 };
 
-/// Raised by every addition: tables made from registries are then made again.
-[[nodiscard]] inline long& registry_revision() {
-  static long revision = 0;
-  return revision;
-}
+/// Changes with every addition: tables made from registries are then made again.
+[[nodiscard]] long registry_revision();
+void raise_registry_revision();
+/// Throws Error(invalid_input) that names `owner` where a type's own keys are of a kind that Parameters do not hold:
+/// numbers, integers, vectors, texts and choices, of which vectors have no default.
+void check_parameter_keys(const std::vector<Key>& keys, const std::string& owner);
 
 template <class Type>
 class Registry {
  public:
   /// `noun`: what a type is, for messages ("scheme").
-  Registry(std::string noun, std::vector<Registration<Type>> known) : noun_(std::move(noun)), all_(std::move(known)) {}
+  Registry(std::string noun, std::vector<Registration<Type>> known) : noun_(std::move(noun)), all_(std::move(known)) {
+    for (const Registration<Type>& entry : all_) check_parameter_keys(entry.keys, quoted(entry.name));
+  }
 
-  /// Of a program of one's own, before the first case is read: case files may name the type from then on. Throws
-  /// Error(invalid_input) where the name is taken.
+  /// Of a program of one's own: case files that are read from then on may name the type. Throws Error(invalid_input)
+  /// where the name is taken or its keys are none that a type can have. What `find` gave before must not be used after.
   void add(Registration<Type> added) {
+    check_parameter_keys(added.keys, quoted(added.name));
     for (const Registration<Type>& entry : all_) {
       if (entry.name == added.name)
         throw Error(ErrorKind::invalid_input, "there is a " + quoted(added.name) + " already");
     }
     all_.push_back(std::move(added));
-    ++registry_revision();
+    raise_registry_revision();
   }
 
-  /// Takes back what was added.
+  /// Takes back what was added. Throws as `find` does.
   void remove(const std::string& name) {
+    static_cast<void>(find(name));
     std::erase_if(all_, [&](const Registration<Type>& entry) { return entry.name == name; });
-    ++registry_revision();
+    raise_registry_revision();
   }
 
   [[nodiscard]] const std::vector<Registration<Type>>& all() const { return all_; }

@@ -51,8 +51,6 @@ struct Section {
 /// As it is written in a file: "[mesh]", "[[contact]]", "[obstacle.NAME]".
 [[nodiscard]] std::string section_title(const Section& section);
 
-/// What a key wants: "a positive number", `one of "a" or "b"`, …
-[[nodiscard]] std::string wanted(const Key& key);
 /// The same with its unit, where it has one.
 [[nodiscard]] std::string wanted_with_unit(const Key& key);
 

@@ -21,11 +21,6 @@ void refuse_type(const Key& key, TomlNode& value, Problems& problems) {
   refuse(value, fmt::format("\"{}\" must be {}; found {}", key.name, wanted_with_unit(key), describe(value)), problems);
 }
 
-bool is_in_range(double number, const Range& range) {
-  return !(range.above && number <= *range.above) && !(range.at_least && number < *range.at_least) &&
-         !(range.below && number >= *range.below) && !(range.at_most && number > *range.at_most);
-}
-
 // Integers are fine where numbers are wanted; from here on they are numbers, so that 1 and 1.0 have one text.
 bool make_finite_number(TomlNode& value) {
   if (value.kind == Kind::integer) {
@@ -54,7 +49,7 @@ void check_choice(const Key& key, TomlNode& value, Problems& problems) {
 
 void check_number(const Key& key, TomlNode& value, Problems& problems) {
   const TomlNode found = value;
-  if (make_finite_number(value) && is_in_range(value.real, key.range)) return;
+  if (make_finite_number(value) && is_within(key.range, value.real)) return;
   value.is_refused = true;
   const char* finite = found.kind == Kind::real && !std::isfinite(found.real) ? ", which is not finite" : "";
   problems.add(value.location,
@@ -63,7 +58,7 @@ void check_number(const Key& key, TomlNode& value, Problems& problems) {
 
 void check_integer(const Key& key, TomlNode& value, Problems& problems) {
   const bool is_good =
-      value.kind == Kind::integer && (key.choices.empty() ? is_in_range(static_cast<double>(value.integer), key.range)
+      value.kind == Kind::integer && (key.choices.empty() ? is_within(key.range, static_cast<double>(value.integer))
                                                           : is_choice(std::to_string(value.integer), key.choices));
   if (!is_good) refuse_type(key, value, problems);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <list>
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/keys_table.hpp"
 
@@ -39,7 +40,13 @@ void add_type_keys(Section& section, const std::string& type_key, std::vector<Ty
   std::vector<Key> added;
   for (const TypeKeys& type : types) {
     for (Key key : type.keys) {
-      if (find_key(added, key.name) != nullptr) continue;
+      const Key* const other = find_key(added, key.name);
+      if (find_key(section.keys, key.name) != nullptr || (other != nullptr && other->type != key.type)) {
+        throw Error(ErrorKind::invalid_input,
+                    fmt::format("the {} \"{}\" has a key \"{}\", which {} has already with another meaning", type_key,
+                                type.name, key.name, section_title(section)));
+      }
+      if (other != nullptr) continue;
       const std::vector<std::string> names = types_with(key.name, types);
       if (names.size() < types.size()) {
         key.only_for = names;

@@ -114,11 +114,11 @@ class ProbeMaker {
     if (model_.mesh.find_group(section.group, dimension - 1) != nullptr &&
         model_.mesh.find_group(section.group, dimension) == nullptr) {
       const Group& group = group_at(input_, key + ".group", model_.mesh, section.group, dimension - 1);
-      add(section, make_facet_group_sensor(section.name, model_.body, group.members));
+      add(section, make_facet_group_sensor(section.name, model_.body, group.members, *model_.problem.ranks));
       return;
     }
     const Group& group = group_at(input_, key + ".group", model_.mesh, section.group, dimension);
-    add(section, make_cell_group_sensor(section.name, model_.body, group.members));
+    add(section, make_cell_group_sensor(section.name, model_.body, group.members, *model_.problem.ranks));
   }
 
   void add_contact(const ProbeSection& section, const std::string& key) {

@@ -3,7 +3,7 @@
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/problem/stage.hpp"
 
-/// @file The contact conditions that most stages have.
+/// @file The contact conditions that most stages have: one of the first two, which also takes the rows, then friction.
 namespace ricochet {
 
 /// Every contact point is eligible and y is its gap: y = g₀ + G (base + δ) at `time`; where gaps are not linear,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -105,6 +106,13 @@ void Run::find_checkpoint() {
     require_same_case(input_, *snapshot_, options_.output_directory);
     if (const auto step = static_cast<long>(snapshot_->integer("state.step")); steps_ < step) refuse_earlier_end(step);
     require_same_files(options_.output_directory, *snapshot_);
+    if (!options_.resume_load && snapshot_->has(Session::load_name)) {
+      throw Error(
+          ErrorKind::invalid_input,
+          fmt::format("{}: cannot be resumed here: a program loads this run as it goes (Session::set_load), and "
+                      "without it the last load would stay; resume it with that program",
+                      options_.output_directory));
+    }
   } else if (!checkpoint_files(options_.output_directory).empty()) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: cannot be resumed: no checkpoint can be read; start anew with --force",
@@ -146,8 +154,7 @@ void Run::begin_session() {
     log::info(fmt::format("{}, {}; preparing the steps", counted(session_.model().problem.dof_count(), "dof"),
                           counted(session_.model().problem.contact.size(), "contact point")));
   }
-  std::string difference;
-  if (snapshot_) difference = compare_model(input_, session_.model(), *snapshot_);
+  const auto built = static_cast<std::ptrdiff_t>(session_.warnings().size());
   Timer timer;
   begin_simulation();
   times_.add_start(timer.seconds(), session_.simulation().methods());
@@ -161,8 +168,10 @@ void Run::begin_session() {
     warnings.insert(warnings.end(), resume_warnings.begin(), resume_warnings.end());
     // The end may have been moved.
     std::erase_if(warnings, [](const std::string& warning) { return warning.starts_with(end_warning); });
+    for (auto said = session_.warnings().begin() + built; said != session_.warnings().end(); ++said) {
+      if (std::find(warnings.begin(), warnings.end(), *said) == warnings.end()) warnings.push_back(*said);
+    }
     session_.warnings() = std::move(warnings);
-    if (!difference.empty()) log::warning(difference);
     const Snapshot::Integers& resumed_at = snapshot_->integers("run.resumed_at");
     summary_.resumed_at.assign(resumed_at.begin(), resumed_at.end());
     summary_.resumed_at.push_back(session_.simulation().state().step);

@@ -31,6 +31,8 @@ class Run {
   /// Looks at what is in the directory, builds and starts the session, and opens the files. Nothing is left to do where
   /// the run that is to be resumed is complete.
   void begin();
+  /// The run that was to be resumed has come to its end before: there is no state.
+  [[nodiscard]] bool is_complete_already() const { return has_nothing_to_do_; }
   /// One step, recorded. False: the end, a failure, or a signal.
   bool take_step();
   /// The summary; throws the error that ended the steps.

@@ -19,7 +19,9 @@ void warn_of_end(const TimeSection& time) {
 }
 
 RunSummary run_case(Session& session, const RunOptions& options) {
-  session.write_to(options);
+  RunOptions own = options;
+  own.resume_load = false;  // nobody would set it again
+  session.write_to(own);
   session.run();
   return session.finish();
 }

@@ -21,6 +21,9 @@ struct RunOptions {
   bool quiet = false;  ///< no progress
   /// Go on with the run that is in the directory, from its last checkpoint; from the beginning where it has none.
   bool resume = false;
+  /// A run that a program loads as it goes (Session::set_load) may go on, with the last load until that sets it again;
+  /// run_case refuses it.
+  bool resume_load = true;
   /// Asked after every step: not zero, the number of the signal that is to end the run with a checkpoint.
   std::function<int()> stop_signal = {};
   /// Steps whose contact problems are written as FCLib files, see io/contact_export.hpp.
@@ -37,7 +40,7 @@ RunSummary run_case(const Case& input, const RunOptions& options);
 /// Of a session that has not begun; its warnings, those of reading the case among them, are in the summary.
 RunSummary run_case(Session& session, const RunOptions& options);
 
-/// Warns where the end time is no whole number of steps, in words that begin so.
+/// How the warning begins that the end time is no whole number of steps.
 inline constexpr const char* end_warning = "time.end = ";
 void warn_of_end(const TimeSection& time);
 

@@ -25,8 +25,7 @@ constexpr double long_step = 0.5, snapshot_share = 0.05;
 /// the message tells where they are.
 void Run::write_failure_bundle(long step) {
   Snapshot snapshot;
-  session_.simulation().save(snapshot);
-  save_identity(input_, session_.model(), snapshot);
+  session_.save(snapshot);
   try {
     const std::string note = failure_bundle_->write(step, snapshot, failure_->what());
     failure_ = Error(failure_->kind(), fmt::format("{}\n{}", failure_->what(), note));
@@ -85,9 +84,8 @@ RunTimes Run::times_until_now() const {
 
 Snapshot Run::take_snapshot() {
   Snapshot snapshot;
-  session_.simulation().save(snapshot);
+  session_.save(snapshot);
   recording_->save(snapshot);
-  save_identity(input_, session_.model(), snapshot);
   times_until_now().save(snapshot, "run.times");
   snapshot.save("run.warnings", session_.warnings());
   snapshot.save("run.case_path", summary_.case_path);

@@ -1,15 +1,22 @@
 #include "ricochet/run/session.hpp"
 
-#include <stdexcept>
-
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/run/run.hpp"
+#include "ricochet/run/run_identity.hpp"
 
 namespace ricochet {
 
-Session::Session(const std::string& path, const std::vector<std::string>& changes) {
+namespace {
+
+void refuse_use(const std::string& why) {
+  throw Error(ErrorKind::usage, "session: " + why);
+}
+
+}  // namespace
+
+Session::Session(const std::string& path, const std::vector<std::string>& changes) : changes_(changes) {
   const log::CollectWarnings collect(warnings_);
   input_ = read_case(path, changes);
 }
@@ -42,16 +49,23 @@ void Session::start() {
 }
 
 void Session::resume(const Snapshot& snapshot) {
-  if (simulation_ != nullptr) throw std::logic_error("a session that has started cannot take up another state");
+  if (simulation_ != nullptr) refuse_use("it has started and cannot take up another state");
   const log::CollectWarnings collect(warnings_);
+  require_same_case(input_, snapshot, "this state");
+  if (const std::string difference = compare_model(input_, model(), snapshot); !difference.empty())
+    log::warning(difference);
+  if (snapshot.has(load_name)) set_load(snapshot.reals(load_name));
   simulation_ = std::make_unique<Simulation>(model().problem, scheme(), snapshot, step_solver_options(input_));
 }
 
 void Session::save(Snapshot& snapshot) {
   simulation().save(snapshot);
+  save_identity(input_, model(), snapshot);
+  if (load_ != nullptr) snapshot.save(load_name, *load_);
 }
 
 Simulation& Session::simulation() {
+  if (run_ != nullptr && run_->is_complete_already()) refuse_use("the run is complete: there is no state to look at");
   start();
   return *simulation_;
 }
@@ -59,7 +73,8 @@ Simulation& Session::simulation() {
 void Session::set_load(const Vector& force) {
   Model& built = model();
   if (force.size() != built.problem.dof_count())
-    throw Error(ErrorKind::invalid_input, "a load needs a force for each dof of the problem");
+    throw Error(ErrorKind::invalid_input, "session: a load needs a force for each dof of the problem");
+  if (!force.allFinite()) throw Error(ErrorKind::invalid_input, "session: a load has forces that are not finite");
   if (load_ == nullptr) {
     load_ = std::make_shared<Vector>();
     built.problem.loads.add_general([load = load_](double, Vector& sum) { sum += *load; });
@@ -69,6 +84,7 @@ void Session::set_load(const Vector& force) {
 
 bool Session::step() {
   const log::CollectWarnings collect(warnings_);
+  if (has_finished_) refuse_use("it has finished, and nothing would be written any more");
   if (run_ != nullptr) return run_->take_step();
   if (state().step >= steps()) return false;
   simulation().advance();
@@ -82,16 +98,20 @@ void Session::run(const std::function<void()>& each) {
 }
 
 void Session::write_to(RunOptions options) {
-  if (run_ != nullptr) throw std::logic_error("the session writes already");
+  if (run_ != nullptr || has_finished_) refuse_use("it writes already");
+  if (simulation_ != nullptr && state().step > 0) refuse_use("what it writes must begin before the first step");
   const log::CollectWarnings collect(warnings_);
   options_ = std::move(options);
-  run_ = std::make_unique<Run>(*this, options_);
-  run_->begin();
+  if (options_.settings.empty()) options_.settings = changes_;
+  auto run = std::make_unique<Run>(*this, options_);
+  run->begin();
+  run_ = std::move(run);
 }
 
 RunSummary Session::finish() {
-  if (run_ == nullptr) throw std::logic_error("the session writes nothing: there is no summary");
+  if (run_ == nullptr) refuse_use("it writes nothing: there is no summary");
   const log::CollectWarnings collect(warnings_);
+  has_finished_ = true;
   const std::unique_ptr<Run> run = std::move(run_);
   return run->finish();
 }

@@ -19,8 +19,12 @@ namespace ricochet {
 
 class Run;
 
+/// What does not fit together (a step after finish(), write_to after steps) throws Error(usage).
 class Session {
  public:
+  /// In snapshots: what set_load has set.
+  static constexpr const char* load_name = "session.load";
+
   /// Reads a case file, with changes as --set makes them. Throws Error as read_case does.
   explicit Session(const std::string& path, const std::vector<std::string>& changes = {});
   explicit Session(Case input);
@@ -37,9 +41,10 @@ class Session {
   /// Finds the state at t = 0 and factorizes, unless that is done or a state was taken up.
   void start();
   /// Instead: goes on from what save() has put into a snapshot, with the same bits as without an interruption. Before
-  /// the first step. Throws Error(invalid_input) where it does not fit.
+  /// the first step. Throws Error(invalid_input) where it does not fit: the case, its mesh or the version are others.
   void resume(const Snapshot& snapshot);
-  /// The state, and what the next steps depend on besides.
+  /// The state, what the next steps depend on besides (the load that was set last), and of which case it is. The
+  /// functions of io/checkpoint.hpp make a file of it.
   void save(Snapshot& snapshot);
 
   [[nodiscard]] Model& model();
@@ -53,7 +58,7 @@ class Session {
   [[nodiscard]] long steps() const { return step_count(input_.time); }
 
   /// A force per dof that acts from now on besides the loads of the case, until it is set again. It enters the energy
-  /// account as load_work.
+  /// account as load_work. Throws Error(invalid_input) for another length and for what is not finite.
   void set_load(const Vector& force);
 
   /// One step. False, and nothing done: the run is at its end. Throws Error(not_converged); the state is then that
@@ -63,13 +68,16 @@ class Session {
   void run(const std::function<void()>& each = {});
 
   /// Before the first step: from here on the session writes what a run writes (history, fields, checkpoints, summary).
-  /// With `resume` among the options it goes on with the run that is there. Throws Error as run_case does.
+  /// With `resume` among the options it goes on with the run that is there; where that is complete, only finish() has
+  /// something to say. Throws Error as run_case does.
   void write_to(RunOptions options);
-  /// Ends what write_to has begun: the summary, with the expectations of the case.
+  /// Ends what write_to has begun: the summary, with the expectations of the case. No step can follow. Throws the error
+  /// that has ended the steps, if one has.
   RunSummary finish();
 
  private:
   Case input_;
+  std::vector<std::string> changes_;  ///< that input_ was read with
   std::vector<std::string> warnings_;
   std::unique_ptr<Model> model_;
   std::unique_ptr<Scheme> scheme_;
@@ -77,6 +85,7 @@ class Session {
   std::shared_ptr<Vector> load_;  ///< set_load's
   RunOptions options_;
   std::unique_ptr<Run> run_;
+  bool has_finished_ = false;
 };
 
 }  // namespace ricochet

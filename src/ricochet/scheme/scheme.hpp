@@ -42,7 +42,7 @@ class Scheme {
 
   // What others should know of it, so that nobody has to know it by name.
   /// A limit on the step that it asks for with this problem, before analyse(); none where every step is stable or where
-  /// the problem is none that it takes.
+  /// it refuses the problem.
   [[nodiscard]] virtual std::optional<double> stability_limit(const SemidiscreteProblem&) const { return std::nullopt; }
   /// Its steps are right where the internal force is no linear function of the displacement.
   [[nodiscard]] virtual bool takes_nonlinear_force() const { return false; }

@@ -59,7 +59,7 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   state.obstacle_increment.in_space = in_space.reshaped(problem.dimension, in_space.size() / problem.dimension);
   state.iterations = static_cast<int>(snapshot.integer(name + ".iterations"));
   for (const std::string& key : snapshot.texts(name + ".memory"))
-    state.memory[key] = snapshot.reals(name + ".memory." + key);
+    state.memory[key] = snapshot.reals(name + ".memory." + key, dofs, problem.supports.size());
   return state;
 }
 

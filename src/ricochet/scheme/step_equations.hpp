@@ -7,13 +7,13 @@
 namespace ricochet {
 
 /// The momentum equation and the contact conditions of a stage at an instant t of the step,
-///   M A + C V + K x = L(t) + Gᵀ r_N − B_Tᵀ r_T,   x = base + δ,
-/// with the velocity v at δ = 0; and the forces that its solution leaves in
-/// the state. Keeps its storage from step to step.
+///   M A + C V + K x = L(t) + Gᵀ r_N − B_Tᵀ r_T,   x = base + δ,   V = v + η δ,
+/// and the forces that its solution leaves in the state. Keeps its storage from step to step.
 class StepEquations {
  public:
-  /// b = L(t) − f(base) − C v, f the internal force. M A has no part in b: bases are chosen so.
+  /// b = L(t) − f(base), f the internal force. M A has no part in b: bases are chosen so.
   void balance(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage);
+  /// b = L(t) − f(base) − C v.
   void balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
                Stage& stage);
 
@@ -42,8 +42,8 @@ class StepEquations {
   void require_friction_over_step(const SemidiscreteProblem& problem, const State& state, const Vector& predicted,
                                   double step, Stage& stage);
 
-  /// Reactions, contact status and the motion of the obstacles over the step; the loads at the instant of balance(),
-  /// and the damping force there, rate · C motion.
+  /// Reactions, contact status and the motion of the obstacles over the step; the loads at the instant of the last
+  /// balance(), and the damping force there, rate · C motion.
   void take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
                    const Vector& motion, double rate, State& state) const;
   /// The reactions alone.

@@ -41,9 +41,11 @@ class Sensor {
 /// Average (over volume or area), least and largest value of displacement and velocity in some cells or facets, and of
 /// cells also of von Mises' stress.
 [[nodiscard]] std::unique_ptr<Sensor> make_cell_group_sensor(const std::string& name, const Body& body,
-                                                             const std::vector<Index>& cells);
+                                                             const std::vector<Index>& cells,
+                                                             const Ranks& ranks = one_rank());
 [[nodiscard]] std::unique_ptr<Sensor> make_facet_group_sensor(const std::string& name, const Body& body,
-                                                              const std::vector<Index>& facets);
+                                                              const std::vector<Index>& facets,
+                                                              const Ranks& ranks = one_rank());
 
 /// Resultant of a contact (an index of [[contact]]): force on the body, centre of pressure Σ r_N X / Σ r_N with the
 /// reference positions X (0 where open), as the moments of boundaries take them, and area of the points that are

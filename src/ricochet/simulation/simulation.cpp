@@ -51,7 +51,10 @@ void Simulation::make_solver(const StepSolverOptions& options) {
   const std::vector<OperatorCoefficients> operators = scheme_.operators(problem_);
   solver_ = make_step_solver(problem_, operators, options);
   stages_.resize(operators.size());
-  for (std::size_t number = 0; number < operators.size(); ++number) stages_[number].dofs = operators[number].dofs;
+  for (std::size_t number = 0; number < operators.size(); ++number) {
+    stages_[number].dofs = operators[number].dofs;
+    stages_[number].stage.rows = problem_.contact.rows;
+  }
 }
 
 Stage& Simulation::stage(std::size_t number) {

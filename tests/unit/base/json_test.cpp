@@ -65,6 +65,8 @@ TEST(JsonDocument, RefusesWhatDoesNot) {
   EXPECT_THROW((void)json.at("s").get<bool>(), Json::Exception);
   EXPECT_THROW((void)json.at("big").get<int>(), Json::Exception);
   EXPECT_THROW((void)json.at("d").get<long>(), Json::Exception);
+  EXPECT_THROW((void)Json(2.7).get<long>(), Json::Exception);
+  EXPECT_EQ(Json::parse("18446744073709551615").get<double>(), 0x1p64);
   EXPECT_THROW((void)json.at(std::size_t{0}), Json::Exception);
   EXPECT_THROW((void)json.at("s").items(), Json::Exception);
   for (const char* text : {"", "{", "[1,]", "{\"a\" 1}", "nan", "\"\xff\""})

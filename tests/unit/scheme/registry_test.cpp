@@ -130,7 +130,34 @@ TEST(Registry, MakesByNameWithParametersInCode) {
   EXPECT_EQ(message("midpoint", {{"beta", 0.25}}), "scheme \"midpoint\" has no parameter \"beta\"; it has none");
   EXPECT_EQ(message("newmark", {{"beta", 0.25}}), "the parameter \"gamma\" is missing");
   EXPECT_EQ(message("newmark", {{"beta", "a"}, {"gamma", 0.5}}),
-            "the parameter \"beta\" has a value of another kind: a");
+            "scheme \"newmark\": the parameter \"beta\" is a; it must be a positive number");
+  EXPECT_EQ(message("newmark", {{"beta", 0.0}, {"gamma", 0.5}}),
+            "scheme \"newmark\": the parameter \"beta\" is 0; it must be a positive number");
+  EXPECT_EQ(
+      message("newmark", {{"preset", "trapezoid"}}),
+      "scheme \"newmark\": the parameter \"preset\" is trapezoid; it must be \"trapezoidal\" or \"textbook-half\"");
+}
+
+/// What a type cannot have is said when it is registered, not when it is used.
+TEST(Registry, RefusesKeysThatATypeCannotHave) {
+  const auto with = [](Key key) {
+    SchemeRegistration registration = drag_scheme();
+    registration.name = "keys";
+    registration.keys.push_back(std::move(key));
+    return registration;
+  };
+  EXPECT_THROW(scheme_registry().add(with({.name = "f", .type = KeyType::formula, .doc = "?"})), Error);
+  EXPECT_THROW(scheme_registry().add(with({.name = "v", .type = KeyType::vector, .standard = "0, 0", .doc = "?"})),
+               Error);
+  EXPECT_THROW(scheme_registry().add(with({.name = "drag", .type = KeyType::number, .doc = "?"})), Error);
+  EXPECT_THROW(scheme_registry().remove("keys"), Error) << "nothing was added";
+  // A key of the section's own, or of another type of another kind.
+  for (const char* const name : {"step", "beta"}) {
+    scheme_registry().add(with({.name = name, .type = KeyType::text, .doc = "?"}));
+    EXPECT_THROW((void)case_schema(), Error) << name;
+    scheme_registry().remove("keys");
+  }
+  EXPECT_FALSE(case_schema().empty());
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ namespace {
 /// Of a vector of any length: where the square of the length leaves the range of numbers, it is scaled first.
 Vector unit(const Vector& direction) {
   const double length = direction.norm();
+  if (length == 0.0 && direction.isZero(0.0)) throw Error(ErrorKind::invalid_input, "the normal of a plane is zero");
   constexpr double smallest = 1e-150;
   if (std::isfinite(length) && length > smallest) return direction / length;
   return direction.stableNormalized();

@@ -20,7 +20,8 @@ struct WeightedNode {
 template <class Measure>
 std::vector<WeightedNode> weighted_nodes(const std::vector<CellBlock>& geometry, const std::vector<CellBlock>& cells,
                                          int geometry_degree, int displacement_degree,
-                                         const std::vector<Index>& members, const Measure& measure) {
+                                         const std::vector<Index>& members, const Ranks& ranks,
+                                         const Measure& measure) {
   std::map<Index, double> weights;
   Index first = 0;
   auto member = members.begin();
@@ -42,13 +43,15 @@ std::vector<WeightedNode> weighted_nodes(const std::vector<CellBlock>& geometry,
   std::vector<WeightedNode> result;
   double sum = 0.0;
   for (const auto& [node, weight] : weights) sum += weight;
+  sum = ranks.sum(sum);
   for (const auto& [node, weight] : weights) result.push_back({node, weight / sum});
   return result;
 }
 
 class GroupSensor final : public Sensor {
  public:
-  GroupSensor(std::string name, const Body& body, std::vector<WeightedNode> nodes, std::vector<Index> cells)
+  GroupSensor(std::string name, const Body& body, std::vector<WeightedNode> nodes, std::vector<Index> cells,
+              const Ranks& ranks)
       : name_(std::move(name)),
         dimension_(body.mesh->dimension),
         nodes_(std::move(nodes)),
@@ -58,6 +61,7 @@ class GroupSensor final : public Sensor {
     const Vector volumes = cell_volumes(body);
     double sum = 0.0;
     for (const Index cell : cells_) sum += volumes[cell];
+    sum = ranks.sum(sum);
     for (const Index cell : cells_) cell_weights_.push_back(volumes[cell] / sum);
   }
 
@@ -119,16 +123,16 @@ class GroupSensor final : public Sensor {
 };
 
 template <int d>
-std::vector<WeightedNode> nodes_of_cells(const Body& body, const std::vector<Index>& cells) {
-  return weighted_nodes(body.mesh->cells, body.space->cells, body.mesh->degree, body.space->degree, cells,
+std::vector<WeightedNode> nodes_of_cells(const Body& body, const std::vector<Index>& cells, const Ranks& ranks) {
+  return weighted_nodes(body.mesh->cells, body.space->cells, body.mesh->degree, body.space->degree, cells, ranks,
                         [&](const Index* nodes, const Matrix& gradients) {
                           return std::abs(jacobian<d>(body.mesh->nodes, nodes, gradients).determinant());
                         });
 }
 
 template <int d>
-std::vector<WeightedNode> nodes_of_facets(const Body& body, const std::vector<Index>& facets) {
-  return weighted_nodes(body.mesh->facets, body.space->facets, body.mesh->degree, body.space->degree, facets,
+std::vector<WeightedNode> nodes_of_facets(const Body& body, const std::vector<Index>& facets, const Ranks& ranks) {
+  return weighted_nodes(body.mesh->facets, body.space->facets, body.mesh->degree, body.space->degree, facets, ranks,
                         [&](const Index* nodes, const Matrix& gradients) {
                           return facet_measure<d>(jacobian<d, d - 1>(body.mesh->nodes, nodes, gradients));
                         });
@@ -137,15 +141,17 @@ std::vector<WeightedNode> nodes_of_facets(const Body& body, const std::vector<In
 }  // namespace
 
 std::unique_ptr<Sensor> make_cell_group_sensor(const std::string& name, const Body& body,
-                                               const std::vector<Index>& cells) {
-  auto nodes = body.mesh->dimension == 2 ? nodes_of_cells<2>(body, cells) : nodes_of_cells<3>(body, cells);
-  return std::make_unique<GroupSensor>(name, body, std::move(nodes), cells);
+                                               const std::vector<Index>& cells, const Ranks& ranks) {
+  auto nodes =
+      body.mesh->dimension == 2 ? nodes_of_cells<2>(body, cells, ranks) : nodes_of_cells<3>(body, cells, ranks);
+  return std::make_unique<GroupSensor>(name, body, std::move(nodes), cells, ranks);
 }
 
 std::unique_ptr<Sensor> make_facet_group_sensor(const std::string& name, const Body& body,
-                                                const std::vector<Index>& facets) {
-  auto nodes = body.mesh->dimension == 2 ? nodes_of_facets<2>(body, facets) : nodes_of_facets<3>(body, facets);
-  return std::make_unique<GroupSensor>(name, body, std::move(nodes), std::vector<Index>{});
+                                                const std::vector<Index>& facets, const Ranks& ranks) {
+  auto nodes =
+      body.mesh->dimension == 2 ? nodes_of_facets<2>(body, facets, ranks) : nodes_of_facets<3>(body, facets, ranks);
+  return std::make_unique<GroupSensor>(name, body, std::move(nodes), std::vector<Index>{}, ranks);
 }
 
 }  // namespace ricochet

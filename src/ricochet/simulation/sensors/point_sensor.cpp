@@ -35,15 +35,17 @@ class PointSensor final : public Sensor {
   void observe(const Observation& observation, std::vector<double>& row) override {
     const Index d = problem_.dimension;
     const State& state = observation.state;
-    append(state.displacement.segment(probe_.node * d, d), row);
-    append(state.velocity.segment(probe_.node * d, d), row);
+    // Of several ranks that have the node one speaks.
+    const double part = problem_.ranks->is_owned(probe_.node) ? 1.0 : 0.0;
+    append(part * state.displacement.segment(probe_.node * d, d), row);
+    append(part * state.velocity.segment(probe_.node * d, d), row);
     if (probe_.contact_node < 0) return;
     SpaceVector force = SpaceVector::Zero(d);
     for (const auto& [point, weight] : points_) force += weight * contact_force(state.forces, point);
     const SpaceVector normal = problem_.node_normal(probe_.contact_node, state.displacement, state.time);
     const double normal_force = normal.dot(force);
     for (const double value :
-         {observation.gap[probe_.contact_node], observation.pressure[probe_.contact_node], normal_force})
+         {part * observation.gap[probe_.contact_node], part * observation.pressure[probe_.contact_node], normal_force})
       row.push_back(value);
     force -= normal_force * normal;
     append(force, row);

@@ -1,0 +1,39 @@
+#include "ricochet/base/registry.hpp"
+
+#include <fmt/format.h>
+
+namespace ricochet {
+
+namespace {
+
+long& revision() {
+  static long number = 0;
+  return number;
+}
+
+}  // namespace
+
+long registry_revision() {
+  return revision();
+}
+
+void raise_registry_revision() {
+  ++revision();
+}
+
+void check_parameter_keys(const std::vector<Key>& keys, const std::string& owner) {
+  const auto refuse = [&](const Key& key, const std::string& why) {
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: the key \"{}\" {}", owner, key.name, why));
+  };
+  for (const Key& key : keys) {
+    const bool is_scalar = key.type == KeyType::number || key.type == KeyType::integer || key.type == KeyType::text ||
+                           key.type == KeyType::choice;
+    if (!is_scalar && key.type != KeyType::vector)
+      refuse(key, "is none that a type can have: it must be a number, an integer, a vector, a text or a choice");
+    if (!is_scalar && key.standard) refuse(key, "is a vector, which has no default");
+    if (std::count_if(keys.begin(), keys.end(), [&](const Key& other) { return other.name == key.name; }) > 1)
+      refuse(key, "is there twice");
+  }
+}
+
+}  // namespace ricochet
