@@ -36,8 +36,7 @@ std::string join_rest(const std::vector<std::string>& parts, std::size_t first) 
 // Reads the part of a path that picks one entry of a list or one named section.
 std::string entry_of(const Section& section, const std::vector<std::string>& parts) {
   if (section.kind == SectionKind::list) {
-    const bool is_number = parts.size() > 1 && !parts[1].empty() && parts[1].size() < 10 &&
-                           parts[1].find_first_not_of("0123456789") == std::string::npos;
+    const bool is_number = parts.size() > 1 && is_digits(parts[1], 1, 9);
     if (!is_number) {
       refuse(fmt::format("{} is a list: say which entry, counted from 0, as in {}.0.{}", section_title(section),
                          section.name, section.keys.front().name));

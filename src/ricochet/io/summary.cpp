@@ -14,6 +14,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/json.hpp"
+#include "ricochet/base/text.hpp"
 #include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/io/summary_outcome.hpp"
@@ -291,8 +292,7 @@ namespace {
 /// An entry of this name, or of this number from 0.
 bool contains(const Json& json, const std::string& key) {
   if (json.is_object()) return json.contains(key);
-  const bool is_number = !key.empty() && key.size() < 10 && key.find_first_not_of("0123456789") == std::string::npos;
-  return json.is_array() && is_number && std::stoul(key) < json.size();
+  return json.is_array() && is_digits(key, 1, 9) && std::stoul(key) < json.size();
 }
 
 }  // namespace
