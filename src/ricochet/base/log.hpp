@@ -19,7 +19,8 @@ void info(const std::string& message);
 void warning(const std::string& message);
 void error(const std::string& message);
 
-/// While it lives, warnings are appended to a list besides being said; of several the last one made.
+/// While it lives, warnings of the whole process are appended to a list besides being said; of several the last one
+/// made. Sessions that run on two threads at the same time mix theirs.
 class CollectWarnings {
  public:
   explicit CollectWarnings(std::vector<std::string>& list);

@@ -106,14 +106,18 @@ void linearize_contact(const SemidiscreteProblem& problem, const Vector& increme
   take_slip(problem, motion.velocity, stage.obstacle.tangential, stage);
 }
 
-double linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution, const Stage& stage,
+double linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution, Stage& stage,
                            Vector& gap) {
-  const Vector& displacement = stage.motion->displacement;
-  problem.gaps(displacement + solution.increment, stage.motion->time, gap);
+  ContactMotion& motion = *stage.motion;
+  motion.solution = motion.displacement + solution.increment;
+  problem.gaps(motion.solution, motion.time, gap);
+  stage.rows->normal_motion(solution.increment, motion.gap_change);
   double error = -std::numeric_limits<double>::infinity();
   for (Index i = 0; i < gap.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] == 0) continue;
-    const double wrong = solution.normal_reaction[i] > 0.0 ? std::abs(gap[i]) : -gap[i];
+    // What the solver leaves of the linear condition, it leaves whatever the rows are.
+    const double beside = std::abs(gap[i] - (stage.gap_offset[i] + motion.gap_change[i]));
+    const double wrong = solution.normal_reaction[i] > 0.0 ? beside : std::min(-gap[i], beside);
     error = std::max(error, wrong - stage.gap_offset_rounding[i]);
   }
   return error;

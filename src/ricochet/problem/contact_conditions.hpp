@@ -23,9 +23,9 @@ void require_friction(const SemidiscreteProblem& problem, const Vector& velocity
 /// For solvers: rows and offsets at the increment that the stage has given.
 void linearize_contact(const SemidiscreteProblem& problem, const Vector& increment, Stage& stage);
 /// The largest amount by which the gaps at this increment are not what the stage's rows say, beyond rounding: of points
-/// that carry a force by how much they are open or closed, of others by how much they penetrate. At most 0: the stage
-/// is solved.
+/// that carry a force and of those that penetrate. At most 0: the stage is solved, as exactly as its linear conditions
+/// are.
 [[nodiscard]] double linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution,
-                                         const Stage& stage, Vector& gap);
+                                         Stage& stage, Vector& gap);
 
 }  // namespace ricochet

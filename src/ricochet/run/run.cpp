@@ -171,7 +171,7 @@ void Run::begin_session() {
     for (auto said = session_.warnings().begin() + built; said != session_.warnings().end(); ++said) {
       if (std::find(warnings.begin(), warnings.end(), *said) == warnings.end()) warnings.push_back(*said);
     }
-    session_.warnings() = std::move(warnings);
+    session_.warnings_ = std::move(warnings);
     const Snapshot::Integers& resumed_at = snapshot_->integers("run.resumed_at");
     summary_.resumed_at.assign(resumed_at.begin(), resumed_at.end());
     summary_.resumed_at.push_back(session_.simulation().state().step);

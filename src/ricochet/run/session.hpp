@@ -34,7 +34,7 @@ class Session {
 
   [[nodiscard]] const Case& input() const { return input_; }
   /// All that were said for this session, in order.
-  [[nodiscard]] std::vector<std::string>& warnings() { return warnings_; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// Reads the mesh and builds the problem, unless that is done. Everything below does so when it is needed.
   void build(BuildTimes* times = nullptr);
@@ -76,6 +76,8 @@ class Session {
   RunSummary finish();
 
  private:
+  friend class Run;  // a run that goes on takes up the warnings that were said before
+
   Case input_;
   std::vector<std::string> changes_;  ///< that input_ was read with
   std::vector<std::string> warnings_;

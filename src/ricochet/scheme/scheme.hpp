@@ -61,7 +61,8 @@ class Scheme {
   /// t = 0.
   virtual void start(const SemidiscreteProblem&, State&) {}
   /// Takes the state to the end of the step: fills stages, has them solved, and reads their solutions. `increment`
-  /// receives the displacement that the step's forces work on. Changes the state only after the last solve, so that a
+  /// receives the displacement that the step's forces work on: of all stages those of one, in state.forces, are the
+  /// step's (another's must do no work of their own). Changes the state only after the last solve, so that a
   /// step that fails leaves it as it was.
   virtual void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) = 0;
 

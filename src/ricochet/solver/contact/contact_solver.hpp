@@ -119,7 +119,7 @@ struct ContactSolverType {
   std::string text;  ///< what it is, one line
 };
 using ContactSolverRegistration = Registration<ContactSolverType>;
-/// All solvers. A program of one's own may add to them.
+/// All solvers. A program of one's own may add to them; they have no parameters, and so no keys.
 [[nodiscard]] Registry<ContactSolverType>& contact_solver_registry();
 
 }  // namespace ricochet

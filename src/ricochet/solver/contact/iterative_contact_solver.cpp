@@ -338,6 +338,9 @@ void IterativeContactSolver::solve(const ContactProblem& problem, const ContactO
     warm_reaction_ = solution.reaction;
     return;
   }
+  if (!(system_.data() > 0.0))
+    return refuse_data("the entries of q are so far apart in size that the smaller ones vanish beside the others",
+                       solution);
   choose_points(problem);
   if (!system_.fault().empty()) return refuse_data(system_.fault(), solution);
   solution.reason = refuses(system_);
