@@ -112,13 +112,15 @@ double linearization_error(const SemidiscreteProblem& problem, const StageSoluti
   motion.solution = motion.displacement + solution.increment;
   problem.gaps(motion.solution, motion.time, gap);
   stage.rows->normal_motion(solution.increment, motion.gap_change);
+  problem.trace_rounding(solution.increment, motion.gap_change_rounding);
   double error = -std::numeric_limits<double>::infinity();
   for (Index i = 0; i < gap.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] == 0) continue;
     // What the solver leaves of the linear condition, it leaves whatever the rows are.
     const double beside = std::abs(gap[i] - (stage.gap_offset[i] + motion.gap_change[i]));
     const double wrong = solution.normal_reaction[i] > 0.0 ? beside : std::min(-gap[i], beside);
-    error = std::max(error, wrong - stage.gap_offset_rounding[i]);
+    // Both gaps are rounded, and the increment's part is taken off and added again.
+    error = std::max(error, wrong - 2.0 * (stage.gap_offset_rounding[i] + motion.gap_change_rounding[i]));
   }
   return error;
 }

@@ -40,7 +40,7 @@ struct OperatorCoefficients {
 struct ContactMotion {
   Vector displacement, velocity;
   double time = 0.0;
-  Vector solution, gap_change;  ///< work space: displacement + δ, G δ
+  Vector solution, gap_change, gap_change_rounding;  ///< work space: displacement + δ, G δ
 };
 
 struct Stage {

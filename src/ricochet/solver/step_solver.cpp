@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/solver/choose_method.hpp"
 #include "ricochet/solver/stage_solver.hpp"
+#include "ricochet/solver/tangent_rounds.hpp"
 
 namespace ricochet {
 
@@ -34,14 +32,14 @@ class StagesStepSolver final : public StepSolver {
  public:
   StagesStepSolver(const SemidiscreteProblem& problem, const std::vector<OperatorCoefficients>& operators,
                    const StepSolverOptions& options)
-      : problem_(problem) {
+      : rounds_(problem) {
     for (const OperatorCoefficients& coefficients : operators) add_stage(problem, coefficients, options);
   }
 
   void solve(std::size_t number, Stage& stage, StageSolution& solution) override {
     StageSolver& solver = *stages_.at(number);
     solver.solve(stage, solution);
-    if (stage.motion) follow_motion(solver, stage, solution);
+    if (stage.motion) rounds_.follow_motion(solver, stage, solution);
   }
   void refactorize(std::size_t number, const Vector& displacement) override {
     stages_.at(number)->refactorize(displacement);
@@ -90,36 +88,7 @@ class StagesStepSolver final : public StepSolver {
     methods_.push_back(chosen);
   }
 
-  /// Tangent planes at the solution, until they leave no more than rounding in the gaps. Each round would square the
-  /// error if forces did not turn with the normals; they do, and the error falls by their size times the surface's
-  /// curvature over the stiffness of the step: mostly little, a half in a hard impact, not at all where a step is too
-  /// long for the force that it needs.
-  void follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
-    constexpr int most_rounds = 400, patience = 20;
-    int iterations = solution.iterations, last_progress = 0;
-    double error = linearization_error(problem_, solution, stage, gap_), least = error;
-    for (int round = 0; error > 0.0; ++round) {
-      if (error < 0.9 * least) {
-        least = error;
-        last_progress = round;
-      }
-      if (round == most_rounds || round - last_progress > patience || !std::isfinite(error)) {
-        throw Error(
-            ErrorKind::not_converged,
-            fmt::format("the contact forces on curved obstacles, which turn with the surface, did not settle in "
-                        "{} rounds ({:.3g} is left of the gaps)",
-                        round, least));
-      }
-      linearize_contact(problem_, solution.increment, stage);
-      solver.solve(stage, solution);
-      iterations += solution.iterations;
-      error = linearization_error(problem_, solution, stage, gap_);
-    }
-    solution.iterations = iterations;
-  }
-
-  const SemidiscreteProblem& problem_;
-  Vector gap_;
+  TangentRounds rounds_;
   std::vector<std::unique_ptr<StageSolver>> stages_;
   std::vector<ChosenMethod> methods_;
 };

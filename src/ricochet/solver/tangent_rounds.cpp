@@ -1,0 +1,62 @@
+#include "ricochet/solver/tangent_rounds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Rounds that settle by themselves take fewer.
+constexpr int plain_rounds = 6;
+constexpr int most_rounds = 400;
+/// Rounds without progress after which the acceleration forgets what it knows: points touch and leave, and the map has
+/// changed; and after which the step fails.
+constexpr int patience_of_acceleration = 20, patience_of_rounds = 60;
+
+}  // namespace
+
+Vector TangentRounds::on_contact(const Vector& increment) const {
+  return increment(problem_.contact_dofs);
+}
+
+void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
+  int iterations = solution.iterations, last_progress = 0, last_start = 0;
+  double error = linearization_error(problem_, solution, stage, gap_), least = error;
+  for (int round = 0; error > 0.0; ++round) {
+    if (error < 0.9 * least) {
+      least = error;
+      last_progress = round;
+    }
+    if (round == most_rounds || round - last_progress > patience_of_rounds || !std::isfinite(error)) {
+      throw Error(ErrorKind::not_converged,
+                  fmt::format("the contact forces on curved obstacles, which turn with the surface, did not settle in "
+                              "{} rounds ({:.3g} is left of the gaps)",
+                              round, least));
+    }
+    if (round == plain_rounds || round - std::max(last_progress, last_start) > patience_of_acceleration) {
+      acceleration_.restart();
+      last_start = round;
+    }
+    const bool accelerates = round > plain_rounds;
+    if (!accelerates) {
+      linearized_at_ = solution.increment;
+    } else {
+      const Vector next = acceleration_.next(on_contact(linearized_at_), on_contact(solution.increment));
+      linearized_at_ = solution.increment;
+      linearized_at_(problem_.contact_dofs) = next;
+    }
+    linearize_contact(problem_, linearized_at_, stage);
+    solver.solve(stage, solution);
+    iterations += solution.iterations;
+    error = linearization_error(problem_, solution, stage, gap_);
+  }
+  solution.iterations = iterations;
+}
+
+}  // namespace ricochet
