@@ -6,6 +6,7 @@ The program and the source tree come from the environment (CTest sets both): RIC
 import math
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -46,6 +47,12 @@ def block_case(mesh="quadrilateral_o1_msh41_ascii.msh"):
     """A block of quadrilaterals (the parallelogram of quadrilateral.geo) that falls on a floor."""
     return ('title = "A block falls"\n' + body_case(MESHES / mesh, [0.0, 0.0], [0.0, 1.0], gravity(0.0, -10.0))
             + '[[probe]]\nname = "foot"\nat = [1.3, 0.1]\n')
+
+
+def with_sphere(case, centre, radius, velocity):
+    """A case of `body_case` with a sphere that moves in place of the floor."""
+    sphere = f'type = "sphere"\ncentre = {centre}\nradius = {radius}\nvelocity = {velocity}\n'
+    return re.sub(r'type = "plane"\npoint = .*\nnormal = .*\n', sphere, case)
 
 
 def with_more(path, text):

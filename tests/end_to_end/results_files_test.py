@@ -12,7 +12,7 @@ import h5py
 import meshio
 import numpy
 
-from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, body_case, initial_velocity, run
+from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, body_case, initial_velocity, run, with_sphere
 from vtk_cells import middles, volumes
 
 # Four squares in a row, of two materials by turns, with numbers that go down.
@@ -341,12 +341,33 @@ class ResultsFiles(TestCase):
                 at = float(grid.find("Time").get("Value"))
                 points = numpy.array(grid.find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
                 shown.append(at)
-                numpy.testing.assert_allclose(points[:, 1], -0.05 * at, rtol=0, atol=1e-15)
+                numpy.testing.assert_allclose(points[:, 1], -0.05 * at, rtol=1e-8, atol=1e-15)
                 self.assertLess(points[:, 0].min(), 0.1)
                 self.assertGreater(points[:, 0].max(), 1.5)
                 self.assertFalse(points[:, 2].any())
                 self.assertEqual(grid.find("Topology/DataItem").text.split(), ["0", "1"])
         self.assertEqual(shown, times)
+
+    def test_a_sphere_in_space(self):
+        """A surface of quadrilaterals that share their points, the same in every frame but for where it is."""
+        centre, radius, velocity = [0.7, 0.5, -1.5], 1.2, [0.5, -0.25, 2.0]
+        text = falling(MESHES / "tetrahedron_o1_msh41_binary.msh", lowest=[1.3, 0.1, 0.0], highest=[0.3, 1.4, 1.2])
+        results = self.simulate(self.write("case.toml", with_sphere(text, centre, radius, velocity)))
+        grids = [grid for grid in xml.etree.ElementTree.parse(results / "obstacles.xdmf").iter("Grid")
+                 if grid.get("GridType") == "Uniform"]
+        self.assertEqual(len(grids), 31)
+        first = numpy.array(grids[0].find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
+        cells = numpy.array(grids[0].find("Topology/DataItem").text.split(), dtype=int).reshape(-1, 4)
+        self.assertEqual(sorted(set(cells.ravel())), list(range(len(first))))
+        self.assertLess(len(first), len(cells) + 2)
+        for grid in grids:
+            at = float(grid.find("Time").get("Value"))
+            points = numpy.array(grid.find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
+            moved = numpy.array(velocity) * at
+            numpy.testing.assert_allclose(points, first + moved, rtol=0, atol=1e-8)
+            numpy.testing.assert_allclose(numpy.linalg.norm(points - centre - moved, axis=1), radius, rtol=1e-8)
+            self.assertEqual(grid.find("Topology/DataItem").text, grids[0].find("Topology/DataItem").text)
+        self.assertLess((results / "obstacles.xdmf").stat().st_size / len(grids), 80_000)
 
     def test_ten_thousand_frames_stay_openable(self):
         case = self.write("case.toml", block_case() + "[output]\nfields_every = 1\n")

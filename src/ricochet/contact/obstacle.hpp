@@ -12,6 +12,16 @@
 /// obstacle.cpp.
 namespace ricochet {
 
+/// The shape of a part of an obstacle's surface, for pictures: in 2D lines, the obstacle to the right of each, in the
+/// order in which they follow each other; in 3D quadrilaterals that turn counterclockwise where one looks at them from
+/// outside. Cells that meet share points; a quadrilateral at a pole has it twice.
+struct ObstacleSurface {
+  Points points;           ///< d × count
+  std::vector<int> cells;  ///< indices of points, `corners` for each cell
+
+  [[nodiscard]] int corners() const { return points.rows() == 2 ? 2 : 4; }
+};
+
 /// A rigid body seen from a point of space: how far its surface is, which way is out, and how it moves. Gaps and
 /// normals are those at t = 0; an obstacle may translate, and turn in ways that leave its surface what it is. The
 /// normal is the derivative of the gap.
@@ -30,9 +40,13 @@ class Obstacle {
   [[nodiscard]] virtual bool moves() const = 0;
   /// Displacement of the obstacle as a whole since t = 0: the gap at t is that of position − translation(t) at 0.
   [[nodiscard]] virtual SpaceVector translation(double time) const = 0;
-  /// For pictures: points of the surface at a time (d × count), in order along it in 2D, the corners of quadrilaterals
-  /// in 3D (four after each other), as far as `radius` around the point of the surface nearest to `centre`.
-  [[nodiscard]] virtual Points surface(const Vector& centre, double radius, double time) const = 0;
+  /// For pictures: the surface at t = 0, as far as `radius` around its point nearest to `centre`.
+  [[nodiscard]] virtual ObstacleSurface surface(const Vector& centre, double radius) const = 0;
+  /// For pictures: where points of `surface` are shown at a time. They go with the obstacle, if it does not say
+  /// otherwise: those of a plane stay beside the body when the plane moves along itself, and turn with a turntable.
+  [[nodiscard]] virtual Points surface_points(const Points& at_start, double time) const {
+    return at_start.colwise() + Vector(translation(time));
+  }
   /// Velocity of the obstacle's material at a position of its surface: v + ω × (position − its point at that time).
   [[nodiscard]] virtual SpaceVector surface_velocity(const SpaceVector& position, double time) const = 0;
 };

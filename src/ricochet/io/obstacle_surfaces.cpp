@@ -18,39 +18,46 @@ ObstacleSurfaces::ObstacleSurfaces(const SemidiscreteProblem& problem) {
     if (std::find(obstacles_.begin(), obstacles_.end(), obstacle) == obstacles_.end()) obstacles_.push_back(obstacle);
   }
   const Vector lowest = problem.nodes.rowwise().minCoeff(), highest = problem.nodes.rowwise().maxCoeff();
-  centre_ = 0.5 * (lowest + highest);
-  radius_ = reach * (highest - lowest).norm();
+  const Vector centre = 0.5 * (lowest + highest);
+  const double radius = reach * (highest - lowest).norm();
+  std::string cells, numbers;
+  Index points = 0, count = 0;
+  int corners = 2;
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    const ObstacleSurface surface = obstacles_[i]->surface(centre, radius);
+    corners = surface.corners();
+    for (const int corner : surface.cells) cells += fmt::format("{} ", points + corner);
+    const auto own = static_cast<Index>(surface.cells.size()) / corners;
+    for (Index k = 0; k < own; ++k) numbers += fmt::format("{} ", i);
+    count += own;
+    points += surface.points.cols();
+    points_.push_back(surface.points);
+  }
+  topology_ = fmt::format(
+      "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\"><DataItem Format=\"XML\" "
+      "NumberType=\"Int\" Precision=\"4\" Dimensions=\"{} {}\">{}</DataItem></Topology>\n",
+      corners == 2 ? "Polyline" : "Quadrilateral", count, corners, count, corners, cells);
+  numbers_ = fmt::format(
+      "        <Attribute Name=\"obstacle\" AttributeType=\"Scalar\" Center=\"Cell\"><DataItem Format=\"XML\" "
+      "NumberType=\"Int\" Precision=\"4\" Dimensions=\"{}\">{}</DataItem></Attribute>\n",
+      count, numbers);
 }
 
 std::string ObstacleSurfaces::grid(double time) const {
-  std::string cells, numbers, positions;
-  Index points = 0, count = 0, corners = 2;
+  std::string positions;
+  Index count = 0;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    const Points surface = obstacles_[i]->surface(centre_, radius_, time);
-    corners = surface.rows() == 2 ? 2 : 4;
-    for (Index k = 0; k < surface.cols(); ++k) {
-      positions += fmt::format("{:.17g} {:.17g} {:.17g}\n", surface(0, k), surface(1, k),
-                               surface.rows() == 3 ? surface(2, k) : 0.0);
-    }
-    // In the plane a line from point to point, in space one quadrilateral after the other.
-    const Index step = corners == 2 ? 1 : 4;
-    for (Index k = 0; k + corners <= surface.cols(); k += step) {
-      for (Index c = 0; c < corners; ++c) cells += fmt::format("{} ", points + k + c);
-      numbers += fmt::format("{} ", i);
-      ++count;
-    }
-    points += surface.cols();
+    const Points points = obstacles_[i]->surface_points(points_[i], time);
+    count += points.cols();
+    // Digits for a picture, in each frame again.
+    for (const auto point : points.colwise())
+      positions += fmt::format("{:.9g} {:.9g} {:.9g}\n", point[0], point[1], point.size() == 3 ? point[2] : 0.0);
   }
   return fmt::format(
-      "      <Grid Name=\"obstacles\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n"
-      "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\"><DataItem Format=\"XML\" "
-      "NumberType=\"Int\" Precision=\"4\" Dimensions=\"{} {}\">{}</DataItem></Topology>\n"
+      "      <Grid Name=\"obstacles\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n{}"
       "        <Geometry GeometryType=\"XYZ\"><DataItem Format=\"XML\" NumberType=\"Float\" Precision=\"8\" "
-      "Dimensions=\"{} 3\">\n{}</DataItem></Geometry>\n"
-      "        <Attribute Name=\"obstacle\" AttributeType=\"Scalar\" Center=\"Cell\"><DataItem Format=\"XML\" "
-      "NumberType=\"Int\" Precision=\"4\" Dimensions=\"{}\">{}</DataItem></Attribute>\n      </Grid>\n",
-      time, corners == 2 ? "Polyline" : "Quadrilateral", count, corners, count, corners, cells, points, positions,
-      count, numbers);
+      "Dimensions=\"{} 3\">\n{}</DataItem></Geometry>\n{}      </Grid>\n",
+      time, topology_, count, positions, numbers_);
 }
 
 }  // namespace ricochet

@@ -8,9 +8,10 @@
 /// @file The surfaces of the obstacles as XDMF shows them beside the body.
 namespace ricochet {
 
+/// Made once, around the body at the start, and then moved: cells and their points are the same in all frames.
 class ObstacleSurfaces {
  public:
-  /// Keeps a reference.
+  /// Keeps references to the obstacles.
   explicit ObstacleSurfaces(const SemidiscreteProblem& problem);
 
   [[nodiscard]] bool any() const { return !obstacles_.empty(); }
@@ -19,8 +20,8 @@ class ObstacleSurfaces {
 
  private:
   std::vector<const Obstacle*> obstacles_;  ///< each once
-  Vector centre_;                           ///< of the box around the body
-  double radius_ = 0.0;
+  std::vector<Points> points_;              ///< of each, at t = 0
+  std::string topology_, numbers_;          ///< of the cells and their obstacles, as they stand in each grid
 };
 
 }  // namespace ricochet

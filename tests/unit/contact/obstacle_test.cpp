@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -78,21 +80,88 @@ TEST_P(Obstacles, HaveGapsThatAreDistances) {
   }
 }
 
-/// Surfaces for pictures lie on the obstacle, which has moved by then.
+/// Surfaces for pictures lie on the obstacle, also after it has moved.
 TEST_P(Obstacles, HaveSurfacesWhereTheyAre) {
   const auto obstacle = make();
   constexpr double time = 0.5;
   const SpaceVector moved = obstacle->translation(time);
   EXPECT_TRUE(obstacle->moves());
   EXPECT_GT(moved.norm(), 0.1);
-  const Points surface = obstacle->surface(random_point(), 0.3, time);
-  ASSERT_GT(surface.cols(), 1);
-  for (Index k = 0; k < surface.cols(); ++k)
-    EXPECT_NEAR(obstacle->gap(SpaceVector(surface.col(k)) - moved), 0.0, 1e-14);
+  const Points start = obstacle->surface(random_point(), 0.3).points;
+  const Points later = obstacle->surface_points(start, time);
+  ASSERT_GT(start.cols(), 1);
+  ASSERT_EQ(later.cols(), start.cols());
+  EXPECT_LT((obstacle->surface_points(start, 0.0) - start).cwiseAbs().maxCoeff(), 1e-14);
+  for (Index k = 0; k < start.cols(); ++k) {
+    EXPECT_NEAR(obstacle->gap(SpaceVector(start.col(k))), 0.0, 1e-14);
+    EXPECT_NEAR(obstacle->gap(SpaceVector(later.col(k)) - moved), 0.0, 1e-14);
+    // The picture keeps its size.
+    EXPECT_NEAR((later.col(k) - later.col(0)).norm(), (start.col(k) - start.col(0)).norm(), 1e-14);
+  }
   // What the material does, the surface does along its normal.
-  const Vector foot = surface.col(0);
+  const Vector foot = later.col(0);
   const Vector normal = obstacle->normal(foot - moved);
   EXPECT_NEAR(obstacle->surface_velocity(foot, time).dot(normal), moved.dot(normal) / time, 1e-14);
+  const Vector way = later.col(0) - start.col(0);
+  EXPECT_NEAR(way.dot(normal), moved.dot(normal), 1e-14);
+}
+
+/// The cells' sides tell where the obstacle is, and what they share is there once.
+TEST_P(Obstacles, HaveSurfacesThatFaceOut) {
+  const auto obstacle = make();
+  // A part, and all that there is.
+  for (const double radius : {0.1, 3.0}) {
+    const ObstacleSurface surface = obstacle->surface(random_point(), radius);
+    const auto corners = static_cast<std::size_t>(surface.corners());
+    ASSERT_EQ(corners, dimension() == 2 ? 2U : 4U);
+    ASSERT_EQ(surface.cells.size() % corners, 0U);
+    std::vector<int> uses(static_cast<std::size_t>(surface.points.cols()), 0);
+    for (std::size_t c = 0; c < surface.cells.size(); c += corners) {
+      std::vector<Vector> at;
+      for (std::size_t k = c; k < c + corners; ++k) {
+        ASSERT_GE(surface.cells[k], 0);
+        ASSERT_LT(surface.cells[k], surface.points.cols());
+        ++uses[static_cast<std::size_t>(surface.cells[k])];
+        at.emplace_back(surface.points.col(surface.cells[k]));
+      }
+      if (dimension() == 2) {
+        const Vector along = at[1] - at[0], middle = 0.5 * (at[0] + at[1]);
+        const Eigen::Vector2d left(-along[1], along[0]);
+        EXPECT_NEAR(left.dot(Eigen::Vector2d(obstacle->normal(middle))), along.norm(), 1e-12);
+        EXPECT_EQ(surface.cells[c], c > 0 ? surface.cells[c - 1] : 0);
+      } else {
+        const Eigen::Vector3d one = at[2] - at[0], other = at[3] - at[1], area = one.cross(other);
+        const Vector middle = 0.25 * (at[0] + at[1] + at[2] + at[3]);
+        EXPECT_GT(area.dot(Eigen::Vector3d(obstacle->normal(middle))), 0.99 * area.norm());
+        EXPECT_GT(area.norm(), 0.0);
+      }
+    }
+    EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 0);
+    // One more than cells at a pole or an end, not four for each cell.
+    const auto cells = static_cast<Index>(surface.cells.size() / corners);
+    EXPECT_LE(surface.points.cols(), obstacle->is_flat() ? 4 : cells + 1);
+    for (Index i = 0; i < surface.points.cols(); ++i) {
+      for (Index k = 0; k < i && dimension() == 3; ++k)
+        ASSERT_GT((surface.points.col(i) - surface.points.col(k)).lpNorm<1>(), 1e-9) << i << " is " << k << " again";
+    }
+  }
+}
+
+/// Planes are shown beside the body when they move along themselves, and turn; spheres go with what moves them.
+TEST(Obstacle, IsShownWhereItCanBeSeen) {
+  const auto plane = placed("plane", 3);
+  const ObstacleSurface square = plane->surface(Vector::Zero(3), 0.3);
+  const Points later = plane->surface_points(square.points, 0.5);
+  const Vector start_middle = square.points.rowwise().mean(), middle = later.rowwise().mean();
+  const Vector normal = plane->normal(middle);
+  EXPECT_NEAR((middle - start_middle).norm(), std::abs(plane->translation(0.5).dot(normal)), 1e-15);
+  const Vector before = square.points.col(0) - start_middle, after = later.col(0) - middle;
+  EXPECT_NEAR(before.dot(after), std::cos(0.7 * 0.5) * before.squaredNorm(), 1e-15);
+
+  const auto sphere = placed("sphere", 3);
+  const ObstacleSurface cap = sphere->surface(Vector::Zero(3), 0.3);
+  const Points moved = sphere->surface_points(cap.points, 0.5);
+  EXPECT_LT(((moved - cap.points).colwise() - Vector(sphere->translation(0.5))).cwiseAbs().maxCoeff(), 1e-15);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Obstacles, testing::ValuesIn([] {

@@ -40,25 +40,30 @@ class Plane final : public Obstacle {
   [[nodiscard]] bool is_flat() const override { return true; }
   [[nodiscard]] bool moves() const override { return rotation_rate_ != 0.0 || !velocity_.isZero(0.0); }
   [[nodiscard]] SpaceVector translation(double time) const override { return time * velocity_; }
-  /// What moves along the plane is not seen, what turns is.
-  [[nodiscard]] Points surface(const Vector& centre, double radius, double time) const override {
-    const Vector lift = translation(time).dot(normal_) * normal_;
-    const Vector middle = centre - gap(centre) * normal_ + lift;
+  [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override {
+    const Vector middle = centre - gap(centre) * normal_;
     if (normal_.size() == 2) {
       const Eigen::Vector2d along(normal_[1], -normal_[0]);
       Points ends(2, 2);
       ends << middle - radius * along, middle + radius * along;
-      return ends;
+      return {ends, {0, 1}};
     }
     const Eigen::Vector3d axis = normal_;
-    const Eigen::Vector3d first = Eigen::AngleAxisd(rotation_rate_ * time, axis) * axis.unitOrthogonal().eval();
-    const Eigen::Vector3d second = axis.cross(first);
+    const Eigen::Vector3d first = axis.unitOrthogonal(), second = axis.cross(first);
     Points corners(3, 4);
     for (int k = 0; k < 4; ++k) {
       const double a = k == 0 || k == 3 ? -radius : radius, b = k < 2 ? -radius : radius;
       corners.col(k) = Eigen::Vector3d(middle) + a * first + b * second;
     }
-    return corners;
+    return {corners, {0, 1, 2, 3}};
+  }
+  /// What moves along the plane is not seen, what turns is.
+  [[nodiscard]] Points surface_points(const Points& at_start, double time) const override {
+    const Vector lift = translation(time).dot(normal_) * normal_;
+    if (rotation_rate_ == 0.0) return at_start.colwise() + lift;
+    const Eigen::Vector3d middle = at_start.rowwise().mean();
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(rotation_rate_ * time, Eigen::Vector3d(normal_)).toRotationMatrix();
+    return (turn * (at_start.colwise() - middle)).colwise() + (middle + Eigen::Vector3d(lift));
   }
   [[nodiscard]] SpaceVector surface_velocity(const SpaceVector& position, double time) const override {
     if (rotation_rate_ == 0.0) return velocity_;

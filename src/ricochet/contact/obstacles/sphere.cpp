@@ -11,6 +11,9 @@ namespace ricochet {
 
 namespace {
 
+/// Of the rings of a sphere's picture.
+constexpr int sectors = 48;
+
 /// A ball that bodies stay outside of, gap |x − o| − R, or a hollow that they stay inside of, gap R − |x − o|. In the
 /// plane a disc and a round hole.
 class Sphere final : public Obstacle {
@@ -39,45 +42,48 @@ class Sphere final : public Obstacle {
 
   /// An arc, or a cap of quadrilaterals, around the point nearest to `centre`; wider than asked for, since bodies slide
   /// and roll on it. The obstacle is to the right of the arc, and behind the quadrilaterals.
-  [[nodiscard]] Points surface(const Vector& centre, double radius, double time) const override {
-    const SpaceVector middle = centre_ + translation(time);
-    const SpaceVector towards = sign_ * normal(centre - translation(time));
+  [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override {
+    const SpaceVector towards = sign_ * normal(centre);
     const bool in_plane = towards.size() == 2;
     const double angle = std::min((in_plane ? 20.0 : 4.0) * radius / radius_, std::numbers::pi);
-    // Chords whose sagitta is small beside the body.
-    const double chord = std::min(std::sqrt(0.04 * radius / radius_), 0.1);
+    // Chords whose sagitta is small beside the body; rings no wider than sectors are at the equator.
+    const double widest = in_plane ? 0.1 : 2.0 * std::numbers::pi / sectors;
+    const double chord = std::min(std::sqrt(0.04 * radius / radius_), widest);
     const int pieces = std::clamp(static_cast<int>(std::ceil(angle / chord)), 8, in_plane ? 256 : 32);
-    return in_plane ? arc(middle, towards, angle, pieces) : cap(middle, towards, angle, pieces);
+    return in_plane ? arc(towards, angle, pieces) : cap(towards, angle, pieces);
   }
 
  private:
-  [[nodiscard]] Points arc(const Eigen::Vector2d& middle, const Eigen::Vector2d& towards, double angle,
-                           int pieces) const {
-    Points result(2, 2 * pieces + 1);
+  [[nodiscard]] ObstacleSurface arc(const Eigen::Vector2d& towards, double angle, int pieces) const {
+    const Eigen::Vector2d middle = centre_;
+    ObstacleSurface result{Points(2, 2 * pieces + 1), {}};
     for (int k = 0; k <= 2 * pieces; ++k) {
       const double turned = -sign_ * angle * (static_cast<double>(k) / pieces - 1.0);
-      result.col(k) = middle + radius_ * (Eigen::Rotation2Dd(turned) * towards);
+      result.points.col(k) = middle + radius_ * (Eigen::Rotation2Dd(turned) * towards);
+      if (k > 0) result.cells.insert(result.cells.end(), {k - 1, k});
     }
     return result;
   }
 
-  [[nodiscard]] Points cap(const Eigen::Vector3d& middle, const Eigen::Vector3d& towards, double angle,
-                           int rings) const {
-    constexpr int sectors = 48;
-    const Eigen::Vector3d first = towards.unitOrthogonal(), second = sign_ * towards.cross(first);
-    const auto at = [&](int ring, int sector) -> Eigen::Vector3d {
-      const double polar = angle * ring / rings, around = 2.0 * std::numbers::pi * sector / sectors;
-      return middle + radius_ * (std::cos(polar) * towards +
-                                 std::sin(polar) * (std::cos(around) * first + std::sin(around) * second));
+  /// Rings around the pole at `towards`; those of a whole sphere end at the other pole.
+  [[nodiscard]] ObstacleSurface cap(const Eigen::Vector3d& towards, double angle, int rings) const {
+    const bool is_whole = angle >= std::numbers::pi;
+    const Eigen::Vector3d middle = centre_, first = towards.unitOrthogonal(), second = sign_ * towards.cross(first);
+    const auto index = [&](int ring, int sector) {
+      if (ring == 0) return 0;
+      return 1 + sectors * (ring - 1) + (is_whole && ring == rings ? 0 : sector % sectors);
     };
-    Points result(3, 4 * rings * sectors);
-    Index corner = 0;
-    for (int ring = 0; ring < rings; ++ring) {
+    ObstacleSurface result{Points(3, index(rings, sectors - 1) + 1), {}};
+    for (int ring = 0; ring <= rings; ++ring) {
       for (int sector = 0; sector < sectors; ++sector) {
-        result.col(corner++) = at(ring, sector);
-        result.col(corner++) = at(ring + 1, sector);
-        result.col(corner++) = at(ring + 1, sector + 1);
-        result.col(corner++) = at(ring, sector + 1);
+        const double polar = angle * ring / rings, around = 2.0 * std::numbers::pi * sector / sectors;
+        result.points.col(index(ring, sector)) =
+            middle + radius_ * (std::cos(polar) * towards +
+                                std::sin(polar) * (std::cos(around) * first + std::sin(around) * second));
+        if (ring == rings) continue;
+        for (const int corner :
+             {index(ring, sector), index(ring + 1, sector), index(ring + 1, sector + 1), index(ring, sector + 1)})
+          result.cells.push_back(corner);
       }
     }
     return result;
