@@ -9,7 +9,7 @@ import unittest
 import h5py
 import numpy
 
-from harness import DISC, PROGRAM, SOURCE, History, TestCase, block_case
+from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, body_case, with_sphere
 from report_page import SHORT, VIEWER, Page, ReportTestCase
 
 
@@ -181,8 +181,50 @@ class Report(ReportTestCase):
         results = self.simulate(case, "out", {"time.end": 0.1, "output.fields_every": 2})
         self.report(results)
         (data,) = (page := Page(results / "report.html")).runs
-        heights = page.reals(data["obstacles"]["positions"])[:, 1]
-        numpy.testing.assert_allclose(heights, 0.5 * numpy.array(data["obstacles"]["times"]), atol=1e-12)
+        obstacles = data["obstacles"]
+        times = numpy.array(obstacles["times"])
+        self.assertGreater(len(times), 2)
+        numpy.testing.assert_allclose(page.reals(obstacles["positions"])[:, 1::3], [[0.0, 0.0]], atol=1e-12)
+        offsets = page.reals(obstacles["offsets"])
+        numpy.testing.assert_allclose(offsets, numpy.outer(times, [0.0, 0.5, 0.0]), atol=1e-9)
+
+    def test_a_sphere_in_space_that_moves(self):
+        """Its surface is in the page once, and how far it is from there in each frame."""
+        velocity = [0.5, -0.25, 2.0]
+        text = with_sphere(body_case(MESHES / "tetrahedron_o1_msh41_binary.msh", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], ""),
+                           [0.7, 0.5, -1.5], 1.2, velocity)
+        results = self.simulate(self.write("case.toml", text), "out", {"time.end": 0.1, "output.fields_every": 1})
+        self.report(results)
+        (data,) = (page := Page(results / "report.html")).runs
+        obstacles = data["obstacles"]
+        frames = len(data["body"]["times"])
+        self.assertGreater(frames, 10)
+        self.assertEqual(obstacles["times"], data["body"]["times"])
+        positions = page.reals(obstacles["positions"])
+        self.assertEqual(len(positions), 1)
+        distances = numpy.linalg.norm(positions.reshape(-1, 3) - [0.7, 0.5, -1.5], axis=1)
+        numpy.testing.assert_allclose(distances, 1.2, rtol=1e-8)
+        cells = page.indices(obstacles["cells"])
+        self.assertEqual((cells.min(), cells.max()), (0, positions.size // 3 - 1))
+        self.assertEqual(page.indices(obstacles["obstacle"]).tolist(), [0] * (len(cells) // 4))
+        numpy.testing.assert_allclose(page.reals(obstacles["offsets"]), numpy.outer(obstacles["times"], velocity), atol=1e-8)
+        packed = sum(len(page.blobs[obstacles[part]["blob"]]) for part in ("positions", "cells", "obstacle", "offsets"))
+        self.assertLess(packed, 80_000, "unpacked, of all frames")
+
+    def test_a_turntable(self):
+        """What turns is at other places in each frame."""
+        text = body_case(MESHES / "tetrahedron_o1_msh41_binary.msh", [0.0, 0.0, -0.1], [0.0, 0.0, 1.0], "").replace(
+            "normal = [0.0, 0.0, 1.0]", "normal = [0.0, 0.0, 1.0]\nrotation_rate = 3.0")
+        results = self.simulate(self.write("case.toml", text), "out", {"time.end": 0.1, "output.fields_every": 2})
+        self.report(results)
+        (data,) = (page := Page(results / "report.html")).runs
+        obstacles = data["obstacles"]
+        self.assertIsNone(obstacles["offsets"])
+        corners = page.reals(obstacles["positions"]).reshape(len(obstacles["times"]), 4, 3)
+        directions = corners - corners.mean(axis=1, keepdims=True)
+        numpy.testing.assert_allclose(corners[:, :, 2], -0.1, rtol=1e-8)
+        angles = numpy.unwrap(numpy.arctan2(directions[:, 0, 1], directions[:, 0, 0]))
+        numpy.testing.assert_allclose(angles - angles[0], 3.0 * numpy.array(obstacles["times"]), atol=1e-7)
 
     def test_large_runs_are_thinned_and_it_is_said(self):
         results = self.simulate(DISC, "disc", {"output.fields_every": 1})

@@ -63,7 +63,7 @@ class ReportWords(ReportTestCase):
 
     def test_a_viewer_of_another_version(self):
         results = self.simulate(DISC, "disc", SHORT)
-        self.viewer.write_text(VIEWER.replace("format 4", "format 1"))
+        self.viewer.write_text(VIEWER.replace("format 5", "format 1"))
         self.assertIn("is not the viewer of this version: build or install", self.report(results, status=4).stderr)
 
     def test_titles_end_nothing(self):

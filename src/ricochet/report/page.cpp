@@ -15,6 +15,7 @@
 #include "ricochet/report/body_part.hpp"
 #include "ricochet/report/history_part.hpp"
 #include "ricochet/report/judgement.hpp"
+#include "ricochet/report/obstacle_part.hpp"
 #include "ricochet/version.hpp"
 
 namespace ricochet {
@@ -25,7 +26,7 @@ namespace {
 constexpr std::string_view data_begin = "<script type=\"application/json\" id=\"ricochet-runs\">";
 constexpr std::string_view data_place = "<!--RICOCHET-DATA-->", report_mark = "<!-- ricochet report -->";
 /// Of the data; the viewer's page begins with the one that it reads.
-constexpr int data_format = 4;
+constexpr int data_format = 5;
 /// Of all bodies together, but for each as many as may be had at any rate.
 constexpr Index most_triangles = 200'000, always_triangles = 20'000;
 
@@ -46,6 +47,15 @@ Json to_json(const PackedArray& array) {
       json["step"] = array.step;
   }
   return json;
+}
+
+Json to_json(const ObstaclePart& part) {
+  return {{"corners", part.corners},
+          {"cells", to_json(part.cells)},
+          {"obstacle", to_json(part.obstacle)},
+          {"times", part.times},
+          {"positions", to_json(part.positions)},
+          {"offsets", part.offsets ? to_json(*part.offsets) : Json(nullptr)}};
 }
 
 /// What is not finite is a word: null is what there is nothing to say of.
@@ -137,26 +147,6 @@ Json to_json(const BodyPart& part, const ResultsReader& results) {
   return json;
 }
 
-/// Cells do not change; positions have one row where they do not either.
-Json obstacles_of(const RunData& run, PackedArrays& arrays) {
-  if (run.obstacles.empty()) return nullptr;
-  const ObstacleFrame& first = run.obstacles.front();
-  const bool moves = std::any_of(run.obstacles.begin(), run.obstacles.end(),
-                                 [&](const ObstacleFrame& f) { return f.positions != first.positions; });
-  std::vector<double> positions, times;
-  for (const ObstacleFrame& frame : run.obstacles) {
-    if (frame.positions.size() != first.positions.size() || (!moves && !times.empty())) continue;
-    times.push_back(frame.time);
-    positions.insert(positions.end(), frame.positions.begin(), frame.positions.end());
-  }
-  return {{"corners", first.corners},
-          {"cells", first.cells},
-          {"obstacle", first.obstacle},
-          {"times", times},
-          {"positions", to_json(arrays.add_reals(positions, static_cast<Index>(times.size()),
-                                                 static_cast<Index>(first.positions.size())))}};
-}
-
 class PageBuilder {
  public:
   PageBuilder(std::vector<RunData> runs, std::size_t most_bytes) : runs_(std::move(runs)), most_bytes_(most_bytes) {}
@@ -209,7 +199,7 @@ Json PageBuilder::start(const RunData& run, std::size_t number) {
              "small; history.csv has all {}",
              history.rows_per_pair, run.column("time").size()));
   }
-  json["obstacles"] = obstacles_of(run, arrays_);
+  json["obstacles"] = run.obstacles.empty() ? Json(nullptr) : to_json(pack_obstacles(run.obstacles, arrays_));
   return json;
 }
 

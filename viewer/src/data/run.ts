@@ -66,9 +66,13 @@ export interface Volume {
 
 export interface Obstacles {
   corners: number;
-  cells: number[];
+  cells: Int32Array;
+  /** Of each cell, from 0. */
+  obstacle: Int32Array;
   times: number[];
   positions: Float64Array;
+  /** Three numbers for each obstacle and time, where obstacles only translate: there is one row of positions then. */
+  offsets: Float64Array | null;
 }
 
 export class Run {
@@ -150,8 +154,15 @@ export class Run {
       });
     }
     if (this.data.obstacles) {
-      const { corners, cells, times, positions } = this.data.obstacles;
-      this.obstacles = { corners, cells, times, positions: await this.reals(positions) };
+      const { corners, cells, obstacle, times, positions, offsets } = this.data.obstacles;
+      this.obstacles = {
+        corners,
+        cells: await this.indices(cells),
+        obstacle: await this.indices(obstacle),
+        times,
+        positions: await this.reals(positions),
+        offsets: offsets && (await this.reals(offsets)),
+      };
     }
   }
 
@@ -231,7 +242,7 @@ export function readPage(): Run[] {
   const text = document.getElementById("ricochet-runs")?.textContent;
   if (!text) throw new Error("this is the empty viewer: `ricochet report` puts runs into it");
   const page = JSON.parse(text) as PageData;
-  if (page.format !== 4) throw new Error(`this viewer does not read format ${page.format}`);
+  if (page.format !== 5) throw new Error(`this viewer does not read format ${page.format}`);
   const blobs = new Blobs();
   return page.runs.map((run, number) => new Run(number, { ...run, judgement: withNumbers(run.judgement) }, blobs));
 }

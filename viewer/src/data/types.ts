@@ -87,10 +87,14 @@ export interface VolumeData {
 
 export interface ObstacleData {
   corners: number;
-  cells: number[];
-  obstacle: number[];
+  cells: PackedArray;
+  /** Of each cell, from 0. */
+  obstacle: PackedArray;
   times: number[];
+  /** One row where obstacles stand or only translate, else one for each time. */
   positions: PackedArray;
+  /** From the one row of positions, three numbers for each obstacle; null: nothing moves, or something turns. */
+  offsets: PackedArray | null;
 }
 
 export interface CheckOutcome {
@@ -213,7 +217,7 @@ export interface RunData {
 }
 
 export interface PageData {
-  format: 4;
+  format: 5;
   version: string;
   runs: RunData[];
 }
