@@ -6,9 +6,10 @@ import unittest
 import numpy
 
 from fclib_problem import ContactTestCase, Problem, by_point
-from harness import DISC, SOURCE, block_case, run, settings
+from harness import DISC, SOURCE, History, block_case, run, settings
 
 OBLIQUE = SOURCE / "cases" / "oblique" / "oblique.toml"
+BOWL = SOURCE / "cases" / "bowl" / "bowl.toml"
 BALL = SOURCE / "cases" / "ball-spin" / "ball-spin.toml"
 
 
@@ -76,6 +77,21 @@ class Exports(ContactTestCase):
         files, _, counts = self.check_export(BALL, "170,186", {"time.end": 0.04}, 3)
         self.assertEqual(len(files), 2)
         self.assertGreater(counts["slip"] + counts["stick"], 0)
+
+    def test_export_on_a_curved_obstacle(self):
+        """A step takes tangent planes several times: the problem is that of the last, which the history's force is of."""
+        output, _ = self.export(BOWL, "1:20", {"time.end": 0.002})
+        files = sorted(path.name for path in (output / "contact").iterdir())
+        self.assertEqual(files, [f"step-{step:06d}.hdf5" for step in range(1, 21)])
+        history = History(output / "history.csv")
+        for name in files:
+            problem = Problem(output / "contact" / name)
+            self.check_law(problem, problem.solution)
+            rn, _ = by_point(problem.solution["r"], 2)
+            row = [int(step) for step in history["step"]].index(int(name[5:11]))
+            force = (history["contact_force_x"][row] ** 2 + history["contact_force_y"][row] ** 2) ** 0.5
+            # The normals of the points differ by an angle of the block's size over the radius.
+            self.assertAlmostEqual(rn.sum(), force, delta=1e-5 * force + 1e-9)
 
     def test_forces_and_provenance(self):
         """Reactions are the forces of the history, in its units; the texts say where the problem comes from."""

@@ -4,7 +4,7 @@ import json
 import re
 import unittest
 
-from harness import TestCase, block_case, run
+from harness import TestCase, block_case, run, settings
 
 SUPPORT = '[[support]]\ngroup = "sides"\ncomponents = ["x"]\nvalue = "{}"\n'
 
@@ -50,6 +50,28 @@ class Warnings(TestCase):
         self.assertRegex(told, rf"case.toml:{text[:text.index('parameters')].count(chr(10)) + 1}:\d+: no formula")
         told = self.expect_status(0, run("validate", case, "--set", "initial.parameters.speed=8")).stderr
         self.assertIn('the parameter "speed"', told)
+
+    def test_balls_that_nodes_or_steps_may_miss(self):
+        def told(radius, side="outside", **values):
+            ball = f'type = "sphere"\ncentre = [0.5, {-radius if side == "outside" else radius}]\nradius = {radius}\nside = "{side}"'
+            plane = 'type = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]'
+            self.assertIn(plane, block_case())
+            case = self.write("ball.toml", block_case().replace(plane, ball))
+            return run("run", case, "-o", self.folder / "ball", "--force", "--quiet", "--set", "time.end=0.01",
+                       *settings(values)).stderr
+
+        between, past = "can go in between them unseen", "can be past it without having touched"
+        self.assertIn(between, told(0.01))
+        self.assertNotIn(between, told(5.0))
+        self.assertNotIn(between, told(1.5, side="inside"))
+        fast = {"initial.velocity": "[0.0,-600.0]"}
+        self.assertIn(past, told(5.0, **fast))
+        self.assertNotIn(past, told(50.0, **fast))
+        self.assertNotIn(past, told(5.0, **fast, **{"obstacle.floor.velocity": "[0.0,-600.0]"}))
+        # Of gaps that are differences of large numbers nothing is left.
+        for radius, refused in ((1e12, True), (1e4, False)):
+            said = told(radius)
+            self.assertEqual("ball.toml:9:1: gaps to obstacle \"floor\" are rounded to" in said, refused, said)
 
     def test_strains_that_are_not_small(self):
         # A uniform strain e along y has the equivalent strain sqrt(2/3 e:e) = 2/3 e, the largest of the motion that it starts.

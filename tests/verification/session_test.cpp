@@ -123,6 +123,32 @@ TEST_F(SessionTest, ResumesWithTheLoadThatWasSet) {
   EXPECT_EQ(second.state().displacement, whole.state().displacement);
 }
 
+/// A program that has seen enough leaves a run that is interrupted, not one that is done, and that can go on.
+TEST_F(SessionTest, LeavesAnInterruptedRunWhereItEndsEarly) {
+  const std::vector<std::string> changes{"time.end=0.5"};
+  Session first(path_, changes);
+  const RunOptions options{.output_directory = directory_ + "-early", .force = true, .quiet = true};
+  first.write_to(options);
+  for (int k = 0; k < 7; ++k) ASSERT_TRUE(first.step());
+  const RunSummary early = first.finish();
+  EXPECT_EQ(early.status, "interrupted");
+  EXPECT_EQ(early.steps, 7);
+  EXPECT_EQ(early.checkpoint_step, 7);
+  EXPECT_TRUE(early.expectations.empty());
+  EXPECT_EQ(read_history(options.output_directory + "/history.csv").columns.at("time").size(), 8U);
+
+  RunOptions resume = options;
+  resume.force = false;
+  resume.resume = true;
+  Session second(path_, changes), whole(path_, changes);
+  second.write_to(resume);
+  EXPECT_EQ(second.state().step, 7);
+  while (second.state().step < second.steps()) ASSERT_TRUE(second.step());
+  EXPECT_EQ(second.finish().status, "done") << "all steps were taken, though step() has not said so";
+  whole.run();
+  EXPECT_EQ(second.state().displacement, whole.state().displacement);
+}
+
 TEST_F(SessionTest, RefusesWhatDoesNotFitTogether) {
   Session session(path_, {"time.end=0.2"});
   EXPECT_THROW((void)session.finish(), Error);

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "ricochet/base/log.hpp"
+#include "ricochet/run/run_case.hpp"
 #include "support/case_run.hpp"
 
 /// @file Curved obstacles: a small block that slides in a bowl is a point mass on a circle.
@@ -126,6 +129,64 @@ TEST(Sphere, ABlockSwingsInABowlWithThePeriodOfItsPointMass) {
   // Small strain makes a body that turns larger: an error of the size of the block.
   EXPECT_LE(errors[1], 1e-3);
   EXPECT_NEAR(errors[0] / errors[1], 2.0, 0.3);
+}
+
+/// A disc of radius 0.01 at the centre of a sphere.
+std::string disc_case(const std::string& radius, const std::string& side, double end) {
+  const std::string geometry =
+      "Disk(1) = {0, 0, 0, 0.01}; Physical Surface(\"disc\") = {1}; Physical Curve(\"skin\") = {1};";
+  return "[mesh]\nfile = \"" + mesh_geometry("disc", geometry, 0.003, 1) + R"("
+[[material]]
+group = "disc"
+density = 1000
+young = 1e8
+poisson = 0.3
+[obstacle.hollow]
+type = "sphere"
+centre = [0, 0]
+radius = )" +
+         radius + "\nside = \"" + side + R"("
+[[contact]]
+group = "skin"
+obstacle = "hollow"
+[initial]
+velocity = [1.0, -0.1]
+[time]
+scheme = "newmark"
+preset = "trapezoidal"
+step = 2e-4
+end = )" +
+         std::to_string(end) + "\n";
+}
+
+/// A disc in a hollow that is hardly larger, thrown so hard that its contact forces are stiffer than the step and
+/// rounds of tangent planes go away from one another: they are accelerated, and the conditions hold all the same.
+TEST(Sphere, ADiscThrownIntoATightHollowStaysInside) {
+  CaseRun run(disc_case("0.0105", "inside", 0.05));
+  double residual = 0.0, largest = 0.0, penetration = 0.0;
+  Vector gap;
+  run.run([&] {
+    EnergyAccount& account = run.simulation().account();
+    const Energies now = account.energies(run.state());
+    residual = std::max(residual, std::abs(account.residual(now)));
+    largest = std::max(largest, now.total());
+    run.problem().gaps(run.state().displacement, run.state().time, gap);
+    penetration = std::max(penetration, -gap.minCoeff());
+  });
+  EXPECT_EQ(run.state().step, 250);
+  EXPECT_LE(residual, 1e-10 * largest);
+  EXPECT_LE(penetration, 1e-15);
+}
+
+/// All nodes of its boundary touch, and none is inside: the body is.
+TEST(Sphere, ADiscThatFillsABallIsToldToBeInside) {
+  Session session(write_temporary("filled.toml", disc_case("0.01", "outside", 2e-4)));
+  const std::string output = testing::TempDir() + "filled";
+  (void)run_case(session, {.output_directory = output, .force = true, .quiet = true});
+  const auto& told = session.warnings();
+  EXPECT_TRUE(std::any_of(told.begin(), told.end(), [](const std::string& warning) {
+    return warning.find("the body is in the obstacle, not beside it") != std::string::npos;
+  }));
 }
 
 /// θ'' = −(g/l) sin θ − F sgn(θ') ((g/l) cos θ + θ'²): turning points, by Runge and Kutta's rule.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ class Obstacle {
   [[nodiscard]] virtual double gap_rounding(const SpaceVector& position) const = 0;
   /// The gap is a linear function of the position.
   [[nodiscard]] virtual bool is_flat() const = 0;
+  /// The least radius of curvature where it bulges towards bodies; infinite where it is flat or hollow.
+  [[nodiscard]] virtual double least_radius() const { return std::numeric_limits<double>::infinity(); }
   /// Whether its material moves at all.
   [[nodiscard]] virtual bool moves() const = 0;
   /// Displacement of the obstacle as a whole since t = 0: the gap at t is that of position − translation(t) at 0.

@@ -205,7 +205,8 @@ std::optional<Snapshot> newest_checkpoint(const std::string& directory) {
     try {
       return read_checkpoint(file.path);
     } catch (const Error& problem) {
-      log::warning(fmt::format("this checkpoint cannot be used, the one before is taken: {}", problem.what()));
+      log::warning(fmt::format("this checkpoint cannot be used{}: {}",
+                               &file != &files.back() ? ", the one before is taken" : "", problem.what()));
     }
   }
   return std::nullopt;

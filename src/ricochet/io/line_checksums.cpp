@@ -16,6 +16,8 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t most_blocks = 512;
+/// Of what a checkpoint may say.
+constexpr std::int64_t largest_sum = 0xffffffff, longest_block = std::int64_t{1} << 50;
 constexpr const char* file_suffix = ".lines.file";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& lines, bool windows) {
@@ -33,8 +35,8 @@ LineChecksums::LineChecksums() {
 }
 
 LineChecksums::LineChecksums(const Snapshot& snapshot, const std::string& name) : LineChecksums() {
-  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums", 0, 0xffffffff);
-  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths", 0, std::int64_t{1} << 50);
+  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums", 0, largest_sum);
+  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths", 0, longest_block);
   pieces_ = snapshot.integer(name + ".lines.pieces");
   pieces_per_block_ = snapshot.integer(name + ".lines.per_block");
   const auto count = static_cast<std::int64_t>(sums.size());
@@ -87,8 +89,8 @@ void LineChecksums::merge_blocks() {
 namespace {
 
 void require_same_file(const std::string& path, const Snapshot& snapshot, const std::string& name) {
-  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums");
-  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths");
+  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums", 0, largest_sum);
+  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths", 0, longest_block);
   std::int64_t length = 0, line = 1;
   for (const std::int64_t each : lengths) length += each;
   require_length(path, length);

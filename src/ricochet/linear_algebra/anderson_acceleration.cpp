@@ -6,8 +6,8 @@ namespace ricochet {
 
 namespace {
 
-/// Changes of the residual that differ by less from those before, relative to the largest, are rounding.
-constexpr double dependent = 1e-10;
+/// Directions of changes that differ by less are the same.
+constexpr double same_direction = 1e-10;
 
 void keep_newest(std::vector<Vector>& vectors, Vector newest, std::size_t most) {
   if (vectors.size() == most) vectors.erase(vectors.begin());
@@ -37,7 +37,12 @@ Vector AndersonAcceleration::next(const Vector& point, const Vector& image) {
   image_ = image;
   residual_ = residual;
   if (residual_changes_.empty()) return image;
-  const Vector weights = PivotedQr(as_columns(residual_changes_), dependent).solve(residual);
+  // Changes become smaller by orders of magnitude, the newest count most.
+  Matrix directions = as_columns(residual_changes_);
+  const Vector lengths = directions.colwise().norm().transpose();
+  for (Index k = 0; k < lengths.size(); ++k) directions.col(k) /= lengths[k] > 0.0 ? lengths[k] : 1.0;
+  Vector weights = LeastNormSolver(directions, same_direction).solve(residual);
+  for (Index k = 0; k < lengths.size(); ++k) weights[k] /= lengths[k] > 0.0 ? lengths[k] : 1.0;
   return image - as_columns(image_changes_) * weights;
 }
 

@@ -284,6 +284,7 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   const double assembly_seconds = timer.restart();
   add_loads(input, *model);
   add_initial_conditions(input, *model);
+  check_obstacles(input, *model);
   add_probes(input, *model);
   model->rotation = std::make_unique<RotationGauge>(model->body);
   model_seconds += timer.restart();

@@ -30,5 +30,7 @@ void assemble_operators(const Case& input, Model& model);
 void add_loads(const Case& input, Model& model);
 void add_initial_conditions(const Case& input, Model& model);
 void add_probes(const Case& input, Model& model);
+/// Refuses, or warns of, obstacles that gaps to cannot be found for, or that points and steps may miss.
+void check_obstacles(const Case& input, const Model& model);
 
 }  // namespace ricochet

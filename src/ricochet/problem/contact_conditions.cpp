@@ -106,21 +106,25 @@ void linearize_contact(const SemidiscreteProblem& problem, const Vector& increme
   take_slip(problem, motion.velocity, stage.obstacle.tangential, stage);
 }
 
-double linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution, Stage& stage,
-                           Vector& gap) {
+LinearizationError linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution, Stage& stage,
+                                       Vector& gap) {
   ContactMotion& motion = *stage.motion;
   motion.solution = motion.displacement + solution.increment;
   problem.gaps(motion.solution, motion.time, gap);
   stage.rows->normal_motion(solution.increment, motion.gap_change);
   problem.trace_rounding(solution.increment, motion.gap_change_rounding);
-  double error = -std::numeric_limits<double>::infinity();
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  LinearizationError error{none, none};
   for (Index i = 0; i < gap.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] == 0) continue;
     // What the solver leaves of the linear condition, it leaves whatever the rows are.
     const double beside = std::abs(gap[i] - (stage.gap_offset[i] + motion.gap_change[i]));
     const double wrong = solution.normal_reaction[i] > 0.0 ? beside : std::min(-gap[i], beside);
+    const double rounding = stage.gap_offset_rounding[i];
+    error.beyond_rounding = std::max(error.beyond_rounding, wrong - rounding);
     // Both gaps are rounded, and the increment's part is taken off and added again.
-    error = std::max(error, wrong - 2.0 * (stage.gap_offset_rounding[i] + motion.gap_change_rounding[i]));
+    error.beyond_all_rounding =
+        std::max(error.beyond_all_rounding, wrong - 2.0 * (rounding + motion.gap_change_rounding[i]));
   }
   return error;
 }

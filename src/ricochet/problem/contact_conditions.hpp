@@ -22,10 +22,13 @@ void require_friction(const SemidiscreteProblem& problem, const Vector& velocity
 
 /// For solvers: rows and offsets at the increment that the stage has given.
 void linearize_contact(const SemidiscreteProblem& problem, const Vector& increment, Stage& stage);
-/// The largest amount by which the gaps at this increment are not what the stage's rows say, beyond rounding: of points
-/// that carry a force and of those that penetrate. At most 0: the stage is solved, as exactly as its linear conditions
-/// are.
-[[nodiscard]] double linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution,
-                                         Stage& stage, Vector& gap);
+/// The largest amounts by which the gaps at this increment are not what the stage's rows say, of points that carry a
+/// force and of those that penetrate, beyond the rounding of gaps and beyond that of all terms. At most 0: the stage is
+/// solved, as exactly as its linear conditions are.
+struct LinearizationError {
+  double beyond_rounding, beyond_all_rounding;
+};
+[[nodiscard]] LinearizationError linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution,
+                                                     Stage& stage, Vector& gap);
 
 }  // namespace ricochet

@@ -73,6 +73,13 @@ void Run::begin() {
 
 RunSummary Run::finish() {
   if (has_nothing_to_do_) return summary_;
+  if (!has_ended_) {  // a program has taken the steps that it wanted
+    if (session_.state().step < steps_) {
+      interrupt("ended by the program");
+    } else {
+      end_steps();
+    }
+  }
   write_end();
   if (failure_) throw Error(*failure_);
   return summary_;

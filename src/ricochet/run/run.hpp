@@ -49,6 +49,7 @@ class Run {
   bool advance();
   void end_steps();
   void stop(int signal);
+  void interrupt(const std::string& how);
   void end_early();
   void keep_state_before_step();
   [[nodiscard]] Snapshot take_snapshot();

@@ -36,17 +36,15 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
       input.solver.method == "direct" ? "" : ", or solver.tolerance where steps are solved by iterations";
   energy_.result.name = "energy_residual";
   energy_.result.limit = input.check.energy_residual;
-  energy_.advice =
+  energy_.advice = linear_.advice = angular_.advice =
       "stiffnesses or densities that differ by many orders of magnitude, a Poisson's ratio at 1/2 or an extreme "
       "time.step "
       "are likely causes" +
       solver + "; do not trust this run to more digits than that";
   linear_.result.name = "momentum";
   linear_.result.limit = input.check.momentum;
-  linear_.advice = "the same causes are likely as for energy that is missing" + solver;
   angular_.result.name = "angular_momentum";
   angular_.result.limit = input.check.angular_momentum;
-  angular_.advice = linear_.advice;
   // The functions of degree 1 on curved cells do not contain rotations.
   if (!model.contains_rotations) angular_.result.limit = 0.0;
   if (snapshot == nullptr) return;

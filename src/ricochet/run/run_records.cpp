@@ -36,11 +36,15 @@ void Run::write_failure_bundle(long step) {
 
 void Run::stop(int signal) {
   interruption::reach_stopping_point();
+  interrupt(fmt::format("stopped by SIG{}", sigabbrev_np(signal)));
+}
+
+void Run::interrupt(const std::string& how) {
   const std::lock_guard files(files_);
   write_checkpoint();
   summary_.status = "interrupted";
-  summary_.message = fmt::format("stopped by SIG{} after step {} of {}; run --resume goes on from there",
-                                 sigabbrev_np(signal), session_.simulation().state().step, steps_);
+  summary_.message = fmt::format("{} after step {} of {}; run --resume goes on from there", how,
+                                 session_.simulation().state().step, steps_);
 }
 
 /// On another thread, while this run is in the middle of something that takes too long. What is on the disk is good
@@ -131,7 +135,9 @@ void Run::write_end() {
     summary_.message = failure_->what();
   }
   describe_progress(summary_);
-  if (summary_.status == "done") {
+  // A step that cannot be solved is often the end of a motion that has gained energy.
+  const bool fails_to_converge = failure_ && failure_->kind() == ErrorKind::not_converged;
+  if (summary_.status == "done" || fails_to_converge) {
     judge_energy(summary_, session_.scheme(), session_.model().problem, session_.simulation().state());
     judge_strain(summary_, session_.model().body);
     summary_.warnings = session_.warnings();

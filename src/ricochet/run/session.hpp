@@ -71,7 +71,8 @@ class Session {
   /// With `resume` among the options it goes on with the run that is there; where that is complete, only finish() has
   /// something to say. Throws Error as run_case does.
   void write_to(RunOptions options);
-  /// Ends what write_to has begun: the summary, with the expectations of the case. No step can follow. Throws the error
+  /// Ends what write_to has begun: the summary, with the expectations of the case. Before the last step the run is an
+  /// interrupted one, with a checkpoint that --resume goes on from. No step can follow. Throws the error
   /// that has ended the steps, if one has.
   RunSummary finish();
 

@@ -14,7 +14,8 @@ namespace {
 ///   (2/h²) M (U₁ − Û) + C (U₁−U₀)/h + K (U₀+U₁)/2 = L_½ + Gᵀ r_N − B_Tᵀ r_T,   0 ≤ r_N ⟂ g(U₁) ≥ 0,
 ///   friction on B_T (U₁−U₀)/h;   V₁ = V₀ + (2/h)(U₁ − Û).
 /// The second stage depends on the first. J changes in a step by ΔUᵀ(Gᵀr_N − …) − (2/h²)(Û−U₀−hV₀)ᵀM(U₁−Û), without
-/// friction by −r_N·g₀ − (2/h²) μ·g₁ ≤ 0: no step, however long, creates energy.
+/// friction by −r_N·g₀ − (2/h²) μ·g₁ ≤ 0 where gaps are linear: no step, however long, creates energy there. In hollows
+/// (concave gaps) it is less, on balls (convex ones) more by up to r_N s²/2R for a slide by s.
 class ContactStabilized final : public Scheme {
  public:
   using Scheme::Scheme;

@@ -67,7 +67,7 @@ bool ObstacleWatch::is_held_by_supports(std::size_t obstacle, Index node) const 
 void ObstacleWatch::look(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (obstacles_[k]->moves()) translation_[k] = obstacles_[k]->translation(state.time);
-    look_at_nodes(k, state);
+    for (const Index node : nodes_[k]) look_at_node(k, node, state);
   }
   for (const RimFacet& facet : rim_) look_at_rim(facet, state);
 }
@@ -79,16 +79,23 @@ double ObstacleWatch::gap(std::size_t obstacle, Index node, const Vector& displa
   return obstacles_[obstacle]->gap(position_);
 }
 
-void ObstacleWatch::look_at_nodes(std::size_t obstacle, const State& state) {
-  DeepestPoint& deepest = deepest_[obstacle];
-  for (const Index node : nodes_[obstacle]) {
-    const double depth = -gap(obstacle, node, state.displacement);
-    if (!(depth > deepest.depth) || depth <= rounding_of_depth * size_[static_cast<std::size_t>(node)] ||
-        depth <= obstacles_[obstacle]->gap_rounding(position_))
-      continue;
-    if (translation_[obstacle].size() > 0) position_ += translation_[obstacle];
-    deepest.enter(node, depth, state.time, in_space(position_));
+void ObstacleWatch::look_at_start(const State& state) {
+  std::vector<char> on_boundary(static_cast<std::size_t>(problem_.nodes.cols()), 0);
+  for (const Index node : problem_.contact.nodes) on_boundary[static_cast<std::size_t>(node)] = 1;
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    for (Index node = 0; node < problem_.nodes.cols(); ++node) {
+      if (on_boundary[static_cast<std::size_t>(node)] == 0) look_at_node(k, node, state);
+    }
   }
+}
+
+void ObstacleWatch::look_at_node(std::size_t obstacle, Index node, const State& state) {
+  const double depth = -gap(obstacle, node, state.displacement);
+  if (!(depth > deepest_[obstacle].depth) || depth <= rounding_of_depth * size_[static_cast<std::size_t>(node)] ||
+      depth <= obstacles_[obstacle]->gap_rounding(position_))
+    return;
+  if (translation_[obstacle].size() > 0) position_ += translation_[obstacle];
+  deepest_[obstacle].enter(node, depth, state.time, in_space(position_));
 }
 
 bool ObstacleWatch::has_told(int pair) const {

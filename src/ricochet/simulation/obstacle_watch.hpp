@@ -34,6 +34,8 @@ class ObstacleWatch {
 
   /// Allocates nothing.
   void look(const State& state);
+  /// All nodes but those of contacts: a body whose boundary lies on that of its obstacle may be inside all the same.
+  void look_at_start(const State& state);
 
   /// The deepest point of the boundary in each obstacle.
   [[nodiscard]] const std::vector<DeepestPoint>& deepest() const { return deepest_; }
@@ -51,7 +53,7 @@ class ObstacleWatch {
   [[nodiscard]] bool is_held_by_supports(std::size_t obstacle, Index node) const;
   /// Sets position_.
   [[nodiscard]] double gap(std::size_t obstacle, Index node, const Vector& displacement);
-  void look_at_nodes(std::size_t obstacle, const State& state);
+  void look_at_node(std::size_t obstacle, Index node, const State& state);
   void look_at_rim(const RimFacet& facet, const State& state);
   [[nodiscard]] bool is_pressed(std::size_t obstacle, Index contact_node, const State& state);
   [[nodiscard]] bool has_told(int pair) const;

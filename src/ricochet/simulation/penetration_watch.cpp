@@ -87,6 +87,7 @@ PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& 
 }
 
 void PenetrationWatch::look(const State& state) {
+  if (looks_ == 0) obstacles_.look_at_start(state);
   ++looks_;
   obstacles_.look(state);
   body_watch_.look(state.displacement, state.time, false);
@@ -126,6 +127,8 @@ void PenetrationWatch::tell() {
 
 std::string PenetrationWatch::advice(std::size_t obstacle) const {
   const Index node = obstacles_.deepest()[obstacle].node;
+  if (!is_on_boundary(node))
+    return "the body is in the obstacle, not beside it: move one of them, or take the other side";
   std::vector<std::string> groups;
   for (const ContactPair& pair : pairs_) {
     if (pair.obstacle != named_[obstacle].obstacle) continue;
@@ -140,6 +143,14 @@ std::string PenetrationWatch::advice(std::size_t obstacle) const {
                   : fmt::format("it belongs to the boundary group{} {}", own.size() == 1 ? "" : "s", join_names(own));
   if (groups.empty()) return fmt::format("no [[contact]] names this obstacle ({})", place);
   return fmt::format("the [[contact]] group {} does not reach so far; extend it ({})", join_names(groups), place);
+}
+
+bool PenetrationWatch::is_on_boundary(Index node) const {
+  const std::vector<CellFacet> boundary = boundary_facets(body_.space->cells);
+  return std::any_of(boundary.begin(), boundary.end(), [&](const CellFacet& facet) {
+    const std::vector<Index> nodes = nodes_of_facet(body_.space->cells, facet);
+    return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
+  });
 }
 
 std::vector<std::string> PenetrationWatch::groups_of(Index node) const {

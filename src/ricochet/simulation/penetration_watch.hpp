@@ -42,6 +42,7 @@ class PenetrationWatch {
   };
   PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
                    const std::vector<NamedObstacle>& obstacles, const std::vector<CellFacet>& boundary);
+  [[nodiscard]] bool is_on_boundary(Index node) const;
   [[nodiscard]] std::vector<std::string> groups_of(Index node) const;
   [[nodiscard]] std::vector<double> place_of(const Eigen::Vector3d& place) const;
   [[nodiscard]] UnwatchedPenetration describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const;

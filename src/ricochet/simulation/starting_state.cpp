@@ -171,8 +171,8 @@ void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
   if (points.empty()) return;
   log::warning(fmt::format(
       "at the start {} of {} {} inside their obstacle, the deepest by {:.3g}: they are "
-      "pushed out at once, which creates energy; check the obstacle's point and normal (which "
-      "points out of the obstacle), or start from initial.displacement = \"static\"",
+      "pushed out at once, which creates energy; check where the obstacle is and on which side of it the body (a "
+      "plane's normal points out of it, a sphere has a side), or start from initial.displacement = \"static\"",
       points.size(), counted(problem.contact.size(), "contact point"), points.size() == 1 ? "is" : "are", deepest));
 }
 

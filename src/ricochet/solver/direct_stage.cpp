@@ -39,6 +39,7 @@ class DirectStage final : public StageSolver {
 
   void solve(const Stage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
+  void show_contact() const override { stage_.report(); }
   void observe_contact(const ContactObserver& observer) override { stage_.observe(observer); }
   void save(Snapshot& snapshot, const std::string& name) const override { stage_.save(snapshot, name); }
   void load(const Snapshot& snapshot, const std::string& name) override { stage_.load(snapshot, name); }
@@ -96,7 +97,6 @@ void DirectStage::solve(const Stage& stage, StageSolution& solution) {
   if (solution.increment.size() != problem_.dof_count()) solution.increment.setZero(problem_.dof_count());
   prescribe(problem_, stage, solution.increment);
   stage_.solve(stage, right_hand_side(stage), solution, solution.increment);
-  stage_.report();
   recover_support_reaction(stage, solution);
 }
 

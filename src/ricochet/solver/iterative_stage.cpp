@@ -32,6 +32,9 @@ class IterativeStage final : public StageSolver {
 
   void solve(const Stage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
+  void show_contact() const override {
+    if (touches_) zone_->report();
+  }
   void observe_contact(const ContactObserver& observer) override {
     observer_ = observer;
     if (zone_) zone_->observe(observer);
@@ -66,6 +69,7 @@ class IterativeStage final : public StageSolver {
   ContactCandidates near_;  ///< the points that the zone is made for
   std::unique_ptr<ContactZone> zone_;
   ContactObserver observer_;
+  bool touches_ = false;  ///< the last stage had a contact problem
   double earlier_contact_seconds_ = 0.0;
   Vector displacement_;          ///< of the tangent; empty: the undeformed body
   Vector increment_, previous_;  ///< of this stage and the last one, for the guess
@@ -245,7 +249,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
       stage.rows->normal_motion(guess_, motion_);
       const std::vector<Index> penetrating = near_.penetrating(stage, motion_, !touches);
       if (penetrating.empty()) {
-        if (touches) zone_->report();
+        touches_ = touches;
         return end(stage, solution);
       }
       must_touch = true;

@@ -83,7 +83,8 @@ void refuse_operator(const SemidiscreteProblem& problem, const OperatorCoefficie
       ErrorKind::invalid_input,
       fmt::format("the operator {:g} M + {:g} K is not positive definite (Cholesky stops at component {} of the "
                   "node at ({:.6g}, {:.6g}{})): a region may be without mass or free to move without "
-                  "resistance, or material data may differ by too many orders of magnitude",
+                  "resistance, material data may differ by too many orders of magnitude, or time.step may be far too "
+                  "long",
                   coefficients.mass, coefficients.stiffness, "xyz"[dof % problem.dimension], at[0], at[1],
                   at.size() == 3 ? fmt::format(", {:.6g}", at[2]) : ""));
 }

@@ -17,6 +17,9 @@ class StageSolver {
   virtual ~StageSolver() = default;
   /// Throws Error(not_converged) which says what failed.
   virtual void solve(const Stage& stage, StageSolution& solution) = 0;
+  /// Shows the contact problem of the last solution to the observer, if it had one: where rows follow the motion, only
+  /// that of the last round is one of the step.
+  virtual void show_contact() const = 0;
   /// As of StepSolver.
   virtual void refactorize(const Vector& displacement) = 0;
   virtual void observe_contact(const ContactObserver& observer) = 0;

@@ -40,6 +40,7 @@ class StagesStepSolver final : public StepSolver {
     StageSolver& solver = *stages_.at(number);
     solver.solve(stage, solution);
     if (stage.motion) rounds_.follow_motion(solver, stage, solution);
+    solver.show_contact();
   }
   void refactorize(std::size_t number, const Vector& displacement) override {
     stages_.at(number)->refactorize(displacement);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
@@ -27,8 +28,12 @@ Vector TangentRounds::on_contact(const Vector& increment) const {
 
 void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
   int iterations = solution.iterations, last_progress = 0, last_start = 0;
-  double error = linearization_error(problem_, solution, stage, gap_), least = error;
-  for (int round = 0; error > 0.0; ++round) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int round = 0;; ++round) {
+    const LinearizationError left = linearization_error(problem_, solution, stage, gap_);
+    // What settles by itself does so to the rounding of the gaps.
+    const double error = round <= plain_rounds ? left.beyond_rounding : left.beyond_all_rounding;
+    if (error <= 0.0) break;
     if (error < 0.9 * least) {
       least = error;
       last_progress = round;
@@ -43,20 +48,23 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
       acceleration_.restart();
       last_start = round;
     }
-    const bool accelerates = round > plain_rounds;
-    if (!accelerates) {
-      linearized_at_ = solution.increment;
-    } else {
-      const Vector next = acceleration_.next(on_contact(linearized_at_), on_contact(solution.increment));
-      linearized_at_ = solution.increment;
-      linearized_at_(problem_.contact_dofs) = next;
-    }
+    linearize_at(solution.increment, round > plain_rounds);
     linearize_contact(problem_, linearized_at_, stage);
     solver.solve(stage, solution);
     iterations += solution.iterations;
-    error = linearization_error(problem_, solution, stage, gap_);
   }
   solution.iterations = iterations;
+}
+
+/// Beside the contact it does not matter where.
+void TangentRounds::linearize_at(const Vector& increment, bool accelerate) {
+  if (!accelerate) {
+    linearized_at_ = increment;
+    return;
+  }
+  const Vector next = acceleration_.next(on_contact(linearized_at_), on_contact(increment));
+  linearized_at_ = increment;
+  linearized_at_(problem_.contact_dofs) = next;
 }
 
 }  // namespace ricochet

@@ -18,6 +18,7 @@ class TangentRounds {
   void follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution);
 
  private:
+  void linearize_at(const Vector& increment, bool accelerate);
   [[nodiscard]] Vector on_contact(const Vector& increment) const;
 
   const SemidiscreteProblem& problem_;

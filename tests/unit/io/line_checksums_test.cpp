@@ -96,6 +96,13 @@ TEST_F(LineChecksumsTest, RefuseWhatTheyHaveNotSaved) {
   checksums.save(snapshot, "rows", "rows.csv");
   snapshot.save("rows.lines.pieces", std::int64_t{11});
   EXPECT_THROW(LineChecksums(snapshot, "rows"), Error);
+  // Blocks of less than nothing.
+  checksums.save(snapshot, "rows", "rows.csv");
+  Snapshot::Integers lengths = snapshot.integers("rows.lines.lengths");
+  lengths.front() = -1;
+  snapshot.save("rows.lines.lengths", std::move(lengths));
+  EXPECT_THROW(LineChecksums(snapshot, "rows"), Error);
+  EXPECT_THROW(require_same_files(testing::TempDir(), snapshot), Error);
 }
 
 }  // namespace

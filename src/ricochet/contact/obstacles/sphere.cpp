@@ -36,6 +36,9 @@ class Sphere final : public Obstacle {
     return 8.0 * std::numeric_limits<double>::epsilon() * size;
   }
   [[nodiscard]] bool is_flat() const override { return false; }
+  [[nodiscard]] double least_radius() const override {
+    return sign_ > 0.0 ? radius_ : std::numeric_limits<double>::infinity();
+  }
   [[nodiscard]] bool moves() const override { return !velocity_.isZero(0.0); }
   [[nodiscard]] SpaceVector translation(double time) const override { return time * velocity_; }
   [[nodiscard]] SpaceVector surface_velocity(const SpaceVector&, double) const override { return velocity_; }

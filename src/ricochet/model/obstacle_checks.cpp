@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/model/model_parts.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Gaps that are known to no more than this, relative to the body, are no gaps of a computation.
+constexpr double least_precision = 1e-6;
+
+/// The largest distance between neighbouring nodes of these facets, to half of it where there are nodes between.
+double spacing(const DisplacementSpace& space, const std::vector<Index>& facets) {
+  double largest = 0.0;
+  for (const Index facet : facets) {
+    const auto [block, number] = locate_facet(space, facet);
+    const CellBlock& cells = space.facets[block];
+    const Index* nodes = cells.cell(number);
+    Points positions(space.nodes.rows(), cells.nodes_per_cell);
+    for (Index k = 0; k < positions.cols(); ++k) positions.col(k) = space.nodes.col(nodes[k]);
+    largest = std::max(largest, extent(positions) / space.degree);
+  }
+  return largest;
+}
+
+/// Contact is looked at in points: what is sharper than their distance passes between them.
+void warn_of_sharp_obstacle(const ContactPair& pair, const DisplacementSpace& space) {
+  const double radius = pair.obstacle->least_radius();
+  const double distance = spacing(space, pair.facets);
+  if (!(radius < distance)) return;
+  log::warning(
+      fmt::format("contact of group \"{}\": the radius of curvature of obstacle \"{}\", {:.3g}, is smaller than the "
+                  "distance of nodes on the group, {:.3g}: the obstacle can go in between them unseen, and the force "
+                  "is wrong where it does not; take cells a third of the radius in size there",
+                  pair.group, pair.obstacle_name, radius, distance));
+}
+
+/// A body that is on the other side after a step has not touched.
+void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& model) {
+  const double radius = pair.obstacle->least_radius();
+  if (!std::isfinite(radius)) return;
+  const int d = model.mesh.dimension;
+  const SpaceVector path = pair.obstacle->translation(input.time.step);
+  double longest = 0.0;
+  for (Index node = 0; node < model.space.node_count(); ++node) {
+    const SpaceVector moved = input.time.step * model.initial.velocity.segment(node * d, d) - path;
+    longest = std::max(longest, moved.stableNorm());
+  }
+  if (!(longest > radius)) return;
+  log::warning(fmt::format(
+      "contact of group \"{}\": at the start the body moves by {:.3g} in a step relative to obstacle \"{}\", whose "
+      "radius of curvature is {:.3g}: it can be past it without having touched; take time.step = {:.1g} or less",
+      pair.group, longest, pair.obstacle_name, radius, 0.1 * radius / longest * input.time.step));
+}
+
+/// Distances to what is far away, or has a centre far away, are differences of large numbers.
+void refuse_lost_digits(const Case& input, const ContactPair& pair, const Model& model) {
+  const double body = extent(model.space.nodes);
+  const SpaceVector path = pair.obstacle->translation(input.time.end);
+  double rounding = 0.0;
+  for (Index node = 0; node < model.space.node_count(); ++node)
+    rounding = std::max(rounding, pair.obstacle->gap_rounding(model.space.nodes.col(node)));
+  rounding += 8.0 * std::numeric_limits<double>::epsilon() * path.lpNorm<1>();
+  if (rounding <= least_precision * body) return;
+  refuse(input, "obstacle." + pair.obstacle_name,
+         fmt::format("gaps to obstacle \"{}\" are rounded to {:.2g}, too much for a body of size {:.3g}: it is too "
+                     "large, too far from the origin or moves too far; take a plane in place of a sphere of this size, "
+                     "or move body and obstacle near to the origin",
+                     pair.obstacle_name, rounding, body));
+}
+
+}  // namespace
+
+void check_obstacles(const Case& input, const Model& model) {
+  for (const ContactPair& pair : model.contact_pairs) {
+    refuse_lost_digits(input, pair, model);
+    warn_of_sharp_obstacle(pair, model.space);
+    warn_of_long_step(input, pair, model);
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,59 @@
+#include "ricochet/linear_algebra/anderson_acceleration.hpp"
+
+#include <gtest/gtest.h>
+
+namespace ricochet {
+namespace {
+
+/// F(x) = A x + b with eigenvalues on both sides of the unit circle.
+class ExpandingMap : public testing::Test {
+ protected:
+  ExpandingMap() : slopes_(6), offset_(6) {
+    slopes_ << -3.0, -0.5, 0.0, 0.3, 0.9, 2.5;
+    offset_ << 1.0, -2.0, 3.0, 0.5, -1.0, 2.0;
+  }
+  [[nodiscard]] Vector image(const Vector& x) const { return slopes_.cwiseProduct(x) + offset_; }
+  [[nodiscard]] double residual(const Vector& x) const { return (image(x) - x).norm(); }
+
+  Vector slopes_, offset_;
+};
+
+/// As GMRES it takes a step per eigenvalue, where plain rounds go away.
+TEST_F(ExpandingMap, IsSolvedInAsManyRoundsAsItHasEigenvalues) {
+  AndersonAcceleration acceleration(12);
+  Vector x = Vector::Zero(6), plain = x;
+  for (int round = 0; round < 7; ++round) {
+    x = acceleration.next(x, image(x));
+    plain = image(plain);
+  }
+  EXPECT_LE(residual(x), 1e-9);
+  EXPECT_GT(residual(plain), 1e3);
+}
+
+/// Beyond its depth it forgets, and goes on.
+TEST_F(ExpandingMap, IsSolvedWithLessMemoryAlso) {
+  AndersonAcceleration acceleration(4);
+  Vector x = Vector::Zero(6);
+  for (int round = 0; round < 60; ++round) x = acceleration.next(x, image(x));
+  EXPECT_LE(residual(x), 1e-9);
+}
+
+/// A point that is solved is where it stays: changes that are rounding do not move it.
+TEST_F(ExpandingMap, StaysWhereItIsSolved) {
+  AndersonAcceleration acceleration(12);
+  Vector x = offset_.cwiseQuotient(Vector::Ones(6) - slopes_);
+  const Vector solution = x;
+  for (int round = 0; round < 20; ++round) x = acceleration.next(x, image(x));
+  EXPECT_LE((x - solution).norm(), 1e-12 * solution.norm());
+}
+
+TEST_F(ExpandingMap, BeginsWithThePlainRoundAfterARestart) {
+  AndersonAcceleration acceleration(12);
+  Vector x = Vector::Ones(6);
+  for (int round = 0; round < 3; ++round) x = acceleration.next(x, image(x));
+  acceleration.restart();
+  EXPECT_EQ(acceleration.next(x, image(x)), image(x));
+}
+
+}  // namespace
+}  // namespace ricochet
