@@ -23,6 +23,7 @@ CONFINED = {
     "toml++": (r"toml\+\+/|toml\.hpp", {"src/ricochet/case": 2}),
     "CLI11": (r"CLI/", {"apps/ricochet": 1}),
     "nlohmann": (r"nlohmann/", {"src/ricochet/base": 1}),
+    "Eigen's eigenvalues and singular values": (r"Eigen/(Dense|Eigenvalues|SVD)", {"src/ricochet/base": 1}),
     "CHOLMOD": (r"cholmod|suitesparse/", {"src/ricochet/linear_algebra": 1}),
     "spdlog": (r"spdlog/", {"src/ricochet/base": 1}),
     "muParser": (r"muParser", {"src/ricochet/base": 1}),

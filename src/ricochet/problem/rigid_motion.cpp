@@ -1,6 +1,7 @@
 #include "ricochet/problem/rigid_motion.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
