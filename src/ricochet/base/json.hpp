@@ -15,6 +15,16 @@
 /// file that includes them ten seconds. Not part of the public interface.
 namespace ricochet {
 
+template <class Type>
+inline constexpr bool is_json_array = false;
+template <class Element>
+inline constexpr bool is_json_array<std::vector<Element>> = true;
+/// What a document converts to.
+template <class Type>
+concept JsonValue =
+    std::same_as<Type, bool> || std::same_as<Type, int> || std::same_as<Type, long> || std::same_as<Type, double> ||
+    std::same_as<Type, std::string> || std::same_as<Type, std::map<std::string, std::string>> || is_json_array<Type>;
+
 /// Objects keep the order in which their entries were made. A braced list makes an object where all of its elements are
 /// pairs that begin with a text, and an array otherwise, also of one document: Json{other} is an array.
 ///   Json{{"name", "disc"}, {"sizes", {1, 2}}}
@@ -68,6 +78,7 @@ class Json {
   [[nodiscard]] const Json& at(std::size_t index) const;
   /// Made where it is not there.
   Json& operator[](std::string_view name);
+  Json& operator[](const char* name) { return (*this)[std::string_view(name)]; }
   /// Of an array; throws Exception where there are fewer elements.
   Json& operator[](std::size_t index);
   void push_back(Json element);
@@ -96,9 +107,10 @@ class Json {
     get(result);
     return result;
   }
-  template <class Type>
-  requires requires(const Json& json, Type& result) { json.get(result); }
-  operator Type() const { return get<Type>(); }
+  template <JsonValue Type>
+  operator Type() const {
+    return get<Type>();
+  }
   /// The entry, or the default where there is none.
   template <class Type>
   [[nodiscard]] Type value(std::string_view name, const Type& standard) const {

@@ -3,7 +3,7 @@
 #include "ricochet/fem/assembly.hpp"
 #include "ricochet/io/summary.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
-#include "ricochet/scheme/state.hpp"
+#include "ricochet/scheme/scheme.hpp"
 
 /// @file What a run says of itself.
 namespace ricochet {

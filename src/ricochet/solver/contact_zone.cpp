@@ -22,7 +22,7 @@ SparseCholesky analysed_zone(const SemidiscreteProblem& problem, const OperatorC
 ContactZone::ContactZone(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                          const std::vector<char>& solved, const std::vector<Index>& nodes,
                          const std::vector<Index>& points, bool all_candidates, const Vector& displacement)
-    : problem_(problem), has_(static_cast<std::size_t>(problem.contact.size()), 0) {
+    : has_(static_cast<std::size_t>(problem.contact.size()), 0) {
   for (const Index point : points) has_[static_cast<std::size_t>(point)] = 1;
   std::vector<int> dofs;
   for (const Index node : nodes) {

@@ -35,7 +35,6 @@ class ContactZone {
  private:
   void state_locally(const Stage& stage, const Vector& x);
 
-  const SemidiscreteProblem& problem_;
   std::vector<char> has_;  ///< per contact point
   std::unique_ptr<FactoredStage> zone_;
   Stage stage_;                        ///< on the correction c, of the points of the zone
