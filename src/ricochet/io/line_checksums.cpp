@@ -16,8 +16,6 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t most_blocks = 512;
-/// Of what a checkpoint may say.
-constexpr std::int64_t largest_sum = 0xffffffff, longest_block = std::int64_t{1} << 50;
 constexpr const char* file_suffix = ".lines.file";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& lines, bool windows) {
@@ -35,8 +33,8 @@ LineChecksums::LineChecksums() {
 }
 
 LineChecksums::LineChecksums(const Snapshot& snapshot, const std::string& name) : LineChecksums() {
-  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums", 0, largest_sum);
-  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths", 0, longest_block);
+  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums", 0, 0xffffffff);
+  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths", 0, std::int64_t{1} << 50);
   pieces_ = snapshot.integer(name + ".lines.pieces");
   pieces_per_block_ = snapshot.integer(name + ".lines.per_block");
   const auto count = static_cast<std::int64_t>(sums.size());
@@ -86,23 +84,18 @@ void LineChecksums::merge_blocks() {
   pieces_per_block_ *= 2;
 }
 
-namespace {
-
-void require_same_file(const std::string& path, const Snapshot& snapshot, const std::string& name) {
-  const Snapshot::Integers& sums = snapshot.integers(name + ".lines.sums", 0, largest_sum);
-  const Snapshot::Integers& lengths = snapshot.integers(name + ".lines.lengths", 0, longest_block);
-  std::int64_t length = 0, line = 1;
-  for (const std::int64_t each : lengths) length += each;
-  require_length(path, length);
+void LineChecksums::require_same(const std::string& path) const {
+  require_length(path, length_);
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw_file_error(path, "read", errno);
   std::string block;
-  for (std::size_t i = 0; i < std::min(sums.size(), lengths.size()); ++i) {
-    block.resize(static_cast<std::size_t>(lengths[i]));
-    if (!file.read(block.data(), lengths[i])) throw_file_error(path, "read", errno);
+  std::int64_t line = 1;
+  for (const Block& expected : blocks_) {
+    block.resize(static_cast<std::size_t>(expected.length));
+    if (!file.read(block.data(), expected.length)) throw_file_error(path, "read", errno);
     const std::int64_t last = std::max(line, line + std::count(block.begin(), block.end(), '\n') - 1);
-    if (Checksum().add(block.data(), block.size()).value() != sums[i]) {
+    if (Checksum().add(block.data(), block.size()).value() != expected.sum) {
       refuse(path,
              line == last ? fmt::format("line {} is", line) : fmt::format("something in lines {} to {} is", line, last),
              block.find('\r') != std::string::npos);
@@ -111,13 +104,11 @@ void require_same_file(const std::string& path, const Snapshot& snapshot, const 
   }
 }
 
-}  // namespace
-
 void require_same_files(const std::string& directory, const Snapshot& snapshot) {
   for (const auto& [key, value] : snapshot.values()) {
     if (!key.ends_with(file_suffix)) continue;
     const std::string name = key.substr(0, key.size() - std::string_view(file_suffix).size());
-    require_same_file((std::filesystem::path(directory) / snapshot.text(key)).string(), snapshot, name);
+    LineChecksums(snapshot, name).require_same((std::filesystem::path(directory) / snapshot.text(key)).string());
   }
 }
 

@@ -23,6 +23,8 @@ class LineChecksums {
   /// A piece that has been written behind the others.
   void add(std::string_view piece);
   [[nodiscard]] std::int64_t length() const { return length_; }
+  /// Throws Error(file_access) where the file does not begin with what was added.
+  void require_same(const std::string& path) const;
 
  private:
   void merge_blocks();
