@@ -1,7 +1,8 @@
 #include "ricochet/report/obstacle_part.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "ricochet/base/types.hpp"
 
 namespace ricochet {
 
@@ -12,61 +13,43 @@ constexpr double smallest_seen = 1e-6;
 /// Of a coordinate in the file, which has nine digits.
 constexpr double file_rounding = 1e-9;
 
-double largest_coordinate(const ObstacleFrame& frame) {
-  double largest = 0.0;
-  for (const double x : frame.positions) largest = std::max(largest, std::abs(x));
-  return largest;
+Eigen::Map<const Points> points_of(const ObstacleFrame& frame) {
+  return {frame.positions.data(), 3, static_cast<Index>(frame.positions.size()) / 3};
 }
 
-/// Longest side of the box around all points.
-double extent(const ObstacleFrame& frame) {
-  double longest = 0.0;
-  for (std::size_t axis = 0; axis < 3 && axis < frame.positions.size(); ++axis) {
-    double low = frame.positions[axis], high = low;
-    for (std::size_t k = axis; k < frame.positions.size(); k += 3) {
-      low = std::min(low, frame.positions[k]);
-      high = std::max(high, frame.positions[k]);
-    }
-    longest = std::max(longest, high - low);
-  }
-  return longest;
-}
-
-/// How far obstacles are from where they were in the first frame.
+/// How far obstacles are from where they were in the first frame, which has a point at least.
 class Translations {
  public:
   explicit Translations(const ObstacleFrame& first)
-      : first_(first),
-        obstacle_(first.positions.size() / 3, 0),
-        seen_(smallest_seen * extent(first)),
-        largest_(largest_coordinate(first)) {
+      : first_(points_of(first)), obstacle_(first.positions.size() / 3, 0) {
+    seen_ = smallest_seen * (first_.rowwise().maxCoeff() - first_.rowwise().minCoeff()).maxCoeff();
     const auto corners = static_cast<std::size_t>(first.corners);
     for (std::size_t k = 0; k < first.cells.size(); ++k)
-      obstacle_[static_cast<std::size_t>(first.cells[k])] = static_cast<std::size_t>(first.obstacle[k / corners]);
-    for (const std::size_t obstacle : obstacle_) {
-      if (obstacle >= points_.size()) points_.resize(obstacle + 1, 0.0);
-      points_[obstacle] += 1.0;
-    }
+      obstacle_[static_cast<std::size_t>(first.cells[k])] = first.obstacle[k / corners];
+    count_.setZero(1 + *std::max_element(obstacle_.begin(), obstacle_.end()));
+    for (const int obstacle : obstacle_) count_[obstacle] += 1.0;
   }
 
-  /// obstacles × 3; nothing where a point is visibly elsewhere than it would be then.
-  [[nodiscard]] std::optional<std::vector<double>> of(const ObstacleFrame& frame) const {
-    std::vector<double> offsets(3 * points_.size(), 0.0);
-    const auto way = [&](std::size_t k) { return frame.positions[k] - first_.positions[k]; };
-    const auto entry = [&](std::size_t k) { return 3 * obstacle_[k / 3] + k % 3; };
-    for (std::size_t k = 0; k < first_.positions.size(); ++k) offsets[entry(k)] += way(k) / points_[obstacle_[k / 3]];
-    const double rounding = file_rounding * (largest_ + largest_coordinate(frame));
-    for (std::size_t k = 0; k < first_.positions.size(); ++k) {
-      if (!(std::abs(way(k) - offsets[entry(k)]) <= seen_ + 2.0 * rounding)) return std::nullopt;
+  /// 3 × obstacles; nothing where a point is visibly elsewhere than it would be then.
+  [[nodiscard]] std::optional<Matrix> of(const ObstacleFrame& frame) const {
+    const Eigen::Map<const Points> points = points_of(frame);
+    const Points way = points - first_;
+    Matrix mean = Matrix::Zero(3, count_.size());
+    for (Index k = 0; k < way.cols(); ++k) mean.col(obstacle(k)) += way.col(k) / count_[obstacle(k)];
+    const double rounding = file_rounding * (first_.cwiseAbs().maxCoeff() + points.cwiseAbs().maxCoeff());
+    for (Index k = 0; k < way.cols(); ++k) {
+      if (!((way.col(k) - mean.col(obstacle(k))).cwiseAbs().maxCoeff() <= seen_ + 2.0 * rounding)) return std::nullopt;
     }
-    return offsets;
+    return mean;
   }
 
  private:
-  const ObstacleFrame& first_;
-  std::vector<std::size_t> obstacle_;  ///< of each point
-  std::vector<double> points_;         ///< how many of each obstacle
-  double seen_, largest_;
+  [[nodiscard]] int obstacle(Index point) const { return obstacle_[static_cast<std::size_t>(point)]; }
+
+  Eigen::Map<const Points> first_;
+  std::vector<int> obstacle_;  ///< of each point
+  Vector count_;               ///< of each obstacle's points
+  double seen_ = 0.0;
 };
 
 /// One row for each frame; nothing where an obstacle does something else than to translate.
@@ -76,7 +59,7 @@ std::optional<std::vector<double>> translations(const std::vector<const Obstacle
   for (const ObstacleFrame* frame : frames) {
     const auto offsets = translations.of(*frame);
     if (!offsets) return std::nullopt;
-    all.insert(all.end(), offsets->begin(), offsets->end());
+    all.insert(all.end(), offsets->data(), offsets->data() + offsets->size());
   }
   return all;
 }
@@ -85,12 +68,13 @@ std::optional<std::vector<double>> translations(const std::vector<const Obstacle
 
 ObstaclePart pack_obstacles(const std::vector<ObstacleFrame>& frames, PackedArrays& arrays) {
   const ObstacleFrame& first = frames.front();
-  const bool moves =
-      std::any_of(frames.begin(), frames.end(), [&](const ObstacleFrame& f) { return f.positions != first.positions; });
   std::vector<const ObstacleFrame*> shown;
   for (const ObstacleFrame& frame : frames) {
-    if (frame.positions.size() == first.positions.size() && (moves || shown.empty())) shown.push_back(&frame);
+    if (frame.positions.size() == first.positions.size()) shown.push_back(&frame);
   }
+  const bool moves =
+      std::any_of(shown.begin(), shown.end(), [&](const ObstacleFrame* f) { return f->positions != first.positions; });
+  if (!moves) shown.resize(1);
   ObstaclePart part;
   part.corners = first.corners;
   part.cells = arrays.add_indices(first.cells);
