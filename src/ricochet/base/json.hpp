@@ -78,6 +78,7 @@ class Json {
   [[nodiscard]] const Json& at(std::size_t index) const;
   /// Made where it is not there.
   Json& operator[](std::string_view name);
+  /// Without it compilers may take the text for the array, and a number that this converts to for the index.
   Json& operator[](const char* name) { return (*this)[std::string_view(name)]; }
   /// Of an array; throws Exception where there are fewer elements.
   Json& operator[](std::size_t index);
