@@ -12,7 +12,8 @@ import h5py
 import meshio
 import numpy
 
-from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, body_case, initial_velocity, run, with_sphere
+from harness import DISC, MESHES, PROGRAM, SOURCE, History, TestCase, block_case, run
+from results_frames import falling, frames
 from vtk_cells import middles, volumes
 
 # Four squares in a row, of two materials by turns, with numbers that go down.
@@ -48,16 +49,6 @@ $Elements
 $EndElements
 """
 
-def falling(mesh, lowest, highest, *, group="body", bottom="bottom", degree=1, scheme="midpoint"):
-    """A body that moves down on a floor just below it, with probes at these points of it."""
-    up = [0] * (len(lowest) - 1) + [1]
-    point = [0.0] * (len(lowest) - 1) + [lowest[-1] - 0.01]
-    return body_case(mesh, point, up, initial_velocity(*(-x for x in up)), body=group, bottom=bottom, degree=degree,
-                     scheme=scheme, step=0.002, end=0.06) + (
-        f'[[probe]]\nname = "lowest"\nat = {lowest}\n[[probe]]\nname = "highest"\nat = {highest}\n'
-        "[output]\nfields_every = 1\n")
-
-
 # Bodies of tests/data/meshes: their volume from the corners written in the .geo files, two points to watch.
 SHAPES = {
     "triangle": dict(volume=0.5 * ((1.5 - 0.1) * (0.9 - 0.1) - (-0.1 - 1.3) * (1.2 - 0.2)), lowest=[1.3, 0.1],
@@ -70,14 +61,6 @@ SHAPES = {
                        lowest=[0.1, 0.2, 0.05], highest=[1.45, 1.5, 1.02]),
     "disc": dict(volume=None, lowest=[0.0, -1.0], highest=[0.0, 1.0], bottom="boundary"),
 }
-
-
-def frames(results):
-    """(points, cell blocks, [(time, fields)]) as meshio reads them."""
-    with meshio.xdmf.TimeSeriesReader(results / "results.xdmf") as reader:
-        points, cells = reader.read_points_cells()
-        read = [reader.read_data(k) for k in range(reader.num_steps)]
-    return points, [(block.type, block.data) for block in cells], [(t, fields) for t, fields, _ in read]
 
 
 class ResultsFiles(TestCase):
@@ -326,48 +309,6 @@ class ResultsFiles(TestCase):
         for fields in ("fields_every = 3\nfields_interval = 0.1", "fields = []", "fields = [\"stres\"]"):
             case = self.write("bad.toml", block_case() + "[output]\n" + fields + "\n")
             self.expect_status(2, run("run", case, "-o", self.folder / "bad"))
-
-    def test_obstacles(self):
-        """The planes, where they are at the time of each frame, as far as the body reaches."""
-        text = block_case().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nvelocity = [0.3, -0.05]")
-        results = self.simulate(self.write("case.toml", text))
-        side = (results / "results.xdmf").read_text()
-        self.assertLess(side.index('xi:include href="obstacles.xdmf"'), side.index('Grid Name="body" GridType="Coll'))
-        times = [at for at, _ in frames(results)[2]]
-        tree = xml.etree.ElementTree.parse(results / "obstacles.xdmf")
-        shown = []
-        for grid in tree.iter("Grid"):
-            if grid.get("GridType") == "Uniform":
-                at = float(grid.find("Time").get("Value"))
-                points = numpy.array(grid.find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
-                shown.append(at)
-                numpy.testing.assert_allclose(points[:, 1], -0.05 * at, rtol=1e-8, atol=1e-15)
-                self.assertLess(points[:, 0].min(), 0.1)
-                self.assertGreater(points[:, 0].max(), 1.5)
-                self.assertFalse(points[:, 2].any())
-                self.assertEqual(grid.find("Topology/DataItem").text.split(), ["0", "1"])
-        self.assertEqual(shown, times)
-
-    def test_a_sphere_in_space(self):
-        """A surface of quadrilaterals that share their points, the same in every frame but for where it is."""
-        centre, radius, velocity = [0.7, 0.5, -1.5], 1.2, [0.5, -0.25, 2.0]
-        text = falling(MESHES / "tetrahedron_o1_msh41_binary.msh", lowest=[1.3, 0.1, 0.0], highest=[0.3, 1.4, 1.2])
-        results = self.simulate(self.write("case.toml", with_sphere(text, centre, radius, velocity)))
-        grids = [grid for grid in xml.etree.ElementTree.parse(results / "obstacles.xdmf").iter("Grid")
-                 if grid.get("GridType") == "Uniform"]
-        self.assertEqual(len(grids), 31)
-        first = numpy.array(grids[0].find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
-        cells = numpy.array(grids[0].find("Topology/DataItem").text.split(), dtype=int).reshape(-1, 4)
-        self.assertEqual(sorted(set(cells.ravel())), list(range(len(first))))
-        self.assertLess(len(first), len(cells) + 2)
-        for grid in grids:
-            at = float(grid.find("Time").get("Value"))
-            points = numpy.array(grid.find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
-            moved = numpy.array(velocity) * at
-            numpy.testing.assert_allclose(points, first + moved, rtol=0, atol=1e-8)
-            numpy.testing.assert_allclose(numpy.linalg.norm(points - centre - moved, axis=1), radius, rtol=1e-8)
-            self.assertEqual(grid.find("Topology/DataItem").text, grids[0].find("Topology/DataItem").text)
-        self.assertLess((results / "obstacles.xdmf").stat().st_size / len(grids), 80_000)
 
     def test_ten_thousand_frames_stay_openable(self):
         case = self.write("case.toml", block_case() + "[output]\nfields_every = 1\n")

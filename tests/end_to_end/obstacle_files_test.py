@@ -1,0 +1,58 @@
+"""obstacles.xdmf: the surfaces of the obstacles, where they are at the time of each frame."""
+
+import unittest
+import xml.etree.ElementTree
+
+import numpy
+
+from harness import MESHES, TestCase, block_case, with_sphere
+from results_frames import falling, frames
+
+
+def surfaces(results, corners):
+    """(time, points, cells) of each frame."""
+    for grid in xml.etree.ElementTree.parse(results / "obstacles.xdmf").iter("Grid"):
+        if grid.get("GridType") == "Uniform":
+            points = numpy.array(grid.find("Geometry/DataItem").text.split(), dtype=float).reshape(-1, 3)
+            cells = numpy.array(grid.find("Topology/DataItem").text.split(), dtype=int).reshape(-1, corners)
+            yield float(grid.find("Time").get("Value")), points, cells
+
+
+class ObstacleFiles(TestCase):
+    def test_a_plane(self):
+        """As far as the body reaches."""
+        text = block_case().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nvelocity = [0.3, -0.05]")
+        results = self.simulate(self.write("case.toml", text))
+        side = (results / "results.xdmf").read_text()
+        self.assertLess(side.index('xi:include href="obstacles.xdmf"'), side.index('Grid Name="body" GridType="Coll'))
+        times = [at for at, _ in frames(results)[2]]
+        shown = []
+        for at, points, cells in surfaces(results, 2):
+            shown.append(at)
+            numpy.testing.assert_allclose(points[:, 1], -0.05 * at, rtol=1e-8, atol=1e-15)
+            self.assertLess(points[:, 0].min(), 0.1)
+            self.assertGreater(points[:, 0].max(), 1.5)
+            self.assertFalse(points[:, 2].any())
+            self.assertEqual(cells.tolist(), [[0, 1]])
+        self.assertEqual(shown, times)
+
+    def test_a_sphere_in_space(self):
+        """A surface of quadrilaterals that share their points, the same in every frame but for where it is."""
+        centre, radius, velocity = [0.7, 0.5, -1.5], 1.2, [0.5, -0.25, 2.0]
+        text = falling(MESHES / "tetrahedron_o1_msh41_binary.msh", lowest=[1.3, 0.1, 0.0], highest=[0.3, 1.4, 1.2])
+        results = self.simulate(self.write("case.toml", with_sphere(text, centre, radius, velocity)))
+        shown = list(surfaces(results, 4))
+        self.assertEqual(len(shown), 31)
+        _, first, cells = shown[0]
+        self.assertEqual(sorted(set(cells.ravel())), list(range(len(first))))
+        self.assertLess(len(first), len(cells) + 2)
+        for at, points, now in shown:
+            moved = numpy.array(velocity) * at
+            numpy.testing.assert_allclose(points, first + moved, rtol=0, atol=1e-8)
+            numpy.testing.assert_allclose(numpy.linalg.norm(points - centre - moved, axis=1), radius, rtol=1e-8)
+            self.assertEqual(now.tolist(), cells.tolist())
+        self.assertLess((results / "obstacles.xdmf").stat().st_size / len(shown), 80_000)
+
+
+if __name__ == "__main__":
+    unittest.main()
