@@ -1,6 +1,8 @@
-"""Tables of pages of docs/ that benchmarks write."""
+"""Tables of pages of docs/ that benchmarks write, and the kernels of OpenBLAS, without which times cannot be compared."""
 
+import os
 import re
+import subprocess
 
 
 def write_parts(page, parts):
@@ -12,3 +14,23 @@ def write_parts(page, parts):
             raise SystemExit(f"{page}: has no place for \"{name}\"")
         text = pattern.sub(lambda match: match[1] + content + "\n" + match[2], text)
     page.write_text(text, encoding="utf-8")
+
+
+def libraries(program):
+    """What `ricochet --version` tells below the version: libraries, and the kernels of OpenBLAS and of ours."""
+    return subprocess.run([str(program), "--version"], capture_output=True, text=True, check=True).stdout.splitlines()[1]
+
+
+def blas_kernels(text):
+    """OpenBLAS' kernels in what `libraries` returns."""
+    return re.match(r"OpenBLAS \S+ \((\w+)\)", text)[1]
+
+
+def with_kernels(kernels):
+    """The environment in which another program's OpenBLAS takes these."""
+    return os.environ | {"OPENBLAS_CORETYPE": kernels}
+
+
+def processor():
+    """Of this machine."""
+    return next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown processor")

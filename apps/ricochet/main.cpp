@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -11,11 +12,12 @@
 #include <string_view>
 
 #include "commands.hpp"
-#include "ricochet/base/blas_threads.hpp"
+#include "ricochet/base/blas.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/base/run_name.hpp"
+#include "ricochet/linear_algebra/library_versions.hpp"
 #include "ricochet/version.hpp"
 #include "standard_streams.hpp"
 #include "stop_signal.hpp"
@@ -43,7 +45,7 @@ void add_common(CLI::App& command, Arguments& arguments) {
 
 int dispatch(int argc, char** argv) {
   CLI::App app{"Ricochet simulates elastic bodies that strike, rest on, slide along and leave rigid obstacles."};
-  app.set_version_flag("--version", std::string("ricochet ") + version);
+  app.set_version_flag("--version", [] { return fmt::format("ricochet {}\n{}", version, library_versions()); });
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 done; 1 wrong use of the command line; 2 invalid case or mesh; 3 a step did not converge;\n"
@@ -182,6 +184,7 @@ int dispatch(int argc, char** argv) {
 /// The exit status; says what has gone wrong.
 int run_program(int argc, char** argv) {
   try {
+    prepare_blas();  // before there are threads; and whatever is asked for, an environment that is wrong is refused
     program::wait_for_stop_signals();
     const int status = dispatch(argc, argv);
     program::flush_standard_output();

@@ -20,7 +20,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
-from page import write_parts
+from page import blas_kernels, processor, write_parts
 
 DEFAULT = ("ricochet", "automatic", False)
 INFINITE = float("inf")
@@ -38,6 +38,7 @@ def label(key):
 class Results:
     def __init__(self, path):
         data = json.loads(path.read_text())
+        self.libraries = data.get("libraries", "")
         self.problems = {entry["problem"]: entry for entry in data["problems"]}
         self.cells = {}
         for record in data["records"]:
@@ -255,7 +256,7 @@ def report(directory, results="results.json", sequences="sequences.json", only_p
         "sequences": sequence_table(directory / sequences),
         "claims": claims_table(results),
         "problems": problem_table(results),
-        "machine": machine(),
+        "machine": machine(results.libraries),
     }
     hard = directory / "hard.md"
     if hard.exists():
@@ -267,11 +268,12 @@ def report(directory, results="results.json", sequences="sequences.json", only_p
     profile(results, ROOT / "docs/figures/contact-solvers.png")
 
 
-def machine():
+def machine(libraries):
     """Of the last run: what was compared, where and when."""
-    processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown processor")
     commit = subprocess.run(["git", "-C", str(ROOT), "log", "-1", "--format=%h"], capture_output=True, text=True).stdout.strip()
-    return f"Measured {datetime.date.today()} with Ricochet at commit {commit or 'unknown'} on one core of a shared machine ({processor})."
+    text = (f"Measured {datetime.date.today()} with Ricochet at commit {commit or 'unknown'} on one core of a shared machine ({processor()}), "
+            f"with {libraries or 'libraries that were not noted'}.")
+    return text + (f"\nSiconos' OpenBLAS has the kernels for {blas_kernels(libraries)}, too." if libraries else "")
 
 
 if __name__ == "__main__":

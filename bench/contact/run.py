@@ -32,6 +32,9 @@ from case_table import CASES
 from siconos_solvers import RAW, SOLVERS
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+from page import blas_kernels, libraries, with_kernels
+
 TOLERANCES = (1e-4, 1e-8, 1e-12)
 LIMIT = 20.0  # seconds for one call
 SMALL, SMALL_LIMIT = 450, 5.0  # points, and seconds for them: hundreds of times what the good solvers take
@@ -44,8 +47,8 @@ REPEAT = 5
 class Siconos:
     """The serving process; killed when a call takes too long, started again when it crashes."""
 
-    def __init__(self, directory):
-        self.process = None
+    def __init__(self, directory, kernels):
+        self.process, self.kernels = None, kernels
         self.reaction = str(directory / "theirs-reaction.npy")
 
     def stop(self):
@@ -58,7 +61,7 @@ class Siconos:
         if self.process is None:
             self.process = subprocess.Popen(
                 [sys.executable, str(HERE / "siconos_solvers.py"), "--serve"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL, text=True)
+                stderr=subprocess.DEVNULL, text=True, env=with_kernels(self.kernels))
             self.lines = queue.Queue()
             threading.Thread(target=self._read, args=(self.process, self.lines), daemon=True).start()
         try:
@@ -183,14 +186,14 @@ def run_problems(arguments, directory, our_solvers):
     cache = json.loads(cache_file.read_text()) if cache_file.exists() else {}
     if arguments.again:
         forget_fastest(cache, arguments.again, arguments.again_solvers)
-    siconos = Siconos(directory)
+    siconos = Siconos(directory, blas_kernels(arguments.libraries))
     records, table = [], []
     paths = [path for path in (directory / "problems").glob("*.hdf5") if arguments.only in path.name]
     paths.sort(key=lambda path: (path.stat().st_size // 100000, path.name))  # small ones first
     for number, path in enumerate(paths):
         problem = fclib.read(path)
         judge = Judge(problem)
-        stamp = f"{path.name}:{path.stat().st_size}:{np.abs(problem.operator).sum():.17g}:{problem.offset @ problem.offset:.17g}"
+        stamp = f"{siconos.kernels}:{path.name}:{path.stat().st_size}:{np.abs(problem.operator).sum():.17g}:{problem.offset @ problem.offset:.17g}"
         _, start = run_ours(arguments.bench, directory, path, problem, "automatic", 1e-12, 1)
         if start is None or judge.measure.residual(start) > 1e-6:
             _, start = siconos.ask({"problem": str(path), "solver": "NSGS", "tolerance": 1e-8}, 100.0)
@@ -227,7 +230,7 @@ def run_problems(arguments, directory, our_solvers):
                                     **cache[key]})
             cache_file.write_text(json.dumps(cache))
         progress(number + 1, len(paths), path.stem, records[begin:])
-        (directory / arguments.results).write_text(json.dumps({"problems": table, "records": records}, indent=1))
+        (directory / arguments.results).write_text(json.dumps({"libraries": arguments.libraries, "problems": table, "records": records}, indent=1))
     siconos.stop()
 
 
@@ -245,7 +248,7 @@ WARM = {2: ("NSGS", "NSGS-shuffle", "CPG"), 3: ("NSGS-newton-blocks", "NSGS-proj
 
 def run_sequences(arguments, directory):
     """Consecutive steps: ours from its last reactions, theirs from their own last reactions."""
-    siconos = Siconos(directory)
+    siconos = Siconos(directory, blas_kernels(arguments.libraries))
     results = []
     for folder in sorted((directory / "sequences").iterdir()):
         if arguments.only not in folder.name:
@@ -342,6 +345,7 @@ def main():
     if arguments.check:
         return
     directory = arguments.directory.resolve()
+    arguments.libraries = libraries(arguments.program)
     make_set.make(arguments.program, directory, arguments.only)
     listing = subprocess.run([arguments.program, "contact", "--list"], capture_output=True, text=True, check=True).stdout
     our_solvers = ["automatic"] if arguments.default_only else [line.split()[0] for line in listing.splitlines() if line.strip()]

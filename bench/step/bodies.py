@@ -19,7 +19,7 @@ def mesh(directory, name, dimension, size):
 NEWMARK = f'scheme = "newmark"\npreset = "textbook-half"\nstep = {STEP}\nend = {STEP * STEPS}\n'
 
 
-def case(directory, body, mass="equivalent", friction=0.0, method="", time=NEWMARK, down=0.0, output="fields_every = 0\n"):
+def case(directory, body, mass="equivalent", friction=0.0, method="direct", time=NEWMARK, down=0.0, output="fields_every = 0\n"):
     """The path of a case file; `time` and `output` are its sections, `down` how far the body starts nearer to the floor."""
     name, dimension, size = body
     zeros = ", ".join(["0.0"] * (dimension - 1))

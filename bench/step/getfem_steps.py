@@ -11,6 +11,7 @@ SuperLU: GetFEM has no factor that can be kept but a "superlu" preconditioner, w
 """
 
 import argparse
+import ctypes
 import json
 import os
 import sys
@@ -136,6 +137,13 @@ class Expert:
         return free, float(reaction.sum()), iteration
 
 
+def kernels():
+    """Those of the OpenBLAS that GetFEM's MUMPS and numpy use."""
+    function = ctypes.CDLL("libopenblas.so.0").openblas_get_corename
+    function.restype = ctypes.c_char_p
+    return function().decode()
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("mesh")
@@ -167,7 +175,7 @@ def main():
         iterations.append(count)
     json.dump({"dofs": body.dofs, "contact_points": len(body.normal), "set_up_s": set_up, "step_ms": [1e3 * s for s in seconds],
                "force": forces, "iterations": iterations,
-               "end": [float(displacement[k::dimension].mean()) for k in range(dimension)]}, sys.stdout)
+               "end": [float(displacement[k::dimension].mean()) for k in range(dimension)], "kernels": kernels()}, sys.stdout)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ricochet/base/instruction_sets.hpp"
+#include "ricochet/base/parallel.hpp"
 #include "ricochet/linear_algebra/node_matrix.hpp"
 
 namespace ricochet::bench {
@@ -12,8 +13,7 @@ namespace {
 /// The processor fetches ahead in each of several places: one core then gets more from memory than from one stream.
 constexpr std::size_t places = 4, at_once = 16;
 
-RICOCHET_EACH_INSTRUCTION_SET
-double sum_of(const double* values, std::size_t count) {
+RICOCHET_EACH_INSTRUCTION_SET(double, sum_of, (const double* values, std::size_t count), (values, count)) {
   double sums[places * at_once] = {};
   const std::size_t quarter = count / places;
   for (std::size_t i = 0; i + at_once <= quarter; i += at_once) {
@@ -42,12 +42,18 @@ MemoryReader::MemoryReader(std::size_t bytes) : values_(std::max<std::size_t>(by
 
 double MemoryReader::seconds() {
   const StepTimer timer;
-  sink_ = sink_ + sum_of(values_.data(), values_.size());
+  const auto threads = static_cast<std::size_t>(thread_count());
+  std::vector<double> sums(threads);
+  parallel_items(thread_count(), [&](Index thread) {
+    const auto t = static_cast<std::size_t>(thread);
+    sums[t] = sum_of(values_.data() + values_.size() * t / threads, values_.size() / threads);
+  });
+  sink_ = sink_ + sums[0];
   return timer.seconds();
 }
 
 DirectLimits::DirectLimits(const SparseMatrix& matrix)
-    : library_(matrix, SparseCholesky::TriangularSolve::library),
+    : library_(matrix, SparseCholesky::Arithmetic::library),
       own_(matrix),
       memory_(own_.factor_bytes()),
       right_(Vector::Ones(matrix.cols())) {}

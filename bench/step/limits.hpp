@@ -25,7 +25,7 @@ class StepTimer {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Reads memory as fast as one thread can in plain loops.
+/// Reads memory as fast as the threads that there are can in plain loops.
 class MemoryReader {
  public:
   explicit MemoryReader(std::size_t bytes);

@@ -12,7 +12,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from page import write_parts
+from page import blas_kernels, processor, write_parts
 
 COLOURS = {"2D": "#2b6cb0", "3D": "#c53030", "3D iterative": "#b7791f"}
 PHASES = (("open", "open"), ("changing", "closing"), ("closed", "closed"))
@@ -147,6 +147,29 @@ def thread_table(records):
     return table(["", "method", "1 thread, ms per step", "2 threads, ms per step", "gain"], rows)
 
 
+def factorization_table(records):
+    rows = []
+    for record in records:
+        one, several, library = (record[name]["factorization_s"] for name in ("one", "several", "library"))
+        rows.append([body_text(record), f"{record['factor_mb']:.0f}", f"{1e-9 * record['operations']:.3g}", f"{record['ordering_s']:.2g}",
+                     f"{library:.3g}", f"{one:.3g}", f"{several:.3g}", f"**{library / one:.1f}**", f"**{one / several:.2f}**",
+                     f"{1e-9 * record['operations'] / one:.0f}"])
+    return table(["", "factor, MB", "10⁹ operations", "ordering, s", "CHOLMOD, s", "ours, s", "on 2 threads, s", "CHOLMOD / ours", "gain by threads",
+                  "Gflop/s, 1 thread"], rows)
+
+
+def solve_table(records):
+    rows = []
+    for record in records:
+        cells = [body_text(record)]
+        solve = {name: record[name]["forward_ms"] + record[name]["backward_ms"] for name in ("one", "several", "library")}
+        reading = {name: 2.0 * record[name]["reading_ms"] for name in ("one", "several")}
+        cells += [f"{value:.3g}" for value in (solve["library"], solve["one"], reading["one"], solve["several"], reading["several"])]
+        rows.append(cells + [f"**{solve['one'] / solve['several']:.2f}**", f"{reading['one'] / reading['several']:.2f}"])
+    return table(["", "CHOLMOD, ms", "ours, ms", "reading twice, ms", "ours on 2 threads, ms", "reading twice on 2 threads, ms", "gain of the solves",
+                  "gain of reading"], rows)
+
+
 def plot_scaling(records, path):
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.2))
     for name, group in scaling_groups(records).items():
@@ -165,13 +188,23 @@ def plot_scaling(records, path):
     plt.close(figure)
 
 
-def machine():
-    processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "unknown processor")
-    return f"Measured {datetime.date.today()} on a shared machine ({processor}), one core unless said."
+def libraries(everything):
+    """All that parts were measured with."""
+    records = [entry.get("ours", entry) for part in everything.values() for entry in part]
+    return sorted({record["libraries"] for record in records if "libraries" in record})
+
+
+def machine(everything):
+    texts = [f"Measured {datetime.date.today()} on a shared machine ({processor()}), one core unless said, with {text}."
+             for text in libraries(everything) or ["libraries that were not noted"]]
+    kernels = {blas_kernels(text) for text in libraries(everything)}
+    if "peer" in everything and len(kernels) == 1:
+        texts.append(f"GetFEM's OpenBLAS has the kernels for {kernels.pop()}, too.")
+    return "\n".join(texts)
 
 
 def report(everything, docs):
-    parts = {"machine": machine()}
+    parts = {"machine": machine(everything)}
     if "ratios" in everything:
         parts["ratios"], parts["memory"] = ratio_table(everything["ratios"]), memory_table(everything["ratios"])
     if "explicit" in everything:
@@ -183,4 +216,6 @@ def report(everything, docs):
         plot_scaling(everything["scaling"], docs / "figures" / "step-scaling.png")
     if "threads" in everything:
         parts["threads"] = thread_table(everything["threads"])
+    if "factor" in everything:
+        parts["factorization"], parts["solves"] = factorization_table(everything["factor"]), solve_table(everything["factor"])
     write_parts(docs / "performance.md", parts)

@@ -15,6 +15,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/base/timer.hpp"
+#include "ricochet/linear_algebra/library_versions.hpp"
 #include "ricochet/run/session.hpp"
 #include "ricochet/simulation/history.hpp"
 
@@ -130,8 +131,9 @@ double run(const Options& options) {
   const double peak = limits ? peak_alone : peak_memory();
   const SemidiscreteProblem& problem = model.problem;
   const double matrices = megabytes(problem.internal_force->tangent()) + megabytes(problem.mass.whole());
-  fmt::print(R"({{"case": "{}", "dimension": {}, "dofs": {}, "contact_points": {}, "threads": {}, )", options.path,
-             problem.dimension, problem.dof_count(), problem.contact.size(), thread_count());
+  fmt::print(R"({{"case": "{}", "libraries": "{}", "dimension": {}, "dofs": {}, "contact_points": {}, "threads": {}, )",
+             options.path, library_versions(), problem.dimension, problem.dof_count(), problem.contact.size(),
+             thread_count());
   fmt::print(
       R"("read_s": {:.4g}, "assembly_s": {:.4g}, "start_s": {:.4g}, "factor_entries": {}, "matrices_mb": {:.4g}, )",
       build.read_mesh, build.assembly, start, simulation.factor_entries(), matrices);

@@ -39,7 +39,7 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
   ++count;
   return __libc_memalign(alignment, size);
 }
-int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
+int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexcept {
   ++count;
   *block = __libc_memalign(alignment, size);
   return *block == nullptr ? ENOMEM : 0;

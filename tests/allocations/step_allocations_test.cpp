@@ -8,11 +8,13 @@
 #include "allocation_count.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
+#include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/impacts.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
 #include "ricochet/simulation/penetration_watch.hpp"
 #include "support/case_run.hpp"
+#include "support/grid_matrix.hpp"
 #include "support/thrown_body.hpp"
 
 // A time step allocates nothing once its work space has grown to what the contact needs.
@@ -156,6 +158,20 @@ TEST(PenetrationReports, CostTheSameInAFinerMesh) {
     EXPECT_NEAR(report.found[0].relative_depth, report.found[0].depth / std::sqrt(8.0), 0.02);
   }
   EXPECT_EQ(counts[0], counts[1]);
+}
+
+/// On one thread and on several: whatever may be kept is there after the first time.
+TEST(FactorizationAllocations, AMatrixOfTheSamePatternIsFactorizedWithoutAny) {
+  const SparseMatrix matrix = test_support::grid_matrix(3, 14, 3, 7);
+  SparseCholesky factor(matrix);
+  for (const int threads : {1, 3}) {
+    set_thread_count(threads);
+    for (int round = 0; round < 4; ++round) factor.refactorize(matrix);
+    const long before = allocation_count();
+    factor.refactorize(matrix);
+    EXPECT_EQ(allocation_count() - before, 0) << threads;
+  }
+  set_thread_count(1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, StepAllocations, testing::ValuesIn(variants()),

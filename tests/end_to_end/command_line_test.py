@@ -53,7 +53,7 @@ class CommandLine(TestCase):
                 self.assertIn(word, process.stdout)
             self.assertEqual(process.stderr, "")
         process = self.expect_status(0, run("--version"))
-        self.assertRegex(process.stdout, r"^ricochet \d+\.\d+\.\d+\n$")
+        self.assertRegex(process.stdout, r"^ricochet \d+\.\d+\.\d+\nOpenBLAS .* \(\w+\), CHOLMOD .*\n$")
 
     def test_invalid_case_is_status_2(self):
         self.case.write_text(block_case().replace("density", "densty"), encoding="utf-8")

@@ -187,8 +187,8 @@ class Signals(TestCase):
         return text, errors
 
     def test_while_a_run_is_prepared(self):
-        """A body whose factorization takes seconds: the signal comes in CHOLMOD, wherever that is."""
-        self.write("box.msh", box(16))
+        """A body that takes seconds to order and to factorize: the signal comes there, wherever that is."""
+        self.write("box.msh", box(28))
         case = self.write("box.toml", box_case())
         output = self.folder / "out"
         process = start("run", case, "-o", output, "--set", "solver.method=direct")

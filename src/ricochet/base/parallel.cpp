@@ -7,8 +7,10 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "ricochet/base/blas.hpp"
 #include "ricochet/base/blocked_signals.hpp"
 #include "ricochet/base/error.hpp"
 
@@ -49,7 +51,7 @@ bool spin_until(const Ready& ready) {
 class Pool {
  public:
   /// `count` threads, the caller's included.
-  explicit Pool(int count) : count_(count), problems_(static_cast<std::size_t>(count * parts_per_thread)) {
+  explicit Pool(int count) : count_(count) {
     threads_.reserve(static_cast<std::size_t>(count - 1));
     const BlockedSignals signals_are_for_the_caller;
     for (int i = 1; i < count; ++i) threads_.emplace_back([this] { serve(); });
@@ -66,7 +68,8 @@ class Pool {
   [[nodiscard]] int count() const { return count_; }
 
   void run(Index count, const detail::RangeWork& work) {
-    const Index parts = std::min<Index>(count, static_cast<Index>(count_) * parts_per_thread);
+    const Index parts =
+        std::min<Index>(count, work.one_by_one ? most_parts : static_cast<Index>(count_) * parts_per_thread);
     size_ = count;
     work_ = work;
     unfinished_.store(static_cast<int>(parts));
@@ -78,18 +81,14 @@ class Pool {
     if (!spin_until([&] { return unfinished_.load(std::memory_order_acquire) == 0; })) {
       for (int left = unfinished_.load(); left != 0; left = unfinished_.load()) unfinished_.wait(left);
     }
-    std::exception_ptr first;
-    for (Index part = 0; part < parts; ++part) {
-      std::exception_ptr& problem = problems_[static_cast<std::size_t>(part)];
-      if (problem && !first) first = problem;
-      problem = nullptr;
-    }
-    if (first) std::rethrow_exception(first);
+    if (problem_) std::rethrow_exception(std::exchange(problem_, nullptr));
   }
 
  private:
   /// More than one, so that a thread which is late or disturbed does not hold up the others.
   static constexpr int parts_per_thread = 4;
+  /// The ticket below has room for twice as many.
+  static constexpr Index most_parts = 1 << 15;
 
   /// Takes the next part of the present call until none is left. The number of the call, its number of parts and the
   /// next part are one atomic number: who gets a part that exists has the call alive until that part is done.
@@ -103,7 +102,11 @@ class Pool {
       try {
         work_.call(work_.object, size_ * part / parts, size_ * (part + 1) / parts);
       } catch (...) {
-        problems_[static_cast<std::size_t>(part)] = std::current_exception();
+        const std::lock_guard lock(problem_access_);
+        if (!problem_ || part < part_of_problem_) {
+          problem_ = std::current_exception();
+          part_of_problem_ = part;
+        }
       }
       inside_range = false;
       if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_all();
@@ -122,7 +125,9 @@ class Pool {
   }
 
   int count_;
-  std::vector<std::exception_ptr> problems_;  ///< per part
+  std::mutex problem_access_;
+  std::exception_ptr problem_;  ///< of the first part that has one
+  Index part_of_problem_ = 0;
   std::vector<std::thread> threads_;
   Index size_ = 0;
   detail::RangeWork work_;
@@ -136,6 +141,7 @@ class Pool {
 
 void set_thread_count(int count) {
   if (count < 1 || count > 1024) throw Error(ErrorKind::usage, "the number of threads must be from 1 to 1024");
+  if (count > 1) prepare_blas();  // it wants to be alone
   configured_thread_count = count;
 }
 

@@ -21,6 +21,7 @@ namespace detail {
 struct RangeWork {
   const void* object = nullptr;
   void (*call)(const void* object, Index begin, Index end) = nullptr;
+  bool one_by_one = false;  ///< as many ranges as there are things, where their number allows it
 };
 void run_ranges(Index count, const RangeWork& work);
 }  // namespace detail
@@ -33,6 +34,17 @@ void parallel_ranges(Index count, const Work& work) {
   detail::run_ranges(count, {&work, [](const void* object, Index begin, Index end) {
                                (*static_cast<const Work*>(object))(begin, end);
                              }});
+}
+
+/// Calls `work(i)` for all i in [0, count), several at once, each when a thread is free: for few things that take
+/// different times. For the rest as parallel_ranges.
+template <class Work>
+void parallel_items(Index count, const Work& work) {
+  detail::run_ranges(count, {&work,
+                             [](const void* object, Index begin, Index end) {
+                               for (Index i = begin; i < end; ++i) (*static_cast<const Work*>(object))(i);
+                             },
+                             true});
 }
 
 /// Σ of `work(begin, end)` over ranges that cover [0, count) and depend on `count` only, added in their order: the same

@@ -13,7 +13,7 @@
 #include <span>
 #include <utility>
 
-#include "ricochet/base/blas_threads.hpp"
+#include "ricochet/base/blas.hpp"
 
 namespace ricochet {
 
@@ -42,7 +42,7 @@ const basix::FiniteElement& basix_element(CellShape shape, int degree) {
   const auto key = std::make_pair(shape, degree);
   const auto found = elements.find(key);
   if (found != elements.end()) return found->second;
-  use_one_blas_thread();  // Basix solves for the coefficients of its shape functions
+  prepare_blas();  // Basix solves for the coefficients of its shape functions
   return elements
       .emplace(key, basix::create_element(basix::element::family::P, basix_cell(shape), degree,
                                           basix::element::lagrange_variant::gll_warped, false))
@@ -89,7 +89,7 @@ const ReferenceElement& ReferenceElement::get(CellShape shape, int degree) {
 }
 
 QuadratureRule quadrature(CellShape shape, int degree) {
-  use_one_blas_thread();
+  prepare_blas();
   const auto [points, weights] = basix::quadrature::make_quadrature(basix_cell(shape), degree);
   const auto count = static_cast<Index>(weights.size());
   QuadratureRule rule;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ricochet/base/instruction_sets.hpp"
+#include "ricochet/base/packs.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/cell_integration.hpp"
 
@@ -70,26 +71,123 @@ template <int d>
 struct SimplexBatch {
   static constexpr int size = 64;
   double edge[d][d][size], difference[d][d][size];
-  double axial[size], trace[size];  ///< both times the determinant of the edges
+  double axial[size], trace[size];  ///< both times the determinant of the edges; in 3D the square of the former
+  /// Of tangents, in 3D of their squares; 0 beyond a right angle.
+  double largest_tangent;
+  bool beyond_right_angle;  ///< some are
 
-  /// `vertices`: d + 1 nodes per cell.
-  void gather(const int* vertices, int count, const double* positions, const double* displacement) {
-    for (int i = 0; i < count; ++i, vertices += d + 1) {
-      const Index first = Index{vertices[0]} * d;
-      for (int e = 0; e < d; ++e) {
-        const Index other = Index{vertices[e + 1]} * d;
-        for (int k = 0; k < d; ++k) {
-          edge[e][k][i] = positions[other + k] - positions[first + k];
-          difference[e][k][i] = displacement[other + k] - displacement[first + k];
-        }
-      }
+  [[nodiscard]] LargestRotation largest() const {
+    LargestRotation result;
+    result.tangent = d == 2 ? largest_tangent : std::sqrt(largest_tangent);
+    if (!beyond_right_angle) return result;
+    for (int i = 0; i < size; ++i) {
+      if (trace[i] <= 0.0) result.enter(d == 2 ? axial[i] : std::sqrt(axial[i]), trace[i]);
     }
+    return result;
   }
 };
 
+/// The d numbers of a node; in 3D a fourth one that means nothing, which the last node, at dof `last`, has not.
+RICOCHET_PART_OF_CALLER Pack<4> numbers_of_node(const double* values, int dof, int last) {
+  return dof != last ? load<4>(values + dof) : Pack<4>{values[dof], values[dof + 1], values[dof + 2], 0.0};
+}
+
+/// Rows become columns.
+RICOCHET_PART_OF_CALLER void transpose(Pack<4> (&rows)[4]) {
+  const Pack<4> a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6),
+                b = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7),
+                c = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6),
+                e = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
+  rows[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  rows[1] = __builtin_shufflevector(b, e, 0, 1, 4, 5);
+  rows[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  rows[3] = __builtin_shufflevector(b, e, 2, 3, 6, 7);
+}
+
+/// `vertices`: the first dofs of d + 1 nodes per cell. The last cell stands for those that are missing.
+RICOCHET_PART_OF_CALLER void gather(const int* vertices, int count, const double* positions, const double* displacement,
+                                    int, SimplexBatch<2>& batch) {
+  for (int i = 0; i < SimplexBatch<2>::size; i += 4) {
+    Pack<4> a[4], b[4];  // an edge and its difference
+    for (int k = 0; k < 4; ++k) {
+      const int* const at = vertices + 3 * std::min(i + k, count - 1);
+      const Pack<2> x = load<2>(positions + at[0]), u = load<2>(displacement + at[0]);
+      const Pack<4> first = __builtin_shufflevector(x, u, 0, 1, 2, 3);
+      const Pack<2> ax = load<2>(positions + at[1]), au = load<2>(displacement + at[1]);
+      const Pack<2> bx = load<2>(positions + at[2]), bu = load<2>(displacement + at[2]);
+      a[k] = __builtin_shufflevector(ax, au, 0, 1, 2, 3) - first;
+      b[k] = __builtin_shufflevector(bx, bu, 0, 1, 2, 3) - first;
+    }
+    transpose(a);
+    transpose(b);
+    for (int k = 0; k < 2; ++k) {
+      store<4>(batch.edge[0][k] + i, a[k]);
+      store<4>(batch.difference[0][k] + i, a[k + 2]);
+      store<4>(batch.edge[1][k] + i, b[k]);
+      store<4>(batch.difference[1][k] + i, b[k + 2]);
+    }
+  }
+}
+
+RICOCHET_PART_OF_CALLER void gather(const int* vertices, int count, const double* positions, const double* displacement,
+                                    int last, SimplexBatch<3>& batch) {
+  const auto gather_differences = [&](const double* values, double(&to)[3][3][SimplexBatch<3>::size], int i) {
+    Pack<4> of_edge[3][4];
+    for (int k = 0; k < 4; ++k) {
+      const int* const at = vertices + 4 * std::min(i + k, count - 1);
+      const Pack<4> first = numbers_of_node(values, at[0], last);
+      for (int e = 0; e < 3; ++e) of_edge[e][k] = numbers_of_node(values, at[e + 1], last) - first;
+    }
+    for (int e = 0; e < 3; ++e) {
+      transpose(of_edge[e]);
+      for (int k = 0; k < 3; ++k) store<4>(to[e][k] + i, of_edge[e][k]);
+    }
+  };
+  for (int i = 0; i < SimplexBatch<3>::size; i += 4) {
+    gather_differences(positions, batch.edge, i);
+    gather_differences(displacement, batch.difference, i);
+  }
+}
+
+/// The first `half` numbers become the larger, or smaller, ones of themselves and those that follow. Compilers take
+/// several at once here, but not in a sum over all.
+template <int half>
+RICOCHET_PART_OF_CALLER void keep_larger(double* values) {
+  for (int i = 0; i < half; ++i) values[i] = values[i + half] > values[i] ? values[i + half] : values[i];
+}
+template <int half>
+RICOCHET_PART_OF_CALLER void keep_smaller(double* values) {
+  for (int i = 0; i < half; ++i) values[i] = values[i + half] < values[i] ? values[i + half] : values[i];
+}
+
+/// From `axial` and `trace` what the batch says of them all.
+template <int d>
+RICOCHET_PART_OF_CALLER void compare(SimplexBatch<d>& batch) {
+  constexpr int size = SimplexBatch<d>::size;
+  static_assert(size == 64);
+  double tangent[size], least[size];
+  for (int i = 0; i < size; ++i) {
+    const double trace = batch.trace[i];
+    const double quotient = d == 2 ? batch.axial[i] / trace : batch.axial[i] / (trace * trace);
+    tangent[i] = trace > 0.0 ? quotient : 0.0;
+    least[i] = trace;
+  }
+  keep_larger<32>(tangent);
+  keep_larger<16>(tangent);
+  keep_larger<8>(tangent);
+  keep_smaller<32>(least);
+  keep_smaller<16>(least);
+  keep_smaller<8>(least);
+  batch.largest_tangent = *std::max_element(tangent, tangent + 8);
+  batch.beyond_right_angle = *std::min_element(least, least + 8) <= 0.0;
+}
+
 /// ∇u = Σ_e (difference e) ⊗ c_e / det with the dual vectors c of the edges; its axial part is Σ c_e × (difference e).
-RICOCHET_EACH_INSTRUCTION_SET
-void evaluate(SimplexBatch<2>& batch) {
+RICOCHET_EACH_INSTRUCTION_SET(void, evaluate,
+                              (const int* vertices, int count, const double* positions, const double* displacement,
+                               int last, SimplexBatch<2>& batch),
+                              (vertices, count, positions, displacement, last, batch)) {
+  gather(vertices, count, positions, displacement, last, batch);
   const auto& [a, b] = batch.edge;
   const auto& [u, v] = batch.difference;
   for (int i = 0; i < SimplexBatch<2>::size; ++i) {
@@ -99,31 +197,35 @@ void evaluate(SimplexBatch<2>& batch) {
     batch.axial[i] = std::abs(curl);
     batch.trace[i] = 2.0 * determinant + divergence;
   }
+  compare(batch);
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void evaluate(SimplexBatch<3>& batch) {
+/// Written out: inner loops over edges would keep compilers from taking several cells at once.
+RICOCHET_EACH_INSTRUCTION_SET(void, evaluate,
+                              (const int* vertices, int count, const double* positions, const double* displacement,
+                               int last, SimplexBatch<3>& batch),
+                              (vertices, count, positions, displacement, last, batch)) {
+  gather(vertices, count, positions, displacement, last, batch);
+  const auto& [p, q, r] = batch.edge;
+  const auto& [u, v, w] = batch.difference;
   for (int i = 0; i < SimplexBatch<3>::size; ++i) {
-    double curl[3] = {0.0, 0.0, 0.0};
-    double divergence = 0.0, determinant = 0.0;
-    for (int e = 0; e < 3; ++e) {
-      const auto& p = batch.edge[(e + 1) % 3];
-      const auto& q = batch.edge[(e + 2) % 3];
-      const auto& u = batch.difference[e];
-      const double c[3] = {p[1][i] * q[2][i] - p[2][i] * q[1][i], p[2][i] * q[0][i] - p[0][i] * q[2][i],
-                           p[0][i] * q[1][i] - p[1][i] * q[0][i]};
-      curl[0] += c[1] * u[2][i] - c[2] * u[1][i];
-      curl[1] += c[2] * u[0][i] - c[0] * u[2][i];
-      curl[2] += c[0] * u[1][i] - c[1] * u[0][i];
-      divergence += c[0] * u[0][i] + c[1] * u[1][i] + c[2] * u[2][i];
-      if (e == 0) {
-        const auto& edge = batch.edge[0];
-        determinant = c[0] * edge[0][i] + c[1] * edge[1][i] + c[2] * edge[2][i];
-      }
-    }
-    batch.axial[i] = std::sqrt(curl[0] * curl[0] + curl[1] * curl[1] + curl[2] * curl[2]);
+    const double a0 = q[1][i] * r[2][i] - q[2][i] * r[1][i], a1 = q[2][i] * r[0][i] - q[0][i] * r[2][i],
+                 a2 = q[0][i] * r[1][i] - q[1][i] * r[0][i];
+    const double b0 = r[1][i] * p[2][i] - r[2][i] * p[1][i], b1 = r[2][i] * p[0][i] - r[0][i] * p[2][i],
+                 b2 = r[0][i] * p[1][i] - r[1][i] * p[0][i];
+    const double c0 = p[1][i] * q[2][i] - p[2][i] * q[1][i], c1 = p[2][i] * q[0][i] - p[0][i] * q[2][i],
+                 c2 = p[0][i] * q[1][i] - p[1][i] * q[0][i];
+    const double curl0 = (a1 * u[2][i] - a2 * u[1][i]) + (b1 * v[2][i] - b2 * v[1][i]) + (c1 * w[2][i] - c2 * w[1][i]);
+    const double curl1 = (a2 * u[0][i] - a0 * u[2][i]) + (b2 * v[0][i] - b0 * v[2][i]) + (c2 * w[0][i] - c0 * w[2][i]);
+    const double curl2 = (a0 * u[1][i] - a1 * u[0][i]) + (b0 * v[1][i] - b1 * v[0][i]) + (c0 * w[1][i] - c1 * w[0][i]);
+    const double divergence = (a0 * u[0][i] + a1 * u[1][i] + a2 * u[2][i]) +
+                              (b0 * v[0][i] + b1 * v[1][i] + b2 * v[2][i]) +
+                              (c0 * w[0][i] + c1 * w[1][i] + c2 * w[2][i]);
+    const double determinant = a0 * p[0][i] + a1 * p[1][i] + a2 * p[2][i];
+    batch.axial[i] = curl0 * curl0 + curl1 * curl1 + curl2 * curl2;
     batch.trace[i] = 2.0 * determinant + divergence;
   }
+  compare(batch);
 }
 
 /// From the positions of the vertices of straight simplices.
@@ -131,18 +233,19 @@ template <int d>
 LargestRotation largest_of_simplices(const std::vector<int>& vertices, const Points& positions, Index first, Index last,
                                      const Vector& displacement) {
   LargestRotation result;
-  SimplexBatch<d> batch{};
+  SimplexBatch<d> batch;
+  const int last_dof = static_cast<int>(displacement.size()) - d;
   for (Index cell = first; cell < last; cell += SimplexBatch<d>::size) {
     const int count = static_cast<int>(std::min<Index>(SimplexBatch<d>::size, last - cell));
-    batch.gather(vertices.data() + cell * (d + 1), count, positions.data(), displacement.data());
-    evaluate(batch);
-    for (int i = 0; i < count; ++i) result.enter(batch.axial[i], batch.trace[i]);
+    evaluate(vertices.data() + cell * (d + 1), count, positions.data(), displacement.data(), last_dof, batch);
+    result += batch.largest();
   }
   return result;
 }
 
-/// The vertices of all cells, cells near one another together: nodes are numbered so, cells are not.
-std::vector<int> sorted_vertices(const CellBlock& cells) {
+/// The vertices of all cells by their first dofs, cells near one another together: nodes are numbered so, cells are
+/// not.
+std::vector<int> sorted_vertices(const CellBlock& cells, int d) {
   const int count = cells.nodes_per_cell;
   const auto lowest = [&](Index cell) { return *std::min_element(cells.cell(cell), cells.cell(cell) + count); };
   std::vector<std::pair<Index, Index>> order(static_cast<std::size_t>(cells.size()));
@@ -151,7 +254,7 @@ std::vector<int> sorted_vertices(const CellBlock& cells) {
   std::vector<int> vertices;
   vertices.reserve(cells.nodes.size());
   for (const auto& [node, cell] : order) {
-    for (int k = 0; k < count; ++k) vertices.push_back(static_cast<int>(cells.cell(cell)[k]));
+    for (int k = 0; k < count; ++k) vertices.push_back(static_cast<int>(cells.cell(cell)[k]) * d);
   }
   return vertices;
 }
@@ -183,7 +286,7 @@ RotationGauge::RotationGauge(const Body& body) : dimension_(body.mesh->dimension
     const bool simplex = geometry.shape == CellShape::triangle || geometry.shape == CellShape::tetrahedron;
     blocks_.push_back({&cells, {}, {}});
     if (simplex && body.mesh->degree == 1 && body.space->degree == 1) {
-      blocks_.back().vertices = sorted_vertices(cells);
+      blocks_.back().vertices = sorted_vertices(cells, dimension_);
       continue;
     }
     blocks_.back().gradients = dimension_ == 2 ? gradients_at_centres<2>(body, geometry, cells)

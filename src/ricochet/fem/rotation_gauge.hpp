@@ -25,7 +25,7 @@ class RotationGauge {
     /// Cells × nodes × dimension, physical gradients at the centre. Empty for straight simplices of degree 1: those are
     /// computed from the positions of the vertices, which takes no longer than reading them.
     std::vector<double> gradients;
-    /// Of those: the nodes of one cell after another.
+    /// Of those: the first dofs of the nodes of one cell after another.
     std::vector<int> vertices;
   };
   int dimension_;

@@ -1,6 +1,6 @@
 #include "ricochet/linear_algebra/dense_cholesky.hpp"
 
-#include "ricochet/base/blas_threads.hpp"
+#include "ricochet/base/blas.hpp"
 
 // Fortran interfaces of LAPACK, in OpenBLAS; matrices by columns.
 extern "C" {
@@ -12,7 +12,7 @@ void dpotrs_(const char* part, const int* size, const int* columns, const double
 namespace ricochet {
 
 bool DenseCholesky::compute(const Matrix& matrix) {
-  use_one_blas_thread();
+  prepare_blas();
   factor_ = matrix;
   const int size = static_cast<int>(matrix.rows());
   int info = 0;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/base/blas_threads.hpp"
+#include "ricochet/base/blas.hpp"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -55,14 +55,14 @@ class TinyIsZero {
 
 void add_transposed_product(Index rows, Index left_columns, Index right_columns, const double* left, Index left_stride,
                             const double* right, Index right_stride, double* result, Index result_stride) {
-  use_one_blas_thread();
+  prepare_blas();
   const int m = static_cast<int>(left_columns), n = static_cast<int>(right_columns), k = static_cast<int>(rows);
   const int a = static_cast<int>(left_stride), b = static_cast<int>(right_stride), c = static_cast<int>(result_stride);
   dgemm_("T", "N", &m, &n, &k, &one, left, &a, right, &b, &one, result, &c);
 }
 
 void multiply_transposed(const Matrix& matrix, const Vector& x, double* y) {
-  use_one_blas_thread();
+  prepare_blas();
   const int rows = static_cast<int>(matrix.rows());
   const int columns = static_cast<int>(matrix.cols());
   const int step = 1;
@@ -72,7 +72,7 @@ void multiply_transposed(const Matrix& matrix, const Vector& x, double* y) {
 }
 
 void DenseLu::compute(const Matrix& matrix) {
-  use_one_blas_thread();
+  prepare_blas();
   factors_ = matrix;
   const int size = static_cast<int>(matrix.rows());
   permutation_.resize(static_cast<std::size_t>(size));
@@ -93,7 +93,7 @@ double DenseLu::smallest_pivot() const {
 }
 
 bool SingleLu::compute(const Matrix& matrix) {
-  use_one_blas_thread();
+  prepare_blas();
   const TinyIsZero mode;
   factors_ = matrix.cast<float>();
   const int size = static_cast<int>(matrix.rows());
@@ -115,7 +115,7 @@ void SingleLu::solve(const Vector& right, Vector& x) const {
 }
 
 void multiply_dense(const Matrix& matrix, const Vector& x, Vector& y) {
-  use_one_blas_thread();
+  prepare_blas();
   y.resize(matrix.rows());
   const int rows = static_cast<int>(matrix.rows());
   const int columns = static_cast<int>(matrix.cols());

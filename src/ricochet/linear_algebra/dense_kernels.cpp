@@ -8,45 +8,50 @@ namespace ricochet {
 
 namespace {
 
-RICOCHET_EACH_INSTRUCTION_SET
-void add_one(Index size, const float* __restrict a, double f, double* __restrict y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, add_one, (Index size, const float* __restrict a, double f, double* __restrict y),
+                              (size, a, f, y)) {
   for (Index i = 0; i < size; ++i) y[i] += f * static_cast<double>(a[i]);
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void add_two(Index size, const float* __restrict a, const float* __restrict b, double f, double g,
-             double* __restrict y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, add_two,
+                              (Index size, const float* __restrict a, const float* __restrict b, double f, double g,
+                               double* __restrict y),
+                              (size, a, b, f, g, y)) {
   for (Index i = 0; i < size; ++i) y[i] = (y[i] + f * static_cast<double>(a[i])) + g * static_cast<double>(b[i]);
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void add_three(Index size, const float* __restrict a, const float* __restrict b, const float* __restrict c, double f,
-               double g, double h, double* __restrict y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, add_three,
+                              (Index size, const float* __restrict a, const float* __restrict b,
+                               const float* __restrict c, double f, double g, double h, double* __restrict y),
+                              (size, a, b, c, f, g, h, y)) {
   for (Index i = 0; i < size; ++i) {
     y[i] = ((y[i] + f * static_cast<double>(a[i])) + g * static_cast<double>(b[i])) + h * static_cast<double>(c[i]);
   }
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void add_one(Index size, const double* __restrict a, double f, double* __restrict y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, add_one, (Index size, const double* __restrict a, double f, double* __restrict y),
+                              (size, a, f, y)) {
   for (Index i = 0; i < size; ++i) y[i] += f * a[i];
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void add_two(Index size, const double* __restrict a, const double* __restrict b, double f, double g,
-             double* __restrict y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, add_two,
+                              (Index size, const double* __restrict a, const double* __restrict b, double f, double g,
+                               double* __restrict y),
+                              (size, a, b, f, g, y)) {
   for (Index i = 0; i < size; ++i) y[i] = (y[i] + f * a[i]) + g * b[i];
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void add_three(Index size, const double* __restrict a, const double* __restrict b, const double* __restrict c, double f,
-               double g, double h, double* __restrict y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, add_three,
+                              (Index size, const double* __restrict a, const double* __restrict b,
+                               const double* __restrict c, double f, double g, double h, double* __restrict y),
+                              (size, a, b, c, f, g, h, y)) {
   for (Index i = 0; i < size; ++i) y[i] = ((y[i] + f * a[i]) + g * b[i]) + h * c[i];
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void add_one_with_size(Index size, const double* __restrict a, double f, double* __restrict y,
-                       double* __restrict sizes) {
+RICOCHET_EACH_INSTRUCTION_SET(void, add_one_with_size,
+                              (Index size, const double* __restrict a, double f, double* __restrict y,
+                               double* __restrict sizes),
+                              (size, a, f, y, sizes)) {
   for (Index i = 0; i < size; ++i) {
     const double term = f * a[i];
     y[i] += term;
@@ -54,9 +59,10 @@ void add_one_with_size(Index size, const double* __restrict a, double f, double*
   }
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void add_two_with_size(Index size, const double* __restrict a, const double* __restrict b, double f, double g,
-                       double* __restrict y, double* __restrict sizes) {
+RICOCHET_EACH_INSTRUCTION_SET(void, add_two_with_size,
+                              (Index size, const double* __restrict a, const double* __restrict b, double f, double g,
+                               double* __restrict y, double* __restrict sizes),
+                              (size, a, b, f, g, y, sizes)) {
   for (Index i = 0; i < size; ++i) {
     const double first = f * a[i], second = g * b[i];
     y[i] = (y[i] + first) + second;
@@ -64,9 +70,11 @@ void add_two_with_size(Index size, const double* __restrict a, const double* __r
   }
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void add_three_with_size(Index size, const double* __restrict a, const double* __restrict b, const double* __restrict c,
-                         double f, double g, double h, double* __restrict y, double* __restrict sizes) {
+RICOCHET_EACH_INSTRUCTION_SET(void, add_three_with_size,
+                              (Index size, const double* __restrict a, const double* __restrict b,
+                               const double* __restrict c, double f, double g, double h, double* __restrict y,
+                               double* __restrict sizes),
+                              (size, a, b, c, f, g, h, y, sizes)) {
   for (Index i = 0; i < size; ++i) {
     const double first = f * a[i], second = g * b[i], third = h * c[i];
     y[i] = ((y[i] + first) + second) + third;

@@ -1,12 +1,10 @@
 #include "ricochet/linear_algebra/huge_page_buffer.hpp"
 
-#include <cstdint>
 #include <cstdlib>
 #include <new>
 
 #if defined(__linux__)
 #include <sys/mman.h>
-#include <unistd.h>
 #endif
 
 namespace ricochet {
@@ -31,15 +29,6 @@ HugePageBuffer::HugePageBuffer(std::size_t size) : size_(size) {
 
 void HugePageBuffer::Release::operator()(double* values) const {
   std::free(values);
-}
-
-void discard_pages([[maybe_unused]] double* begin, [[maybe_unused]] double* end) {
-#if defined(__linux__)
-  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const std::uintptr_t first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) / page * page;
-  const std::uintptr_t last = reinterpret_cast<std::uintptr_t>(end) / page * page;
-  if (last > first) static_cast<void>(madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED));
-#endif
 }
 
 }  // namespace ricochet

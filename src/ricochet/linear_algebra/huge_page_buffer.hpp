@@ -25,7 +25,4 @@ class HugePageBuffer {
   std::size_t size_ = 0;
 };
 
-/// Gives the whole pages between two addresses back to the system, where it can: what was there is lost.
-void discard_pages(double* begin, double* end);
-
 }  // namespace ricochet

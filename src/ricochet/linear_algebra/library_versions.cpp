@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <string_view>
 
+#include "ricochet/base/blas.hpp"
+#include "ricochet/base/instruction_sets.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 
 namespace ricochet {
@@ -25,21 +27,13 @@ std::string blas_version() {
   return std::string(config.substr(begin, config.find(' ', begin) - begin));
 }
 
-/// Which of the compiled versions of a function runs, see base/instruction_sets.hpp.
-const char* instruction_set() {
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-  if (__builtin_cpu_supports("x86-64-v4")) return "x86-64-v4";
-  if (__builtin_cpu_supports("x86-64-v3")) return "x86-64-v3";
-#endif
-  return "any processor";
-}
-
 }  // namespace
 
 std::string library_versions() {
-  return fmt::format("OpenBLAS {} ({}), {}, Eigen {}.{}.{}, compiled by {} for {}", blas_version(),
+  prepare_blas();
+  return fmt::format("OpenBLAS {} ({}), {}, Eigen {}.{}.{}, compiled by {}, loops for {}", blas_version(),
                      openblas_get_corename(), SparseCholesky::library(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                     EIGEN_MINOR_VERSION, compiler, instruction_set());
+                     EIGEN_MINOR_VERSION, compiler, name(instruction_set()));
 }
 
 }  // namespace ricochet

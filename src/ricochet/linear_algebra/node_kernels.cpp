@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ricochet/linear_algebra/packs.hpp"
+#include "ricochet/base/packs.hpp"
 
 namespace ricochet {
 
@@ -126,12 +126,39 @@ RICOCHET_PART_OF_CALLER void multiply_in(const NodeRows& rows, const double* __r
   }
 }
 
+/// Rows of m ⊗ I with one number each, as a diagonal matrix has. Four sums, so that additions need not wait for one
+/// another.
+template <int d>
+RICOCHET_PART_OF_CALLER double form_of_single_numbers(const NodeRows& rows, const RowGroup& group, const double* x) {
+  double sums[4] = {};
+  const Index begin = group.first_row, to_block = group.first_block - begin;
+  const auto of_row = [&](Index row) {
+    const double* const own = x + Index{rows.node[row]} * d;
+    const double* const other = x + Index{rows.column[row + to_block]} * d;
+    double product = 0.0;
+    for (int a = 0; a < d; ++a) product += own[a] * other[a];
+    return rows.values[row + to_block] * product;
+  };
+  Index row = begin;
+  for (; row + 4 <= group.end_row(); row += 4) {
+    for (int k = 0; k < 4; ++k) sums[k] += of_row(row + k);
+  }
+  for (; row < group.end_row(); ++row) sums[0] += of_row(row);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
 template <int d, bool scalar>
 RICOCHET_PART_OF_CALLER double form_in(const NodeRows& rows, const double* x) {
   using Kind = Block<d, scalar>;
   fetch(x + rows.begin * d, x + rows.end * d);
   double result = 0.0;
   for (const RowGroup& group : rows.groups) {
+    if constexpr (scalar) {
+      if (group.two_sided == 0 && group.one_sided == 1) {
+        result += form_of_single_numbers<d>(rows, group, x);
+        continue;
+      }
+    }
     const double* block = rows.values + group.first_block * Kind::numbers;
     const int* column = rows.column + group.first_block;
     for (Index row = group.first_row; row < group.end_row(); ++row) {
@@ -156,36 +183,32 @@ RICOCHET_PART_OF_CALLER double form_in(const NodeRows& rows, const double* x) {
   return result;
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-void multiply_blocks_2(const NodeRows& rows, const double* x, double* y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, multiply_blocks_2, (const NodeRows& rows, const double* x, double* y),
+                              (rows, x, y)) {
   multiply_in<2, false>(rows, x, y);
 }
-RICOCHET_EACH_INSTRUCTION_SET
-void multiply_blocks_3(const NodeRows& rows, const double* x, double* y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, multiply_blocks_3, (const NodeRows& rows, const double* x, double* y),
+                              (rows, x, y)) {
   multiply_in<3, false>(rows, x, y);
 }
-RICOCHET_EACH_INSTRUCTION_SET
-void multiply_scalars_2(const NodeRows& rows, const double* x, double* y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, multiply_scalars_2, (const NodeRows& rows, const double* x, double* y),
+                              (rows, x, y)) {
   multiply_in<2, true>(rows, x, y);
 }
-RICOCHET_EACH_INSTRUCTION_SET
-void multiply_scalars_3(const NodeRows& rows, const double* x, double* y) {
+RICOCHET_EACH_INSTRUCTION_SET(void, multiply_scalars_3, (const NodeRows& rows, const double* x, double* y),
+                              (rows, x, y)) {
   multiply_in<3, true>(rows, x, y);
 }
-RICOCHET_EACH_INSTRUCTION_SET
-double form_blocks_2(const NodeRows& rows, const double* x) {
+RICOCHET_EACH_INSTRUCTION_SET(double, form_blocks_2, (const NodeRows& rows, const double* x), (rows, x)) {
   return form_in<2, false>(rows, x);
 }
-RICOCHET_EACH_INSTRUCTION_SET
-double form_blocks_3(const NodeRows& rows, const double* x) {
+RICOCHET_EACH_INSTRUCTION_SET(double, form_blocks_3, (const NodeRows& rows, const double* x), (rows, x)) {
   return form_in<3, false>(rows, x);
 }
-RICOCHET_EACH_INSTRUCTION_SET
-double form_scalars_2(const NodeRows& rows, const double* x) {
+RICOCHET_EACH_INSTRUCTION_SET(double, form_scalars_2, (const NodeRows& rows, const double* x), (rows, x)) {
   return form_in<2, true>(rows, x);
 }
-RICOCHET_EACH_INSTRUCTION_SET
-double form_scalars_3(const NodeRows& rows, const double* x) {
+RICOCHET_EACH_INSTRUCTION_SET(double, form_scalars_3, (const NodeRows& rows, const double* x), (rows, x)) {
   return form_in<3, true>(rows, x);
 }
 

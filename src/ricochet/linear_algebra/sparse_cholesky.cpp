@@ -8,22 +8,50 @@
 #include <new>
 #include <stdexcept>
 
-#include "ricochet/base/blas_threads.hpp"
+#include "ricochet/base/blas.hpp"
 #include "ricochet/base/blocked_signals.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/memory.hpp"
+#include "ricochet/linear_algebra/numeric_factorization.hpp"
 
 namespace ricochet {
 
+namespace {
+
+/// A view without a copy, for functions that do not write.
+cholmod_sparse view(int size, const int* begin, const int* rows, const double* values, int triangle) {
+  cholmod_sparse result{};
+  result.nrow = result.ncol = static_cast<std::size_t>(size);
+  result.nzmax = static_cast<std::size_t>(begin[size]);
+  result.p = const_cast<int*>(begin);
+  result.i = const_cast<int*>(rows);
+  result.x = const_cast<double*>(values);
+  result.stype = triangle;
+  result.itype = CHOLMOD_INT;
+  result.xtype = CHOLMOD_REAL;
+  result.dtype = CHOLMOD_DOUBLE;
+  result.packed = 1;
+  return result;
+}
+
+}  // namespace
+
 struct SparseCholesky::Implementation {
+  /// The lower triangle of a symmetric matrix by columns, whose rows are in any order.
+  struct LowerTriangle {
+    std::vector<int> begin;  ///< per column, and the end
+    std::vector<int> rows;
+    std::vector<double> values;
+  };
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
-  cholmod_sparse* ordered = nullptr;  ///< lower triangle of P A Pᵀ, from the analysis to the factorization
-  std::vector<int> permutation;       ///< place in the factor → unknown
-  std::vector<int> places;            ///< unknown → place in the factor
+  LowerTriangle ordered;         ///< of P A Pᵀ, from the analysis to the factorization
+  std::vector<int> permutation;  ///< place in the factor → unknown
+  std::vector<int> places;       ///< unknown → place in the factor
   double scale = 1.0;
-  TriangularSolve solve = TriangularSolve::own;
+  Arithmetic arithmetic = Arithmetic::own;
   SupernodalFactor supernodal;
+  std::unique_ptr<NumericFactorization> numeric;
   std::size_t entries = 0;
   Prediction prediction;
   Index failed = -1;
@@ -34,7 +62,7 @@ struct SparseCholesky::Implementation {
   cholmod_dense* work_e = nullptr;
 
   Implementation() {
-    use_one_blas_thread();
+    prepare_blas();
     cholmod_start(&common);
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.print = 0;
@@ -47,37 +75,22 @@ struct SparseCholesky::Implementation {
     cholmod_free_dense(&work_y, &common);
     cholmod_free_dense(&work_e, &common);
     cholmod_free_factor(&factor, &common);
-    cholmod_free_sparse(&ordered, &common);
     cholmod_finish(&common);
   }
 
   void order(const SparseMatrix& matrix);
   void take_ordered(const SparseMatrix& matrix);
+  [[nodiscard]] cholmod_sparse ordered_view() const;
   void analyse();
+  void require_possible() const;
+  void find_scale();
+  void take_shape();
   void factorize();
-  void take_factor();
+  void factorize_by_library();
   void library_solve(int system, Vector& values);
 };
 
 namespace {
-
-/// A view of the upper triangle of a symmetric matrix stored whole, no copy.
-cholmod_sparse view(const SparseMatrix& matrix) {
-  cholmod_sparse result{};
-  result.nrow = static_cast<std::size_t>(matrix.rows());
-  result.ncol = static_cast<std::size_t>(matrix.cols());
-  result.nzmax = static_cast<std::size_t>(matrix.nonZeros());
-  result.p = const_cast<int*>(matrix.outerIndexPtr());
-  result.i = const_cast<int*>(matrix.innerIndexPtr());
-  result.x = const_cast<double*>(matrix.valuePtr());
-  result.stype = 1;
-  result.itype = CHOLMOD_INT;
-  result.xtype = CHOLMOD_REAL;
-  result.dtype = CHOLMOD_DOUBLE;
-  result.sorted = 1;
-  result.packed = 1;
-  return result;
-}
 
 /// METIS puts back the handlers that it finds, but so that they serve for one signal only.
 class KeptHandlers {
@@ -98,10 +111,11 @@ class KeptHandlers {
 
 }  // namespace
 
-/// The permutation, and the lower triangle of P A Pᵀ. Given in the order of the factor, it is not copied again.
 void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
   permutation.resize(static_cast<std::size_t>(matrix.cols()));
-  cholmod_sparse upper = view(matrix);
+  cholmod_sparse upper =
+      view(static_cast<int>(matrix.cols()), matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), 1);
+  upper.sorted = 1;
   // METIS catches SIGTERM while it works, and jumps out of that with its own work half done.
   const BlockedSignals until_ordered;
   const KeptHandlers kept;
@@ -113,11 +127,32 @@ void SparseCholesky::Implementation::order(const SparseMatrix& matrix) {
   take_ordered(matrix);
 }
 
+/// Takes the lower triangle of P A Pᵀ. What it is kept in grows once.
 void SparseCholesky::Implementation::take_ordered(const SparseMatrix& matrix) {
-  cholmod_sparse upper = view(matrix);
-  cholmod_free_sparse(&ordered, &common);
-  ordered = cholmod_ptranspose(&upper, 1, permutation.data(), nullptr, 0, &common);
-  if (ordered == nullptr) throw std::bad_alloc();
+  const int size = static_cast<int>(matrix.cols());
+  const auto visit = [&](const auto& take) {
+    for (int place = 0; place < size; ++place) {
+      for (SparseMatrix::InnerIterator entry(matrix, permutation[static_cast<std::size_t>(place)]); entry; ++entry) {
+        const int row = places[static_cast<std::size_t>(entry.row())];
+        if (row >= place) take(place, row, entry.value());
+      }
+    }
+  };
+  ordered.begin.assign(static_cast<std::size_t>(size) + 1, 0);
+  visit([&](int place, int, double) { ++ordered.begin[static_cast<std::size_t>(place) + 1]; });
+  for (std::size_t place = 0; place < permutation.size(); ++place) ordered.begin[place + 1] += ordered.begin[place];
+  ordered.rows.resize(static_cast<std::size_t>(ordered.begin.back()));
+  ordered.values.resize(ordered.rows.size());
+  std::size_t at = 0;
+  visit([&](int, int row, double value) {
+    ordered.rows[at] = row;
+    ordered.values[at++] = value;
+  });
+}
+
+cholmod_sparse SparseCholesky::Implementation::ordered_view() const {
+  return view(static_cast<int>(permutation.size()), ordered.begin.data(), ordered.rows.data(), ordered.values.data(),
+              -1);
 }
 
 void SparseCholesky::Implementation::analyse() {
@@ -125,7 +160,8 @@ void SparseCholesky::Implementation::analyse() {
   common.method[0].ordering = CHOLMOD_NATURAL;
   common.postorder = 0;  // the given order is postordered already
   cholmod_free_factor(&factor, &common);
-  factor = cholmod_analyze(ordered, &common);
+  cholmod_sparse lower = ordered_view();
+  factor = cholmod_analyze(&lower, &common);
   prediction = {true, common.lnz, common.fl};
   if (factor != nullptr && common.status != CHOLMOD_TOO_LARGE) {
     entries = factor->xsize;
@@ -136,40 +172,57 @@ void SparseCholesky::Implementation::analyse() {
   prediction.possible = false;
 }
 
-void SparseCholesky::Implementation::factorize() {
-  if (!prediction.possible)
-    throw Error(ErrorKind::invalid_input, fmt::format("the Cholesky factor of the operator would have {:.2g} entries, "
-                                                      "more than CHOLMOD can count: set solver.method = \"iterative\"",
-                                                      prediction.entries));
-  const auto* begins = static_cast<const int*>(ordered->p);
-  const auto* rows = static_cast<const int*>(ordered->i);
-  auto* values = static_cast<double*>(ordered->x);
+void SparseCholesky::Implementation::require_possible() const {
+  if (ordered.begin.empty()) throw std::logic_error("a matrix is to be analysed before it is factorized");
+  if (prediction.possible) return;
+  throw Error(ErrorKind::invalid_input, fmt::format("the Cholesky factor of the operator would have {:.2g} entries, "
+                                                    "more than CHOLMOD can count: set solver.method = \"iterative\"",
+                                                    prediction.entries));
+}
+
+void SparseCholesky::Implementation::find_scale() {
   double largest = 0.0;
-  for (int column = 0; column < static_cast<int>(ordered->ncol); ++column) {
-    for (int k = begins[column]; k < begins[column + 1]; ++k)
-      if (rows[k] == column) largest = std::max(largest, std::abs(values[k]));
+  for (std::size_t column = 0; column < permutation.size(); ++column) {
+    for (auto k = static_cast<std::size_t>(ordered.begin[column]);
+         k < static_cast<std::size_t>(ordered.begin[column + 1]); ++k)
+      if (ordered.rows[k] == static_cast<int>(column)) largest = std::max(largest, std::abs(ordered.values[k]));
   }
   int exponent = 0;
   std::frexp(largest, &exponent);
   scale = largest > 0.0 ? std::ldexp(1.0, -exponent) : 1.0;
-  for (int k = 0; k < begins[ordered->ncol]; ++k) values[k] *= scale;
-  release_freed_memory();                      // the most that a run takes is taken here
+}
+
+/// The shape of the factor is all that is taken from CHOLMOD.
+void SparseCholesky::Implementation::take_shape() {
+  numeric.reset();
+  supernodal = SupernodalFactor({static_cast<Index>(factor->nsuper), static_cast<const int*>(factor->super),
+                                 static_cast<const int*>(factor->pi), static_cast<const int*>(factor->s)});
+  cholmod_free_factor(&factor, &common);
+}
+
+void SparseCholesky::Implementation::factorize() {
+  require_possible();
+  find_scale();
+  if (factor != nullptr) {
+    release_freed_memory();  // the most that a run takes is taken here
+    take_shape();
+  }
+  if (!numeric) numeric = std::make_unique<NumericFactorization>(supernodal);
+  const Index column = numeric->run({ordered.begin.data(), ordered.rows.data(), ordered.values.data()}, scale);
+  failed = column < 0 ? -1 : permutation[static_cast<std::size_t>(column)];
+}
+
+void SparseCholesky::Implementation::factorize_by_library() {
+  require_possible();
+  find_scale();
+  for (double& value : ordered.values) value *= scale;
+  cholmod_sparse lower = ordered_view();
   const BlockedSignals on_threads_of_cholmod;  // made by the first call, they are there when METIS works again
-  cholmod_factorize(ordered, factor, &common);
-  cholmod_free_sparse(&ordered, &common);
+  cholmod_factorize(&lower, factor, &common);
+  ordered = {};
   if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
   entries = factor->xsize;
   failed = factor->minor < factor->n ? permutation[factor->minor] : -1;
-}
-
-/// Our own solves have a copy of the factor; CHOLMOD's goes as it is made.
-void SparseCholesky::Implementation::take_factor() {
-  if (failed < 0) {
-    supernodal = SupernodalFactor({static_cast<Index>(factor->nsuper), static_cast<const int*>(factor->super),
-                                   static_cast<const int*>(factor->pi), static_cast<const int*>(factor->s),
-                                   static_cast<const int*>(factor->px), static_cast<double*>(factor->x)});
-  }
-  cholmod_free_factor(&factor, &common);
 }
 
 void SparseCholesky::Implementation::library_solve(int system, Vector& values) {
@@ -187,9 +240,9 @@ void SparseCholesky::Implementation::library_solve(int system, Vector& values) {
 
 SparseCholesky::SparseCholesky() : implementation_(std::make_unique<Implementation>()) {}
 
-SparseCholesky::SparseCholesky(const SparseMatrix& matrix, TriangularSolve solve) : SparseCholesky() {
+SparseCholesky::SparseCholesky(const SparseMatrix& matrix, Arithmetic arithmetic) : SparseCholesky() {
   analyse(matrix);
-  factorize(solve);
+  factorize(arithmetic);
 }
 
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
@@ -208,18 +261,29 @@ void SparseCholesky::analyse(const SparseMatrix& matrix) {
   implementation_->analyse();
 }
 
-void SparseCholesky::factorize(TriangularSolve solve) {
-  implementation_->solve = solve;
+void SparseCholesky::factorize(Arithmetic arithmetic) {
+  Implementation& own = *implementation_;
+  own.arithmetic = arithmetic;
   if (size() == 0) return;
-  implementation_->factorize();
-  if (solve == TriangularSolve::own) implementation_->take_factor();
+  if (arithmetic == Arithmetic::library) {
+    own.factorize_by_library();
+    return;
+  }
+  own.factorize();
+  // Most matrices are factorized once.
+  own.numeric.reset();
+  own.ordered = {};
 }
 
 void SparseCholesky::refactorize(const SparseMatrix& matrix) {
+  Implementation& own = *implementation_;
   if (size() == 0) return;
-  implementation_->take_ordered(matrix);
-  implementation_->analyse();  // the pattern of the factor, in the given order: quick beside finding that order
-  factorize(implementation_->solve);
+  own.take_ordered(matrix);
+  if (own.arithmetic == Arithmetic::library) {
+    own.factorize_by_library();
+  } else {
+    own.factorize();
+  }
 }
 
 SparseCholesky::Prediction SparseCholesky::predicted() const {
@@ -244,7 +308,7 @@ std::size_t SparseCholesky::factor_entries() const {
   return implementation_->entries;
 }
 std::size_t SparseCholesky::factor_bytes() const {
-  const bool own = implementation_->solve == TriangularSolve::own;
+  const bool own = implementation_->arithmetic == Arithmetic::own;
   return own ? implementation_->supernodal.bytes() : implementation_->entries * sizeof(double);
 }
 const std::vector<int>& SparseCholesky::permutation() const {
@@ -257,12 +321,12 @@ const SupernodalFactor& SparseCholesky::supernodal() const {
   return implementation_->supernodal;
 }
 Index SparseCholesky::work_size() const {
-  return implementation_->solve == TriangularSolve::own ? implementation_->supernodal.work_size() : size();
+  return implementation_->arithmetic == Arithmetic::own ? implementation_->supernodal.work_size() : size();
 }
 
 void SparseCholesky::solve_lower(Vector& y) {
   Implementation& own = *implementation_;
-  if (own.solve == TriangularSolve::own) {
+  if (own.arithmetic == Arithmetic::own) {
     own.supernodal.forward(y);
   } else if (y.size() > 0) {
     own.library_solve(CHOLMOD_L, y);
@@ -271,7 +335,7 @@ void SparseCholesky::solve_lower(Vector& y) {
 
 void SparseCholesky::solve_upper(Vector& y) {
   Implementation& own = *implementation_;
-  if (own.solve == TriangularSolve::own) {
+  if (own.arithmetic == Arithmetic::own) {
     own.supernodal.backward(y);
   } else if (y.size() > 0) {
     own.library_solve(CHOLMOD_Lt, y);

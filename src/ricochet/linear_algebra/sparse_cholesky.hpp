@@ -6,32 +6,34 @@
 
 #include "ricochet/linear_algebra/supernodal_factor.hpp"
 
-/// @file Supernodal sparse Cholesky factorization (CHOLMOD, METIS).
+/// @file Supernodal sparse Cholesky factorization. METIS orders, CHOLMOD tells the shape of the factor, and
+/// NumericFactorization computes it.
 namespace ricochet {
 
 /// P (2ᵏA) Pᵀ = L Lᵀ. The power of two makes the factor the same bits in every unit system that differs by powers of
 /// two (a square root would not be).
 class SparseCholesky {
  public:
-  /// Who solves with the factor: our own loops over a copy of it made for them, or CHOLMOD (to compare).
-  enum class TriangularSolve { own, library };
+  /// Who computes the factor and solves with it: our own loops, or CHOLMOD (to compare).
+  enum class Arithmetic { own, library };
 
   SparseCholesky();
   /// Analyses and factorizes a symmetric matrix stored whole. Does not throw when it is not positive definite: ask.
-  explicit SparseCholesky(const SparseMatrix& matrix, TriangularSolve solve = TriangularSolve::own);
+  explicit SparseCholesky(const SparseMatrix& matrix, Arithmetic arithmetic = Arithmetic::own);
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
   ~SparseCholesky();
 
-  /// Name and version of what makes the factor.
+  /// Name and version of what tells the shape of the factor.
   [[nodiscard]] static std::string library();
 
   /// The two halves of the constructor. Between them `predicted` says what the second will take, and the lower triangle
-  /// of the matrix is kept.
+  /// of the matrix is kept. `factorize` throws std::logic_error where nothing has been analysed since the last one.
   void analyse(const SparseMatrix& matrix);
-  void factorize(TriangularSolve solve = TriangularSolve::own);
+  void factorize(Arithmetic arithmetic = Arithmetic::own);
   /// Factorizes another matrix of the same pattern, in the order that was found for the first: the bits of a new
-  /// factor.
+  /// factor. Throws std::logic_error if it has an entry that does not fit into the factor. Where it is not positive
+  /// definite, nothing may be solved before another one that is.
   void refactorize(const SparseMatrix& matrix);
   struct Prediction {
     bool possible = true;     ///< false: more entries than the library can count
@@ -67,7 +69,7 @@ class SparseCholesky {
   /// x = A⁻¹ b.
   void solve(const Vector& right_hand_side, Vector& x);
 
-  /// The factor for sparse right-hand sides; its rows are places in the factor. Empty with TriangularSolve::library.
+  /// The factor for sparse right-hand sides; its rows are places in the factor. Empty with Arithmetic::library.
   [[nodiscard]] const SupernodalFactor& supernodal() const;
 
  private:

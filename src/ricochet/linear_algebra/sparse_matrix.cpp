@@ -1,5 +1,7 @@
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 
+#include <algorithm>
+
 #include "ricochet/base/parallel.hpp"
 
 namespace ricochet {
@@ -74,6 +76,37 @@ SparseMatrix add_sparse(const SparseMatrix& a, const SparseMatrix& b) {
     }
   });
   return result;
+}
+
+SparseMatrix zeros_without(const SparseMatrix& pattern, const std::vector<char>& left_out) {
+  SparseMatrix result(pattern.rows(), pattern.cols());
+  const auto is_out = [&](Index i) { return left_out[static_cast<std::size_t>(i)] != 0; };
+  int* const outer = result.outerIndexPtr();
+  for (int pass = 0; pass < 2; ++pass) {
+    int position = 0;
+    for (Index column = 0; column < pattern.cols(); ++column) {
+      outer[column] = position;
+      if (is_out(column)) continue;
+      for (SparseMatrix::InnerIterator entry(pattern, column); entry; ++entry) {
+        if (is_out(entry.row())) continue;
+        if (pass > 0) {
+          result.innerIndexPtr()[position] = static_cast<int>(entry.row());
+          result.valuePtr()[position] = 0.0;
+        }
+        ++position;
+      }
+    }
+    outer[pattern.cols()] = position;
+    if (pass == 0) result.resizeNonZeros(position);
+  }
+  return result;
+}
+
+double* stored_entry(SparseMatrix& matrix, Index row, Index column) {
+  const int* const begin = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column];
+  const int* const end = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column + 1];
+  const int* const at = std::lower_bound(begin, end, static_cast<int>(row));
+  return at != end && *at == row ? matrix.valuePtr() + (at - matrix.innerIndexPtr()) : nullptr;
 }
 
 bool is_diagonal(const SparseMatrix& matrix) {

@@ -15,6 +15,13 @@ namespace ricochet {
 /// (Eigen's operator takes three times as much).
 [[nodiscard]] SparseMatrix add_sparse(const SparseMatrix& a, const SparseMatrix& b);
 
+/// Zeros in the pattern of a square matrix, less the rows and columns that are left out. Takes the memory of the
+/// result.
+[[nodiscard]] SparseMatrix zeros_without(const SparseMatrix& pattern, const std::vector<char>& left_out);
+
+/// Where an entry is stored; null where it is not. Searches the column.
+[[nodiscard]] double* stored_entry(SparseMatrix& matrix, Index row, Index column);
+
 /// True when no entry off the diagonal is stored but zeros.
 [[nodiscard]] bool is_diagonal(const SparseMatrix& matrix);
 

@@ -6,100 +6,81 @@
 
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/linear_algebra/supernodal_kernels.hpp"
+#include "ricochet/linear_algebra/supernode_layout.hpp"
+#include "ricochet/linear_algebra/wide_supernode.hpp"
 
 namespace ricochet {
 
 namespace {
 
 /// Factors of fewer numbers are not divided: handing over to another thread would take longer than the solve.
-constexpr Index least_divided_size = Index{1} << 18;
+constexpr double least_divided_size = 1 << 18;
 /// Subtrees hold at most this part of the factor.
-constexpr Index parts_per_factor = 16;
-/// Gives memory that has been read back to the system, a few MB at a time.
-class Discarding {
- public:
-  ~Discarding() { discard_pages(begin_, end_); }
-  void has_read(double* begin, double* end) {
-    if (begin != end_ || end_ - begin_ > enough) {
-      discard_pages(begin_, end_);
-      begin_ = begin;
-    }
-    end_ = end;
-  }
-
- private:
-  static constexpr Index enough = Index{1} << 20;
-  double* begin_ = nullptr;
-  double* end_ = nullptr;
-};
-
+constexpr double parts_per_factor = 16.0;
 }  // namespace
 
-SupernodalFactor::SupernodalFactor(const SupernodalView& view) {
-  read_shape(view);
+SupernodalFactor::SupernodalFactor(const SupernodalShape& shape) {
+  read_shape(shape);
   divide();
-  copy_values(view);
+  place_numbers(shape);
 }
 
-void SupernodalFactor::read_shape(const SupernodalView& view) {
-  const auto count = static_cast<std::size_t>(view.supernodes);
-  size_ = view.supernodes == 0 ? 0 : view.first_column[view.supernodes];
+void SupernodalFactor::read_shape(const SupernodalShape& shape) {
+  const auto count = static_cast<std::size_t>(shape.supernodes);
+  size_ = shape.supernodes == 0 ? 0 : shape.first_column[shape.supernodes];
   supernodes_.resize(count);
   std::vector<int> supernode_of_column(static_cast<std::size_t>(size_));
   for (std::size_t s = 0; s < count; ++s) {
     Supernode& node = supernodes_[s];
-    node.first = view.first_column[s];
-    node.columns = view.first_column[s + 1] - node.first;
-    node.below = view.row_start[s + 1] - view.row_start[s] - node.columns;
+    node.first = shape.first_column[s];
+    node.columns = shape.first_column[s + 1] - node.first;
+    node.below = shape.row_start[s + 1] - shape.row_start[s] - node.columns;
     node.number = static_cast<int>(s);
     std::fill_n(supernode_of_column.begin() + node.first, node.columns, node.number);
   }
   parent_.resize(count);
   for (std::size_t s = 0; s < count; ++s) {
     const Supernode& node = supernodes_[s];
-    const int* below = view.rows + view.row_start[s] + node.columns;
+    const int* below = shape.rows + shape.row_start[s] + node.columns;
     parent_[s] = node.below == 0 ? -1 : supernode_of_column[static_cast<std::size_t>(*below)];
   }
 }
 
-/// Numbers in the stream of each supernode with all its descendants; −1 where these do not lie side by side before it.
-std::vector<Index> SupernodalFactor::subtree_sizes() const {
+std::vector<int> SupernodalFactor::subtrees(std::vector<double> weights, double most) const {
   const std::size_t count = supernodes_.size();
-  std::vector<Index> size(count, 0), descendants(count, 0);
-  std::vector<int> first(count);
+  std::vector<Index> descendants(count, 0);
+  std::vector<int> first(count), root(count, -1);
   std::iota(first.begin(), first.end(), 0);
   for (std::size_t s = 0; s < count; ++s) {
-    const Supernode& node = supernodes_[s];
-    size[s] += supernode_stream_size(node.columns, node.columns + node.below);
     descendants[s] += 1;
     if (parent_[s] < 0) continue;
     const auto parent = static_cast<std::size_t>(parent_[s]);
-    size[parent] += size[s];
+    weights[parent] += weights[s];
     descendants[parent] += descendants[s];
     first[parent] = std::min(first[parent], first[s]);
   }
-  for (std::size_t s = 0; s < count; ++s) {
-    if (static_cast<Index>(s) - first[s] + 1 != descendants[s]) size[s] = -1;
+  for (std::size_t s = count; s-- > 0;) {
+    const bool side_by_side = static_cast<Index>(s) - first[s] + 1 == descendants[s];
+    if (parent_[s] >= 0 && root[static_cast<std::size_t>(parent_[s])] >= 0) {
+      root[s] = root[static_cast<std::size_t>(parent_[s])];
+    } else if (side_by_side && weights[s] <= most) {
+      root[s] = static_cast<int>(s);
+    }
   }
-  return size;
+  return root;
 }
 
 /// The division depends on the factor alone. It is the order of sums, and so must not depend on the number of threads.
 void SupernodalFactor::divide() {
-  const std::vector<Index> size = subtree_sizes();
   const std::size_t count = supernodes_.size();
-  Index total = 0;
-  for (std::size_t s = 0; s < count; ++s) total += parent_[s] < 0 ? std::max(size[s], Index{0}) : 0;
-  const Index limit = total < least_divided_size ? -1 : total / parts_per_factor;
-  // A subtree is a part if it is small enough and its parent's is not.
-  std::vector<int> part(count, -1);
-  for (std::size_t s = count; s-- > 0;) {
-    if (parent_[s] >= 0 && part[static_cast<std::size_t>(parent_[s])] >= 0) {
-      part[s] = part[static_cast<std::size_t>(parent_[s])];
-    } else if (size[s] >= 0 && size[s] <= limit) {
-      part[s] = static_cast<int>(s);
-    }
+  std::vector<double> sizes(count);
+  double total = 0.0;
+  for (std::size_t s = 0; s < count; ++s) {
+    const Supernode& node = supernodes_[s];
+    sizes[s] = static_cast<double>(SupernodeLayout(node.columns, node.columns + node.below).size());
+    total += sizes[s];
   }
+  const std::vector<int> part = subtrees(sizes, total < least_divided_size ? -1.0 : total / parts_per_factor);
   std::vector<Supernode> ordered;
   ordered.reserve(count);
   for (std::size_t s = 0; s < count; ++s) {
@@ -117,29 +98,27 @@ void SupernodalFactor::divide() {
   for (std::size_t k = 0; k < count; ++k) place_[static_cast<std::size_t>(supernodes_[k].number)] = static_cast<int>(k);
 }
 
-void SupernodalFactor::copy_values(const SupernodalView& view) {
+void SupernodalFactor::place_numbers(const SupernodalShape& shape) {
   Index stream_size = 0, row_count = 0;
   for (Supernode& node : supernodes_) {
     node.stream = stream_size;
     node.rows = row_count;
-    stream_size += supernode_stream_size(node.columns, node.columns + node.below);
+    stream_size += SupernodeLayout(node.columns, node.columns + node.below).size();
     node.stream_end = stream_size;
     row_count += node.below;
   }
   stream_ = HugePageBuffer(static_cast<std::size_t>(stream_size));
   rows_.resize(static_cast<std::size_t>(row_count));
-  Discarding source;
   for (const Supernode& node : supernodes_) {
-    const int* below = view.rows + view.row_start[node.number] + node.columns;
+    const int* below = shape.rows + shape.row_start[node.number] + node.columns;
     std::copy_n(below, node.below, rows_.begin() + node.rows);
-    double* const from = view.values + view.value_start[node.number];
-    const Index rows = node.columns + node.below;
-    write_supernode(from, node.columns, rows, stream_.data() + node.stream);
-    source.has_read(from, from + node.columns * rows);
   }
   work_size_ = size_;
   row_of_work_.clear();
   for (Part& part : parts_) number_boundary(part);
+  const auto shared = [&](const Supernode& node) { return is_shared(parts_.back(), node); };
+  if (std::any_of(supernodes_.begin() + static_cast<std::ptrdiff_t>(parts_.back().begin), supernodes_.end(), shared))
+    sums_.resize(static_cast<std::size_t>(WideSupernode::sums_size()));
 }
 
 /// Rows beyond a part's own columns become places in the work space of y.
@@ -177,13 +156,23 @@ void SupernodalFactor::gather(const Supernode& node, const double* y, double* w)
   below[node.below] = 0.0;
 }
 
+/// All threads are there only for what remains when the subtrees are done.
+bool SupernodalFactor::is_shared(const Part& part, const Supernode& node) const {
+  return &part == &parts_.back() && WideSupernode::is_wide(node.columns, node.columns + node.below);
+}
+
 void SupernodalFactor::forward(const Part& part, double* y) const {
   double* const w = part.work.data();
   std::fill_n(y + part.boundary_start, part.boundary.size(), 0.0);
   for (std::size_t k = part.begin; k < part.end; ++k) {
     const Supernode& node = supernodes_[k];
+    const Index size = node.columns + node.below;
     gather(node, y, w);
-    supernode_forward(stream_.data() + node.stream, node.columns, node.columns + node.below, w);
+    if (is_shared(part, node)) {
+      WideSupernode(node.columns, size, stream_.data() + node.stream).forward(w);
+    } else {
+      supernode_forward(stream_.data() + node.stream, node.columns, size, w);
+    }
     std::copy_n(w, node.columns, y + node.first);
     const int* rows = rows_.data() + node.rows;
     for (int i = 0; i < node.below; ++i) y[rows[i]] = w[node.columns + i];
@@ -196,9 +185,13 @@ void SupernodalFactor::backward(const Part& part, double* y) const {
     y[part.boundary_start + static_cast<Index>(i)] = y[part.boundary[i]];
   for (std::size_t k = part.end; k-- > part.begin;) {
     const Supernode& node = supernodes_[k];
-    gather(node, y, w);
     const Index size = node.columns + node.below;
-    supernode_backward(stream_.data() + node.stream_end, node.columns, size, w);
+    gather(node, y, w);
+    if (is_shared(part, node)) {
+      WideSupernode(node.columns, size, stream_.data() + node.stream).backward(w, sums_.data());
+    } else {
+      supernode_backward(stream_.data() + node.stream_end, node.columns, size, w);
+    }
     std::copy_n(w, node.columns, y + node.first);
   }
 }

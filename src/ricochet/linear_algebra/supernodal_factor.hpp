@@ -8,16 +8,13 @@
 /// @file A supernodal lower triangular factor laid out for triangular solves at the speed of memory.
 namespace ricochet {
 
-/// A factor as CHOLMOD keeps it: supernode s has columns [first_column[s], first_column[s+1]), the rows
-/// rows[row_start[s]] … rows[row_start[s+1]−1] ascending (its own columns first) and, from values + value_start[s], its
-/// entries column by column, one row count apart.
-struct SupernodalView {
+/// The shape of a factor as CHOLMOD's analysis gives it: supernode s has columns [first_column[s], first_column[s+1])
+/// and the rows rows[row_start[s]] … rows[row_start[s+1]−1] ascending, its own columns first.
+struct SupernodalShape {
   Index supernodes = 0;
   const int* first_column = nullptr;
   const int* row_start = nullptr;
   const int* rows = nullptr;
-  const int* value_start = nullptr;
-  double* values = nullptr;
 };
 
 /// Supernodes that a sparse right-hand side reaches: with each one all that follow it on the way to the root.
@@ -32,9 +29,8 @@ struct FactorPath {
 class SupernodalFactor {
  public:
   SupernodalFactor() = default;
-  /// Copies the entries. The memory of the view is given back to the system on the way, so that there are never two
-  /// factors: its values are lost.
-  explicit SupernodalFactor(const SupernodalView& view);
+  /// Copies the shape. The numbers are to be written by a factorization (linear_algebra/numeric_factorization.hpp).
+  explicit SupernodalFactor(const SupernodalShape& shape);
 
   [[nodiscard]] Index size() const { return size_; }
   /// Length of the vectors that are solved with: the first `size` entries are the vector, the others work space.
@@ -52,7 +48,7 @@ class SupernodalFactor {
   /// nor on how much more than its own path the given one contains.
   void forward_on_path(const FactorPath& path, Matrix& columns) const;
 
- private:
+  // For who writes the numbers. Supernodes have the numbers of the order of columns.
   struct Supernode {
     int first = 0;                     ///< column
     int columns = 0;                   ///< k
@@ -61,6 +57,23 @@ class SupernodalFactor {
     Index stream = 0, stream_end = 0;  ///< where its numbers are
     Index rows = 0;                    ///< where its rows below begin in rows_
   };
+  [[nodiscard]] Index supernode_count() const { return static_cast<Index>(supernodes_.size()); }
+  [[nodiscard]] const Supernode& supernode(Index number) const {
+    return supernodes_[static_cast<std::size_t>(place_[static_cast<std::size_t>(number)])];
+  }
+  /// In the layout of linear_algebra/supernode_layout.hpp.
+  [[nodiscard]] double* numbers(const Supernode& node) { return stream_.data() + node.stream; }
+  /// The row of the factor that a row of a supernode is.
+  [[nodiscard]] int row(const Supernode& node, Index i) const {
+    if (i < node.columns) return node.first + static_cast<int>(i);
+    const int row = rows_[static_cast<std::size_t>(node.rows + i - node.columns)];
+    return row < size_ ? row : row_of_work_[static_cast<std::size_t>(row - size_)];
+  }
+  /// Per supernode the root of the largest subtree that holds it and whose weights sum up to at most `most`; −1 where
+  /// there is none. The supernodes of such a subtree lie side by side.
+  [[nodiscard]] std::vector<int> subtrees(std::vector<double> weights, double most) const;
+
+ private:
   /// Supernodes that are solved one after the other. Parts other than the last are subtrees of the elimination tree and
   /// independent of one another: what they add to rows beyond their own they add to a vector of their own, and these
   /// are added to y in the order of the parts. So the bits are the same for any number of threads.
@@ -71,12 +84,12 @@ class SupernodalFactor {
     mutable std::vector<double> work;
   };
 
-  void read_shape(const SupernodalView& view);
+  void read_shape(const SupernodalShape& shape);
   void divide();
-  std::vector<Index> subtree_sizes() const;
-  void copy_values(const SupernodalView& view);
+  void place_numbers(const SupernodalShape& shape);
   void number_boundary(Part& part);
   void gather(const Supernode& node, const double* y, double* w) const;
+  bool is_shared(const Part& part, const Supernode& node) const;
   void forward(const Part& part, double* y) const;
   void backward(const Part& part, double* y) const;
 
@@ -87,6 +100,7 @@ class SupernodalFactor {
   std::vector<int> rows_;              ///< of all supernodes: rows of the factor, or places in the work space
   std::vector<int> row_of_work_;       ///< per place in the work space: the row it stands for
   std::vector<Part> parts_;            ///< the last one is what remains when the subtrees are done
+  mutable std::vector<double> sums_;   ///< work space of supernodes that threads share
   HugePageBuffer stream_;
 };
 

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "ricochet/linear_algebra/packs.hpp"
+#include "ricochet/base/packs.hpp"
+#include "ricochet/linear_algebra/supernode_layout.hpp"
 
 namespace ricochet {
 
 namespace {
 
-constexpr Index block_columns = 8;
 /// How far ahead of the stream to fetch, in numbers.
 constexpr Index fetch_stream_ahead = 512;
 /// Tall blocks are read in so many places at once: the processor fetches ahead in each of them, and one core gets a
@@ -31,45 +31,6 @@ RICOCHET_PART_OF_CALLER double sum(const Pack<8>& a) {
 RICOCHET_PART_OF_CALLER constexpr Index filled(Index rows) {
   return (rows + 1) / 2 * 2;
 }
-/// Numbers in a column of the inverse of a triangle.
-constexpr int triangle_lanes(int columns) {
-  return columns <= 2 ? 2 : columns <= 4 ? 4 : 8;
-}
-
-Index block_stream_size(Index columns, Index rows_below) {
-  return (triangle_lanes(static_cast<int>(columns)) + filled(rows_below)) * columns;
-}
-
-/// The inverse of a lower triangle, by columns.
-void invert_triangle(const double* factor, Index stride, Index columns, double (&inverse)[8][8]) {
-  for (Index j = 0; j < columns; ++j) {
-    for (Index i = 0; i < block_columns; ++i) inverse[j][i] = 0.0;
-    inverse[j][j] = 1.0 / factor[j * stride + j];
-    for (Index i = j + 1; i < columns; ++i) {
-      double product = 0.0;
-      for (Index k = j; k < i; ++k) product += factor[k * stride + i] * inverse[j][k];
-      inverse[j][i] = -product / factor[i * stride + i];
-    }
-  }
-}
-
-double* write_block(const double* factor, Index stride, Index columns, Index rows_below, double* stream) {
-  double inverse[8][8];
-  invert_triangle(factor, stride, columns, inverse);
-  const int lanes = triangle_lanes(static_cast<int>(columns));
-  for (Index j = 0; j < columns; ++j) stream = std::copy_n(inverse[j], lanes, stream);
-  const Index end = filled(rows_below);
-  for (Index row = 0; row < end;) {
-    const Index height = end - row >= 8 ? 8 : end - row >= 4 ? 4 : 2;
-    for (Index j = 0; j < columns; ++j) {
-      const double* column = factor + j * stride + columns;
-      for (Index i = row; i < row + height; ++i) *stream++ = i < rows_below ? column[i] : 0.0;
-    }
-    row += height;
-  }
-  return stream;
-}
-
 template <int H, int C>
 RICOCHET_PART_OF_CALLER const double* forward_panel(const double* stream, const double (&x)[C], double* w) {
   Pack<H> product = load<H>(stream) * x[0];
@@ -80,7 +41,7 @@ RICOCHET_PART_OF_CALLER const double* forward_panel(const double* stream, const 
 
 template <int C>
 RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index rows_below, double* w) {
-  constexpr int lanes = triangle_lanes(C);
+  constexpr int lanes = static_cast<int>(triangle_lanes(C));
   Pack<lanes> solved = load<lanes>(stream) * w[0];
   for (int j = 1; j < C; ++j) solved += load<lanes>(stream + lanes * j) * w[j];
   stream += lanes * C;
@@ -131,7 +92,7 @@ RICOCHET_PART_OF_CALLER const double* backward_block(const double* stream, Index
   if ((end & 4) != 0) stream = backward_panel<4, C>(stream, below + (row -= 4), product);
   Pack<8> products[C];
   for (int j = 0; j < C; ++j) products[j] = Pack<8>{};
-  const auto add_panel = [&](const double* panel, const double* rows) {
+  const auto add_panel = [&](const double* panel, const double* rows) __attribute__((always_inline)) {
     const Pack<8> values = load<8>(rows);
     for (int j = 0; j < C; ++j) __builtin_prefetch(panel - fetch_stream_ahead + 8 * j);
     for (int j = 0; j < C; ++j) products[j] += load<8>(panel + 8 * j) * values;
@@ -149,7 +110,7 @@ RICOCHET_PART_OF_CALLER const double* backward_block(const double* stream, Index
     for (Index k = 0; k < streams; ++k) add_panel(stream - k * apart * C, below + row - k * apart);
   }
   stream -= (streams - 1) * apart * C;
-  constexpr int lanes = triangle_lanes(C);
+  constexpr int lanes = static_cast<int>(triangle_lanes(C));
   stream -= lanes * C;
   Pack<lanes> right{};
   for (int j = 0; j < C; ++j) right[j] = w[j] - (sum(products[j]) + product[j]);
@@ -169,7 +130,7 @@ RICOCHET_PART_OF_CALLER const double* forward_panel_eight(const double* stream, 
 
 template <int C>
 RICOCHET_PART_OF_CALLER const double* forward_block_eight(const double* stream, Index rows_below, double* w) {
-  constexpr int lanes = triangle_lanes(C);
+  constexpr int lanes = static_cast<int>(triangle_lanes(C));
   Pack<8> x[C];
   for (int i = 0; i < C; ++i) {
     x[i] = stream[i] * load<8>(w);
@@ -191,83 +152,169 @@ RICOCHET_PART_OF_CALLER const double* forward_block_eight(const double* stream, 
 
 }  // namespace
 
-Index supernode_stream_size(Index columns, Index rows) {
-  Index size = 0;
-  for (Index first = 0; first < columns; first += block_columns) {
-    const Index count = std::min(block_columns, columns - first);
-    size += block_stream_size(count, rows - first - count);
+// The head, by its number of columns.
+#define RICOCHET_HEAD(count, call) \
+  switch (count) {                 \
+    case 1:                        \
+      call(1);                     \
+      break;                       \
+    case 2:                        \
+      call(2);                     \
+      break;                       \
+    case 3:                        \
+      call(3);                     \
+      break;                       \
+    case 4:                        \
+      call(4);                     \
+      break;                       \
+    case 5:                        \
+      call(5);                     \
+      break;                       \
+    case 6:                        \
+      call(6);                     \
+      break;                       \
+    case 7:                        \
+      call(7);                     \
+      break;                       \
+    default:                       \
+      break;                       \
   }
-  return size;
-}
 
-double* write_supernode(const double* factor, Index columns, Index rows, double* stream) {
-  for (Index first = 0; first < columns; first += block_columns) {
-    const Index count = std::min(block_columns, columns - first);
-    stream = write_block(factor + first * rows + first, rows, count, rows - first - count, stream);
-  }
+RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward,
+                              (const double* stream, Index columns, Index rows, double* w),
+                              (stream, columns, rows, w)) {
+  Index first = columns % 8;
+#define RICOCHET_CALL(c) stream = forward_block<c>(stream, rows - (c), w)
+  RICOCHET_HEAD(first, RICOCHET_CALL)
+#undef RICOCHET_CALL
+  for (; first < columns; first += 8) stream = forward_block<8>(stream, rows - first - 8, w + first);
   return stream;
 }
 
-// What follows a block's last full eight columns, by its number of columns.
-#define RICOCHET_REMAINDER(count, call) \
-  switch (count) {                      \
-    case 1:                             \
-      call(1);                          \
-      break;                            \
-    case 2:                             \
-      call(2);                          \
-      break;                            \
-    case 3:                             \
-      call(3);                          \
-      break;                            \
-    case 4:                             \
-      call(4);                          \
-      break;                            \
-    case 5:                             \
-      call(5);                          \
-      break;                            \
-    case 6:                             \
-      call(6);                          \
-      break;                            \
-    case 7:                             \
-      call(7);                          \
-      break;                            \
-    default:                            \
-      break;                            \
-  }
-
-RICOCHET_EACH_INSTRUCTION_SET
-const double* supernode_forward(const double* stream, Index columns, Index rows, double* w) {
-  Index first = 0;
-  for (; first + 8 <= columns; first += 8) stream = forward_block<8>(stream, rows - first - 8, w + first);
-#define RICOCHET_CALL(c) stream = forward_block<c>(stream, rows - first - (c), w + first)
-  RICOCHET_REMAINDER(columns - first, RICOCHET_CALL)
-#undef RICOCHET_CALL
-  return stream;
-}
-
-RICOCHET_EACH_INSTRUCTION_SET
-const double* supernode_backward(const double* stream_end, Index columns, Index rows, double* w) {
-  Index first = columns / 8 * 8;
-#define RICOCHET_CALL(c) stream_end = backward_block<c>(stream_end, rows - first - (c), w + first)
-  RICOCHET_REMAINDER(columns - first, RICOCHET_CALL)
-#undef RICOCHET_CALL
-  while (first > 0) {
+RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_backward,
+                              (const double* stream_end, Index columns, Index rows, double* w),
+                              (stream_end, columns, rows, w)) {
+  const Index head = columns % 8;
+  for (Index first = columns; first > head;) {
     first -= 8;
     stream_end = backward_block<8>(stream_end, rows - first - 8, w + first);
   }
+#define RICOCHET_CALL(c) stream_end = backward_block<c>(stream_end, rows - (c), w)
+  RICOCHET_HEAD(head, RICOCHET_CALL)
+#undef RICOCHET_CALL
   return stream_end;
 }
 
-RICOCHET_EACH_INSTRUCTION_SET
-const double* supernode_forward_eight(const double* stream, Index columns, Index rows, double* w) {
-  Index first = 0;
-  for (; first + 8 <= columns; first += 8) stream = forward_block_eight<8>(stream, rows - first - 8, w + 8 * first);
-#define RICOCHET_CALL(c) stream = forward_block_eight<c>(stream, rows - first - (c), w + 8 * first)
-  RICOCHET_REMAINDER(columns - first, RICOCHET_CALL)
+RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward_eight,
+                              (const double* stream, Index columns, Index rows, double* w),
+                              (stream, columns, rows, w)) {
+  Index first = columns % 8;
+#define RICOCHET_CALL(c) stream = forward_block_eight<c>(stream, rows - (c), w)
+  RICOCHET_HEAD(first, RICOCHET_CALL)
 #undef RICOCHET_CALL
+  for (; first < columns; first += 8) stream = forward_block_eight<8>(stream, rows - first - 8, w + 8 * first);
   return stream;
 }
-#undef RICOCHET_REMAINDER
+
+// By the number of columns, which is at most eight.
+#define RICOCHET_BLOCK(count, call) \
+  if ((count) == 8) {               \
+    call(8);                        \
+  } else {                          \
+    RICOCHET_HEAD(count, call)      \
+  }
+
+RICOCHET_EACH_INSTRUCTION_SET(void, supernode_forward_rows,
+                              (Index columns, Index rows_below, const double* stream, double* w),
+                              (columns, rows_below, stream, w)) {
+#define RICOCHET_CALL(c) forward_block<c>(stream, rows_below, w)
+  RICOCHET_BLOCK(columns, RICOCHET_CALL)
+#undef RICOCHET_CALL
+}
+
+template <int C>
+RICOCHET_PART_OF_CALLER void forward_panels(Index count, const double* stream, const double* columns_of_w, double* w) {
+  double x[C];
+  for (int j = 0; j < C; ++j) x[j] = columns_of_w[j];
+  for (Index panel = 0; panel < count; ++panel, w += 8) {
+    for (int j = 0; j < C; ++j) __builtin_prefetch(stream + fetch_stream_ahead + 8 * j);
+    stream = forward_panel<8, C>(stream, x, w);
+  }
+}
+
+RICOCHET_EACH_INSTRUCTION_SET(void, panels_forward,
+                              (Index columns, Index count, const double* stream, const double* x, double* w),
+                              (columns, count, stream, x, w)) {
+#define RICOCHET_CALL(c) forward_panels<c>(count, stream, x, w)
+  RICOCHET_BLOCK(columns, RICOCHET_CALL)
+#undef RICOCHET_CALL
+}
+
+template <int C>
+RICOCHET_PART_OF_CALLER void backward_panels(Index count, const double* stream, const double* w, double* sums) {
+  Pack<8> products[C];
+  for (int j = 0; j < C; ++j) products[j] = load<8>(sums + 8 * j);
+  for (Index panel = 0; panel < count; ++panel, w += 8, stream += 8 * C) {
+    const Pack<8> values = load<8>(w);
+    for (int j = 0; j < C; ++j) __builtin_prefetch(stream + fetch_stream_ahead + 8 * j);
+    for (int j = 0; j < C; ++j) products[j] += load<8>(stream + 8 * j) * values;
+  }
+  for (int j = 0; j < C; ++j) store<8>(sums + 8 * j, products[j]);
+}
+
+RICOCHET_EACH_INSTRUCTION_SET(void, panels_backward,
+                              (Index columns, Index count, const double* stream, const double* w, double* sums),
+                              (columns, count, stream, w, sums)) {
+#define RICOCHET_CALL(c) backward_panels<c>(count, stream, w, sums)
+  RICOCHET_BLOCK(columns, RICOCHET_CALL)
+#undef RICOCHET_CALL
+}
+
+template <int C>
+RICOCHET_PART_OF_CALLER void backward_triangle(const double* triangle, const double* sums, double* w) {
+  constexpr int lanes = static_cast<int>(triangle_lanes(C));
+  Pack<lanes> right{};
+  for (int j = 0; j < C; ++j) right[j] = w[j] - sum(load<8>(sums + 8 * j));
+  for (int j = 0; j < C; ++j) w[j] = sum(load<lanes>(triangle + lanes * j) * right);
+}
+
+RICOCHET_EACH_INSTRUCTION_SET(void, triangle_backward,
+                              (Index columns, const double* triangle, const double* sums, double* w),
+                              (columns, triangle, sums, w)){
+#define RICOCHET_CALL(c) backward_triangle<c>(triangle, sums, w)
+    RICOCHET_BLOCK(columns, RICOCHET_CALL)
+#undef RICOCHET_CALL
+}
+#undef RICOCHET_BLOCK
+#undef RICOCHET_HEAD
+
+RICOCHET_EACH_INSTRUCTION_SET(void, remainder_forward,
+                              (Index columns, Index rows, const double* stream, const double* x, double* w),
+                              (columns, rows, stream, x, w)) {
+  for (const Index height : {Index{4}, Index{2}}) {
+    if ((rows & height) == 0) continue;
+    // In the order of forward_panel: the product, then the difference.
+    for (Index i = 0; i < height; ++i) {
+      double product = stream[i] * x[0];
+      for (Index j = 1; j < columns; ++j) product += stream[height * j + i] * x[j];
+      w[i] -= product;
+    }
+    stream += height * columns;
+    w += height;
+  }
+}
+
+RICOCHET_EACH_INSTRUCTION_SET(void, remainder_backward,
+                              (Index columns, Index rows, const double* stream, const double* w, double* sums),
+                              (columns, rows, stream, w, sums)) {
+  for (const Index height : {Index{4}, Index{2}}) {
+    if ((rows & height) == 0) continue;
+    for (Index j = 0; j < columns; ++j) {
+      for (Index i = 0; i < height; ++i) sums[8 * j + i] += stream[height * j + i] * w[i];
+    }
+    stream += height * columns;
+    w += height;
+  }
+}
 
 }  // namespace ricochet

@@ -74,14 +74,16 @@ void require_no_approach(const SemidiscreteProblem& problem, const Vector& displ
   take_rows(problem, displacement, time, stage);
   stage.motion.reset();
   problem.gaps(displacement, time, stage.gap_offset);
+  // A displacement is the sum of its increments, and this condition on velocities takes back nothing of their rounding:
+  // a point that slides or rests drifts by a unit of it per step.
+  problem.trace_rounding(displacement, stage.gap_offset_rounding);
   stage.eligible.resize(static_cast<std::size_t>(problem.contact.size()));
   for (Index i = 0; i < problem.contact.size(); ++i) {
-    const bool touches = stage.gap_offset[i] <= stage.rows->gap_rounding[i];
+    const bool touches = stage.gap_offset[i] <= stage.rows->gap_rounding[i] + stage.gap_offset_rounding[i];
     stage.eligible[static_cast<std::size_t>(i)] = touches ? 1 : 0;
   }
-  problem.trace_rounding(displacement, stage.gap_offset);
-  problem.trace_rounding(velocity, stage.gap_offset_rounding);
-  stage.gap_offset_rounding += stage.gap_offset / step;
+  problem.trace_rounding(velocity, stage.gap_offset);
+  stage.gap_offset_rounding = stage.gap_offset_rounding / step + stage.gap_offset;
   stage.rows->normal_motion(velocity, stage.gap_offset);
   if (obstacle.normal.size() > 0) stage.gap_offset -= along_rows(obstacle, stage).normal;
 }

@@ -146,7 +146,8 @@ std::string compare_model(const Case& input, const Model& model, const Snapshot&
   const std::string libraries = library_versions();
   if (libraries != snapshot.text("identity.libraries")) {
     return fmt::format(
-        "resumed with other libraries or another processor ({}; before: {}): results agree with those of "
+        "resumed with other libraries, another processor or RICOCHET_INSTRUCTION_SET ({}; before: {}): results agree "
+        "with those of "
         "a run that was never interrupted to rounding only",
         libraries, snapshot.text("identity.libraries"));
   }

@@ -1,5 +1,7 @@
 #include "ricochet/solver/factored_stage.hpp"
 
+#include <stdexcept>
+
 #include "ricochet/solver/stage_operator.hpp"
 
 namespace ricochet {
@@ -41,6 +43,7 @@ void FactoredStage::refactorize(const SemidiscreteProblem& problem, const Operat
 /// y = L⁻¹P 2ᵏ b, y += Yρ, δ = Pᵀ L⁻ᵀ y; again with more contact points where others have penetrated.
 void FactoredStage::solve(const Stage& stage, const Vector& right_hand_side, StageSolution& solution,
                           Vector& increment) {
+  if (!factor_.positive_definite()) throw std::logic_error("a stage is solved after its operator has been refused");
   const double scale = factor_.scale();
   do {
     for (std::size_t i = 0; i < dof_at_.size(); ++i)

@@ -135,5 +135,51 @@ TEST(RotationGauge, FindsTheCellThatTurnsMost) {
   }
 }
 
+/// The angle of a cell of degree 1 from the gradient, by dense algebra.
+double rotation_of_simplex(const Points& nodes, const Vector& u, const Index* cell) {
+  const Index d = nodes.rows();
+  Matrix edges(d, d), differences(d, d);
+  for (Index e = 0; e < d; ++e) {
+    edges.col(e) = nodes.col(cell[e + 1]) - nodes.col(cell[0]);
+    differences.col(e) = u.segment(cell[e + 1] * d, d) - u.segment(cell[0] * d, d);
+  }
+  const Matrix h = differences * edges.inverse();
+  const double axial = d == 2 ? std::abs(h(1, 0) - h(0, 1))
+                              : Eigen::Vector3d(h(2, 1) - h(1, 2), h(0, 2) - h(2, 0), h(1, 0) - h(0, 1)).norm();
+  return std::atan2(axial, 2.0 + h.trace());
+}
+
+/// Cells are looked at some at a time: whichever turns most, by whatever angle, is found.
+TEST(RotationGauge, FindsTheLargestOfAllCells) {
+  for (const CellShape shape : {CellShape::triangle, CellShape::tetrahedron}) {
+    const auto test = large_body({shape, 1, 1});
+    const RotationGauge gauge(test->body);
+    const CellBlock& cells = test->space.cells.front();
+    const auto largest = [&](const Vector& u) {
+      double result = 0.0;
+      for (Index cell = 0; cell < cells.size(); ++cell)
+        result = std::max(result, rotation_of_simplex(test->space.nodes, u, cells.cell(cell)));
+      return result;
+    };
+    const Index d = test->space.nodes.rows(), nodes = test->space.node_count();
+    // From less than anybody would see to beyond a right angle: 2 + the divergence is negative in some cells, then.
+    for (const double size : {1e-9, 1e-3, 1e-2, 10.0}) {
+      const Vector u = size * Vector::NullaryExpr(
+                                  nodes * d, [](Index i) { return std::sin(0.7 * static_cast<double>(i * i % 1009)); });
+      const double wanted = largest(u);
+      EXPECT_NEAR(gauge.largest(u), wanted, 1e-12 * wanted) << size;
+      EXPECT_TRUE(size < 10.0 || wanted > 2.0) << wanted;
+      EXPECT_TRUE(size > 1e-9 || wanted < 1e-6) << wanted;
+    }
+    // One node at a time, the first and the last ones among them.
+    for (Index node = 0; node < nodes; node += node < 3 || node >= nodes - 4 ? 1 : (nodes - 7) / 5) {
+      Vector u = Vector::Zero(nodes * d);
+      u[node * d] = 0.01;
+      const double wanted = largest(u);
+      EXPECT_NEAR(gauge.largest(u), wanted, 1e-12 * wanted) << node;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -148,6 +148,10 @@ TEST(NodeMatrix, TakesAnySymmetricPattern) {
     const NodeMatrix matrix(diagonal, 2);
     EXPECT_TRUE(matrix.is_scalar());
     EXPECT_TRUE(matrix.is_diagonal());
+    const Vector values = Vector::LinSpaced(x.size() / 2, 1.0, 3.0);
+    SparseMatrix scaled = diagonal;
+    for (Index i = 0; i < x.size(); ++i) scaled.coeffRef(i, i) = values[i / 2];
+    EXPECT_NEAR(NodeMatrix(scaled, 2).form(x), x.dot(scaled * x), 1e-14 * x.dot(scaled * x));
     EXPECT_EQ(matrix.diagonal(), Vector(Vector::Ones(x.size())));
     Vector y;
     matrix.multiply(x, y);

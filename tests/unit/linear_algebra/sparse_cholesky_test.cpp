@@ -1,4 +1,5 @@
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "support/grid_matrix.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +10,8 @@
 namespace ricochet {
 namespace {
 
-double uniform(std::mt19937& random) {
-  return static_cast<double>(random()) / 2147483648.0 - 1.0;
-}
+using test_support::random_vector;
+using test_support::uniform;
 
 /// A sparse symmetric positive definite matrix: a weighted graph's Laplacian (a ring and random chords) and a small
 /// diagonal, badly scaled when asked.
@@ -32,21 +32,14 @@ SparseMatrix random_matrix(Index size, unsigned seed, double spread = 1.0) {
   return dense.sparseView();
 }
 
-Vector random_vector(Index size, unsigned seed) {
-  std::mt19937 random(seed);
-  Vector result(size);
-  for (double& value : result) value = uniform(random);
-  return result;
-}
-
-using Solve = SparseCholesky::TriangularSolve;
+using Arithmetic = SparseCholesky::Arithmetic;
 
 TEST(SparseCholesky, SolvesAsEigenDoes) {
   for (const Index size : {1, 2, 3, 10, 57, 200}) {
     const SparseMatrix matrix = random_matrix(size, 5);
     const Vector right = random_vector(size, 6);
     const Vector expected = Matrix(matrix).llt().solve(right);
-    for (const Solve solve : {Solve::own, Solve::library}) {
+    for (const Arithmetic solve : {Arithmetic::own, Arithmetic::library}) {
       SparseCholesky factor(matrix, solve);
       ASSERT_TRUE(factor.positive_definite());
       EXPECT_EQ(factor.size(), size);
@@ -99,7 +92,7 @@ TEST(SparseCholesky, PowersOfTwoChangeNoBit) {
   const Index size = 120;
   const SparseMatrix matrix = random_matrix(size, 31, 1e3);
   const Vector right = random_vector(size, 32);
-  for (const Solve solve : {Solve::own, Solve::library}) {
+  for (const Arithmetic solve : {Arithmetic::own, Arithmetic::library}) {
     SparseCholesky one(matrix, solve);
     Vector expected;
     one.solve(right, expected);

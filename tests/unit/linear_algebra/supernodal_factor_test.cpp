@@ -10,47 +10,37 @@
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/linear_algebra/supernodal_kernels.hpp"
+#include "ricochet/linear_algebra/supernode_layout.hpp"
+#include "ricochet/linear_algebra/wide_supernode.hpp"
+#include "support/grid_matrix.hpp"
 
 namespace ricochet {
 namespace {
 
-double uniform_entry(std::mt19937& random) {
-  return static_cast<double>(random()) / 2147483648.0 - 1.0;
-}
+using test_support::grid_matrix;
+using test_support::random_vector;
+using test_support::uniform;
 
-Vector random_right_side(Index size, unsigned seed) {
-  std::mt19937 random(seed);
-  Vector result(size);
-  for (double& value : result) value = uniform_entry(random);
-  return result;
-}
-
-/// Two unknowns per node of a square grid, coupled with their neighbours: what a plane body's matrix looks like.
-SparseMatrix grid_matrix(int side, unsigned seed = 1) {
-  std::mt19937 random(seed);
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto couple = [&](int a, int b) {
-    for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 2; ++j) {
-        const double value = uniform_entry(random);
-        entries.emplace_back(2 * a + i, 2 * b + j, value);
-        entries.emplace_back(2 * b + j, 2 * a + i, value);
-        entries.emplace_back(2 * a + i, 2 * a + i, std::abs(value) + 0.02);
-        entries.emplace_back(2 * b + j, 2 * b + j, std::abs(value) + 0.02);
+/// A supernode's numbers in the order that the layout promises.
+std::vector<double> stream_of(const Matrix& factor) {
+  const Index columns = factor.cols(), rows = factor.rows();
+  std::vector<double> stream;
+  for (Index first = 0, width = columns % 8; first < columns; first += width, width = 8) {
+    if (width == 0) width = 8;
+    Matrix inverse = Matrix::Zero(width <= 2 ? 2 : width <= 4 ? 4 : 8, width);
+    inverse.topRows(width) = Matrix(factor.block(first, first, width, width))
+                                 .triangularView<Eigen::Lower>()
+                                 .solve(Matrix::Identity(width, width));
+    stream.insert(stream.end(), inverse.reshaped().begin(), inverse.reshaped().end());
+    for (Index row = first + width; row < rows;) {
+      const Index left = (rows - row + 1) / 2 * 2, height = left >= 8 ? 8 : left >= 4 ? 4 : 2;
+      for (Index j = first; j < first + width; ++j) {
+        for (Index i = row; i < row + height; ++i) stream.push_back(i < rows ? factor(i, j) : 0.0);
       }
-    }
-  };
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      const int node = x + side * y;
-      if (x + 1 < side) couple(node, node + 1);
-      if (y + 1 < side) couple(node, node + side);
-      if (x + 1 < side && y + 1 < side) couple(node, node + side + 1);
+      row += height;
     }
   }
-  SparseMatrix matrix(2 * side * side, 2 * side * side);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
+  return stream;
 }
 
 /// A lower triangular supernode of every shape near the widths of blocks and panels, against plain loops.
@@ -59,17 +49,17 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
     for (Index below = 0; below <= 19; ++below) {
       const Index rows = columns + below;
       std::mt19937 random(static_cast<unsigned>(31 * columns + below));
-      Matrix factor = Matrix::NullaryExpr(rows, columns, [&] { return uniform_entry(random); });
+      Matrix factor = Matrix::NullaryExpr(rows, columns, [&] { return uniform(random); });
       for (Index j = 0; j < columns; ++j) {
         factor(j, j) = 2.0 + std::abs(factor(j, j));
         for (Index i = 0; i < j; ++i) factor(i, j) = std::nan("");  // not to be read
       }
       const Matrix triangle = factor.topRows(columns).triangularView<Eigen::Lower>();
       const Matrix beneath = factor.bottomRows(below);
-      std::vector<double> stream(static_cast<std::size_t>(supernode_stream_size(columns, rows)));
-      ASSERT_EQ(write_supernode(factor.data(), columns, rows, stream.data()), stream.data() + stream.size());
+      const std::vector<double> stream = stream_of(factor);
+      ASSERT_EQ(SupernodeLayout(columns, rows).size(), static_cast<Index>(stream.size()));
 
-      const Vector right = random_right_side(rows, 5);
+      const Vector right = random_vector(rows, 5);
       Vector expected = right, found(rows + 1);
       triangle.triangularView<Eigen::Lower>().solveInPlace(expected.head(columns));
       expected.tail(below) -= beneath * expected.head(columns);
@@ -95,18 +85,50 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
   }
 }
 
+/// One that threads share, against the same by one thread, near the widths of strips and parts.
+TEST(SupernodalKernels, AreSharedByThreads) {
+  for (const Index columns : {32, 39, 40, 127, 128, 129, 135, 136, 137, 264}) {
+    for (const Index below : {0, 1, 2, 3, 7, 8, 62, 65, 333}) {
+      const Index rows = columns + below;
+      std::mt19937 random(static_cast<unsigned>(31 * columns + below));
+      Matrix factor = Matrix::NullaryExpr(rows, columns, [&] { return uniform(random) / 16.0; });
+      factor.diagonal().array() += 2.0;
+      const std::vector<double> stream = stream_of(factor);
+      Vector right = random_vector(rows + 1, 6), forward = right, backward = right;
+      right[rows] = forward[rows] = backward[rows] = 0.0;
+      supernode_forward(stream.data(), columns, rows, forward.data());
+      supernode_backward(stream.data() + stream.size(), columns, rows, backward.data());
+      Vector sums(WideSupernode::sums_size()), first[2];
+      for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        const WideSupernode wide(columns, rows, stream.data());
+        Vector found[2] = {right, right};
+        wide.forward(found[0].data());
+        wide.backward(found[1].data(), sums.data());
+        EXPECT_LE((found[0] - forward).head(rows).cwiseAbs().maxCoeff(), 1e-14) << columns << " " << below;
+        EXPECT_LE((found[1] - backward).head(columns).cwiseAbs().maxCoeff(), 1e-14) << columns << " " << below;
+        for (int k = 0; k < 2; ++k) {
+          if (threads == 1) first[k] = found[k];
+          EXPECT_TRUE(found[k] == first[k]) << columns << " " << below;
+        }
+      }
+      set_thread_count(1);
+    }
+  }
+}
+
 /// Large enough to be divided into subtrees.
 class LargeFactor : public testing::Test {
  protected:
   ~LargeFactor() override { set_thread_count(1); }
-  SparseMatrix matrix_ = grid_matrix(110);
+  SparseMatrix matrix_ = grid_matrix(2, 110, 2, 1);
   SparseCholesky own_{matrix_};
   Index size_ = matrix_.cols();
 };
 
 TEST_F(LargeFactor, SolvesAsTheLibraryDoes) {
-  SparseCholesky library(matrix_, SparseCholesky::TriangularSolve::library);
-  const Vector right = random_right_side(size_, 3);
+  SparseCholesky library(matrix_, SparseCholesky::Arithmetic::library);
+  const Vector right = random_vector(size_, 3);
   EXPECT_GT(own_.work_size(), size_) << "not divided: nothing to test";
   EXPECT_LT(own_.factor_bytes(), 1.1 * static_cast<double>(library.factor_bytes()));
   Vector y, z, x, expected;
@@ -120,7 +142,7 @@ TEST_F(LargeFactor, SolvesAsTheLibraryDoes) {
 }
 
 TEST_F(LargeFactor, GivesTheSameBitsForAnyNumberOfThreads) {
-  const Vector right = random_right_side(size_, 4);
+  const Vector right = random_vector(size_, 4);
   Vector expected, x;
   own_.solve(right, expected);
   for (const int threads : {2, 3, 7}) {
@@ -135,7 +157,7 @@ TEST_F(LargeFactor, SolvesSparseColumnsOnTheirPaths) {
   const SupernodalFactor& factor = own_.supernodal();
   const std::vector<std::vector<Index>> places{{0}, {7, 8}, {size_ - 1}, {100, 15000}, {size_ / 2, 3}};
   Vector y;
-  own_.forward(random_right_side(size_, 5), y);
+  own_.forward(random_vector(size_, 5), y);
   for (const auto& at : places) {
     const FactorPath path = factor.path(at);
     Matrix column = Matrix::Zero(path.rows(), 1);

@@ -1,4 +1,4 @@
-#include "ricochet/base/blas_threads.hpp"
+#include "ricochet/base/blas.hpp"
 
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "ricochet/base/blas_kernels.hpp"
 #include "ricochet/base/error.hpp"
 
 extern "C" {
@@ -31,8 +32,9 @@ bool is_limited(decltype(RLIMIT_AS) resource) {
 
 }  // namespace
 
-void use_one_blas_thread() {
+void prepare_blas() {
   static const bool done = [] {
+    choose_blas_kernels();
     openblas_set_num_threads(1);
     return true;
   }();

@@ -1,0 +1,175 @@
+#include "ricochet/linear_algebra/panel_kernels.hpp"
+
+#include <cmath>
+
+#include "ricochet/base/packs.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Adds the product of a column of P panels, `apart` from one another, and C numbers of B.
+template <int H, int P, int C>
+RICOCHET_PART_OF_CALLER void add_column(const double* a, Index apart, const double* b, Pack<H> (&sums)[P * 8 / H][C]) {
+  Pack<H> rows[P * 8 / H];
+  for (int p = 0; p < P; ++p) {
+    for (int i = 0; i < 8 / H; ++i) rows[p * (8 / H) + i] = load<H>(a + p * apart + H * i);
+  }
+  for (int j = 0; j < C; ++j) {
+    for (int i = 0; i < P * 8 / H; ++i) sums[i][j] += rows[i] * b[j];
+  }
+}
+
+/// Columns `first` … `first` + C − 1 of the product of P panels, in registers of H numbers.
+template <int H, int P, int C>
+RICOCHET_PART_OF_CALLER void multiply(const PanelRows& a, const PanelRows& b, PanelColumns columns, Index first,
+                                      double* c) {
+  Pack<H> sums[P * 8 / H][C];
+  for (auto& row : sums) {
+    for (Pack<H>& sum : row) sum = Pack<H>{};
+  }
+  for (Index k = 0; k < columns.head; ++k)
+    add_column<H, P, C>(a.head + 8 * k, 8 * columns.head, b.head + first + 8 * k, sums);
+  const double *left = a.blocks, *right = b.blocks + first;
+  Index left_stride = a.stride, right_stride = b.stride;
+  for (Index block = 0; block < columns.blocks; ++block) {
+    // Written out, or the sums would leave their registers between blocks.
+#pragma GCC unroll 8
+    for (int k = 0; k < 8; ++k) add_column<H, P, C>(left + 8 * k, 64, right + 8 * k, sums);
+    left += left_stride;
+    right += right_stride;
+    left_stride -= a.shrink;
+    right_stride -= b.shrink;
+  }
+  for (int p = 0; p < P; ++p) {
+    for (int j = 0; j < C; ++j) {
+      for (int i = 0; i < 8 / H; ++i) store<H>(c + 64 * p + 8 * (first + j) + H * i, sums[p * (8 / H) + i][j]);
+    }
+  }
+}
+
+/// One panel after the other, C columns at a time: for processors with sixteen registers.
+template <int H, int C>
+RICOCHET_PART_OF_CALLER void multiply_one_by_one(Index count, PanelRows a, const PanelRows& b, PanelColumns columns,
+                                                 double* c) {
+  for (Index p = 0; p < count; ++p, c += 64) {
+    for (Index first = 0; first < 8; first += C) multiply<H, 1, C>(a, b, columns, first, c);
+    a.head += 8 * columns.head;
+    a.blocks += 64;
+  }
+}
+
+template <int C>
+RICOCHET_PART_OF_CALLER void solve_columns(const double* c, const double* inverse, double* x) {
+  constexpr int lanes = static_cast<int>(triangle_lanes(C));
+  for (int i = 0; i < C; ++i) {
+    Pack<8> sum = load<8>(c) * inverse[i];
+    for (int j = 1; j <= i; ++j) sum += load<8>(c + 8 * j) * inverse[lanes * j + i];
+    store<8>(x + 8 * i, sum);
+  }
+}
+
+#if defined(__x86_64__) && defined(__GNUC__)
+/// As many numbers in as many registers as the processor has.
+__attribute__((target("arch=x86-64-v4"))) void multiply_avx512(Index count, const PanelRows& a, const PanelRows& b,
+                                                               PanelColumns columns, double* c) {
+  switch (count) {
+    case 3:
+      return multiply<8, 3, 8>(a, b, columns, 0, c);
+    case 2:
+      return multiply<8, 2, 8>(a, b, columns, 0, c);
+    default:
+      return multiply<8, 1, 8>(a, b, columns, 0, c);
+  }
+}
+__attribute__((target("arch=x86-64-v3"))) void multiply_avx2(Index count, const PanelRows& a, const PanelRows& b,
+                                                             PanelColumns columns, double* c) {
+  multiply_one_by_one<4, 4>(count, a, b, columns, c);
+}
+#endif
+
+}  // namespace
+
+void multiply_panels(Index count, const PanelRows& a, const PanelRows& b, PanelColumns columns, double* c) {
+#if defined(__x86_64__) && defined(__GNUC__)
+  const InstructionSet set = instruction_set();
+  if (set == InstructionSet::avx512) return multiply_avx512(count, a, b, columns, c);
+  if (set == InstructionSet::avx2) return multiply_avx2(count, a, b, columns, c);
+#endif
+  multiply_one_by_one<2, 2>(count, a, b, columns, c);
+}
+
+RICOCHET_EACH_INSTRUCTION_SET(void, subtract_panel,
+                              (const double* c, const PanelPlaces& rows, const PanelPlaces& columns, double* matrix,
+                               Index stride),
+                              (c, rows, columns, matrix, stride)) {
+  const int* const places = rows.places;
+  if (rows.begin == 0 && rows.end == 8 && places[7] - places[0] == 7) {
+    for (Index j = columns.begin; j < columns.end; ++j) {
+      double* const to = matrix + columns.places[j] * stride + places[0];
+      store<8>(to, load<8>(to) - load<8>(c + 8 * j));
+    }
+    return;
+  }
+  for (Index j = columns.begin; j < columns.end; ++j) {
+    double* const to = matrix + columns.places[j] * stride;
+    for (Index i = rows.begin; i < rows.end; ++i) to[places[i]] -= c[8 * j + i];
+  }
+}
+
+RICOCHET_EACH_INSTRUCTION_SET(void, subtract_from, (const double* a, Index stride, Index columns, double* c),
+                              (a, stride, columns, c)) {
+  for (Index j = 0; j < columns; ++j) store<8>(c + 8 * j, load<8>(a + j * stride) - load<8>(c + 8 * j));
+}
+
+RICOCHET_EACH_INSTRUCTION_SET(void, solve_panel, (Index size, const double* c, const double* inverse, double* x),
+                              (size, c, inverse, x)) {
+  switch (size) {
+    case 1:
+      return solve_columns<1>(c, inverse, x);
+    case 2:
+      return solve_columns<2>(c, inverse, x);
+    case 3:
+      return solve_columns<3>(c, inverse, x);
+    case 4:
+      return solve_columns<4>(c, inverse, x);
+    case 5:
+      return solve_columns<5>(c, inverse, x);
+    case 6:
+      return solve_columns<6>(c, inverse, x);
+    case 7:
+      return solve_columns<7>(c, inverse, x);
+    default:
+      return solve_columns<8>(c, inverse, x);
+  }
+}
+
+int invert_factor(Index size, const double* triangle, double* inverse) {
+  double factor[8][8];
+  for (Index j = 0; j < size; ++j) {
+    for (Index i = j; i < size; ++i) {
+      double value = triangle[8 * j + i];
+      for (Index k = 0; k < j; ++k) value -= factor[k][i] * factor[k][j];
+      if (i > j) {
+        factor[j][i] = value / factor[j][j];
+      } else if (value > 0.0) {
+        factor[j][j] = std::sqrt(value);
+      } else {
+        return static_cast<int>(j);
+      }
+    }
+  }
+  const Index lanes = triangle_lanes(size);
+  for (Index j = 0; j < size; ++j) {
+    for (Index i = 0; i < lanes; ++i) inverse[lanes * j + i] = 0.0;
+    inverse[lanes * j + j] = 1.0 / factor[j][j];
+    for (Index i = j + 1; i < size; ++i) {
+      double product = 0.0;
+      for (Index k = j; k < i; ++k) product += factor[k][i] * inverse[lanes * j + k];
+      inverse[lanes * j + i] = -product / factor[i][i];
+    }
+  }
+  return -1;
+}
+
+}  // namespace ricochet
