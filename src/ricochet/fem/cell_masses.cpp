@@ -17,6 +17,13 @@ CellMasses::CellMasses(const Body& body, std::vector<double> weight)
 CellMasses::~CellMasses() = default;
 
 void CellMasses::for_each(const Visit& visit) const {
+  for_each_inertia([&visit](const std::vector<Index>& nodes, const Matrix& inertia, double weight) {
+    if (weight == 1.0) return visit(nodes, inertia);
+    visit(nodes, weight * inertia);
+  });
+}
+
+void CellMasses::for_each_inertia(const VisitInertia& visit) const {
   std::vector<Index> nodes;
   std::vector<double> pairs;
   Matrix mass;
@@ -28,7 +35,7 @@ void CellMasses::for_each(const Visit& visit) const {
     mass.resize(count, count);
     for (Index cell = 0; cell < cells.size(); ++cell, ++number) {
       const auto material = static_cast<std::size_t>(body_.cell_material[number]);
-      const double density = body_.materials[material].density * (weight_.empty() ? 1.0 : weight_[material]);
+      const double density = body_.materials[material].density;
       const Index* geometry = body_.mesh->cells[b].cell(cell);
       if (body_.mesh->dimension == 2) {
         element_mass<2>(rules_->of_block[b], body_.mesh->nodes, geometry, density, pairs.data());
@@ -39,7 +46,7 @@ void CellMasses::for_each(const Visit& visit) const {
         for (int i = 0; i <= j; ++i) mass(i, j) = mass(j, i) = pairs[static_cast<std::size_t>(pair_number(i, j))];
       }
       nodes.assign(cells.cell(cell), cells.cell(cell) + count);
-      visit(nodes, mass);
+      visit(nodes, mass, weight_.empty() ? 1.0 : weight_[material]);
     }
   }
 }

@@ -20,6 +20,9 @@ class CellMasses {
   /// Calls visit(nodes of the cell, its matrix) for all cells, in the order of their numbers.
   using Visit = std::function<void(const std::vector<Index>& nodes, const Matrix& mass)>;
   void for_each(const Visit& visit) const;
+  /// The same with ∫ρ φ_i φ_j and w.
+  using VisitInertia = std::function<void(const std::vector<Index>& nodes, const Matrix& inertia, double weight)>;
+  void for_each_inertia(const VisitInertia& visit) const;
   /// The nodes alone.
   void for_each_cell(const std::function<void(const std::vector<Index>& nodes)>& visit) const;
   /// Nodes that two cells have in common when they share a facet, at least.

@@ -243,7 +243,7 @@ class LumpedEquivalentMass final : public MassConstruction {
       if (mass[i] > 0.0) free.push_back(body.nodes[static_cast<std::size_t>(i)]);
     }
     std::sort(free.begin(), free.end());
-    refuse(input, body, describe_free_nodes(*input.nodes, free));
+    refuse(input, body, describe_free_nodes(*input.nodes, body.nodes, free));
   }
 
   /// Steps 2 and 3 on one body. Returns what its moments of inertia lack, see InertiaCheck.

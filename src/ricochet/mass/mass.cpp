@@ -11,6 +11,8 @@ namespace ricochet {
   mass(consistent_mass)         \
   mass(lumped_mass)             \
   mass(equivalent_mass)         \
+  mass(nodewise_equivalent_mass) \
+  mass(cellwise_equivalent_mass) \
   mass(compact_equivalent_mass) \
   mass(nearest_equivalent_mass) \
   mass(lumped_equivalent_mass)
@@ -35,9 +37,8 @@ MassRegistration consistent_mass() {
   return {"consistent", [](const Parameters&) { return std::make_unique<ConsistentMass>(); }};
 }
 
-std::string mass_to_build(const std::string& asked, const MassInput& input) {
-  const std::string cheaper = make_mass(asked)->cheaper_for(input);
-  return cheaper.empty() ? asked : cheaper;
+MassChoice mass_to_build(const std::string& asked, const Parameters& parameters, const MassInput& input) {
+  return make_mass(asked, parameters)->choose(input).value_or(MassChoice{asked, {}, {}, parameters});
 }
 
 bool is_positive_definite(const SparseMatrix& mass, const std::vector<Index>& excluded_nodes) {

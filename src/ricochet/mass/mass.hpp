@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,14 @@
 namespace ricochet {
 
 class CellMasses;
+
+/// The mass that is built for one that chooses.
+struct MassChoice {
+  std::string name;
+  std::string reason;                ///< empty where it goes by the dimension alone, or nothing was to choose
+  std::optional<SparseMatrix> mass;  ///< where it had to be built for the choice
+  Parameters parameters = {};        ///< the values of its keys
+};
 
 /// What a mass is built from.
 struct MassInput {
@@ -37,8 +46,8 @@ class MassConstruction {
   [[nodiscard]] virtual SparseMatrix build(const MassInput& input) const = 0;
   /// True when contact nodes get no inertia: the equivalent masses of the source's section 5.
   [[nodiscard]] virtual bool removes_contact_inertia() const { return false; }
-  /// The name of another mass that makes as much of this body for less; empty: none does.
-  [[nodiscard]] virtual std::string cheaper_for(const MassInput&) const { return {}; }
+  /// The mass that this one is built as, if it is one that chooses: by the inertia, so that damping has the same.
+  [[nodiscard]] virtual std::optional<MassChoice> choose(const MassInput&) const { return {}; }
 };
 
 using MassConstructor = std::function<std::unique_ptr<MassConstruction>(const Parameters& parameters)>;
@@ -51,8 +60,8 @@ using MassRegistration = Registration<MassConstructor>;
 }
 /// By the name used in a case file, with the values of its keys; throws Error(invalid_input) that lists the names.
 [[nodiscard]] std::unique_ptr<MassConstruction> make_mass(const std::string& name, Parameters parameters = {});
-/// The name of the mass that is built for the one asked for, see cheaper_for.
-[[nodiscard]] std::string mass_to_build(const std::string& asked, const MassInput& input);
+/// The mass that is built for the one asked for, with the values of its keys.
+[[nodiscard]] MassChoice mass_to_build(const std::string& asked, const Parameters& parameters, const MassInput& input);
 
 /// A diagonal mass: row sums where they are all positive (degree 1: total mass and centre of gravity are kept), else
 /// the diagonal of the consistent mass, scaled to keep the total.

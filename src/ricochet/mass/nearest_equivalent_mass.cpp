@@ -49,20 +49,21 @@ class NearestEquivalentMass final : public MassConstruction {
 
   /// Too few free nodes cannot keep mass, centre and inertia: the Gram system is then singular and has no solution.
   static void check_conditions(const MassInput& input, const MassFrames& frames, const SparseMatrix& mass) {
-    const MassBody* worst = nullptr;
-    // Rounding leaves 1e-13.
-    if (moment_defect(mass, *input.consistent, frames, &worst) <= 1e-10) return;
-    std::vector<Index> free;
-    for (const Index node : worst->nodes) {
-      if (!std::binary_search(input.contact_nodes.begin(), input.contact_nodes.end(), node)) free.push_back(node);
+    for (const MassBody& body : frames.bodies) {
+      if (moment_defect(mass, *input.consistent, frames, body) <= 1e-10) continue;
+      std::vector<Index> free;
+      for (const Index node : body.nodes) {
+        if (!std::binary_search(input.contact_nodes.begin(), input.contact_nodes.end(), node)) free.push_back(node);
+      }
+      std::sort(free.begin(), free.end());
+      throw Error(
+          ErrorKind::invalid_input,
+          fmt::format("mass type \"equivalent-nearest\": the body with the node at {} has {}: they cannot carry its "
+                      "mass, centre of gravity and moments of inertia; refine the mesh, or use mass type "
+                      "\"consistent\" or \"lumped\"",
+                      text_of_point(*input.nodes, body.nodes.front()),
+                      describe_free_nodes(*input.nodes, body.nodes, free)));
     }
-    std::sort(free.begin(), free.end());
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("mass type \"equivalent-nearest\": the body with the node at {} has {}: they cannot carry its "
-                    "mass, centre of gravity and moments of inertia; refine the mesh, or use mass type "
-                    "\"consistent\" or \"lumped\"",
-                    text_of_point(*input.nodes, worst->nodes.front()), describe_free_nodes(*input.nodes, free)));
   }
 
   /// The conditions of one body, (P^a, P^b) in pairs.

@@ -21,7 +21,7 @@ struct Model {
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<ContactPair> contact_pairs;
   SemidiscreteProblem problem;
-  std::string mass_built;  ///< the name of the construction; for "equivalent" it may be "equivalent-compact"
+  std::string mass_built;  ///< the name of the construction; for "equivalent" the one that it chose
   InitialConditions initial;
   bool contains_rotations = true;                ///< false: degree 1 on curved cells
   std::vector<Probe> probes;                     ///< the nodes that are watched, those of segments too

@@ -77,13 +77,19 @@ TEST(Masses, AreToldByNameAndHaveTheirOwnParameters) {
 
 TEST(Degeneracy, IsSaidInWords) {
   const Points nodes = points(3, {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 1e-9, 0, 0, 1});
-  EXPECT_EQ(degeneracy(nodes, {0, 0}), "at one point");
-  EXPECT_EQ(degeneracy(nodes, {0, 1, 2}), "on one line");
-  EXPECT_EQ(degeneracy(nodes, {0, 1, 3}), "in one plane");
-  EXPECT_EQ(degeneracy(nodes, {0, 1, 3, 4}), "in one plane") << "rounding of coordinates";
-  EXPECT_EQ(degeneracy(nodes, {0, 1, 3, 5}), "");
-  EXPECT_EQ(describe_free_nodes(nodes, {0, 1, 2}),
+  const std::vector<Index> body{0, 1, 2, 3, 4, 5};
+  EXPECT_EQ(degeneracy(nodes, body, {0, 0}), "at one point");
+  EXPECT_EQ(degeneracy(nodes, body, {0, 1, 2}), "on one line");
+  EXPECT_EQ(degeneracy(nodes, body, {0, 1, 3}), "in one plane");
+  EXPECT_EQ(degeneracy(nodes, body, {0, 1, 3, 4}), "in one plane") << "rounding of coordinates";
+  EXPECT_EQ(degeneracy(nodes, body, {0, 1, 3, 5}), "");
+  EXPECT_EQ(describe_free_nodes(nodes, body, {0, 1, 2}),
             "3 nodes off the contact boundary, at (0, 0, 0), (1, 0, 0) and (2, 0, 0), all on one line");
+  Points flat = nodes;
+  flat.row(2) *= 1e-8;
+  EXPECT_EQ(degeneracy(flat, body, {0, 1, 3, 5}), "") << "it is the body that is flat";
+  EXPECT_EQ(degeneracy(flat, body, {0, 1, 3, 4}), "in one plane");
+  EXPECT_EQ(degeneracy(nodes, {0, 1, 2, 3}, {0, 1, 3}), "in one plane") << "with all of the body";
 }
 
 /// A body of 1 × 1000 is as good as a square.

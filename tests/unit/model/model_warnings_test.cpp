@@ -23,10 +23,11 @@ ThrownBody flat_block() {
                                       1.0, 1)};
 }
 
-bool warns(const std::string& contact, const std::string& sentence) {
+bool warns(const std::string& contact, const std::string& sentence, const ThrownBody& body = flat_block(),
+           const std::string& mass = "consistent") {
   const std::string path = test_support::write_temporary(
-      "warning.toml", test_support::thrown_case(flat_block(), "consistent",
-                                                "scheme = \"newmark\"\npreset = \"trapezoidal\"\n", contact));
+      "warning.toml",
+      test_support::thrown_case(body, mass, "scheme = \"newmark\"\npreset = \"trapezoidal\"\n", contact));
   Session session(path);
   session.build();
   for (const std::string& warning : session.warnings()) {
@@ -41,6 +42,27 @@ TEST(ModelWarnings, OfBoundsWhereThereIsNoArea) {
   EXPECT_TRUE(warns("multipliers = \"nodal\"\nfriction_bound = 2.0\n", sentence));
   EXPECT_FALSE(warns("multipliers = \"dual\"\nfriction_bound = 2.0\n", sentence));
   EXPECT_FALSE(warns("multipliers = \"nodal\"\nfriction = 0.3\n", sentence));
+}
+
+/// A bar one cell thick, all of which may touch, on a cube that may not, or only the far face of the cube may touch.
+TEST(ModelWarnings, OfInertiaThatIsHeapedUp) {
+  log::set_level(log::Level::error);
+  const auto bar = [](const std::string& name, const std::string& contact) {
+    return ThrownBody{name, 3, 1,
+                      test_support::mesh_geometry(
+                          name,
+                          "Box(1)={0,0,0.03,3,0.1,0.1}; Box(2)={-0.3,-0.1,-0.07,0.3,0.3,0.3};"
+                          "BooleanUnion(3)={Volume{1};Delete;}{Volume{2};Delete;}; Physical Volume(\"body\")={3};"
+                          "Physical Surface(\"contact\")=Surface In BoundingBox" +
+                              contact + ";",
+                          0.1, 1)};
+  };
+  const std::string sentence = "times the inertia that was there";
+  for (const char* mass : {"equivalent", "equivalent-cellwise", "equivalent-compact"}) {
+    EXPECT_TRUE(warns("", sentence, bar("bar", "{-0.01,-1,-1,7,1,1}"), mass)) << mass;
+    EXPECT_FALSE(warns("", sentence, bar("cube", "{-0.31,-1,-1,-0.29,1,1}"), mass)) << mass;
+  }
+  EXPECT_FALSE(warns("", sentence, bar("bar", "{-0.01,-1,-1,7,1,1}"), "consistent"));
 }
 
 }  // namespace

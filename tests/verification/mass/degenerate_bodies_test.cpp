@@ -20,7 +20,8 @@ namespace {
 using test_support::AssembledBody;
 using test_support::mass_moments;
 
-constexpr const char* types[] = {"equivalent", "equivalent-compact", "equivalent-lumped", "equivalent-nearest"};
+constexpr const char* types[] = {"equivalent",         "equivalent-nodewise", "equivalent-cellwise",
+                                 "equivalent-compact", "equivalent-lumped",   "equivalent-nearest"};
 constexpr const char* grid =
     "Rectangle(1)={0,0,0,2,1}; Physical Surface(\"body\")={1}; Physical Curve(\"contact\")={1}; "
     "Transfinite Curve{1,3}=9; Transfinite Curve{2,4}=5; Transfinite Surface{1}; Recombine Surface{1};";
@@ -186,6 +187,24 @@ TEST(DegenerateBodies, ALargePlateOfTwoLayersIsRefused) {
       EXPECT_NE(message.find("..., all in one plane"), std::string::npos) << message;
     }
   }
+}
+
+/// Cells that become 10⁴ times as long from one end to the other: node by node the nearest 40 nodes are too close
+/// together for their distance, but a cell is large enough.
+TEST(DegenerateBodies, WhereNodesAreTooCloseTogetherTheDefaultTakesCells) {
+  const auto grade = [](const Vector& x) {
+    return Vector(x.unaryExpr([](double t) { return (std::pow(1e4, t) - 1.0) / (1e4 - 1.0); }));
+  };
+  const auto graded =
+      test_support::make_meshed_body(test_support::make_box_mesh({CellShape::hexahedron, {3, 3, 3}, 1, 0.0, grade}), 1);
+  const SparseMatrix consistent = assemble_scalar_mass(graded->body, node_graph(graded->space));
+  const CellMasses cells(graded->body);
+  const MassInput input{&consistent, &graded->space.nodes,
+                        facet_nodes(graded->space, graded->mesh.group("x1", 2).members), nullptr, &cells};
+  EXPECT_THROW((void)make_mass("equivalent-nodewise")->build(input), Error);
+  const MassChoice choice = mass_to_build("equivalent", {}, input);
+  EXPECT_EQ(choice.name, "equivalent-cellwise");
+  EXPECT_NE(choice.reason.find("but \"equivalent-nodewise\" refuses it"), std::string::npos) << choice.reason;
 }
 
 }  // namespace

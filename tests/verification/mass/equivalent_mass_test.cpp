@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <map>
 
 #include "ricochet/base/error.hpp"
 #include "support/mass_bodies.hpp"
@@ -41,40 +43,82 @@ void expect_equivalent(const SparseMatrix& mass, const Assembled& body, const st
   EXPECT_TRUE(is_positive_definite(mass, body.input.contact_nodes)) << name;
 }
 
+/// Every entry is one of the consistent mass.
+void expect_pattern(const SparseMatrix& mass, const SparseMatrix& consistent, const std::string& name) {
+  for (Index column = 0; column < mass.cols(); ++column) {
+    const int* const inner = consistent.innerIndexPtr();
+    for (SparseMatrix::InnerIterator entry(mass, column); entry; ++entry) {
+      ASSERT_TRUE(std::binary_search(inner + consistent.outerIndexPtr()[column],
+                                     inner + consistent.outerIndexPtr()[column + 1], static_cast<int>(entry.row())))
+          << name << ": (" << entry.row() << ", " << column << ")";
+    }
+  }
+}
+
 TEST(EquivalentMass, KeepsMassCentreAndInertiaAndIsSemidefiniteOnMeshesOfEveryKind) {
-  int refused = 0;
-  std::printf("%-38s %6s %8s %12s %12s %12s %12s %12s %12s\n", "body", "nodes", "contact", "consistent", "equivalent",
-              "nearest", "compact", "entries", "compact's");
+  const std::vector<std::string> types{"equivalent-nodewise", "equivalent-cellwise", "equivalent-compact",
+                                       "equivalent-nearest"};
+  std::map<std::string, int> refused;
+  std::printf("Top eigenvalue [entries by those of the consistent mass]\n%-38s %6s %8s %10s", "body", "nodes",
+              "contact", "consistent");
+  for (const std::string& type : types) std::printf(" %20s", type.c_str());
+  std::printf("  equivalent\n");
   for (const Description& description : test_support::bodies_of_every_kind()) {
     const Assembled body(description);
     const Vector scale = body.consistent.diagonal();
-    const SparseMatrix mass = make_mass("equivalent")->build(body.input);
-    expect_equivalent(mass, body, description.name);
-    const double top = top_eigenvalue(mass, scale);
-    std::string nearest_text = "refused";
-    try {
-      const SparseMatrix nearest = make_mass("equivalent-nearest")->build(body.input);
-      expect_equivalent(nearest, body, description.name + " (nearest)");
-      char text[16];
-      std::snprintf(text, sizeof text, "%.2f", top_eigenvalue(nearest, scale));
-      nearest_text = text;
-    } catch (const Error& problem) {
-      ++refused;
-      EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
-      EXPECT_NE(std::string(problem.what()).find("use mass type \"equivalent\""), std::string::npos) << problem.what();
+    std::printf("%-38s %6td %8zu %10.2f", description.name.c_str(), body.consistent.cols(),
+                body.input.contact_nodes.size(), top_eigenvalue(body.consistent, scale));
+    for (const std::string& type : types) {
+      try {
+        const SparseMatrix mass = make_mass(type)->build(body.input);
+        expect_equivalent(mass, body, description.name + " (" + type + ")");
+        if (type == "equivalent-cellwise" || type == "equivalent-nearest")
+          expect_pattern(mass, body.consistent, description.name);
+        std::printf("      %7.2f [%5.2f]", top_eigenvalue(mass, scale),
+                    static_cast<double>(mass.nonZeros()) / static_cast<double>(body.consistent.nonZeros()));
+      } catch (const Error& problem) {
+        ++refused[type];
+        std::printf(" %20s", "refused");
+        EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+        const bool is_cellwise = type == "equivalent-cellwise";
+        EXPECT_NE(std::string(problem.what())
+                      .find(is_cellwise ? "use mass type \"equivalent-nodewise\"" : "use mass type \"equivalent\""),
+                  std::string::npos)
+            << problem.what();
+      }
     }
-    const SparseMatrix compact = make_mass("equivalent-compact")->build(body.input);
-    expect_equivalent(compact, body, description.name + " (compact)");
-    const auto share = [&](const SparseMatrix& of) {
-      return static_cast<double>(of.nonZeros()) / static_cast<double>(body.consistent.nonZeros());
-    };
-    std::printf("%-38s %6td %8zu %12.2f %12.2f %12s %12.2f %12.2f %12.2f\n", description.name.c_str(),
-                body.consistent.cols(), body.input.contact_nodes.size(), top_eigenvalue(body.consistent, scale), top,
-                nearest_text.c_str(), top_eigenvalue(compact, scale), share(mass), share(compact));
+    std::printf("  %s\n", mass_to_build("equivalent", {}, body.input).name.c_str());
   }
-  // Those on which the nearest matrix is indefinite are among the meshes, or the first construction would not be
-  // needed.
-  EXPECT_GE(refused, 15);
+  // Those on which the nearest matrix is indefinite are among the meshes, or the others would not be needed; in one
+  // body no cell is without contact nodes (ball, h 0.6).
+  EXPECT_GE(refused["equivalent-nearest"], 15);
+  EXPECT_EQ(refused["equivalent-cellwise"], 1);
+  EXPECT_EQ(refused["equivalent-nodewise"] + refused["equivalent-compact"], 0);
+}
+
+TEST(EquivalentMass, IsChosenByDimensionAndByWhatHeapsUp) {
+  const auto built = [](const char* name) {
+    const Assembled body(test_support::body_of_kind(name));
+    const MassChoice choice = mass_to_build("equivalent", {}, body.input);
+    EXPECT_EQ(choice.reason.empty(), body.space.nodes.rows() == 2) << name;
+    // Whoever chooses also builds: the same bits.
+    const SparseMatrix mass = make_mass("equivalent")->build(body.input);
+    EXPECT_EQ((mass - make_mass(choice.name)->build(body.input)).norm(), 0.0) << name;
+    if (choice.mass) {
+      EXPECT_EQ((mass - *choice.mass).norm(), 0.0) << name;
+    }
+    return choice.name;
+  };
+  EXPECT_EQ(built("disc, h 0.1"), "equivalent-nodewise") << "in the plane";
+  EXPECT_EQ(built("ball, h 0.6"), "equivalent-nodewise") << "no cell without contact nodes";
+  EXPECT_EQ(built("plate, 1 thick"), "equivalent-nodewise") << "a top eigenvalue of 800";
+  EXPECT_EQ(built("ball, h 0.15"), "equivalent-cellwise");
+  EXPECT_EQ(built("brick, hexahedra, degree 2"), "equivalent-cellwise");
+  Assembled body(test_support::body_of_kind("ball, h 0.15"));
+  for (const char* name : {"consistent", "equivalent-nodewise", "equivalent-compact"})
+    EXPECT_EQ(mass_to_build(name, {}, body.input).name, name);
+  body.input.cells = nullptr;
+  EXPECT_EQ(mass_to_build("equivalent", {}, body.input).name, "equivalent-nodewise");
 }
 
 TEST(EquivalentMass, DegreeOneSpaceOnSecondOrderCells) {

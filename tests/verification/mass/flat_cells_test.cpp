@@ -75,12 +75,12 @@ TEST(FlatCells, TheEquivalentMassOfAMappedMeshIsThatOfTheMesh) {
                            "ball, h 0.4", "plate, 1 thick", "plate, 2 thick", "brick, hexahedra, around"}) {
     const AssembledBody body(test_support::body_of_kind(name));
     const Index d = body.space.nodes.rows();
-    const SparseMatrix plain = make_mass("equivalent")->build(body.input);
+    const SparseMatrix plain = make_mass("equivalent-nodewise")->build(body.input);
     for (const double ratio : {1.0, 5.0, 100.0, 1000.0}) {
       const Matrix map = affine_map(d, ratio, random);
       const Vector shift = 3.0 * ratio * Vector::Ones(d);
       const MappedBody mapped(body, map, shift);
-      const SparseMatrix found = make_mass("equivalent")->build(mapped.input);
+      const SparseMatrix found = make_mass("equivalent-nodewise")->build(mapped.input);
       const double largest = plain.coeffs().cwiseAbs().maxCoeff();
       const SparseMatrix change = found / std::abs(map.determinant()) - plain;
       const double difference = change.coeffs().cwiseAbs().maxCoeff();
@@ -110,7 +110,7 @@ TEST(FlatCells, LayersOfFlatCellsAreTaken) {
                   "Transfinite Curve{1,3}=13; Transfinite Curve{2,4}=%d; Transfinite Surface{1}; Recombine Surface{1};",
                   12.0 * layers.ratio, layers.count, layers.count + 1);
     const AssembledBody body({"layers", 1, 1.0, geometry});
-    const SparseMatrix mass = make_mass("equivalent")->build(body.input);
+    const SparseMatrix mass = make_mass("equivalent-nodewise")->build(body.input);
     const Matrix wanted = mass_moments(body.consistent, body.space.nodes), found = mass_moments(mass, body.space.nodes);
     for (Index a = 0; a < 3; ++a) {
       for (Index b = 0; b < 3; ++b)
@@ -145,7 +145,7 @@ TEST(FlatCells, WhatIsRefusedIsRefusedInEveryShape) {
     for (const double ratio : {1.0, 10.0, 1000.0}) {
       for (const double shift : {0.0, 1000.0}) {
         const MappedBody mapped(body, affine_map(d, ratio, random), shift * Vector::Ones(d));
-        for (const char* type : {"equivalent", "equivalent-lumped", "equivalent-nearest"}) {
+        for (const char* type : {"equivalent", "equivalent-nodewise", "equivalent-lumped", "equivalent-nearest"}) {
           SCOPED_TRACE(testing::Message() << type << ' ' << ratio << ':' << 1 << ' ' << kind.expected);
           try {
             (void)make_mass(type)->build(mapped.input);

@@ -1,0 +1,385 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/fem/cell_masses.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
+#include "ricochet/mass/affine_fit.hpp"
+#include "ricochet/mass/cell_rings.hpp"
+#include "ricochet/mass/mass.hpp"
+#include "ricochet/mass/mass_conditions.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// PᵀRP with P = (1, ξ): the inertia of affine velocities, in a frame. The dimension + 1 first rows and columns count.
+using AffineInertia = std::array<std::array<double, 4>, 4>;
+
+void add_inertia(AffineInertia& to, double factor, const AffineInertia& added) {
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 4; ++b) to[a][b] += factor * added[a][b];
+  }
+}
+
+/// A cell with contact nodes: PᵀRP of the inertia R that it cannot keep, in the frame of its nodes.
+struct Giver {
+  int cell = 0;
+  double weight = 1.0;  ///< of the mass that is built, by the inertia
+  AffineFrame frame;
+  AffineInertia inertia{};
+  std::size_t first_share = 0;
+};
+
+/// A cell whose free nodes span space affinely.
+struct Donor {
+  int cell = 0;
+  AffineFrame frame;  ///< of its free nodes
+  AffineInertia received{};
+  AffineInertia cost{};  ///< of inertia that it receives: Σ_i L_i²/D_i (m)_ii, m what is added to its free nodes
+};
+
+/// θ_Tq, and what is shared in the frame of the donor.
+struct Share {
+  int donor = 0;
+  double part = 0.0;
+  double cost = 0.0;
+  AffineInertia inertia;
+};
+
+/// M₀ = Σ_free m_T + Σ_contact [S_T + Σ_q θ_Tq W_Tqᵀ R_T W_Tq], see docs/equivalent-mass.md. As W_Tq makes affine
+/// functions of what it gets, R_T is known by its moments PᵀRP alone, and a donor by their sum.
+class CellwiseBuilder {
+ public:
+  explicit CellwiseBuilder(const MassInput& input);
+  SparseMatrix build();
+
+ private:
+  [[nodiscard]] bool is_contact(Index node) const { return is_contact_[static_cast<std::size_t>(node)] != 0; }
+  void add_cell(int cell, const std::vector<Index>& nodes, const Matrix& inertia, double weight);
+  void keep_inertia(const std::vector<Index>& nodes, const Matrix& inertia, double weight);
+  void find_donors();
+  int donor_of(int cell);
+  void share_out();
+  void update_costs(const Vector& lengths);
+  void update_parts(const Giver& giver, std::size_t end, bool first);
+  void receive(const Giver& giver, std::size_t end, double weight);
+  [[nodiscard]] Vector diagonal() const;
+  void hand_over();
+  template <class Visit>
+  void for_each_weight(const Donor& donor, const Visit& visit) const;
+  [[nodiscard]] bool see(const Donor& donor, const Giver& giver, AffineInertia& inertia) const;
+  [[noreturn]] void refuse(const Giver& giver);
+
+  const MassInput& input_;
+  const int d_;
+  std::vector<char> is_contact_;
+  Vector trust_;         ///< D
+  Vector kept_;          ///< the diagonal of what cells keep of their inertia
+  SparseMatrix result_;  ///< on the pattern of M
+  Matrix remains_;       ///< work space: S_T, with rows of contact nodes that are zero
+  CellRings rings_;
+  std::vector<Giver> givers_;
+  std::vector<Donor> donors_;
+  std::vector<int> donor_number_;  ///< per cell; −1: it is none, −2: not looked for yet
+  std::vector<Share> shares_;
+};
+
+/// Two free nodes of a cell: the consistent mass couples them.
+double& entry_of(SparseMatrix& matrix, Index row, Index column) {
+  double* const entry = stored_entry(matrix, row, column);
+  if (entry == nullptr) throw std::logic_error("a mass does not couple two nodes of a cell");
+  return *entry;
+}
+
+/// Cells that share what one gives: whole rings of them, so that the order of cells does not matter.
+constexpr std::size_t wanted_donors = 3;
+/// Times that θ is found anew with the diagonal of the mass that it makes.
+constexpr int sweeps = 3;
+
+CellwiseBuilder::CellwiseBuilder(const MassInput& input)
+    : input_(input),
+      d_(static_cast<int>(input.nodes->rows())),
+      is_contact_(static_cast<std::size_t>(input.nodes->cols()), 0),
+      trust_(input.inertia_matrix().diagonal()),
+      kept_(Vector::Zero(trust_.size())),
+      rings_(*input.cells, input.nodes->cols()) {
+  for (const Index node : input.contact_nodes) is_contact_[static_cast<std::size_t>(node)] = 1;
+  result_ = zeros_without(input.inertia_matrix(), is_contact_);
+  donor_number_.assign(static_cast<std::size_t>(rings_.count()), -2);
+}
+
+SparseMatrix CellwiseBuilder::build() {
+  const bool is_inertia = input_.consistent == &input_.inertia_matrix();
+  int cell = 0;
+  input_.cells->for_each_inertia([&](const std::vector<Index>& nodes, const Matrix& inertia, double weight) {
+    add_cell(cell++, nodes, inertia, is_inertia ? 1.0 : weight);
+  });
+  find_donors();
+  share_out();
+  hand_over();
+  return std::move(result_);
+}
+
+/// Adds m_T, of a contact cell S_T = m_FF − m_FC m_CC⁻¹ m_CF: contact nodes are eliminated one after the other, and
+/// what each elimination takes away, r rᵀ/m_cc with the column r of the contact node, is a part of R_T.
+void CellwiseBuilder::add_cell(int cell, const std::vector<Index>& nodes, const Matrix& inertia, double weight) {
+  const auto count = static_cast<Index>(nodes.size());
+  if (std::none_of(nodes.begin(), nodes.end(), [this](Index node) { return is_contact(node); }))
+    return keep_inertia(nodes, inertia, weight);
+  Giver giver;
+  giver.cell = cell;
+  giver.weight = weight;
+  if (!make_affine_frame(*input_.nodes, rings_.nodes(cell), static_cast<int>(count), trust_, giver.frame))
+    refuse(giver);
+  remains_ = inertia;
+  for (Index c = 0; c < count; ++c) {
+    if (!is_contact(nodes[static_cast<std::size_t>(c)])) continue;
+    const double pivot = remains_(c, c);
+    double moments[4] = {};
+    for (Index i = 0; i < count; ++i) {
+      double p[4] = {1.0};
+      affine_coordinates(giver.frame, d_, input_.nodes->col(nodes[static_cast<std::size_t>(i)]).data(), p + 1);
+      for (int a = 0; a <= d_; ++a) moments[a] += remains_(i, c) * p[a];
+    }
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) giver.inertia[a][b] += moments[a] * moments[b] / pivot;
+    }
+    for (Index j = 0; j < count; ++j) {
+      const double factor = remains_(j, c) / pivot;
+      for (Index i = 0; i < count && j != c; ++i) remains_(i, j) -= factor * remains_(i, c);
+    }
+    remains_.col(c).setZero();
+  }
+  keep_inertia(nodes, remains_, weight);
+  givers_.push_back(giver);
+}
+
+/// Adds what a cell keeps. The lower triangle counts for both.
+void CellwiseBuilder::keep_inertia(const std::vector<Index>& nodes, const Matrix& inertia, double weight) {
+  const auto count = static_cast<Index>(nodes.size());
+  for (Index j = 0; j < count; ++j) {
+    const Index column = nodes[static_cast<std::size_t>(j)];
+    if (is_contact(column)) continue;
+    kept_[column] += inertia(j, j);
+    for (Index i = j; i < count; ++i) {
+      const Index row = nodes[static_cast<std::size_t>(i)];
+      if (is_contact(row)) continue;
+      entry_of(result_, row, column) += weight * inertia(i, j);
+      if (i != j) entry_of(result_, column, row) += weight * inertia(i, j);
+    }
+  }
+}
+
+int CellwiseBuilder::donor_of(int cell) {
+  int& number = donor_number_[static_cast<std::size_t>(cell)];
+  if (number != -2) return number;
+  std::vector<int> free;
+  for (int k = 0; k < rings_.node_count(cell); ++k) {
+    if (!is_contact(rings_.nodes(cell)[k])) free.push_back(rings_.nodes(cell)[k]);
+  }
+  Donor donor;
+  donor.cell = cell;
+  number = -1;
+  if (!make_affine_frame(*input_.nodes, free.data(), static_cast<int>(free.size()), trust_, donor.frame)) return number;
+  donors_.push_back(donor);
+  return number = static_cast<int>(donors_.size()) - 1;
+}
+
+/// Ring by ring, until there are enough. Where they are rare, rings that are twice as far as the first that has one are
+/// not asked any more, nor those beyond many cells: from so far away inertia is heaped up more than any user would
+/// want, and to look for donors in the whole of a body, cell after cell, would take minutes.
+void CellwiseBuilder::find_donors() {
+  for (Giver& giver : givers_) {
+    giver.first_share = shares_.size();
+    rings_.start(giver.cell);
+    std::size_t seen = 0, ring = 0, nearest = 0;
+    do {
+      for (; seen < rings_.cells().size(); ++seen) {
+        Share share{donor_of(rings_.cells()[seen]), 0.0, 0.0, {}};
+        if (share.donor >= 0 && see(donors_[static_cast<std::size_t>(share.donor)], giver, share.inertia))
+          shares_.push_back(share);
+      }
+      if (shares_.size() == giver.first_share)
+        nearest = ++ring;
+      else if (shares_.size() - giver.first_share >= wanted_donors || ++ring > 2 * nearest + 2)
+        break;
+    } while (rings_.cells().size() < CellRings::many_cells && rings_.grow());
+    if (shares_.size() == giver.first_share) refuse(giver);
+  }
+}
+
+/// PᵀRP with P = (1, ξ) in the frame of the donor. False where the donor's free nodes hardly span space: the nodes of
+/// the giver are further away, root mean square, than a hundred times their spread in some direction.
+bool CellwiseBuilder::see(const Donor& donor, const Giver& giver, AffineInertia& inertia) const {
+  constexpr double largest_distance = 100.0;
+  double change[4][4] = {{1.0}}, shift[3], turn[3][3], square = 0.0;
+  affine_change(giver.frame, donor.frame, d_, shift, turn);
+  for (int i = 0; i < d_; ++i) {
+    change[i + 1][0] = shift[i];
+    square += shift[i] * shift[i];
+    for (int j = 0; j < d_; ++j) {
+      change[i + 1][j + 1] = turn[i][j];
+      square += turn[i][j] * turn[i][j];
+    }
+  }
+  if (!(square <= largest_distance * largest_distance)) return false;
+  double half[4][4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      half[i][j] = 0.0;
+      for (std::size_t k = 0; k < 4; ++k) half[i][j] += change[i][k] * giver.inertia[k][j];
+    }
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < 4; ++k) sum += half[i][k] * change[j][k];
+      inertia[i][j] = inertia[j][i] = sum;
+    }
+  }
+  return true;
+}
+
+/// visit(node, w): Σ_i w_i v_i are the value in the centre of the donor and the gradient in its ξ of the affine fit.
+template <class Visit>
+void CellwiseBuilder::for_each_weight(const Donor& donor, const Visit& visit) const {
+  for (int k = 0; k < rings_.node_count(donor.cell); ++k) {
+    const int node = rings_.nodes(donor.cell)[k];
+    if (is_contact(node)) continue;
+    double weight[4];
+    affine_weight(donor.frame, d_, input_.nodes->col(node).data(), trust_[node], weight);
+    visit(node, weight);
+  }
+}
+
+double quadratic_form(const AffineInertia& inertia, const double* left, const double* right) {
+  double result = 0.0;
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 4; ++b) result += left[a] * inertia[a][b] * right[b];
+  }
+  return result;
+}
+
+void CellwiseBuilder::update_costs(const Vector& lengths) {
+  for (Donor& donor : donors_) {
+    donor.cost = {};
+    for_each_weight(donor, [&](int node, const double* weight) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        for (std::size_t b = 0; b < 4; ++b)
+          donor.cost[a][b] += weight[a] * weight[b] * lengths[node] * lengths[node] / trust_[node];
+      }
+    });
+  }
+}
+
+/// θ_Tq in proportion to 1/c², c_Tq the trace of what q would get, relative to D, with the weights L².
+void CellwiseBuilder::update_parts(const Giver& giver, std::size_t end, bool first) {
+  double sum = 0.0, least = 0.0;
+  for (std::size_t s = giver.first_share; s < end; ++s) {
+    Share& share = shares_[s];
+    const AffineInertia& costs = donors_[static_cast<std::size_t>(share.donor)].cost;
+    share.cost = 0.0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) share.cost += share.inertia[a][b] * costs[a][b];
+    }
+    least = s == giver.first_share ? share.cost : std::min(least, share.cost);
+  }
+  const auto wanted = [&](std::size_t s) { return (least / shares_[s].cost) * (least / shares_[s].cost); };
+  for (std::size_t s = giver.first_share; s < end; ++s) sum += wanted(s);
+  for (std::size_t s = giver.first_share; s < end; ++s) {
+    const double part = wanted(s) / sum;
+    shares_[s].part = first ? part : 0.5 * (shares_[s].part + part);
+  }
+}
+
+void CellwiseBuilder::receive(const Giver& giver, std::size_t end, double weight) {
+  for (std::size_t s = giver.first_share; s < end; ++s) {
+    add_inertia(donors_[static_cast<std::size_t>(shares_[s].donor)].received, weight * shares_[s].part,
+                shares_[s].inertia);
+  }
+}
+
+/// Of the mass that the shares make of the inertia.
+Vector CellwiseBuilder::diagonal() const {
+  Vector result = kept_;
+  for (const Donor& donor : donors_) {
+    for_each_weight(
+        donor, [&](int node, const double* weight) { result[node] += quadratic_form(donor.received, weight, weight); });
+  }
+  return result;
+}
+
+/// L = 1 at first, then M₀_ii/D_i. Shares are those of the inertia, also where the mass that is built is damping, so
+/// that damping of one rate is that rate times the mass.
+void CellwiseBuilder::share_out() {
+  Vector lengths = Vector::Ones(trust_.size());
+  for (int sweep = 0; sweep <= sweeps; ++sweep) {
+    if (sweep > 0) lengths = diagonal().cwiseQuotient(trust_);
+    update_costs(lengths);
+    for (Donor& donor : donors_) donor.received = {};
+    for (std::size_t g = 0; g < givers_.size(); ++g) {
+      const std::size_t end = g + 1 < givers_.size() ? givers_[g + 1].first_share : shares_.size();
+      update_parts(givers_[g], end, sweep == 0);
+      receive(givers_[g], end, sweep < sweeps ? 1.0 : givers_[g].weight);
+    }
+  }
+}
+
+void CellwiseBuilder::hand_over() {
+  for (const Donor& donor : donors_) {
+    for_each_weight(donor, [&](int i, const double* left) {
+      for_each_weight(donor, [&](int j, const double* right) {
+        if (j < i) return;
+        const double value = quadratic_form(donor.received, left, right);
+        entry_of(result_, i, j) += value;
+        if (j != i) entry_of(result_, j, i) += value;
+      });
+    });
+  }
+}
+
+/// Names what the body of a cell has.
+void CellwiseBuilder::refuse(const Giver& giver) {
+  rings_.start(giver.cell);
+  while (rings_.grow()) continue;
+  const std::vector<Index> body = rings_.nodes();
+  std::vector<Index> free;
+  std::copy_if(body.begin(), body.end(), std::back_inserter(free), [this](Index n) { return !is_contact(n); });
+  const int* const nodes = rings_.nodes(giver.cell);
+  const Index node =
+      *std::find_if(nodes, nodes + rings_.node_count(giver.cell), [this](Index n) { return is_contact(n); });
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("mass type \"equivalent-cellwise\": the inertia of the contact node at {} cannot be moved to "
+                          "other cells: its body has {}, and no cell among the nearest {} with {} of them that are not "
+                          "all {}; refine the mesh there or set mesh.degree = 2, name only facets that may touch in "
+                          "the contact group, or "
+                          "use mass type \"equivalent-nodewise\", which needs no whole cell (\"consistent\" and "
+                          "\"lumped\" need none of this)",
+                          text_of_point(*input_.nodes, node), describe_free_nodes(*input_.nodes, body, free),
+                          CellRings::many_cells, d_ + 1, d_ == 3 ? "in one plane" : "on one line"));
+}
+
+class CellwiseEquivalentMass final : public MassConstruction {
+ public:
+  [[nodiscard]] bool removes_contact_inertia() const override { return true; }
+  [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
+    if (input.cells == nullptr)
+      throw Error(ErrorKind::invalid_input, "mass type \"equivalent-cellwise\" needs the masses of single cells");
+    SparseMatrix result = CellwiseBuilder(input).build();
+    check_moments(input, result, "equivalent-cellwise");
+    return result;
+  }
+};
+
+}  // namespace
+
+MassRegistration cellwise_equivalent_mass() {
+  return {"equivalent-cellwise", [](const Parameters&) { return std::make_unique<CellwiseEquivalentMass>(); }};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,286 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/parallel.hpp"
+#include "ricochet/mass/affine_fit.hpp"
+#include "ricochet/mass/mass.hpp"
+#include "ricochet/mass/mass_conditions.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Weights of one contact node on free nodes.
+struct Extrapolation {
+  std::vector<int> nodes;
+  Vector weights;
+};
+
+/// The rows of E that differ from the identity, and the columns.
+class ExtensionRows {
+ public:
+  explicit ExtensionRows(Index count) : row_(static_cast<std::size_t>(count), -1), column_(row_.size()) {}
+  void set(Index node, Extrapolation extrapolation) {
+    row_[static_cast<std::size_t>(node)] = static_cast<int>(rows_.size());
+    for (std::size_t k = 0; k < extrapolation.nodes.size(); ++k) {
+      column_[static_cast<std::size_t>(extrapolation.nodes[k])].push_back(
+          {node, extrapolation.weights[static_cast<Index>(k)]});
+    }
+    rows_.push_back(std::move(extrapolation));
+  }
+  struct Entry {
+    Index node;
+    double weight;
+  };
+  /// The contact nodes that give some of their mass to a free node.
+  [[nodiscard]] const std::vector<Entry>& column(Index node) const { return column_[static_cast<std::size_t>(node)]; }
+  /// Of a contact node.
+  [[nodiscard]] const Extrapolation& row(Index node) const {
+    return rows_[static_cast<std::size_t>(row_[static_cast<std::size_t>(node)])];
+  }
+
+ private:
+  std::vector<int> row_;  ///< per node: its entry in rows_, or −1
+  std::vector<Extrapolation> rows_;
+  std::vector<std::vector<Entry>> column_;
+};
+
+/// A sparse row.
+struct SparseRow {
+  std::vector<int> columns;
+  std::vector<double> values;
+};
+
+/// One row of EᵀME at a time.
+class CongruenceRow {
+ public:
+  /// `products`: rows of ME of the contact nodes, by node; those of other nodes are empty.
+  CongruenceRow(const SparseMatrix& mass, const std::vector<char>& is_contact, const ExtensionRows& extension,
+                const std::vector<SparseRow>& products)
+      : mass_(mass),
+        is_contact_(is_contact),
+        extension_(extension),
+        products_(products),
+        values_(Vector::Zero(mass.cols())),
+        present_(is_contact.size(), 0) {}
+
+  /// Columns of the row, ascending; `value` gives its entries until the next call.
+  const std::vector<int>& compute(Index node) {
+    clear();
+    if (is_contact_[static_cast<std::size_t>(node)] != 0) return columns_;
+    add_product(node);
+    for (const ExtensionRows::Entry& entry : extension_.column(node)) {
+      const SparseRow& row = products_[static_cast<std::size_t>(entry.node)];
+      for (std::size_t k = 0; k < row.columns.size(); ++k) add(row.columns[k], entry.weight * row.values[k]);
+    }
+    std::sort(columns_.begin(), columns_.end());
+    return columns_;
+  }
+  [[nodiscard]] double value(int column) const { return values_[column]; }
+
+  /// (ME)(node, ·).
+  SparseRow product(Index node) {
+    clear();
+    add_product(node);
+    SparseRow row{columns_, {}};
+    for (const int column : columns_) row.values.push_back(values_[column]);
+    return row;
+  }
+
+ private:
+  void clear() {
+    for (const int column : columns_) {
+      present_[static_cast<std::size_t>(column)] = 0;
+      values_[column] = 0.0;
+    }
+    columns_.clear();
+  }
+  void add(Index column, double value) {
+    values_[column] += value;
+    if (present_[static_cast<std::size_t>(column)] != 0) return;
+    present_[static_cast<std::size_t>(column)] = 1;
+    columns_.push_back(static_cast<int>(column));
+  }
+  void add_product(Index node) {
+    for (SparseMatrix::InnerIterator entry(mass_, node); entry; ++entry) {
+      if (is_contact_[static_cast<std::size_t>(entry.row())] == 0) {
+        add(entry.row(), entry.value());
+        continue;
+      }
+      const Extrapolation& row = extension_.row(entry.row());
+      for (std::size_t k = 0; k < row.nodes.size(); ++k) {
+        add(row.nodes[k], entry.value() * row.weights[static_cast<Index>(k)]);
+      }
+    }
+  }
+
+  const SparseMatrix& mass_;
+  const std::vector<char>& is_contact_;
+  const ExtensionRows& extension_;
+  const std::vector<SparseRow>& products_;
+  Vector values_;
+  std::vector<char> present_;
+  std::vector<int> columns_;
+};
+
+/// (A + Aᵀ)/2 of a matrix whose pattern is symmetric.
+void symmetrize(SparseMatrix& matrix) {
+  const int* outer = matrix.outerIndexPtr();
+  const int* inner = matrix.innerIndexPtr();
+  double* values = matrix.valuePtr();
+  parallel_ranges(matrix.cols(), [&](Index first, Index last) {
+    for (Index column = first; column < last; ++column) {
+      for (int k = outer[column]; k < outer[column + 1] && inner[k] < column; ++k) {
+        // Each pair is met once, from its larger index.
+        const int* other =
+            std::lower_bound(inner + outer[inner[k]], inner + outer[inner[k] + 1], static_cast<int>(column));
+        double& transposed = values[other - inner];
+        values[k] = transposed = 0.5 * (values[k] + transposed);
+      }
+    }
+  });
+}
+
+/// EᵀME, exactly symmetric.
+SparseMatrix congruence(const SparseMatrix& mass, const std::vector<char>& is_contact, const ExtensionRows& extension) {
+  const Index count = mass.cols();
+  SparseMatrix result(count, count);
+  int* outer = result.outerIndexPtr();
+  std::vector<SparseRow> products(static_cast<std::size_t>(count));
+  parallel_ranges(count, [&](Index first, Index last) {
+    CongruenceRow row(mass, is_contact, extension, products);
+    for (Index node = first; node < last; ++node) {
+      if (is_contact[static_cast<std::size_t>(node)] != 0) products[static_cast<std::size_t>(node)] = row.product(node);
+    }
+  });
+  parallel_ranges(count, [&](Index first, Index last) {
+    CongruenceRow row(mass, is_contact, extension, products);
+    for (Index node = first; node < last; ++node) outer[node + 1] = static_cast<int>(row.compute(node).size());
+  });
+  for (Index node = 0; node < count; ++node) outer[node + 1] += outer[node];
+  result.resizeNonZeros(outer[count]);
+  parallel_ranges(count, [&](Index first, Index last) {
+    CongruenceRow row(mass, is_contact, extension, products);
+    for (Index node = first; node < last; ++node) {
+      Index position = outer[node];
+      for (const int column : row.compute(node)) {
+        result.innerIndexPtr()[position] = column;
+        result.valuePtr()[position++] = row.value(column);
+      }
+    }
+  });
+  // Entries (i, j) and (j, i) are sums in different orders; what follows relies on exact symmetry.
+  symmetrize(result);
+  return result;
+}
+
+/// Weights of nodes that extrapolate to a point. False where they do not span space affinely, or barely so.
+///
+/// The test must not depend on how flat the cells are. An affine map of the mesh changes neither w nor
+///   Σ t_j Σ w_j²/t_j = 1 + |ξ|²,  t_j = m_jj,
+/// where |ξ| is the distance of the point from the nodes' centre of gravity, in units of their own root mean square
+/// spread in that direction: it is this that says how far the weights extrapolate.
+bool extrapolation_weights(const Points& nodes, const Vector& trust, const std::vector<int>& of, Index point,
+                           Vector& weights) {
+  constexpr double largest_distance = 100.0;
+  const int d = static_cast<int>(nodes.rows());
+  AffineFrame frame;
+  if (!make_affine_frame(nodes, of.data(), static_cast<int>(of.size()), trust, frame)) return false;
+  double to[4] = {1.0}, weight[4];
+  affine_coordinates(frame, d, nodes.col(point).data(), to + 1);
+  weights.setZero(static_cast<Index>(of.size()));
+  for (std::size_t j = 0; j < of.size(); ++j) {
+    affine_weight(frame, d, nodes.col(of[j]).data(), trust[of[j]], weight);
+    for (int k = 0; k <= d; ++k) weights[static_cast<Index>(j)] += weight[k] * to[k];
+  }
+  const double square = to[1] * to[1] + to[2] * to[2] + to[3] * to[3];
+  return square <= largest_distance * largest_distance;
+}
+
+/// M₀ = EᵀME. E is the identity on free nodes; the row of a contact node holds the weights on nearby free nodes which
+/// reproduce affine functions and are least in the norm Σ w_j²/m_jj. So PᵃᵀM₀Pᵇ = PᵃᵀMPᵇ exactly, M₀ is positive
+/// semi-definite with the contact dofs as its null space by construction, and wᵀ(m_cc)w measures what is added to the
+/// free nodes relative to the mass they have: the choice of norm and of many neighbours keeps the top eigenvalue low.
+/// See docs/equivalent-mass.md for the measurements behind `wanted_neighbours`.
+class NodewiseEquivalentMass final : public MassConstruction {
+ public:
+  [[nodiscard]] bool removes_contact_inertia() const override { return true; }
+
+  [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
+    const SparseMatrix& consistent = *input.consistent;
+    const Index count = consistent.cols();
+    std::vector<char> is_contact(static_cast<std::size_t>(count), 0);
+    for (const Index node : input.contact_nodes) is_contact[static_cast<std::size_t>(node)] = 1;
+    const Vector diagonal = input.inertia_matrix().diagonal();
+    ExtensionRows extension(count);
+    std::vector<Index> seen_from(static_cast<std::size_t>(count), -1);
+    for (const Index node : input.contact_nodes) {
+      extension.set(node, extrapolate(input, is_contact, diagonal, node, seen_from));
+    }
+    SparseMatrix result = congruence(consistent, is_contact, extension);
+    check_moments(input, result, "equivalent-nodewise");
+    return result;
+  }
+
+ private:
+  /// Weights on the rings of free nodes around a contact node: enough rings to have the wanted number of neighbours and
+  /// to span space affinely. `seen_from` is work space: the contact node from which a node was last reached.
+  static Extrapolation extrapolate(const MassInput& input, const std::vector<char>& is_contact, const Vector& diagonal,
+                                   Index node, std::vector<Index>& seen_from) {
+    const Index dimension = input.nodes->rows();
+    const std::size_t wanted_neighbours = dimension == 2 ? 20 : 40;
+    std::vector<Index> front{node}, next;
+    std::vector<int> free;
+    seen_from[static_cast<std::size_t>(node)] = node;
+    Extrapolation result;
+    while (!front.empty()) {
+      next.clear();
+      for (const Index from : front) {
+        for (SparseMatrix::InnerIterator entry(*input.consistent, from); entry; ++entry) {
+          const auto neighbour = static_cast<Index>(entry.row());
+          if (seen_from[static_cast<std::size_t>(neighbour)] == node) continue;
+          seen_from[static_cast<std::size_t>(neighbour)] = node;
+          next.push_back(neighbour);
+          if (is_contact[static_cast<std::size_t>(neighbour)] == 0) free.push_back(static_cast<int>(neighbour));
+        }
+      }
+      std::swap(front, next);
+      const bool enough = free.size() >= wanted_neighbours || front.empty();
+      if (enough && extrapolation_weights(*input.nodes, diagonal, free, node, result.weights)) {
+        result.nodes = std::move(free);
+        return result;
+      }
+    }
+    std::vector<Index> body;
+    for (std::size_t k = 0; k < seen_from.size(); ++k) {
+      if (seen_from[k] == node) body.push_back(static_cast<Index>(k));
+    }
+    refuse(input, node, body, {free.begin(), free.end()});
+  }
+
+  [[noreturn]] static void refuse(const MassInput& input, Index node, const std::vector<Index>& body,
+                                  std::vector<Index> free) {
+    std::sort(free.begin(), free.end());
+    const bool flat = free.empty() || !degeneracy(*input.nodes, body, free).empty();
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("mass type \"equivalent-nodewise\": the inertia of the contact node at {} cannot be moved to other "
+                    "nodes: its body has {}{}; refine the mesh there or set mesh.degree = 2, so that {} nodes "
+                    "that are not all {} are off the contact boundary, or name only facets that may touch in "
+                    "the contact group (mass types \"consistent\" and \"lumped\" need none of this)",
+                    text_of_point(*input.nodes, node), describe_free_nodes(*input.nodes, body, free),
+                    flat ? "" : ", which are too close together for their distance from it",
+                    input.nodes->rows() == 3 ? "at least 4" : "at least 3",
+                    input.nodes->rows() == 3 ? "in one plane" : "on one line"));
+  }
+};
+
+}  // namespace
+
+MassRegistration nodewise_equivalent_mass() {
+  return {"equivalent-nodewise", [](const Parameters&) { return std::make_unique<NodewiseEquivalentMass>(); }};
+}
+
+}  // namespace ricochet
