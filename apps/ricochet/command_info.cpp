@@ -123,6 +123,7 @@ void describe_result(const std::string& directory) {
   fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass_text(), s.dimension, s.degree);
   fmt::print("  {}, {}, {}, {} of {:g}, {}\n", counted(s.nodes, "node"), counted(s.cells, "cell"),
              counted(s.contact_points, "contact point"), counted(s.steps, "step"), s.step, counted(s.frames, "frame"));
+  if (s.history_every > 1) fmt::print("  a row of the history every {} steps\n", s.history_every);
   print_contacts(s.contacts);
   if (std::isfinite(s.critical_step)) print_critical_step(s.step, s.critical_step);
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,

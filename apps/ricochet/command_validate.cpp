@@ -17,8 +17,9 @@ namespace ricochet::program {
 
 namespace {
 
-/// A start that takes longer than this, in seconds by estimate, is left to the run.
-constexpr double longest_start = 30.0;
+/// A start whose factorizations take longer than this, in seconds by estimate, is left to the run: they take the memory
+/// that a user wants to know before.
+constexpr double longest_start = 3.0;
 
 std::string short_duration_text(double seconds) {
   return seconds < 1.0 ? fmt::format("{:.2g} s", seconds) : duration_text(seconds);
@@ -29,9 +30,11 @@ void print_estimate(const StageEstimate& stage, std::size_t number, long steps) 
       fmt::format("estimate, stage {} of a step, {}", number + 1, counted(stage.unknowns, "unknown"));
   if (stage.chosen.method == SolverMethod::iterative) {
     fmt::print(
-        "{}: method iterative{}; its memory is a few times that of the matrices, its time per step is not "
-        "estimated\n",
-        of,
+        "{}: method iterative, some {:.0f} iterations; {} per step, {} for {}; its memory is a few times that of the "
+        "matrices; chosen as {}{}\n",
+        of, stage.iterations, short_duration_text(stage.step_seconds),
+        short_duration_text(static_cast<double>(steps) * stage.step_seconds), counted(steps, "step"),
+        stage.chosen.reason,
         stage.chosen.predicted_entries > 0.0
             ? fmt::format(" (a factor would have {:.3g} entries and take {:.2g} operations)",
                           stage.chosen.predicted_entries, stage.chosen.predicted_operations)
@@ -40,25 +43,31 @@ void print_estimate(const StageEstimate& stage, std::size_t number, long steps) 
   }
   fmt::print(
       "{}: method direct; a factor of {:.3g} entries, {:.2g} GB, {:.2g} GB while it is made, in {}; {} per step, "
-      "{} for {}; {:.2g} GB for every 100 contact points that may touch at a time\n",
+      "{} for {}; {:.2g} GB for every 100 contact points that may touch at a time; chosen as {}\n",
       of, stage.chosen.predicted_entries, 1e-9 * stage.factor_bytes, 1e-9 * stage.peak_bytes,
       short_duration_text(stage.factorization_seconds), short_duration_text(stage.step_seconds),
       short_duration_text(static_cast<double>(steps) * stage.step_seconds), counted(steps, "step"),
-      100e-9 * stage.bytes_per_point);
+      100e-9 * stage.bytes_per_point, stage.chosen.reason);
 }
 
 /// What a run will take, and seconds until its first step.
 double estimate(const Case& input, const SemidiscreteProblem& problem, const Scheme& scheme) {
   const std::vector<StageEstimate> stages =
       estimate_step_solver(problem, scheme.operators(problem), step_solver_options(input));
-  double seconds = 0.0;
+  const double products = estimate_products(problem);
+  double seconds = 0.0, per_step = products;
   for (std::size_t k = 0; k < stages.size(); ++k) {
     print_estimate(stages[k], k, step_count(input.time));
     seconds += stages[k].factorization_seconds;
+    per_step += stages[k].step_seconds;
   }
+  const double steps = static_cast<double>(step_count(input.time));
+  fmt::print("estimate, all: {} for factorizations, {} per step with {} for the products with the matrices, {}\n",
+             short_duration_text(seconds), short_duration_text(per_step), short_duration_text(products),
+             short_duration_text(seconds + steps * per_step));
   fmt::print(
       "(estimates: entries and operations from the symbolic analysis of the operators; times at {:.2g} operations "
-      "and {:.2g} bytes per second of one core, without output and the contact problems)\n",
+      "and {:.2g} bytes per second of one core, without assembly, ordering, output and the contact problems)\n",
       estimated_operations_per_second, estimated_bytes_per_second);
   return seconds;
 }

@@ -39,11 +39,22 @@ void print_methods(const std::vector<Run>& runs, int width) {
              "deepest inter-", "time per");
   fmt::print(row, "", width, "", scheme_width, "", "the start", "the end", "energy", "contact force", "penetration",
              "step, ms");
+  bool any_skips = false;
   for (const auto& [directory, s] : runs) {
     const ColumnDigest energy = s.digest("total_energy");
-    fmt::print("{:<{}} {:<{}} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14.4g} {:>14} {:>9.3g}{}\n", directory, width,
-               s.scheme, scheme_width, s.mass, energy.first, energy.last, energy.maximum, force_variation(s),
-               deepest_penetration_text(s), 1e3 * s.time_per_step, status_text(directory, s));
+    const bool skips = s.history_every > 1;
+    any_skips = any_skips || skips;
+    fmt::print("{:<{}} {:<{}} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14} {:>14} {:>9.3g}{}\n", directory, width,
+               s.scheme, scheme_width, s.mass, energy.first, energy.last, energy.maximum,
+               fmt::format("{}{:.4g}", skips ? "≥ " : "", force_variation(s)), deepest_penetration_text(s),
+               1e3 * s.time_per_step, status_text(directory, s));
+  }
+  if (any_skips)
+    fmt::print(
+        "  ≥ of the rows of the history, which are not of every step: a force that alternates from step to step "
+        "varies more (output.history_every)\n");
+  for (const auto& [directory, s] : runs) {
+    if (!s.mass_built.empty() && s.mass_built != s.mass) fmt::print("  {}: mass {}\n", directory, s.mass_text());
   }
 }
 

@@ -67,7 +67,11 @@ void print_probes(const RunSummary& summary) {
     }
     if (any) {
       fmt::print(", largest contact force {}{:.6g}", probe.is_segment ? "on a node " : "", hardest.maximum);
-      if (!probe.is_segment) fmt::print(", total variation {:.4g}", hardest.total_variation);
+      if (!probe.is_segment) {
+        const bool skips = summary.history_every > 1;
+        fmt::print(", total variation {}{:.4g}", skips ? "≥ " : "", hardest.total_variation);
+        if (skips) fmt::print(" (of a row every {} steps)", summary.history_every);
+      }
     }
     fmt::print("\n");
   }

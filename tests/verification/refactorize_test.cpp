@@ -22,6 +22,7 @@ class Stiffening final : public InternalForce {
     linear_.evaluate(displacement, force);
     force *= factor(displacement);
   }
+  using InternalForce::energy;
   [[nodiscard]] double energy(const Vector& displacement) const override {
     return factor(displacement) * linear_.energy(displacement);
   }

@@ -1,5 +1,6 @@
 // The demo's report: three runs compared.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { assertNear, closeBrowser, discRuns, download, fingerprint, open, painted, readHistory, report, settle } from "./support.mjs";
 
@@ -77,10 +78,11 @@ test("a reader sees at once what each scheme does, and that the disc is too soft
   assert.match(await view.page.textContent(".conclusion"), /^No recommendation: in all of these runs cells turn by more than 0\.1 rad/);
   const cards = await view.page.$$eval(".card", (all) => all.map((card) => card.textContent));
   assert.match(cards[0], /midpoint.*created: \d+ times.*rattles/s);
-  // It leaves with 1.5 times the speed of its arrival; the others lose to vibrations, and nothing is to be remarked.
-  assert.match(cards[0], /restitution 1\.\d+ ✗\(impossible: midpoint creates energy; small strain does not hold\)/);
-  for (const card of cards.slice(1)) assert.doesNotMatch(card, /above 1|impossible/);
-  assert.equal((await view.page.$$("#impacts .poor")).length, 1);
+  // As it explodes, how fast it leaves is any number; the others lose to vibrations, and nothing is to be remarked.
+  assert.match(cards[0], /restitution \S+ ✗\((impossible|not to be trusted): midpoint creates energy; small strain does not hold\)/);
+  for (const card of cards.slice(1)) assert.doesNotMatch(card, /above 1|impossible|not to be trusted/);
+  const ratios = (directory) => JSON.parse(readFileSync(`${directory}/summary.json`)).impacts.filter((impact) => Number.isFinite(impact.restitution));
+  assert.equal((await view.page.$$("#impacts .poor")).length, ratios(runs.find((each) => each.endsWith("midpoint"))).length);
   assert.match(cards[1], /klr-conserving.*kept to rounding.*rattles/s);
   assert.match(cards[2], /newmark.*kept, but for 0\.03.*smooth.*none.*Rotation0?.*0\.4\d* rad: small strain does not hold/s);
   // The midpoint scheme's growth does not hide the others.
@@ -95,8 +97,9 @@ test("a reader sees at once what each scheme does, and that the disc is too soft
 
 test("hovering over a plot moves body, maps and the other plots to that time", async () => {
   const { page } = view;
-  await page.evaluate(() => window.scrollTo(0, 0));
-  const box = await (await page.$("#chart-energy .u-over")).boundingBox();
+  const plot = await page.$("#chart-energy .u-over");
+  await plot.scrollIntoViewIfNeeded();
+  const box = await plot.boundingBox();
   await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.5 * box.height);
   await settle(page);
   assertNear(await time(page), 0.4 * 0.15, 0.15 / box.width + 1e-9, "time");

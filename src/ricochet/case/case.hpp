@@ -116,7 +116,7 @@ struct OutputSection {
   std::vector<std::string> fields;        ///< names, also "all"; empty: the usual ones
   bool single_precision = false;          ///< of fields
   int compression = 0;
-  long history_every = 1;
+  std::optional<long> history_every;  ///< none: as the scheme says
   long checkpoint_every = 0;          ///< steps; 0: by time only
   double checkpoint_seconds = 300.0;  ///< of the clock on the wall; 0: by steps only
 };

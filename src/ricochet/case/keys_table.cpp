@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <list>
+#include <mutex>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
@@ -69,6 +70,8 @@ const std::vector<Section>& case_sections() {
   // Types may be registered while a program runs; tables that somebody may still look at stay.
   static std::list<std::vector<Section>> tables;
   static long revision = -1;
+  static std::mutex in_use;
+  const std::lock_guard<std::mutex> lock(in_use);
   if (revision != registry_revision()) {
     revision = registry_revision();
     tables.push_back(make_sections());

@@ -13,9 +13,10 @@ Section mass_section() {
                 .standard = "equivalent",
                 .doc = "The equivalent masses have no inertia on contact nodes, and keep total mass, centre of gravity "
                        "and moments of inertia. \"equivalent-lumped\" is diagonal, for the scheme \"semi-explicit\". "
-                       "\"equivalent-compact\" couples hardly more nodes than \"consistent\", so that its factors are "
-                       "small; \"equivalent\" is built like it where a case in space has more than 2,000 contact "
-                       "nodes, those of all bodies together; `mass_built` in summary.json says so."}}};
+                       "\"equivalent\" is built as \"equivalent-cellwise\" in space, whose factors are those of "
+                       "\"consistent\", and as \"equivalent-nodewise\" (or \"equivalent-compact\" with over 2,000 "
+                       "contact nodes) "
+                       "in the plane and on coarse bodies; `mass_built` in summary.json says so."}}};
   return with_types(std::move(section), "type", mass_registry());
 }
 
@@ -55,7 +56,9 @@ Section solver_section() {
            .doc = "\"direct\": a Cholesky factor, made once; exact to rounding. \"iterative\": conjugate gradients "
                   "with a direct solve near the contact; takes little memory and no time to factorize, and a few "
                   "times as long per step where a wave crosses a few cells in it, more where it crosses many. "
-                  "\"auto\": direct where the factor fits into memory and takes minutes, not hours, to make. A "
+                  "\"auto\": iterative where a factor does not fit into memory, or where making it and solving with it "
+                  "takes longer than the iterations of all steps, by estimate (one that is made within ten seconds is "
+                  "always made). A "
                   "static start is solved as by \"auto\", the contact nodes of \"semi-explicit\" always directly."},
           {.name = "tolerance",
            .type = KeyType::number,

@@ -278,7 +278,7 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems) {
                    .fields = output.chosen("fields"),
                    .single_precision = output.text("fields_precision") == "single",
                    .compression = static_cast<int>(output.integer("compression")),
-                   .history_every = output.integer("history_every"),
+                   .history_every = output.optional_integer("history_every"),
                    .checkpoint_every = output.integer("checkpoint_every"),
                    .checkpoint_seconds = output.number("checkpoint_seconds")};
   const SectionReader check = sections.one("check");

@@ -166,7 +166,9 @@ std::string to_json(const RunSummary& s) {
                {"dofs", s.dofs},
                {"contact_points", s.contact_points},
                {"supported_dofs", s.supported_dofs},
+               {"history_every", s.history_every},
                {"solver", s.solver},
+               {"solver_reason", s.solver_reason},
                {"factor_entries", s.factor_entries},
                {"time_step", s.step},
                {"end_time", s.end_time},
@@ -244,6 +246,9 @@ RunSummary read_summary(const std::string& path) {
     s.cells = json.at("cells");
     s.dofs = json.at("dofs");
     s.contact_points = json.at("contact_points");
+    s.history_every = json.value("history_every", 1L);
+    s.solver = json.value("solver", "");
+    s.solver_reason = json.value("solver_reason", "");
     s.step = json.at("time_step");
     s.end_time = json.at("end_time");
     const Json& critical = json.at("critical_time_step");

@@ -85,6 +85,7 @@ struct RunSummary {
   Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
   std::size_t factor_entries = 0;
   std::string solver = "direct";  ///< or "iterative"
+  std::string solver_reason;      ///< why that one
   double step = 0.0, end_time = 0.0;
   double critical_step =
       std::numeric_limits<double>::infinity();  ///< above it the scheme is unstable; none if infinite
@@ -93,6 +94,7 @@ struct RunSummary {
   std::vector<long> resumed_at = {};                 ///< steps after which the run was resumed
   long checkpoint_step = -1;                         ///< of the newest checkpoint; −1: none
   double energy_instant = 0.0, force_instant = 0.0;  ///< relative to a row's time, in steps
+  long history_every = 1;                            ///< steps between rows, of which extrema and total variations are
   long frames = 0;
   std::vector<ContactDescription> contacts;
   std::vector<Probe> probes;
@@ -112,7 +114,7 @@ struct RunSummary {
   std::vector<ExpectationResult> expectations;
   std::string contact_export;  ///< what became of contact problems to be exported, in words; not in the file
 
-  /// "equivalent", or "equivalent, built as equivalent-compact".
+  /// "equivalent", or "equivalent, built as equivalent-cellwise".
   [[nodiscard]] std::string mass_text() const;
   /// Digest of a column; zeros when there is no such column.
   [[nodiscard]] ColumnDigest digest(const std::string& column) const;

@@ -246,6 +246,7 @@ StepSolverOptions step_solver_options(const Case& input) {
   options.tolerance = input.solver.tolerance;
   options.memory = 1e9 * input.solver.memory.value_or(0.0);
   options.all_points = input.solver.contact_points == "all";
+  options.solves = step_count(input.time);
   return options;
 }
 

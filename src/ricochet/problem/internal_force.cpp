@@ -9,6 +9,10 @@ void require_linear(const InternalForce& internal_force, const std::string& who)
   throw Error(ErrorKind::invalid_input, who + " needs a linear material law: set material.law = \"linear\"");
 }
 
+double InternalForce::energy(const Vector& displacement, const Vector&) const {
+  return energy(displacement);
+}
+
 LinearElasticity::LinearElasticity(const SparseMatrix& stiffness, const Points& nodes)
     : rigid_(nodes, stiffness), stiffness_(stiffness, static_cast<int>(nodes.rows())) {}
 
@@ -20,6 +24,10 @@ void LinearElasticity::evaluate(const Vector& displacement, Vector& force) const
 double LinearElasticity::energy(const Vector& displacement) const {
   rigid_.remove(displacement, deformation_);
   return 0.5 * stiffness_.form(deformation_);
+}
+
+double LinearElasticity::energy(const Vector& displacement, const Vector& force) const {
+  return 0.5 * rigid_.work(force, displacement);
 }
 
 }  // namespace ricochet

@@ -17,6 +17,8 @@ class InternalForce {
   virtual void evaluate(const Vector& displacement, Vector& force) const = 0;
   /// Strain energy (½UᵀKU).
   [[nodiscard]] virtual double energy(const Vector& displacement) const = 0;
+  /// The same where the force that evaluate() gives for this displacement is known.
+  [[nodiscard]] virtual double energy(const Vector& displacement, const Vector& force) const;
   /// The force is a linear function of U: the tangent is the same everywhere. Who relies on that asks (require_linear).
   [[nodiscard]] virtual bool is_linear() const = 0;
   /// ∂force/∂U at a displacement (empty: the undeformed body), symmetric, of one pattern. Made anew by every call,
@@ -35,6 +37,7 @@ class LinearElasticity final : public InternalForce {
   LinearElasticity(const SparseMatrix& stiffness, const Points& nodes);
   void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
+  [[nodiscard]] double energy(const Vector& displacement, const Vector& force) const override;
   [[nodiscard]] bool is_linear() const override { return true; }
   using InternalForce::tangent;
   [[nodiscard]] SparseMatrix tangent(const Vector&) const override { return stiffness_.whole(); }

@@ -136,30 +136,55 @@ RigidMotion::Motion RigidMotion::fit(const Body& body, const Vector& displacemen
 }
 
 template <int d>
-void RigidMotion::remove_in(const Vector& displacement, Vector& deformation) const {
+void RigidMotion::fit_bodies(const Vector& displacement) const {
   for (std::size_t number = 0; number < bodies_.size(); ++number) {
     motions_[number] = fit<d>(bodies_[number], displacement);
   }
+}
+
+/// Of the displacement that bodies were fitted to last.
+template <int d>
+Eigen::Matrix<double, d, 1> RigidMotion::rigid_part(Index node) const {
+  const std::size_t body =
+      body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[static_cast<std::size_t>(node)]);
+  const Motion& motion = motions_[body];
+  const Eigen::Matrix<double, d, 1> x = positions_.col(node).template head<d>();
+  Eigen::Matrix<double, d, 1> turned;
+  if constexpr (d == 2) {
+    turned << -motion.rotation[2] * x[1], motion.rotation[2] * x[0];
+  } else {
+    turned = motion.rotation.cross(x);
+  }
+  return motion.translation.template head<d>() + turned;
+}
+
+template <int d>
+void RigidMotion::remove_in(const Vector& displacement, Vector& deformation) const {
+  fit_bodies<d>(displacement);
   deformation.resize(displacement.size());
   parallel_ranges(positions_.cols(), [&](Index first, Index last) {
-    for (Index i = first; i < last; ++i) {
-      const std::size_t body =
-          body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[static_cast<std::size_t>(i)]);
-      const Motion& motion = motions_[body];
-      const Eigen::Matrix<double, d, 1> x = positions_.col(i).template head<d>();
-      Eigen::Matrix<double, d, 1> turned;
-      if constexpr (d == 2) {
-        turned << -motion.rotation[2] * x[1], motion.rotation[2] * x[0];
-      } else {
-        turned = motion.rotation.cross(x);
-      }
-      deformation.segment<d>(i * d) = displacement.segment<d>(i * d) - motion.translation.template head<d>() - turned;
-    }
+    for (Index i = first; i < last; ++i)
+      deformation.segment<d>(i * d) = displacement.segment<d>(i * d) - rigid_part<d>(i);
+  });
+}
+
+template <int d>
+double RigidMotion::work_in(const Vector& force, const Vector& displacement) const {
+  fit_bodies<d>(displacement);
+  return parallel_sum<double>(positions_.cols(), [&](Index first, Index last) {
+    double sum = 0.0;
+    for (Index i = first; i < last; ++i)
+      sum += force.segment<d>(i * d).dot(displacement.segment<d>(i * d) - rigid_part<d>(i));
+    return sum;
   });
 }
 
 void RigidMotion::remove(const Vector& displacement, Vector& deformation) const {
   dimension_ == 2 ? remove_in<2>(displacement, deformation) : remove_in<3>(displacement, deformation);
+}
+
+double RigidMotion::work(const Vector& force, const Vector& displacement) const {
+  return dimension_ == 2 ? work_in<2>(force, displacement) : work_in<3>(force, displacement);
 }
 
 }  // namespace ricochet

@@ -18,6 +18,8 @@ class RigidMotion {
 
   /// `deformation` = displacement less its rigid part.
   void remove(const Vector& displacement, Vector& deformation) const;
+  /// Product of a force per dof with that deformation, which is not written anywhere.
+  [[nodiscard]] double work(const Vector& force, const Vector& displacement) const;
 
  private:
   /// The motion is fitted to so many nodes of a body at most: it need not be the very best, as what stays of a rigid
@@ -42,7 +44,13 @@ class RigidMotion {
   template <int d>
   Motion fit(const Body& body, const Vector& displacement) const;
   template <int d>
+  void fit_bodies(const Vector& displacement) const;
+  template <int d>
+  [[nodiscard]] Eigen::Matrix<double, d, 1> rigid_part(Index node) const;
+  template <int d>
   void remove_in(const Vector& displacement, Vector& deformation) const;
+  template <int d>
+  [[nodiscard]] double work_in(const Vector& force, const Vector& displacement) const;
 
   int dimension_ = 2;
   Points positions_;  ///< relative to the centre of the node's body

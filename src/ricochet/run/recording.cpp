@@ -97,7 +97,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       peak_stress_(model.body, step_work(model.body, factor_entries)),
       penetration_(make_penetration_watch(input, model)),
       rotation_(model.body, column_index(recorder_.columns(), "max_rotation")),
-      history_every_(input.output.history_every) {
+      history_every_(input.output.history_every.value_or(scheme.history_every())) {
   for (const auto& [every, sensors] : model.sampled_sensors) {
     SensorRecorder recorder(model.problem, sensors);
     HistoryWriter file =
@@ -188,6 +188,7 @@ void Recording::save(Snapshot& snapshot) {
 
 void Recording::describe(RunSummary& summary) const {
   summary.frames = results_ ? results_->frames() : 0;
+  summary.history_every = history_every_;
   summary.columns = recorder_.columns();
   summary.digests = digest_.columns();
   summary.checks = checks_.results();

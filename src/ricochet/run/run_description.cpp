@@ -45,10 +45,11 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.supported_dofs = model.problem.supports.size();
   summary.factor_entries = simulation.factor_entries();
   const std::vector<ChosenMethod>& methods = simulation.methods();
-  const bool iterative = std::any_of(methods.begin(), methods.end(), [](const ChosenMethod& chosen) {
+  const auto iterative = std::find_if(methods.begin(), methods.end(), [](const ChosenMethod& chosen) {
     return chosen.method == SolverMethod::iterative;
   });
-  summary.solver = iterative ? "iterative" : "direct";
+  summary.solver = iterative != methods.end() ? "iterative" : "direct";
+  if (!methods.empty()) summary.solver_reason = (iterative != methods.end() ? *iterative : methods.front()).reason;
   summary.step = scheme.step();
   summary.end_time = input.time.end;
   summary.critical_step = scheme.critical_step();

@@ -15,6 +15,10 @@
 ///   session.write_to({.output_directory = "out/a"});      // leave this out, and nothing is written
 ///   while (session.step()) look(session.state());
 ///   const RunSummary summary = session.finish();
+///
+/// One session at a time runs in a process, on all of its threads: warnings, signals and the ordering of matrices
+/// (METIS draws from one generator) belong to the process, so that sessions on several threads at once may give other
+/// bits. Studies run one process per case.
 namespace ricochet {
 
 class Run;

@@ -41,6 +41,8 @@ class Scheme {
   [[nodiscard]] virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }
 
   // What others should know of it, so that nobody has to know it by name.
+  /// Steps between rows of the history where a case does not say: more than one where a row costs over half a step.
+  [[nodiscard]] virtual long history_every() const { return 1; }
   /// A limit on the step that it asks for with this problem, before analyse(); none where every step is stable or where
   /// it refuses the problem.
   [[nodiscard]] virtual std::optional<double> stability_limit(const SemidiscreteProblem&) const { return std::nullopt; }
@@ -66,8 +68,10 @@ class Scheme {
   /// step that fails leaves it as it was.
   virtual void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) = 0;
 
-  /// Displacement and velocity at which the scheme accounts for energy.
+  /// Displacement and velocity at which the scheme accounts for energy: the state's where energy_instant() is 0.
   virtual void energy_state(const State& state, Vector& displacement, Vector& velocity) const;
+  /// The internal force at that displacement, where the state has it: then the elastic energy needs no product with K.
+  [[nodiscard]] virtual const Vector* internal_force(const State&) const { return nullptr; }
   /// A closed-form term that the scheme conserves together with the energy.
   [[nodiscard]] virtual double algorithmic_energy(const SemidiscreteProblem&, const State&) const { return 0.0; }
   /// Energy that the scheme itself takes away in the last step, in closed form.

@@ -76,11 +76,15 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
 }
 
 Energies EnergyAccount::energies(const State& state) {
-  scheme_.energy_state(state, displacement_, velocity_);
+  const bool at_state = scheme_.energy_instant() == 0.0;
+  if (!at_state) scheme_.energy_state(state, displacement_, velocity_);
+  const Vector& displacement = at_state ? state.displacement : displacement_;
+  const Vector* const force = scheme_.internal_force(state);
   Energies result;
-  result.kinetic = 0.5 * problem_.mass.form(velocity_);
-  result.elastic = problem_.internal_force->energy(displacement_);
-  result.load_potential = -problem_.loads.constant().dot(displacement_);
+  result.kinetic = 0.5 * problem_.mass.form(velocity(state));
+  result.elastic = force != nullptr ? problem_.internal_force->energy(displacement, *force)
+                                    : problem_.internal_force->energy(displacement);
+  result.load_potential = -problem_.loads.constant().dot(displacement);
   result.algorithmic = scheme_.algorithmic_energy(problem_, state);
   return result;
 }

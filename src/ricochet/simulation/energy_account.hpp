@@ -43,8 +43,10 @@ class EnergyAccount {
   [[nodiscard]] const Works& works() const { return works_; }
   /// total + algorithmic − initial values − Σ works + numerical dissipation: zero to rounding.
   [[nodiscard]] double residual(const Energies& now) const;
-  /// The velocity that `energies` was last computed from.
-  [[nodiscard]] const Vector& velocity() const { return velocity_; }
+  /// The velocity that `energies` was last computed from, for this state.
+  [[nodiscard]] const Vector& velocity(const State& state) const {
+    return scheme_.energy_instant() == 0.0 ? state.velocity : velocity_;
+  }
 
  private:
   struct StepWorks {
@@ -60,7 +62,8 @@ class EnergyAccount {
   Works works_;
   StepForces previous_;
   double initial_ = 0.0;
-  Vector displacement_, velocity_, gap_increment_, slip_increment_;
+  Vector displacement_, velocity_;  ///< of the scheme's instant, where that is not the state's
+  Vector gap_increment_, slip_increment_;
   ObstacleMotion obstacle_;
 };
 

@@ -11,31 +11,27 @@ namespace ricochet {
 
 namespace {
 
-/// One number for each rigid motion.
-struct RigidVector {
-  Eigen::Matrix<double, 6, 1> values = Eigen::Matrix<double, 6, 1>::Zero();
-  RigidVector& operator+=(const RigidVector& other) {
-    values += other.values;
+struct Momenta {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+  Momenta& operator+=(const Momenta& other) {
+    linear += other.linear;
+    angular += other.angular;
     return *this;
   }
 };
 
-/// M times the rigid velocities, see HistoryRecorder::momentum_of_.
-Matrix momenta_of_rigid_velocities(const SemidiscreteProblem& problem) {
-  const int d = problem.dimension;
-  const int rotations = d == 2 ? 1 : 3;
-  Matrix result(problem.dof_count(), d + rotations);
-  Vector velocity(problem.dof_count()), momentum;
-  for (int k = 0; k < d + rotations; ++k) {
-    for (Index node = 0; node < problem.nodes.cols(); ++node) {
-      Eigen::Vector3d position = Eigen::Vector3d::Zero();
-      position.head(d) = problem.nodes.col(node);
-      const Eigen::Vector3d rigid =
-          k < d ? Eigen::Vector3d(Eigen::Vector3d::Unit(k)) : Eigen::Vector3d::Unit(d == 2 ? 2 : k - d).cross(position);
-      velocity.segment(node * d, d) = rigid.head(d);
+/// Σ weight · value and Σ arm × value over some nodes.
+template <int d>
+Momenta momenta_of(const Vector& weight, const Points& arm, const Vector& values, Index first, Index last) {
+  Momenta result;
+  for (Index node = first; node < last; ++node) {
+    const Eigen::Matrix<double, d, 1> value = values.segment<d>(node * d), at = arm.col(node).template head<d>();
+    result.linear.template head<d>() += weight[node] * value;
+    if constexpr (d == 2) {
+      result.angular[2] += at[0] * value[1] - at[1] * value[0];
+    } else {
+      result.angular += at.cross(value);
     }
-    problem.mass.multiply(velocity, momentum);
-    result.col(k) = momentum;
   }
   return result;
 }
@@ -79,9 +75,22 @@ HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const Rotat
       observer_(problem),
       sensors_(std::move(sensors)),
       columns_(names_of(columns_of(problem.dimension, sensors_))),
-      reductions_(reductions_of(columns_of(problem.dimension, sensors_))),
-      momentum_of_(momenta_of_rigid_velocities(problem)) {
+      reductions_(reductions_of(columns_of(problem.dimension, sensors_))) {
   row_.reserve(columns_.size());
+  weigh_nodes();
+}
+
+void HistoryRecorder::weigh_nodes() {
+  const NodeMatrix& mass = problem_.mass;
+  node_weight_.setOnes(problem_.nodes.cols());
+  node_arm_ = problem_.nodes;
+  if (!mass.is_scalar()) return;
+  const Index d = problem_.dimension;
+  Vector product;
+  mass.multiply(Vector::Ones(problem_.dof_count()), product);
+  for (Index node = 0; node < node_weight_.size(); ++node) node_weight_[node] = product[node * d];
+  mass.multiply(problem_.nodes.reshaped(), product);
+  node_arm_ = product.reshaped(d, problem_.nodes.cols());
 }
 
 const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccount& account) {
@@ -91,7 +100,7 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
                energies.algorithmic, energies.total(), works.load, works.contact, works.friction, works.support,
                works.obstacle, works.damping, works.numerical_dissipation, account.residual(energies)});
   add_contact_force(state);
-  add_momentum(account.velocity());
+  add_momentum(account.velocity(state));
   const Observation observation = observer_.observe(state);
   add_contact_state(observation);
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
@@ -106,19 +115,15 @@ void HistoryRecorder::add_contact_force(const State& state) {
 }
 
 void HistoryRecorder::add_momentum(const Vector& velocity) {
-  // Linear, then angular: the order of the columns.
-  append(parallel_sum<RigidVector>(
-             velocity.size(),
-             [&](Index first, Index last) {
-               RigidVector part;
-               for (Index k = 0; k < momentum_of_.cols(); ++k) {
-                 part.values[k] =
-                     momentum_of_.col(k).segment(first, last - first).dot(velocity.segment(first, last - first));
-               }
-               return part;
-             })
-             .values.head(momentum_of_.cols()),
-         row_);
+  if (!problem_.mass.is_scalar()) problem_.mass.multiply(velocity, momentum_);
+  const Vector& values = problem_.mass.is_scalar() ? velocity : momentum_;
+  const Momenta sum = parallel_sum<Momenta>(node_weight_.size(), [&](Index first, Index last) {
+    return problem_.dimension == 2 ? momenta_of<2>(node_weight_, node_arm_, values, first, last)
+                                   : momenta_of<3>(node_weight_, node_arm_, values, first, last);
+  });
+  // The order of the columns.
+  append(sum.linear.head(problem_.dimension), row_);
+  append(problem_.dimension == 2 ? sum.angular.tail(1) : sum.angular.head(3), row_);
 }
 
 void HistoryRecorder::add_contact_state(const Observation& observation) {

@@ -59,6 +59,7 @@ class HistoryRecorder {
   [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
 
  private:
+  void weigh_nodes();
   void add_contact_force(const State& state);
   void add_momentum(const Vector& velocity);
   void add_contact_state(const Observation& observation);
@@ -70,9 +71,12 @@ class HistoryRecorder {
   std::vector<std::string> columns_;
   std::vector<Reduction> reductions_;
   std::vector<double> row_;
-  /// M times the rigid velocities: translations along the axes, and rotations about the axes through the origin (in 2D
-  /// about z). Products of the velocity with them are the momenta, since M is symmetric. dofs × 3 or 6.
-  Matrix momentum_of_;
+  /// Momentum and angular momentum are Σ node_weight_ p and Σ node_arm_ × p over the nodes. Where M = m ⊗ I, as it is
+  /// for a density, p is the velocity, and these are m 1 and m x of the reference positions x: no product with M. Else
+  /// p is M V, and these are 1 and x.
+  Vector node_weight_;
+  Points node_arm_;
+  Vector momentum_;  ///< M V
 };
 
 /// Digests of all columns, row by row.

@@ -36,7 +36,10 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     : problem_(problem), scheme_(scheme) {
   state_ = load_state(problem_, snapshot, "state");
   scheme_.analyse(problem_);
-  make_solver(options);
+  // Whatever would be chosen for the steps that are left: another method has other bits.
+  StepSolverOptions kept = options;
+  kept.chosen = saved_methods(snapshot, "solver", scheme_.operators(problem_).size());
+  make_solver(kept);
   solver_->load(snapshot, "solver");
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, snapshot, "account");
 }

@@ -133,7 +133,9 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
                        double step, const StepSolverOptions& options, State& state) {
   std::vector<char> resting = resting_points(problem, state, pressed);
   if (find_acceleration_pointwise(problem, support_acceleration, resting, state)) return;
-  const auto solver = make_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}}, options);
+  StepSolverOptions once = options;
+  once.solves = 1;
+  const auto solver = make_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}}, once);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   stage.prescribed = support_acceleration;
   stage.eligible = std::move(resting);

@@ -258,6 +258,7 @@ StaticEquilibrium static_equilibrium(const SemidiscreteProblem& problem, const V
   // Without inertia iterations converge badly, and not at all where contact alone holds a body: a factor where it fits.
   StepSolverOptions options = step_options;
   if (options.method == SolverMethod::iterative) options.method = SolverMethod::automatic;
+  options.solves = 0;
   const StaticEquilibrium start{guess, Vector::Zero(problem.contact.size())};
   StaticEquilibrium result = start;
   StaticFriction friction(problem, velocity);

@@ -1,30 +1,138 @@
 #include "ricochet/solver/choose_method.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "ricochet/base/memory.hpp"
+#include "ricochet/solver/step_estimate.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// Part of the machine's memory that factors may take. While one is made, half as much again is needed.
+/// Part of the machine's memory that factors may take. The model, and what else runs, need the rest.
 constexpr double memory_part = 0.5;
-/// Of a factorization: some ten minutes of one core. Reading a factor that takes longer to make is slower, too, than
-/// the iterations of most time steps.
+/// A factorization of less time is not worth a thought: solves with a factor are exact to rounding.
+constexpr double short_factorization = 10.0;
+/// Where nobody knows how many solves follow: some ten minutes of one core.
 constexpr double most_operations = 2e13;
+/// Vectors that an iteration reads or writes besides what the product does.
+constexpr double vectors_per_iteration = 12.0;
+
+/// M 1, component by component: also of a mass that acts on components alike.
+Vector row_sums(const NodeMatrix& mass) {
+  Vector result;
+  mass.multiply(Vector::Ones(mass.size()), result);
+  return result;
+}
+
+/// The displacement that shears the body in the plane of two axes: along each what the position is along the other,
+/// from the centre of mass.
+Vector shear(const SemidiscreteProblem& problem, const Vector& inertia, int a, int b) {
+  const int d = problem.dimension;
+  Vector result = Vector::Zero(problem.dof_count());
+  Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+  double mass = 0.0;
+  for (Index node = 0; node < problem.nodes.cols(); ++node) {
+    moment += inertia[node * d] * Eigen::Vector2d(problem.nodes(a, node), problem.nodes(b, node));
+    mass += inertia[node * d];
+  }
+  if (mass > 0.0) moment /= mass;
+  for (Index node = 0; node < problem.nodes.cols(); ++node) {
+    result[node * d + a] = problem.nodes(b, node) - moment[1];
+    result[node * d + b] = problem.nodes(a, node) - moment[0];
+  }
+  return result;
+}
+
+std::string seconds_text(double seconds) {
+  return seconds < 120.0 ? fmt::format("{:.2g} s", seconds) : fmt::format("{:.2g} min", seconds / 60.0);
+}
+
+void compare(const SparseCholesky::Prediction& predicted, double solves, const IterationEstimate& iteration,
+             ChosenMethod& chosen) {
+  const double factorization = predicted.operations / estimated_operations_per_second;
+  const double solve = 2.0 * sizeof(double) * predicted.entries / estimated_bytes_per_second;
+  const double iterative_solve = iteration.iterations * iteration.bytes / estimated_bytes_per_second;
+  chosen.expected_iterations = iteration.iterations;
+  const bool direct = factorization + solves * solve <= solves * iterative_solve;
+  chosen.method = direct ? SolverMethod::direct : SolverMethod::iterative;
+  chosen.reason =
+      fmt::format("for {:.0f} solves a factor would take {} and then {} each, iterations {} each, by estimate", solves,
+                  seconds_text(factorization), seconds_text(solve), seconds_text(iterative_solve));
+}
 
 }  // namespace
 
+IterationEstimate estimate_iterations(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                                      double tolerance) {
+  const int d = problem.dimension;
+  const SparseMatrix stiffness = problem.internal_force->tangent();
+  const Vector inertia = row_sums(problem.mass), diagonal = stiffness.diagonal();
+  // Of A beside its diagonal blocks: as of the matrix of a simplex, at most the number of its nodes.
+  const double largest_eigenvalue = d + 1.0;
+  double condition = 1.0;
+  for (int axis = 0; axis < (d == 2 ? 1 : 3); ++axis) {
+    const Vector along = shear(problem, inertia, axis, (axis + 1) % d);
+    const auto size_by = [&](const Vector& weights) { return along.cwiseAbs2().dot(weights); };
+    const double diagonal_part = coefficients.mass * size_by(inertia) + coefficients.stiffness * size_by(diagonal);
+    const double energy = coefficients.mass * problem.mass.form(along) +
+                          coefficients.stiffness * 2.0 * problem.internal_force->energy(along);
+    if (energy > 0.0) condition = std::max(condition, largest_eigenvalue * diagonal_part / energy);
+  }
+  const auto nodes = static_cast<double>(problem.nodes.cols());
+  const double blocks = 0.5 * (static_cast<double>(stiffness.nonZeros()) / (d * d) + nodes);
+  IterationEstimate result;
+  result.iterations = 0.5 * std::sqrt(condition) * std::log(2.0 / tolerance);
+  result.bytes = blocks * (8.0 * d * d + 4.0) + static_cast<double>(problem.mass.bytes()) +
+                 8.0 * nodes * d * (d + vectors_per_iteration);
+  return result;
+}
+
 ChosenMethod choose_method(const SparseCholesky::Prediction& predicted, const OperatorCoefficients& coefficients,
-                           const StepSolverOptions& options) {
-  ChosenMethod chosen{
-      .method = options.method, .predicted_entries = predicted.entries, .predicted_operations = predicted.operations};
-  // The contact dofs alone are few, and their matrix has no inertia that would help an iteration.
-  if (coefficients.dofs == StageDofs::contact) chosen.method = SolverMethod::direct;
-  if (chosen.method != SolverMethod::automatic) return chosen;
+                           const StepSolverOptions& options, const std::function<IterationEstimate()>& iterations) {
+  ChosenMethod chosen{.method = SolverMethod::direct,
+                      .reason = "",
+                      .predicted_entries = predicted.entries,
+                      .predicted_operations = predicted.operations};
+  if (coefficients.dofs == StageDofs::contact) {
+    chosen.reason = "the contact nodes alone are few, and have no inertia that would help an iteration";
+    return chosen;
+  }
+  if (options.method != SolverMethod::automatic) {
+    chosen.method = options.method;
+    chosen.reason = "the case asks for it";
+    return chosen;
+  }
   const double limit = options.memory > 0.0 ? options.memory : memory_part * physical_memory();
-  const bool fits = predicted.possible && sizeof(double) * predicted.entries <= limit;
-  chosen.method = fits && predicted.operations <= most_operations ? SolverMethod::direct : SolverMethod::iterative;
+  const double bytes = sizeof(double) * predicted.entries;
+  if (!predicted.possible) {
+    chosen.method = SolverMethod::iterative;
+    chosen.reason = fmt::format("a factor would have {:.2g} entries, more than can be counted", predicted.entries);
+  } else if (bytes > limit) {
+    chosen.method = SolverMethod::iterative;
+    chosen.reason = fmt::format("a factor would take {:.3g} GB, and {:.3g} GB are allowed", 1e-9 * bytes, 1e-9 * limit);
+  } else if (predicted.operations <= short_factorization * estimated_operations_per_second) {
+    chosen.reason = "a factor is made within seconds";
+  } else if (coefficients.mass == 0.0) {
+    chosen.reason = "there is no inertia, without which iterations converge badly";
+  } else if (options.solves > 0) {
+    compare(predicted, static_cast<double>(options.solves), iterations(), chosen);
+  } else {
+    const bool direct = predicted.operations <= most_operations;
+    chosen.method = direct ? SolverMethod::direct : SolverMethod::iterative;
+    chosen.reason = fmt::format("a factor takes {} to make, by estimate, for a number of solves that nobody knows",
+                                seconds_text(predicted.operations / estimated_operations_per_second));
+  }
   return chosen;
+}
+
+ChosenMethod choose_method(const SemidiscreteProblem& problem, const SparseCholesky::Prediction& predicted,
+                           const OperatorCoefficients& coefficients, const StepSolverOptions& options) {
+  return choose_method(predicted, coefficients, options,
+                       [&] { return estimate_iterations(problem, coefficients, options.tolerance); });
 }
 
 }  // namespace ricochet

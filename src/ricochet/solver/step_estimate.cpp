@@ -12,8 +12,6 @@ namespace ricochet {
 
 namespace {
 
-/// While a factor is made there are, beside it, the largest update matrix and our copy of a part: a half as much again.
-constexpr double work_space = 1.5;
 constexpr Index sampled_points = 100;
 
 /// Of the elimination tree of a matrix in the order of its factor: per row the length of the path to the root, which is
@@ -39,13 +37,10 @@ std::vector<int> path_lengths(const SparseMatrix& matrix, const SparseCholesky& 
 }
 
 /// Mean over some contact points, evenly spread over their numbers, of rows × the longest path of their unknowns.
-double column_entries(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                      const AnalysedOperator& analysed) {
+double column_entries(const SemidiscreteProblem& problem, const AnalysedOperator& analysed,
+                      const std::vector<int>& number, const SparseMatrix& matrix) {
   const Index points = problem.contact.size();
   if (points == 0 || analysed.dofs.empty()) return 0.0;
-  const std::vector<int> number = number_dofs(problem, analysed.dofs);
-  const auto unknowns = static_cast<Index>(analysed.dofs.size());
-  const SparseMatrix matrix = extract(combine_operator(problem, coefficients), number, unknowns, number, unknowns);
   const std::vector<int> length = path_lengths(matrix, analysed.factor);
   const double rows = problem.contact.has_friction() ? static_cast<double>(problem.dimension) : 1.0;
   const Index samples = std::min(points, sampled_points);
@@ -66,14 +61,25 @@ StageEstimate estimate(const SemidiscreteProblem& problem, const OperatorCoeffic
   StageEstimate result;
   const AnalysedOperator analysed = analyse_operator(problem, coefficients);
   const SparseCholesky::Prediction predicted = analysed.factor.predicted();
-  result.chosen = choose_method(predicted, coefficients, options);
+  result.chosen = choose_method(problem, predicted, coefficients, options);
   result.unknowns = static_cast<Index>(analysed.dofs.size());
-  if (result.chosen.method == SolverMethod::iterative) return result;
+  if (result.chosen.method == SolverMethod::iterative) {
+    const IterationEstimate iteration = estimate_iterations(problem, coefficients, options.tolerance);
+    result.iterations = iteration.iterations;
+    result.step_seconds = iteration.iterations * iteration.bytes / estimated_bytes_per_second;
+    return result;
+  }
   result.factor_bytes = sizeof(double) * predicted.entries;
-  result.peak_bytes = work_space * result.factor_bytes;
+  const std::vector<int> number = number_dofs(problem, analysed.dofs);
+  const SparseMatrix matrix =
+      extract(combine_operator(problem, coefficients), number, result.unknowns, number, result.unknowns);
+  // Beside the factor there is a triangle of the operator in its order while it is made, and little else.
+  constexpr double bytes_per_entry = sizeof(double) + sizeof(int);
+  result.peak_bytes =
+      result.factor_bytes + 0.5 * bytes_per_entry * static_cast<double>(matrix.nonZeros() + result.unknowns);
   result.factorization_seconds = predicted.operations / estimated_operations_per_second;
   result.step_seconds = 2.0 * result.factor_bytes / estimated_bytes_per_second;
-  result.bytes_per_point = sizeof(double) * column_entries(problem, coefficients, analysed);
+  result.bytes_per_point = sizeof(double) * column_entries(problem, analysed, number, matrix);
   return result;
 }
 
@@ -85,6 +91,16 @@ std::vector<StageEstimate> estimate_step_solver(const SemidiscreteProblem& probl
   std::vector<StageEstimate> result;
   for (const OperatorCoefficients& coefficients : operators) result.push_back(estimate(problem, coefficients, options));
   return result;
+}
+
+/// K's triangle by blocks of nodes with an index each, and the vectors that a step reads and writes beside it
+/// (docs/theory.md counts them for the semi-explicit scheme).
+double estimate_products(const SemidiscreteProblem& problem) {
+  constexpr double vectors = 180.0;  // bytes per dof
+  const double d = problem.dimension;
+  const double entries = static_cast<double>(problem.internal_force->tangent().nonZeros());
+  const double bytes = 0.5 * entries * (8.0 + 4.0 / (d * d)) + vectors * static_cast<double>(problem.dof_count());
+  return bytes / estimated_bytes_per_second;
 }
 
 }  // namespace ricochet

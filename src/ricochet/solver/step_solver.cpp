@@ -16,16 +16,19 @@ namespace {
 /// Operations of a factorization that takes seconds: it is worth a message.
 constexpr double long_factorization = 1e11;
 
+constexpr const char* methods_entry = ".methods";  ///< of a snapshot
+constexpr const char* kept = "as when the run began";
+
 void log_factorization(const ChosenMethod& chosen, std::size_t unknowns) {
   if (chosen.predicted_operations < long_factorization) return;
-  log::info(fmt::format("factorizing an operator of {} unknowns: {:.3g} entries ({:.2g} GB), {:.2g} operations",
+  log::info(fmt::format("factorizing an operator of {} unknowns: {:.3g} entries ({:.2g} GB), {:.2g} operations ({})",
                         unknowns, chosen.predicted_entries, 1e-9 * sizeof(double) * chosen.predicted_entries,
-                        chosen.predicted_operations));
+                        chosen.predicted_operations, chosen.reason));
 }
 
 void log_iterations(const ChosenMethod& chosen) {
-  log::info(fmt::format("solved by iterations: a factor would take {:.2g} GB and {:.2g} operations to make",
-                        1e-9 * sizeof(double) * chosen.predicted_entries, chosen.predicted_operations));
+  log::info(fmt::format("solved by iterations: {} (a factor of {:.2g} GB takes {:.2g} operations to make)",
+                        chosen.reason, 1e-9 * sizeof(double) * chosen.predicted_entries, chosen.predicted_operations));
 }
 
 class StagesStepSolver final : public StepSolver {
@@ -59,6 +62,9 @@ class StagesStepSolver final : public StepSolver {
     return sum;
   }
   void save(Snapshot& snapshot, const std::string& name) const override {
+    Snapshot::Integers methods;
+    for (const ChosenMethod& chosen : methods_) methods.push_back(static_cast<std::int64_t>(chosen.method));
+    snapshot.save(name + methods_entry, std::move(methods));
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->save(snapshot, fmt::format("{}.{}", name, i));
   }
   void load(const Snapshot& snapshot, const std::string& name) override {
@@ -69,12 +75,21 @@ class StagesStepSolver final : public StepSolver {
  private:
   void add_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                  const StepSolverOptions& options) {
-    ChosenMethod chosen{.method = options.method};
+    const SolverMethod before = options.chosen.empty() ? SolverMethod::automatic : options.chosen[methods_.size()];
+    ChosenMethod chosen{.method = options.method, .reason = "the case asks for it"};
     AnalysedOperator analysed;
     Timer timer;
-    if (chosen.method != SolverMethod::iterative || coefficients.dofs == StageDofs::contact) {
+    if (options.method == SolverMethod::automatic && before == SolverMethod::iterative) {
+      chosen.method = before;
+      chosen.reason = kept;
+      log::info("solved by iterations, as when the run began");
+    } else if (chosen.method != SolverMethod::iterative || coefficients.dofs == StageDofs::contact) {
       analysed = analyse_operator(problem, coefficients);
-      chosen = choose_method(analysed.factor.predicted(), coefficients, options);
+      chosen = choose_method(problem, analysed.factor.predicted(), coefficients, options);
+      if (before == SolverMethod::direct && chosen.method != before) {
+        chosen.method = before;
+        chosen.reason = kept;
+      }
       chosen.ordering_seconds = timer.restart();
       if (chosen.method == SolverMethod::iterative) log_iterations(chosen);
     }
@@ -95,6 +110,16 @@ class StagesStepSolver final : public StepSolver {
 };
 
 }  // namespace
+
+std::vector<SolverMethod> saved_methods(const Snapshot& snapshot, const std::string& name, std::size_t operators) {
+  std::vector<SolverMethod> result;
+  const auto least = static_cast<std::int64_t>(SolverMethod::direct),
+             most = static_cast<std::int64_t>(SolverMethod::iterative);
+  for (const std::int64_t method : snapshot.integers(name + methods_entry, least, most))
+    result.push_back(static_cast<SolverMethod>(method));
+  if (result.size() != operators) Snapshot::refuse(name + methods_entry, "is of another number of operators");
+  return result;
+}
 
 std::unique_ptr<StepSolver> make_step_solver(const SemidiscreteProblem& problem,
                                              const std::vector<OperatorCoefficients>& operators,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
@@ -12,7 +13,7 @@
 namespace ricochet {
 
 enum class SolverMethod : char {
-  automatic,  ///< direct where the factor fits into memory and is made in minutes
+  automatic,  ///< what takes less time for the steps that are expected, where the factor fits into memory
   direct,     ///< a Cholesky factor, made once: forward solve, contact problem, back solve
   iterative,  ///< conjugate gradients around a direct solve near the contact
 };
@@ -25,13 +26,19 @@ struct StepSolverOptions {
   double memory = 0.0;
   /// All contact points take part in every contact problem, not only those that may touch. For comparisons.
   bool all_points = false;
+  /// Solves that are expected of each operator: what a factorization is worth. 0: nobody knows, and it counts as many.
+  long solves = 0;
+  /// What was chosen before for these operators, one by one: a run that goes on keeps it. Empty: chosen anew.
+  std::vector<SolverMethod> chosen = {};
 };
 
 /// What was chosen for an operator, and why.
 struct ChosenMethod {
   SolverMethod method = SolverMethod::direct;
+  std::string reason = {};            ///< the rest of a sentence that begins with the method
   double predicted_entries = 0.0;     ///< of the factor; 0: not asked
   double predicted_operations = 0.0;  ///< of its factorization
+  double expected_iterations = 0.0;   ///< of conjugate gradients; 0: not asked
   double ordering_seconds = 0.0;      ///< with the analysis that predicts
   double factorization_seconds = 0.0;
 };
@@ -43,7 +50,8 @@ class StepSolver {
   /// afterwards, those that hold at the solution. Throws Error(not_converged) which says what failed.
   virtual void solve(std::size_t number, Stage& stage, StageSolution& solution) = 0;
   /// Where the internal force is not linear: the stages of this number are solved with the tangent at this displacement
-  /// from now on. Throws Error(invalid_input) when the operator is not positive definite there.
+  /// from now on. Throws Error(invalid_input) when the operator is not positive definite there; the stages are then not
+  /// to be solved before another displacement has been given at which it is.
   virtual void refactorize(std::size_t number, const Vector& displacement) = 0;
   /// Shows every contact problem that is solved from now on, and its solution, to the observer; none if it is empty.
   virtual void observe_contact(const ContactObserver& observer) = 0;
@@ -59,6 +67,11 @@ class StepSolver {
   /// Per operator.
   [[nodiscard]] virtual const std::vector<ChosenMethod>& methods() const = 0;
 };
+
+/// The methods of the solver of so many operators that was saved under this name, for StepSolverOptions::chosen. Throws
+/// Error(invalid_input) where there are not so many.
+[[nodiscard]] std::vector<SolverMethod> saved_methods(const Snapshot& snapshot, const std::string& name,
+                                                      std::size_t operators);
 
 /// Everything that is constant for these operators is computed now. Throws Error(invalid_input) when an operator is not
 /// positive definite, with the node at which this shows.

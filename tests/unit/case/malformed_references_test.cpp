@@ -188,7 +188,8 @@ TEST(MalformedCase, References) {
       {0,
        "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { mass.type = \"lumpd\", time.step = \"a\" "
        "}",
-       "15:22: \"mass.type\" must be one of \"consistent\", \"lumped\", \"equivalent\", \"equivalent-compact\", "
+       "15:22: \"mass.type\" must be one of \"consistent\", \"lumped\", \"equivalent\", \"equivalent-nodewise\", "
+       "\"equivalent-cellwise\", \"equivalent-compact\", "
        "\"equivalent-nearest\" or "
        "\"equivalent-lumped\"; "
        "found the text \"lumpd\"; did you mean \"lumped\"?\n15:43: \"time.step\" must be a positive number (unit: "

@@ -49,7 +49,8 @@ TEST(MalformedCase, Values) {
        "\"contact-stabilized\"; found the "
        "integer 3"},
       {0, "[mass]\ntype = \"equivalent_nearest\"",
-       "13:8: \"type\" must be one of \"consistent\", \"lumped\", \"equivalent\", \"equivalent-compact\", "
+       "13:8: \"type\" must be one of \"consistent\", \"lumped\", \"equivalent\", \"equivalent-nodewise\", "
+       "\"equivalent-cellwise\", \"equivalent-compact\", "
        "\"equivalent-nearest\" or "
        "\"equivalent-lumped\"; found the "
        "text \"equivalent_nearest\"; did you mean \"equivalent-nearest\"?"},

@@ -177,7 +177,7 @@ TEST(ReadCase, FillsInEveryDefault) {
   EXPECT_TRUE(read.output.fields.empty());
   EXPECT_FALSE(read.output.single_precision);
   EXPECT_EQ(read.output.compression, 0);
-  EXPECT_EQ(read.output.history_every, 1);
+  EXPECT_FALSE(read.output.history_every.has_value());
   EXPECT_EQ(read.output.checkpoint_every, 0);
   EXPECT_EQ(read.output.checkpoint_seconds, 300.0);
   EXPECT_EQ(read.check.energy_residual, 1e-8);
@@ -203,7 +203,6 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"solver.method", "auto"},
                                                              {"solver.tolerance", "1e-10"},
                                                              {"solver.contact_points", "near"},
-                                                             {"output.history_every", "1"},
                                                              {"output.fields_precision", "double"},
                                                              {"output.compression", "0"},
                                                              {"output.checkpoint_every", "0"},

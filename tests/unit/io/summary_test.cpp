@@ -24,6 +24,17 @@ class SummaryTest : public testing::Test {
   TemporaryFolder folder_{std::filesystem::temp_directory_path(), "ricochet-test"};
 };
 
+TEST_F(SummaryTest, ReadsHowStepsWereSolvedAndWritten) {
+  RunSummary summary;
+  summary.history_every = 7;
+  summary.solver = "iterative";
+  summary.solver_reason = "the case asks for it";
+  const RunSummary back = read_back(summary);
+  EXPECT_EQ(back.history_every, summary.history_every);
+  EXPECT_EQ(back.solver, summary.solver);
+  EXPECT_EQ(back.solver_reason, summary.solver_reason);
+}
+
 /// A run that overflows between two rows of the history is stopped at the next row; what was found until then may be
 /// infinite or no number, which JSON has no numbers for.
 TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {

@@ -262,6 +262,14 @@ TEST(LinearElasticity, IsThatOfItsTangentOnCurvedCells) {
       const Vector terms = stiffness.cwiseAbs() * u.cwiseAbs();
       EXPECT_LT((force - stiffness * u).lpNorm<Eigen::Infinity>(), 1e-14 * terms.lpNorm<Eigen::Infinity>());
       EXPECT_NEAR(elasticity.energy(u), 0.5 * u.dot(stiffness * u), 1e-14 * u.cwiseAbs().dot(terms));
+      // From the force that is known: also far from where the body began, where U alone would leave no digits.
+      const double energy = elasticity.energy(u);
+      const double rounding = 1e-15 * u.cwiseAbs().dot(terms);
+      EXPECT_NEAR(elasticity.energy(u, force), energy, rounding);
+      Vector far = u;
+      for (Index i = 0; i < far.size(); ++i) far[i] += 1e9;
+      elasticity.evaluate(far, force);
+      EXPECT_NEAR(elasticity.energy(far, force), elasticity.energy(far), rounding);
     }
   }
 }

@@ -4,7 +4,7 @@ import type { Impact } from "../data/types";
 import { turnsInImpacts, type Grade } from "../glance";
 import { toNumber } from "../format";
 
-/** What a restitution above 1 means: whether it is possible, and what has made it. */
+/** What a restitution above 1 means, whether it is possible, and what has made it; or why one below cannot be trusted. */
 export interface RestitutionRemark {
   grade: Grade;
   words: string;
@@ -43,9 +43,16 @@ function reasons(run: Run): string[] {
   return result;
 }
 
+/** Of the energy that there was: a run that creates more has made the velocities after its impacts up. */
+const muchEnergy = 0.1;
+
 /** Null where there is nothing to remark. */
 export function restitutionRemark(run: Run, impact: Impact): RestitutionRemark | null {
-  if (!(toNumber(impact.restitution) > 1 + tolerance)) return null;
+  const { energy_gain: gain, energy_scale: scale } = run.data.judgement;
+  if (!(toNumber(impact.restitution) > 1 + tolerance)) {
+    if (!Number.isFinite(toNumber(impact.restitution)) || !(gain > muchEnergy * scale)) return null;
+    return { grade: "poor", words: `not to be trusted: ${reasons(run).join("; ")}`, detail: "the run creates more than a tenth of the energy that there was: any ratio may come out" };
+  }
   if (["load_work", "support_work", "obstacle_work"].some((work) => acts(run, work)))
     return { grade: "fair", words: "above 1: driven", detail: "loads, supports or a moving obstacle do work on the body" };
   const known = reasons(run);

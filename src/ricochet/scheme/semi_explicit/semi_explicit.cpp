@@ -10,7 +10,7 @@ namespace ricochet {
 namespace {
 
 /// Key of State::memory: K U at the state.
-constexpr const char* internal_force = "internal_force";
+constexpr const char* force_memory = "internal_force";
 
 /// Central differences inside, contact nodes without inertia at the end of the step (D. Doyen, A. Ern, S. Piperno, SIAM
 /// J. Sci. Comput. 33 (2011) 223–249). The mass is diagonal and zero on the contact nodes (index c; i: all others):
@@ -35,6 +35,7 @@ class SemiExplicit final : public Scheme {
   }
   [[nodiscard]] WorkRule work_rule() const override { return {0.5, 0.5}; }
   [[nodiscard]] double critical_step() const override { return critical_step_; }
+  [[nodiscard]] long history_every() const override { return 2; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] std::optional<double> stability_limit(const SemidiscreteProblem& problem) const override {
     return problem.mass.is_diagonal() ? std::optional(central_difference_limit(problem)) : std::nullopt;
@@ -49,7 +50,7 @@ class SemiExplicit final : public Scheme {
   }
 
   void start(const SemidiscreteProblem& problem, State& state) override {
-    problem.internal_force->evaluate(state.displacement, state.memory[internal_force]);
+    problem.internal_force->evaluate(state.displacement, state.memory[force_memory]);
     start_supports(problem, motion_.mass(), step(), state);
   }
 
@@ -58,14 +59,18 @@ class SemiExplicit final : public Scheme {
     evaluate_loads(problem, state.time + h);
     const StageSolution* const solution = solve_contact(problem, state, stages);
     motion_.move(problem, solution != nullptr ? solution->increment : no_correction_, h, state, increment);
-    problem.internal_force->evaluate(state.displacement, state.memory.at(internal_force));
-    motion_.accelerate(state.memory.at(internal_force), load(problem), h, state);
+    problem.internal_force->evaluate(state.displacement, state.memory.at(force_memory));
+    motion_.accelerate(state.memory.at(force_memory), load(problem), h, state);
     if (solution != nullptr) equations_.take_contact(stages.stage(0), *solution, h, state);
-    supports_.advance(problem, motion_.mass(), motion_.damping(), state.memory.at(internal_force), load(problem),
+    supports_.advance(problem, motion_.mass(), motion_.damping(), state.memory.at(force_memory), load(problem),
                       increment, h, state);
     for (const Index dof : problem.massless_dofs) state.velocity[dof] = increment[dof] / h;
     if (problem.loads.varies()) state.forces.varying_load = varying_;
     if (problem.has_damping()) state.forces.damping_force = motion_.damping().cwiseProduct(state.velocity);
+  }
+
+  [[nodiscard]] const Vector* internal_force(const State& state) const override {
+    return &state.memory.at(force_memory);
   }
 
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem&, const State& state) const override {
@@ -76,7 +81,7 @@ class SemiExplicit final : public Scheme {
   /// None where there is no contact dof.
   const StageSolution* solve_contact(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
     if (problem.contact_dofs.empty()) return nullptr;
-    contact_.require(problem, state, state.memory.at(internal_force), load(problem), state.memory.at(supported_next),
+    contact_.require(problem, state, state.memory.at(force_memory), load(problem), state.memory.at(supported_next),
                      step(), equations_, stages.stage(0));
     return &stages.solve(0);
   }

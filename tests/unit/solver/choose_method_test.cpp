@@ -1,0 +1,157 @@
+#include "ricochet/solver/choose_method.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ricochet/linear_algebra/block_jacobi.hpp"
+#include "ricochet/simulation/simulation.hpp"
+#include "ricochet/solver/stage_operator.hpp"
+#include "ricochet/solver/stage_product.hpp"
+#include "ricochet/solver/step_estimate.hpp"
+#include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
+
+/// @file Direct or iterative: on both sides of every limit, and the same for the rest of a run.
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+
+constexpr double enough_memory = 1e15;
+
+/// A factor of 10⁹ entries that is made in 100 seconds and read twice in 1.6; iterations take 3 seconds.
+SparseCholesky::Prediction large_factor() {
+  return {true, 1e9, 100.0 * estimated_operations_per_second};
+}
+
+IterationEstimate slow_iterations() {
+  return {100.0, 0.03 * estimated_bytes_per_second};
+}
+
+ChosenMethod choose(const SparseCholesky::Prediction& predicted, long solves, double memory = enough_memory,
+                    const OperatorCoefficients& coefficients = {1e6, 1.0, 0.0}) {
+  StepSolverOptions options;
+  options.memory = memory;
+  options.solves = solves;
+  return choose_method(predicted, coefficients, options, slow_iterations);
+}
+
+TEST(ChooseMethod, WeighsTheFactorizationAgainstTheSolves) {
+  // 100 + 1.6 n against 3 n: from 72 solves on.
+  EXPECT_EQ(choose(large_factor(), 1).method, SolverMethod::iterative);
+  EXPECT_EQ(choose(large_factor(), 71).method, SolverMethod::iterative);
+  EXPECT_EQ(choose(large_factor(), 72).method, SolverMethod::direct);
+  EXPECT_EQ(choose(large_factor(), 100000).method, SolverMethod::direct);
+  EXPECT_NE(choose(large_factor(), 71).reason.find("71 solves"), std::string::npos)
+      << choose(large_factor(), 71).reason;
+  EXPECT_EQ(choose(large_factor(), 71).expected_iterations, 100.0);
+}
+
+TEST(ChooseMethod, TakesAFactorForAnUnknownNumberOfSolves) {
+  EXPECT_EQ(choose(large_factor(), 0).method, SolverMethod::direct);
+  SparseCholesky::Prediction huge = large_factor();
+  huge.operations = 1e15;
+  EXPECT_EQ(choose(huge, 0).method, SolverMethod::iterative);
+}
+
+TEST(ChooseMethod, TakesAFactorThatIsMadeWithinSeconds) {
+  SparseCholesky::Prediction small = large_factor();
+  small.operations = 9.0 * estimated_operations_per_second;
+  EXPECT_EQ(choose(small, 1).method, SolverMethod::direct);
+  small.operations = 11.0 * estimated_operations_per_second;
+  EXPECT_EQ(choose(small, 1).method, SolverMethod::iterative);
+}
+
+TEST(ChooseMethod, TakesAFactorWithoutInertia) {
+  EXPECT_EQ(choose(large_factor(), 1, enough_memory, {0.0, 1.0, 0.0}).method, SolverMethod::direct);
+}
+
+TEST(ChooseMethod, IteratesWhereAFactorDoesNotFit) {
+  EXPECT_EQ(choose(large_factor(), 100000, 8.1e9).method, SolverMethod::direct);
+  EXPECT_EQ(choose(large_factor(), 100000, 7.9e9).method, SolverMethod::iterative);
+  EXPECT_EQ(choose(large_factor(), 0, 7.9e9, {0.0, 1.0, 0.0}).method, SolverMethod::iterative);
+  EXPECT_NE(choose(large_factor(), 1, 7.9e9).reason.find("8 GB, and 7.9 GB are allowed"), std::string::npos)
+      << choose(large_factor(), 1, 7.9e9).reason;
+}
+
+TEST(ChooseMethod, IteratesWhereNobodyCanCountAFactor) {
+  const ChosenMethod chosen = choose({false, 3e9, 1e15}, 100000);
+  EXPECT_EQ(chosen.method, SolverMethod::iterative);
+  EXPECT_EQ(chosen.reason, "a factor would have 3e+09 entries, more than can be counted");
+}
+
+TEST(ChooseMethod, DoesWhatItIsTold) {
+  StepSolverOptions options;
+  options.memory = 1.0;
+  options.method = SolverMethod::direct;
+  EXPECT_EQ(choose_method(large_factor(), {1e6, 1.0, 0.0}, options, slow_iterations).method, SolverMethod::direct);
+  options.method = SolverMethod::iterative;
+  EXPECT_EQ(choose_method(large_factor(), {1e6, 1.0, 0.0}, options, slow_iterations).method, SolverMethod::iterative);
+  // The contact nodes of an explicit step are few.
+  EXPECT_EQ(choose_method(large_factor(), {0.0, 1.0, 0.0, StageDofs::contact}, options, slow_iterations).method,
+            SolverMethod::direct);
+}
+
+/// Of conjugate gradients for a force that is there everywhere.
+int iterations_of(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, double tolerance) {
+  const SparseMatrix matrix = combine_operator(problem, coefficients);
+  const StageProduct product(problem, coefficients, matrix);
+  const std::vector<char> solved(static_cast<std::size_t>(problem.dof_count()), 1);
+  const auto preconditioner = make_block_jacobi(matrix, problem.dimension, solved);
+  Vector residual = Vector::NullaryExpr(problem.dof_count(),
+                                        [](Index i) { return std::sin(0.9 * static_cast<double>(i * i % 1013)); });
+  Vector x = Vector::Zero(problem.dof_count());
+  ConjugateGradients gradients;
+  const double target = tolerance * gradients.norm(*preconditioner, residual);
+  const auto result = gradients.solve([&](const Vector& a, Vector& b) { product.multiply(a, b); }, *preconditioner,
+                                      target, 5000, residual, x);
+  EXPECT_TRUE(result.converged);
+  return result.iterations;
+}
+
+TEST(IterationEstimate, IsOfTheSizeOfTheCounts) {
+  for (const test_support::ThrownBody& body : test_support::thrown_bodies()) {
+    if (body.degree != 1) continue;
+    for (const char* const mass : {"consistent", "equivalent"}) {
+      CaseRun run(test_support::thrown_case(body, mass, test_support::time_of("newmark")));
+      const SemidiscreteProblem& problem = run.problem();
+      const double alpha = run.scheme().operators(problem).front().mass;
+      // Multiples of the case's step: waves cross two cells, or the body.
+      for (const double longer : {30.0, 100.0}) {
+        const OperatorCoefficients coefficients{alpha / (longer * longer), 1.0, 0.0};
+        const int counted = iterations_of(problem, coefficients, 1e-10);
+        const IterationEstimate estimate = estimate_iterations(problem, coefficients, 1e-10);
+        EXPECT_GT(estimate.iterations, counted / 2.0) << body.name << ' ' << mass << ' ' << longer;
+        EXPECT_LT(estimate.iterations, counted * 2.0) << body.name << ' ' << mass << ' ' << longer;
+      }
+    }
+  }
+}
+
+/// What was chosen at the start holds, whatever would be chosen for the rest of the run.
+TEST(ChooseMethod, IsKeptByARunThatGoesOn) {
+  for (const bool began_with_iterations : {true, false}) {
+    CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "equivalent",
+                                          test_support::time_of("newmark"), "friction = 0.3\n"));
+    StepSolverOptions little, much;
+    little.memory = 1.0;
+    much.memory = enough_memory;
+    const StepSolverOptions& first = began_with_iterations ? little : much;
+    const StepSolverOptions& later = began_with_iterations ? much : little;
+    const SolverMethod method = began_with_iterations ? SolverMethod::iterative : SolverMethod::direct;
+    Simulation whole(run.problem(), run.scheme(), run.model().initial, first);
+    ASSERT_EQ(whole.methods().front().method, method);
+    for (int k = 0; k < 20; ++k) whole.advance();
+    Snapshot snapshot;
+    whole.save(snapshot);
+    Simulation resumed(run.problem(), run.scheme(), snapshot, later);
+    EXPECT_EQ(resumed.methods().front().method, method);
+    for (int k = 0; k < 20; ++k) {
+      whole.advance();
+      resumed.advance();
+    }
+    EXPECT_EQ(resumed.state().displacement, whole.state().displacement);
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
