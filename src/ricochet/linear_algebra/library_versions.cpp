@@ -9,6 +9,7 @@
 #include "ricochet/base/blas.hpp"
 #include "ricochet/base/instruction_sets.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
+#include "ricochet/linear_algebra/supernodal_kernels.hpp"
 
 namespace ricochet {
 
@@ -31,9 +32,10 @@ std::string blas_version() {
 
 std::string library_versions() {
   prepare_blas();
-  return fmt::format("OpenBLAS {} ({}), {}, Eigen {}.{}.{}, compiled by {}, loops for {}", blas_version(),
+  return fmt::format("OpenBLAS {} ({}), {}, Eigen {}.{}.{}, compiled by {}, loops for {}{}", blas_version(),
                      openblas_get_corename(), SparseCholesky::library(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                     EIGEN_MINOR_VERSION, compiler, name(instruction_set()));
+                     EIGEN_MINOR_VERSION, compiler, name(instruction_set()),
+                     reading_places() == ReadingPlaces::one ? " that read in one place" : "");
 }
 
 }  // namespace ricochet

@@ -11,11 +11,24 @@ namespace {
 
 /// How far ahead of the stream to fetch, in numbers.
 constexpr Index fetch_stream_ahead = 512;
-/// Tall blocks are read in so many places at once: the processor fetches ahead in each of them, and one core gets a
-/// third more from memory than in one place.
+/// The places in which tall blocks are read at once.
 constexpr Index streams = 4;
 /// Panels in each place from which on that is worth it.
 constexpr Index fewest_panels = 4;
+
+/// Panels in each of four places; 0 where there is one.
+template <ReadingPlaces P>
+RICOCHET_PART_OF_CALLER constexpr Index panels_apart(Index rows) {
+  const Index panels = P == ReadingPlaces::four ? rows / 8 / streams : 0;
+  return panels >= fewest_panels ? panels : 0;
+}
+
+template <ReadingPlaces P, int C>
+RICOCHET_PART_OF_CALLER void fetch_panel(const double* panel) {
+  if constexpr (P == ReadingPlaces::four) {
+    for (int j = 0; j < C; ++j) __builtin_prefetch(panel + 8 * j);
+  }
+}
 
 RICOCHET_PART_OF_CALLER double sum(const Pack<2>& a) {
   return a[0] + a[1];
@@ -39,7 +52,7 @@ RICOCHET_PART_OF_CALLER const double* forward_panel(const double* stream, const 
   return stream + H * C;
 }
 
-template <int C>
+template <ReadingPlaces P, int C>
 RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index rows_below, double* w) {
   constexpr int lanes = static_cast<int>(triangle_lanes(C));
   Pack<lanes> solved = load<lanes>(stream) * w[0];
@@ -50,11 +63,10 @@ RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index 
   w += C;
   const Index end = filled(rows_below);
   Index row = 0;
-  if (const Index panels = end / 8 / streams; panels >= fewest_panels) {
-    const Index apart = panels * 8;
+  if (const Index apart = 8 * panels_apart<P>(end); apart > 0) {
     for (; row < apart; row += 8, stream += 8 * C) {
       for (Index k = 0; k < streams; ++k) {
-        for (int j = 0; j < C; ++j) __builtin_prefetch(stream + k * apart * C + fetch_stream_ahead + 8 * j);
+        fetch_panel<P, C>(stream + k * apart * C + fetch_stream_ahead);
         forward_panel<8, C>(stream + k * apart * C, x, w + k * apart + row);
       }
     }
@@ -62,7 +74,7 @@ RICOCHET_PART_OF_CALLER const double* forward_block(const double* stream, Index 
     row = streams * apart;
   }
   for (; row + 8 <= end; row += 8) {
-    for (int j = 0; j < C; ++j) __builtin_prefetch(stream + fetch_stream_ahead + 8 * j);
+    fetch_panel<P, C>(stream + fetch_stream_ahead);
     stream = forward_panel<8, C>(stream, x, w + row);
   }
   if ((end & 4) != 0) {
@@ -82,7 +94,20 @@ RICOCHET_PART_OF_CALLER const double* backward_panel(const double* stream, const
   return stream;
 }
 
+/// Line by line downwards, and the compiler must leave it so: in any other order AMD's processors do not fetch ahead,
+/// which takes twice the time.
 template <int C>
+RICOCHET_PART_OF_CALLER void add_panel(const double* panel, const double* rows, Pack<8> (&products)[C]) {
+  const Pack<8> values = load<8>(rows);
+  for (int j = C - 1; j >= 0; --j) {
+    products[j] += load<8>(panel + 8 * j) * values;
+#if defined(__GNUC__)
+    asm volatile("" ::: "memory");
+#endif
+  }
+}
+
+template <ReadingPlaces P, int C>
 RICOCHET_PART_OF_CALLER const double* backward_block(const double* stream, Index rows_below, double* w) {
   const Index end = filled(rows_below);
   double* const below = w + C;
@@ -92,22 +117,20 @@ RICOCHET_PART_OF_CALLER const double* backward_block(const double* stream, Index
   if ((end & 4) != 0) stream = backward_panel<4, C>(stream, below + (row -= 4), product);
   Pack<8> products[C];
   for (int j = 0; j < C; ++j) products[j] = Pack<8>{};
-  const auto add_panel = [&](const double* panel, const double* rows) __attribute__((always_inline)) {
-    const Pack<8> values = load<8>(rows);
-    for (int j = 0; j < C; ++j) __builtin_prefetch(panel - fetch_stream_ahead + 8 * j);
-    for (int j = 0; j < C; ++j) products[j] += load<8>(panel + 8 * j) * values;
-  };
-  const Index panels = end / 8 / streams;
-  const Index apart = panels >= fewest_panels ? panels * 8 : 0;
+  const Index apart = 8 * panels_apart<P>(end);
   while (row > streams * apart) {
     row -= 8;
     stream -= 8 * C;
-    add_panel(stream, below + row);
+    fetch_panel<P, C>(stream - fetch_stream_ahead);
+    add_panel<C>(stream, below + row, products);
   }
   while (row > (streams - 1) * apart) {
     row -= 8;
     stream -= 8 * C;
-    for (Index k = 0; k < streams; ++k) add_panel(stream - k * apart * C, below + row - k * apart);
+    for (Index k = 0; k < streams; ++k) {
+      fetch_panel<P, C>(stream - k * apart * C - fetch_stream_ahead);
+      add_panel<C>(stream - k * apart * C, below + row - k * apart, products);
+    }
   }
   stream -= (streams - 1) * apart * C;
   constexpr int lanes = static_cast<int>(triangle_lanes(C));
@@ -152,6 +175,16 @@ RICOCHET_PART_OF_CALLER const double* forward_block_eight(const double* stream, 
 
 }  // namespace
 
+ReadingPlaces reading_places() {
+  // Who names an instruction set has the same bits on every processor.
+#if defined(__x86_64__) && defined(__GNUC__)
+  static const bool one = !instruction_set_is_given() && __builtin_cpu_is("amd") != 0;
+  return one ? ReadingPlaces::one : ReadingPlaces::four;
+#else
+  return ReadingPlaces::four;
+#endif
+}
+
 // The head, by its number of columns.
 #define RICOCHET_HEAD(count, call) \
   switch (count) {                 \
@@ -180,29 +213,41 @@ RICOCHET_PART_OF_CALLER const double* forward_block_eight(const double* stream, 
       break;                       \
   }
 
-RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward,
-                              (const double* stream, Index columns, Index rows, double* w),
-                              (stream, columns, rows, w)) {
+template <ReadingPlaces P>
+RICOCHET_PART_OF_CALLER const double* forward_blocks(const double* stream, Index columns, Index rows, double* w) {
   Index first = columns % 8;
-#define RICOCHET_CALL(c) stream = forward_block<c>(stream, rows - (c), w)
+#define RICOCHET_CALL(c) stream = forward_block<P, c>(stream, rows - (c), w)
   RICOCHET_HEAD(first, RICOCHET_CALL)
 #undef RICOCHET_CALL
-  for (; first < columns; first += 8) stream = forward_block<8>(stream, rows - first - 8, w + first);
+  for (; first < columns; first += 8) stream = forward_block<P, 8>(stream, rows - first - 8, w + first);
   return stream;
 }
 
-RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_backward,
-                              (const double* stream_end, Index columns, Index rows, double* w),
-                              (stream_end, columns, rows, w)) {
+RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward,
+                              (const double* stream, Index columns, Index rows, double* w, ReadingPlaces places),
+                              (stream, columns, rows, w, places)) {
+  return places == ReadingPlaces::one ? forward_blocks<ReadingPlaces::one>(stream, columns, rows, w)
+                                      : forward_blocks<ReadingPlaces::four>(stream, columns, rows, w);
+}
+
+template <ReadingPlaces P>
+RICOCHET_PART_OF_CALLER const double* backward_blocks(const double* stream_end, Index columns, Index rows, double* w) {
   const Index head = columns % 8;
   for (Index first = columns; first > head;) {
     first -= 8;
-    stream_end = backward_block<8>(stream_end, rows - first - 8, w + first);
+    stream_end = backward_block<P, 8>(stream_end, rows - first - 8, w + first);
   }
-#define RICOCHET_CALL(c) stream_end = backward_block<c>(stream_end, rows - (c), w)
+#define RICOCHET_CALL(c) stream_end = backward_block<P, c>(stream_end, rows - (c), w)
   RICOCHET_HEAD(head, RICOCHET_CALL)
 #undef RICOCHET_CALL
   return stream_end;
+}
+
+RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_backward,
+                              (const double* stream_end, Index columns, Index rows, double* w, ReadingPlaces places),
+                              (stream_end, columns, rows, w, places)) {
+  return places == ReadingPlaces::one ? backward_blocks<ReadingPlaces::one>(stream_end, columns, rows, w)
+                                      : backward_blocks<ReadingPlaces::four>(stream_end, columns, rows, w);
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward_eight,
@@ -227,45 +272,51 @@ RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward_eight,
 RICOCHET_EACH_INSTRUCTION_SET(void, supernode_forward_rows,
                               (Index columns, Index rows_below, const double* stream, double* w),
                               (columns, rows_below, stream, w)) {
-#define RICOCHET_CALL(c) forward_block<c>(stream, rows_below, w)
+#define RICOCHET_CALL(c) forward_block<ReadingPlaces::one, c>(stream, rows_below, w)
   RICOCHET_BLOCK(columns, RICOCHET_CALL)
 #undef RICOCHET_CALL
 }
 
-template <int C>
+template <ReadingPlaces P, int C>
 RICOCHET_PART_OF_CALLER void forward_panels(Index count, const double* stream, const double* columns_of_w, double* w) {
   double x[C];
   for (int j = 0; j < C; ++j) x[j] = columns_of_w[j];
   for (Index panel = 0; panel < count; ++panel, w += 8) {
-    for (int j = 0; j < C; ++j) __builtin_prefetch(stream + fetch_stream_ahead + 8 * j);
+    fetch_panel<P, C>(stream + fetch_stream_ahead);
     stream = forward_panel<8, C>(stream, x, w);
   }
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(void, panels_forward,
-                              (Index columns, Index count, const double* stream, const double* x, double* w),
-                              (columns, count, stream, x, w)) {
-#define RICOCHET_CALL(c) forward_panels<c>(count, stream, x, w)
+                              (Index columns, Index count, const double* stream, const double* x, double* w,
+                               ReadingPlaces places),
+                              (columns, count, stream, x, w, places)) {
+#define RICOCHET_CALL(c)                                                                    \
+  places == ReadingPlaces::one ? forward_panels<ReadingPlaces::one, c>(count, stream, x, w) \
+                               : forward_panels<ReadingPlaces::four, c>(count, stream, x, w)
   RICOCHET_BLOCK(columns, RICOCHET_CALL)
 #undef RICOCHET_CALL
 }
 
-template <int C>
+template <ReadingPlaces P, int C>
 RICOCHET_PART_OF_CALLER void backward_panels(Index count, const double* stream, const double* w, double* sums) {
   Pack<8> products[C];
   for (int j = 0; j < C; ++j) products[j] = load<8>(sums + 8 * j);
   for (Index panel = 0; panel < count; ++panel, w += 8, stream += 8 * C) {
     const Pack<8> values = load<8>(w);
-    for (int j = 0; j < C; ++j) __builtin_prefetch(stream + fetch_stream_ahead + 8 * j);
+    fetch_panel<P, C>(stream + fetch_stream_ahead);
     for (int j = 0; j < C; ++j) products[j] += load<8>(stream + 8 * j) * values;
   }
   for (int j = 0; j < C; ++j) store<8>(sums + 8 * j, products[j]);
 }
 
 RICOCHET_EACH_INSTRUCTION_SET(void, panels_backward,
-                              (Index columns, Index count, const double* stream, const double* w, double* sums),
-                              (columns, count, stream, w, sums)) {
-#define RICOCHET_CALL(c) backward_panels<c>(count, stream, w, sums)
+                              (Index columns, Index count, const double* stream, const double* w, double* sums,
+                               ReadingPlaces places),
+                              (columns, count, stream, w, sums, places)) {
+#define RICOCHET_CALL(c)                                                                        \
+  places == ReadingPlaces::one ? backward_panels<ReadingPlaces::one, c>(count, stream, w, sums) \
+                               : backward_panels<ReadingPlaces::four, c>(count, stream, w, sums)
   RICOCHET_BLOCK(columns, RICOCHET_CALL)
 #undef RICOCHET_CALL
 }

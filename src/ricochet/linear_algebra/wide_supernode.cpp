@@ -14,14 +14,15 @@ constexpr Index strip_blocks = 16;
 constexpr Index strip_columns = 8 * strip_blocks + 8;
 /// Below a strip.
 constexpr Index most_parts = 16, least_part_panels = 8;
-/// In so many parts a thread reads at the same time, so many panels here and there.
-constexpr Index places = 4, panels_in_turn = 8;
+/// In so many parts a thread reads at the same time where that is quicker, so many panels here and there.
+constexpr Index most_places = 4, panels_in_turn = 8;
 /// Numbers of a supernode from which on it is wide: half a megabyte takes longer to read than threads to meet.
 constexpr Index least_size = Index{1} << 16;
 
 /// Calls visit(part, panel, count) for the panels of parts [first, last), so that a few parts take turns.
 template <class Parts, class Visit>
 void in_turns(const Parts& parts, Index first, Index last, const Visit& visit) {
+  const Index places = reading_places() == ReadingPlaces::one ? 1 : most_places;
   for (Index group = first; group < last; group += places) {
     const Index group_end = std::min(group + places, last);
     bool more = true;

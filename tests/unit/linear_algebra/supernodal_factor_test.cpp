@@ -63,9 +63,15 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
       Vector expected = right, found(rows + 1);
       triangle.triangularView<Eigen::Lower>().solveInPlace(expected.head(columns));
       expected.tail(below) -= beneath * expected.head(columns);
-      found << right, 0.0;
-      EXPECT_EQ(supernode_forward(stream.data(), columns, rows, found.data()), stream.data() + stream.size());
-      EXPECT_LE((found.head(rows) - expected).cwiseAbs().maxCoeff(), 1e-14) << columns << " " << below;
+      Vector in_four_places(rows + 1);
+      for (const ReadingPlaces places : {ReadingPlaces::four, ReadingPlaces::one}) {
+        found << right, 0.0;
+        EXPECT_EQ(supernode_forward(stream.data(), columns, rows, found.data(), places),
+                  stream.data() + stream.size());
+        EXPECT_LE((found.head(rows) - expected).cwiseAbs().maxCoeff(), 1e-14) << columns << " " << below;
+        if (places == ReadingPlaces::four) in_four_places = found;
+        EXPECT_TRUE(found.head(rows) == in_four_places.head(rows)) << "forward solves have the same bits";
+      }
 
       Matrix eight = Matrix::Zero(8, rows + 1);
       eight.row(3).head(rows) = right.transpose();
@@ -78,9 +84,12 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
       expected = right;
       expected.head(columns) -= beneath.transpose() * expected.tail(below);
       triangle.transpose().triangularView<Eigen::Upper>().solveInPlace(expected.head(columns));
-      found << right, 0.0;
-      EXPECT_EQ(supernode_backward(stream.data() + stream.size(), columns, rows, found.data()), stream.data());
-      EXPECT_LE((found.head(rows) - expected).cwiseAbs().maxCoeff(), 1e-14) << columns << " " << below;
+      for (const ReadingPlaces places : {ReadingPlaces::four, ReadingPlaces::one}) {
+        found << right, 0.0;
+        EXPECT_EQ(supernode_backward(stream.data() + stream.size(), columns, rows, found.data(), places),
+                  stream.data());
+        EXPECT_LE((found.head(rows) - expected).cwiseAbs().maxCoeff(), 1e-14) << columns << " " << below;
+      }
     }
   }
 }
