@@ -1,6 +1,7 @@
 #include "ricochet/linear_algebra/panel_kernels.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "ricochet/base/packs.hpp"
 
@@ -8,44 +9,44 @@ namespace ricochet {
 
 namespace {
 
-/// Adds the product of a column of P panels, `apart` from one another, and C numbers of B.
-template <int H, int P, int C>
-RICOCHET_PART_OF_CALLER void add_column(const double* a, Index apart, const double* b, Pack<H> (&sums)[P * 8 / H][C]) {
-  Pack<H> rows[P * 8 / H];
-  for (int p = 0; p < P; ++p) {
-    for (int i = 0; i < 8 / H; ++i) rows[p * (8 / H) + i] = load<H>(a + p * apart + H * i);
-  }
-  for (int j = 0; j < C; ++j) {
-    for (int i = 0; i < P * 8 / H; ++i) sums[i][j] += rows[i] * b[j];
-  }
-}
+/// The 8 × C numbers of each of P panels, in registers of H: pack i of all is rows [H i, H i + H) of the 8 P.
+/// They are written out by the indices of a template, column by column, because a compiler keeps in memory what a loop
+/// goes through.
+template <int H, int P, int C, typename = std::make_integer_sequence<int, P * 8 / H * C>>
+struct Sums;
+template <int H, int P, int C, int... all>
+struct Sums<H, P, C, std::integer_sequence<int, all...>> {
+  static constexpr Index panel_of(int sum) { return sum % (P * 8 / H) * H / 8; }
+  static constexpr Index row_of(int sum) { return sum % (P * 8 / H) * H % 8; }
+  static constexpr Index column_of(int sum) { return sum / (P * 8 / H); }
 
-/// Columns `first` … `first` + C − 1 of the product of P panels, in registers of H numbers.
+  /// Adds the product of a column of the panels, `apart` from one another, and C numbers of B.
+  RICOCHET_PART_OF_CALLER void add(const double* a, Index apart, const double* b) {
+    ((values[all] += load<H>(a + panel_of(all) * apart + row_of(all)) * b[column_of(all)]), ...);
+  }
+  RICOCHET_PART_OF_CALLER void write(double* c) const {
+    (store<H>(c + 64 * panel_of(all) + 8 * column_of(all) + row_of(all), values[all]), ...);
+  }
+
+  Pack<H> values[sizeof...(all)] = {(static_cast<void>(all), Pack<H>{})...};
+};
+
+/// Columns `first` … `first` + C − 1 of the product of P panels.
 template <int H, int P, int C>
 RICOCHET_PART_OF_CALLER void multiply(const PanelRows& a, const PanelRows& b, PanelColumns columns, Index first,
                                       double* c) {
-  Pack<H> sums[P * 8 / H][C];
-  for (auto& row : sums) {
-    for (Pack<H>& sum : row) sum = Pack<H>{};
-  }
-  for (Index k = 0; k < columns.head; ++k)
-    add_column<H, P, C>(a.head + 8 * k, 8 * columns.head, b.head + first + 8 * k, sums);
+  Sums<H, P, C> sums;
+  for (Index k = 0; k < columns.head; ++k) sums.add(a.head + 8 * k, 8 * columns.head, b.head + first + 8 * k);
   const double *left = a.blocks, *right = b.blocks + first;
   Index left_stride = a.stride, right_stride = b.stride;
   for (Index block = 0; block < columns.blocks; ++block) {
-    // Written out, or the sums would leave their registers between blocks.
-#pragma GCC unroll 8
-    for (int k = 0; k < 8; ++k) add_column<H, P, C>(left + 8 * k, 64, right + 8 * k, sums);
+    for (int k = 0; k < 8; ++k) sums.add(left + 8 * k, 64, right + 8 * k);
     left += left_stride;
     right += right_stride;
     left_stride -= a.shrink;
     right_stride -= b.shrink;
   }
-  for (int p = 0; p < P; ++p) {
-    for (int j = 0; j < C; ++j) {
-      for (int i = 0; i < 8 / H; ++i) store<H>(c + 64 * p + 8 * (first + j) + H * i, sums[p * (8 / H) + i][j]);
-    }
-  }
+  sums.write(c + 8 * first);
 }
 
 /// One panel after the other, C columns at a time: for processors with sixteen registers.
