@@ -66,8 +66,7 @@ TEST(SupernodalKernels, SolveWithEveryShape) {
       Vector in_four_places(rows + 1);
       for (const ReadingPlaces places : {ReadingPlaces::four, ReadingPlaces::one}) {
         found << right, 0.0;
-        EXPECT_EQ(supernode_forward(stream.data(), columns, rows, found.data(), places),
-                  stream.data() + stream.size());
+        EXPECT_EQ(supernode_forward(stream.data(), columns, rows, found.data(), places), stream.data() + stream.size());
         EXPECT_LE((found.head(rows) - expected).cwiseAbs().maxCoeff(), 1e-14) << columns << " " << below;
         if (places == ReadingPlaces::four) in_four_places = found;
         EXPECT_TRUE(found.head(rows) == in_four_places.head(rows)) << "forward solves have the same bits";
