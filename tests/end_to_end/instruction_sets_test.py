@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import unittest
+from pathlib import Path
 
 from harness import DISC, History, SOURCE, TestCase, run, settings
 
@@ -33,7 +34,7 @@ def possible():
 def kernels(environment):
     """Of OpenBLAS and ours, as --version tells them."""
     text = run("--version", environment=environment).stdout
-    return re.search(r"OpenBLAS \S+ \((\w+)\)", text)[1], re.search(r" for (\S+)\n$", text)[1]
+    return re.search(r"OpenBLAS \S+ \((\w+)\)", text)[1], re.search(r" for (\S+)( that read in one place)?\n$", text)[1]
 
 
 class InstructionSets(TestCase):
@@ -71,6 +72,12 @@ class InstructionSets(TestCase):
         core, name = kernels(masked(None))
         self.assertEqual(name, possible()[-1])
         self.assertNotIn(core, LESSER[name])
+
+    def test_only_amds_processors_read_in_one_place_and_only_where_nobody_asked(self):
+        processor = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+        for name in (None, *possible()):
+            one_place = "read in one place" in run("--version", environment=masked(name)).stdout
+            self.assertEqual(one_place, name is None and "AuthenticAMD" in processor)
 
     def test_what_the_user_has_set_stays(self):
         for name in (None, *possible()):
