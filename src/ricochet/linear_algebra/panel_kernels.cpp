@@ -125,24 +125,7 @@ RICOCHET_EACH_INSTRUCTION_SET(void, subtract_from, (const double* a, Index strid
 
 RICOCHET_EACH_INSTRUCTION_SET(void, solve_panel, (Index size, const double* c, const double* inverse, double* x),
                               (size, c, inverse, x)) {
-  switch (size) {
-    case 1:
-      return solve_columns<1>(c, inverse, x);
-    case 2:
-      return solve_columns<2>(c, inverse, x);
-    case 3:
-      return solve_columns<3>(c, inverse, x);
-    case 4:
-      return solve_columns<4>(c, inverse, x);
-    case 5:
-      return solve_columns<5>(c, inverse, x);
-    case 6:
-      return solve_columns<6>(c, inverse, x);
-    case 7:
-      return solve_columns<7>(c, inverse, x);
-    default:
-      return solve_columns<8>(c, inverse, x);
-  }
+  with_constant<8>(size, [&](auto columns) RICOCHET_LAMBDA_OF_CALLER { solve_columns<columns>(c, inverse, x); });
 }
 
 int invert_factor(Index size, const double* triangle, double* inverse) {

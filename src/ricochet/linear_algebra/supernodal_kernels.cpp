@@ -185,40 +185,11 @@ ReadingPlaces reading_places() {
 #endif
 }
 
-// The head, by its number of columns.
-#define RICOCHET_HEAD(count, call) \
-  switch (count) {                 \
-    case 1:                        \
-      call(1);                     \
-      break;                       \
-    case 2:                        \
-      call(2);                     \
-      break;                       \
-    case 3:                        \
-      call(3);                     \
-      break;                       \
-    case 4:                        \
-      call(4);                     \
-      break;                       \
-    case 5:                        \
-      call(5);                     \
-      break;                       \
-    case 6:                        \
-      call(6);                     \
-      break;                       \
-    case 7:                        \
-      call(7);                     \
-      break;                       \
-    default:                       \
-      break;                       \
-  }
-
 template <ReadingPlaces P>
 RICOCHET_PART_OF_CALLER const double* forward_blocks(const double* stream, Index columns, Index rows, double* w) {
   Index first = columns % 8;
-#define RICOCHET_CALL(c) stream = forward_block<P, c>(stream, rows - (c), w)
-  RICOCHET_HEAD(first, RICOCHET_CALL)
-#undef RICOCHET_CALL
+  with_constant<7>(
+      first, [&](auto head) RICOCHET_LAMBDA_OF_CALLER { stream = forward_block<P, head>(stream, rows - head, w); });
   for (; first < columns; first += 8) stream = forward_block<P, 8>(stream, rows - first - 8, w + first);
   return stream;
 }
@@ -237,9 +208,8 @@ RICOCHET_PART_OF_CALLER const double* backward_blocks(const double* stream_end, 
     first -= 8;
     stream_end = backward_block<P, 8>(stream_end, rows - first - 8, w + first);
   }
-#define RICOCHET_CALL(c) stream_end = backward_block<P, c>(stream_end, rows - (c), w)
-  RICOCHET_HEAD(head, RICOCHET_CALL)
-#undef RICOCHET_CALL
+  with_constant<7>(
+      head, [&](auto c) RICOCHET_LAMBDA_OF_CALLER { stream_end = backward_block<P, c>(stream_end, rows - c, w); });
   return stream_end;
 }
 
@@ -254,27 +224,17 @@ RICOCHET_EACH_INSTRUCTION_SET(const double*, supernode_forward_eight,
                               (const double* stream, Index columns, Index rows, double* w),
                               (stream, columns, rows, w)) {
   Index first = columns % 8;
-#define RICOCHET_CALL(c) stream = forward_block_eight<c>(stream, rows - (c), w)
-  RICOCHET_HEAD(first, RICOCHET_CALL)
-#undef RICOCHET_CALL
+  with_constant<7>(
+      first, [&](auto head) RICOCHET_LAMBDA_OF_CALLER { stream = forward_block_eight<head>(stream, rows - head, w); });
   for (; first < columns; first += 8) stream = forward_block_eight<8>(stream, rows - first - 8, w + 8 * first);
   return stream;
 }
 
-// By the number of columns, which is at most eight.
-#define RICOCHET_BLOCK(count, call) \
-  if ((count) == 8) {               \
-    call(8);                        \
-  } else {                          \
-    RICOCHET_HEAD(count, call)      \
-  }
-
 RICOCHET_EACH_INSTRUCTION_SET(void, supernode_forward_rows,
                               (Index columns, Index rows_below, const double* stream, double* w),
                               (columns, rows_below, stream, w)) {
-#define RICOCHET_CALL(c) forward_block<ReadingPlaces::one, c>(stream, rows_below, w)
-  RICOCHET_BLOCK(columns, RICOCHET_CALL)
-#undef RICOCHET_CALL
+  with_constant<8>(
+      columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER { forward_block<ReadingPlaces::one, c>(stream, rows_below, w); });
 }
 
 template <ReadingPlaces P, int C>
@@ -291,11 +251,10 @@ RICOCHET_EACH_INSTRUCTION_SET(void, panels_forward,
                               (Index columns, Index count, const double* stream, const double* x, double* w,
                                ReadingPlaces places),
                               (columns, count, stream, x, w, places)) {
-#define RICOCHET_CALL(c)                                                                    \
-  places == ReadingPlaces::one ? forward_panels<ReadingPlaces::one, c>(count, stream, x, w) \
-                               : forward_panels<ReadingPlaces::four, c>(count, stream, x, w)
-  RICOCHET_BLOCK(columns, RICOCHET_CALL)
-#undef RICOCHET_CALL
+  with_constant<8>(columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER {
+    places == ReadingPlaces::one ? forward_panels<ReadingPlaces::one, c>(count, stream, x, w)
+                                 : forward_panels<ReadingPlaces::four, c>(count, stream, x, w);
+  });
 }
 
 template <ReadingPlaces P, int C>
@@ -314,11 +273,10 @@ RICOCHET_EACH_INSTRUCTION_SET(void, panels_backward,
                               (Index columns, Index count, const double* stream, const double* w, double* sums,
                                ReadingPlaces places),
                               (columns, count, stream, w, sums, places)) {
-#define RICOCHET_CALL(c)                                                                        \
-  places == ReadingPlaces::one ? backward_panels<ReadingPlaces::one, c>(count, stream, w, sums) \
-                               : backward_panels<ReadingPlaces::four, c>(count, stream, w, sums)
-  RICOCHET_BLOCK(columns, RICOCHET_CALL)
-#undef RICOCHET_CALL
+  with_constant<8>(columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER {
+    places == ReadingPlaces::one ? backward_panels<ReadingPlaces::one, c>(count, stream, w, sums)
+                                 : backward_panels<ReadingPlaces::four, c>(count, stream, w, sums);
+  });
 }
 
 template <int C>
@@ -331,13 +289,9 @@ RICOCHET_PART_OF_CALLER void backward_triangle(const double* triangle, const dou
 
 RICOCHET_EACH_INSTRUCTION_SET(void, triangle_backward,
                               (Index columns, const double* triangle, const double* sums, double* w),
-                              (columns, triangle, sums, w)){
-#define RICOCHET_CALL(c) backward_triangle<c>(triangle, sums, w)
-    RICOCHET_BLOCK(columns, RICOCHET_CALL)
-#undef RICOCHET_CALL
+                              (columns, triangle, sums, w)) {
+  with_constant<8>(columns, [&](auto c) RICOCHET_LAMBDA_OF_CALLER { backward_triangle<c>(triangle, sums, w); });
 }
-#undef RICOCHET_BLOCK
-#undef RICOCHET_HEAD
 
 RICOCHET_EACH_INSTRUCTION_SET(void, remainder_forward,
                               (Index columns, Index rows, const double* stream, const double* x, double* w),
