@@ -1,6 +1,7 @@
 #include "support/mass_bodies.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include "ricochet/mesh/read_mesh.hpp"
 #include "support/case_run.hpp"
@@ -90,10 +91,19 @@ AssembledBody::AssembledBody(const BodyDescription& description) {
   space = make_displacement_space(mesh, description.order);
   body = {&mesh, &space, PlaneState::strain, {{"body", 3.0, make_linear_elasticity(1.0, 1.0)}}, {}};
   body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), 0);
+  assemble(facet_nodes(space, mesh.group("contact", mesh.dimension - 1).members));
+}
+
+AssembledBody::AssembledBody(Mesh of_mesh, DisplacementSpace of_space, const Body& like)
+    : mesh(std::move(of_mesh)), space(std::move(of_space)), body(like) {
+  body.mesh = &mesh;
+  body.space = &space;
+}
+
+void AssembledBody::assemble(std::vector<Index> contact_nodes) {
   consistent = assemble_scalar_mass(body, node_graph(space));
   cells = std::make_unique<CellMasses>(body);
-  input = {&consistent, &space.nodes, facet_nodes(space, mesh.group("contact", mesh.dimension - 1).members), nullptr,
-           cells.get()};
+  input = {&consistent, &space.nodes, std::move(contact_nodes), nullptr, cells.get()};
 }
 
 }  // namespace ricochet::test_support

@@ -33,6 +33,11 @@ struct AssembledBody {
   AssembledBody(const AssembledBody&) = delete;
   AssembledBody& operator=(const AssembledBody&) = delete;
   explicit AssembledBody(const BodyDescription& description);
+
+ protected:
+  /// Another body, whose mesh and space may be changed before its mass is assembled.
+  AssembledBody(Mesh of_mesh, DisplacementSpace of_space, const Body& like);
+  void assemble(std::vector<Index> contact_nodes);
 };
 
 }  // namespace ricochet::test_support

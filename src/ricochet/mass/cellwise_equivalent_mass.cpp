@@ -104,14 +104,12 @@ constexpr int sweeps = 3;
 CellwiseBuilder::CellwiseBuilder(const MassInput& input)
     : input_(input),
       d_(static_cast<int>(input.nodes->rows())),
-      is_contact_(static_cast<std::size_t>(input.nodes->cols()), 0),
+      is_contact_(input.marked_contact_nodes()),
       trust_(input.inertia_matrix().diagonal()),
       kept_(Vector::Zero(trust_.size())),
-      rings_(*input.cells, input.nodes->cols()) {
-  for (const Index node : input.contact_nodes) is_contact_[static_cast<std::size_t>(node)] = 1;
-  result_ = zeros_without(input.inertia_matrix(), is_contact_);
-  donor_number_.assign(static_cast<std::size_t>(rings_.count()), -2);
-}
+      result_(zeros_without(input.inertia_matrix(), is_contact_)),
+      rings_(*input.cells, input.nodes->cols()),
+      donor_number_(static_cast<std::size_t>(rings_.count()), -2) {}
 
 SparseMatrix CellwiseBuilder::build() {
   const bool is_inertia = input_.consistent == &input_.inertia_matrix();
@@ -368,8 +366,7 @@ class CellwiseEquivalentMass final : public MassConstruction {
  public:
   [[nodiscard]] bool removes_contact_inertia() const override { return true; }
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
-    if (input.cells == nullptr)
-      throw Error(ErrorKind::invalid_input, "mass type \"equivalent-cellwise\" needs the masses of single cells");
+    input.require_cells("equivalent-cellwise");
     SparseMatrix result = CellwiseBuilder(input).build();
     check_moments(input, result, "equivalent-cellwise");
     return result;

@@ -66,10 +66,8 @@ class Builder {
   int number_ = 0;                              ///< of the cell
 };
 
-Builder::Builder(const MassInput& input) : input_(input), trust_(input.inertia_matrix().diagonal()) {
-  is_contact_.assign(static_cast<std::size_t>(input.consistent->cols()), 0);
-  for (const Index node : input.contact_nodes) is_contact_[static_cast<std::size_t>(node)] = 1;
-}
+Builder::Builder(const MassInput& input)
+    : input_(input), is_contact_(input.marked_contact_nodes()), trust_(input.inertia_matrix().diagonal()) {}
 
 void Builder::add_value(Index row, Index column, double value) {
   if (double* const entry = stored_entry(result_, row, column); entry != nullptr) {
@@ -236,8 +234,7 @@ void Builder::refuse(const std::vector<Index>& nodes, const std::vector<Index>& 
 }
 
 SparseMatrix CompactEquivalentMass::build(const MassInput& input) const {
-  if (input.cells == nullptr)
-    throw Error(ErrorKind::invalid_input, "mass type \"equivalent-compact\" needs the masses of single cells");
+  input.require_cells("equivalent-compact");
   SparseMatrix result = Builder(input).build();
   check_moments(input, result, "equivalent-compact");
   return result;

@@ -136,8 +136,7 @@ InertiaCheck check_inertia(const MassBody& body, const Moments& moments, const V
 /// masses that these have.
 Vector share_contact_mass(const MassInput& input, const Vector& lumped) {
   const SparseMatrix& graph = *input.consistent;
-  std::vector<char> is_contact(static_cast<std::size_t>(graph.cols()), 0);
-  for (const Index node : input.contact_nodes) is_contact[static_cast<std::size_t>(node)] = 1;
+  const std::vector<char> is_contact = input.marked_contact_nodes();
   Vector result = lumped;
   std::vector<Index> seen_from(static_cast<std::size_t>(graph.cols()), -1);
   std::vector<Index> front, next, free;

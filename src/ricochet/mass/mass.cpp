@@ -1,5 +1,8 @@
 #include "ricochet/mass/mass.hpp"
 
+#include <fmt/format.h>
+
+#include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 
@@ -35,6 +38,17 @@ class ConsistentMass final : public MassConstruction {
 
 MassRegistration consistent_mass() {
   return {"consistent", [](const Parameters&) { return std::make_unique<ConsistentMass>(); }};
+}
+
+std::vector<char> MassInput::marked_contact_nodes() const {
+  std::vector<char> marks(static_cast<std::size_t>(consistent->cols()), 0);
+  for (const Index node : contact_nodes) marks[static_cast<std::size_t>(node)] = 1;
+  return marks;
+}
+
+void MassInput::require_cells(const std::string& name) const {
+  if (cells != nullptr) return;
+  throw Error(ErrorKind::invalid_input, fmt::format("mass type \"{}\" needs the masses of single cells", name));
 }
 
 MassChoice mass_to_build(const std::string& asked, const Parameters& parameters, const MassInput& input) {

@@ -34,6 +34,10 @@ struct MassInput {
   const CellMasses* cells = nullptr;
 
   [[nodiscard]] const SparseMatrix& inertia_matrix() const { return inertia != nullptr ? *inertia : *consistent; }
+  /// Per node: 1 for contact nodes, 0 for free ones.
+  [[nodiscard]] std::vector<char> marked_contact_nodes() const;
+  /// Throws Error(invalid_input) without `cells`, on behalf of the mass of this name.
+  void require_cells(const std::string& name) const;
 };
 
 /// A way to distribute the mass of a body over its nodes.

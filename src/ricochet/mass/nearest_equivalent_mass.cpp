@@ -38,8 +38,7 @@ class NearestEquivalentMass final : public MassConstruction {
 
  private:
   static SparseMatrix free_pattern(const MassInput& input) {
-    std::vector<char> is_contact(static_cast<std::size_t>(input.consistent->cols()), 0);
-    for (const Index node : input.contact_nodes) is_contact[static_cast<std::size_t>(node)] = 1;
+    const std::vector<char> is_contact = input.marked_contact_nodes();
     SparseMatrix result = *input.consistent;
     result.prune([&](Index row, Index column, double) {
       return is_contact[static_cast<std::size_t>(row)] == 0 && is_contact[static_cast<std::size_t>(column)] == 0;

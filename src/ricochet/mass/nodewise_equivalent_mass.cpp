@@ -211,8 +211,7 @@ class NodewiseEquivalentMass final : public MassConstruction {
   [[nodiscard]] SparseMatrix build(const MassInput& input) const override {
     const SparseMatrix& consistent = *input.consistent;
     const Index count = consistent.cols();
-    std::vector<char> is_contact(static_cast<std::size_t>(count), 0);
-    for (const Index node : input.contact_nodes) is_contact[static_cast<std::size_t>(node)] = 1;
+    const std::vector<char> is_contact = input.marked_contact_nodes();
     const Vector diagonal = input.inertia_matrix().diagonal();
     ExtensionRows extension(count);
     std::vector<Index> seen_from(static_cast<std::size_t>(count), -1);

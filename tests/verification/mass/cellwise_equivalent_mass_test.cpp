@@ -28,23 +28,13 @@ using test_support::mass_moments;
 constexpr const char* cellwise = "equivalent-cellwise";
 
 /// The same body with other positions, another density, other numbers of nodes, cells in another order.
-struct Variant {
-  Mesh mesh;
-  DisplacementSpace space;
-  Body body;
-  SparseMatrix consistent;
-  std::unique_ptr<CellMasses> cells;
-  MassInput input;
+struct Variant : AssembledBody {
   std::vector<Index> number;  ///< of each node of before
 
-  explicit Variant(const AssembledBody& from) : mesh(from.mesh), space(from.space), body(from.body) {
-    body.mesh = &mesh;
-    body.space = &space;
-    number.resize(static_cast<std::size_t>(space.nodes.cols()));
+  explicit Variant(const AssembledBody& from)
+      : AssembledBody(from.mesh, from.space, from.body), number(static_cast<std::size_t>(space.nodes.cols())) {
     std::iota(number.begin(), number.end(), Index{0});
   }
-  Variant(const Variant&) = delete;
-  Variant& operator=(const Variant&) = delete;
 
   void move(const Matrix& map, const Vector& shift) {
     mesh.nodes = ((map * mesh.nodes).colwise() + shift).eval();
@@ -69,12 +59,10 @@ struct Variant {
     }
   }
   SparseMatrix build(const AssembledBody& from, const char* type) {
-    consistent = assemble_scalar_mass(body, node_graph(space));
-    cells = std::make_unique<CellMasses>(body);
-    input = {&consistent, &space.nodes, {}, nullptr, cells.get()};
-    for (const Index node : from.input.contact_nodes)
-      input.contact_nodes.push_back(number[static_cast<std::size_t>(node)]);
-    std::sort(input.contact_nodes.begin(), input.contact_nodes.end());
+    std::vector<Index> contact_nodes;
+    for (const Index node : from.input.contact_nodes) contact_nodes.push_back(number[static_cast<std::size_t>(node)]);
+    std::sort(contact_nodes.begin(), contact_nodes.end());
+    assemble(std::move(contact_nodes));
     return make_mass(type)->build(input);
   }
 };
