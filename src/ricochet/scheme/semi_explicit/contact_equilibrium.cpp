@@ -5,18 +5,13 @@
 namespace ricochet {
 
 void ContactEquilibrium::analyse(const SemidiscreteProblem& problem) {
-  const SparseMatrix& stiffness = problem.internal_force->tangent();
+  stiffness_.analyse(problem);
   const Index dofs = problem.dof_count();
   std::vector<char> is_near(static_cast<std::size_t>(dofs), 0);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
-    for (SparseMatrix::InnerIterator entry(stiffness, problem.contact_dofs[i]); entry; ++entry) {
-      entries.emplace_back(static_cast<int>(i), static_cast<int>(entry.row()), entry.value());
-      is_near[static_cast<std::size_t>(entry.row())] = 1;
-    }
+  for (Index row = 0; row < stiffness_.rows().rows(); ++row) {
+    for (SparseRowMatrix::InnerIterator entry(stiffness_.rows(), row); entry; ++entry)
+      is_near[static_cast<std::size_t>(entry.col())] = 1;
   }
-  contact_rows_.resize(static_cast<Index>(problem.contact_dofs.size()), dofs);
-  contact_rows_.setFromTriplets(entries.begin(), entries.end());
   contact_node_dofs_.clear();
   for (const Index node : problem.contact.unique_nodes()) {
     for (int k = 0; k < problem.dimension; ++k) contact_node_dofs_.push_back(node * problem.dimension + k);
@@ -49,7 +44,7 @@ void ContactEquilibrium::require(const SemidiscreteProblem& problem, const State
                                  const Vector& load, const Vector& supported_next, double step,
                                  StepEquations& equations, Stage& stage) {
   predict(problem, state, supported_next, step);
-  row_force_.noalias() = contact_rows_ * predicted_;
+  stiffness_.multiply(predicted_, row_force_);
   if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
     const Index dof = problem.contact_dofs[i];

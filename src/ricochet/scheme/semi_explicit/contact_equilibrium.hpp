@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "ricochet/problem/stage.hpp"
+#include "ricochet/scheme/contact_stiffness.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
 /// @file Contact nodes without inertia in an explicit step: their equilibrium at the end of it,
@@ -26,7 +27,7 @@ class ContactEquilibrium {
  private:
   void predict(const SemidiscreteProblem& problem, const State& state, const Vector& supported_next, double step);
 
-  SparseRowMatrix contact_rows_;          ///< K_c: contact dofs × dofs
+  ContactStiffness stiffness_;            ///< K_c
   std::vector<Index> near_dofs_;          ///< those that have an entry in K_c
   std::vector<Index> contact_node_dofs_;  ///< of contact nodes, supported ones too
   Vector predicted_;                      ///< ΔU on near dofs

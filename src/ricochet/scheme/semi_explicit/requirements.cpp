@@ -37,7 +37,7 @@ void require_semi_explicit(const SemidiscreteProblem& problem) {
     throw Error(ErrorKind::invalid_input,
                 "scheme \"semi-explicit\" takes no damping proportional to the stiffness: it would make the stable "
                 "step shorter and need a second product with K; set material damping.stiffness = 0 (damping.mass is "
-                "possible), or use scheme \"newmark\"");
+                "possible), or use scheme \"reduced-kane\"");
   }
 }
 
@@ -47,7 +47,7 @@ void check_critical_step(double step, double critical_step) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("scheme \"semi-explicit\": time.step = {:.6g} is {:.3g} times the critical step, "
                             "{:.6g}: the motion would grow without bound; set time.step = {:.3g} or less, or use "
-                            "scheme \"newmark\", which is stable for any step",
+                            "scheme \"reduced-kane\", which is stable for any step",
                             step, fraction, critical_step, safe_fraction * critical_step));
   }
   if (fraction <= safe_fraction) return;
