@@ -61,7 +61,7 @@ void run(const std::string& path, int threads) {
   Session session(path);
   session.build(nullptr);
   const SemidiscreteProblem& problem = session.model().problem;
-  const OperatorCoefficients a = session.scheme().operators(problem).front();
+  const OperatorCoefficients a = session.scheme().operators(problem).back();
   const SparseMatrix matrix = a.stiffness * problem.internal_force->tangent() + a.mass * problem.mass.whole();
   SparseCholesky own, library;
   const double ordering = seconds([&] { own.analyse(matrix); });

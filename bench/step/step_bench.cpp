@@ -57,7 +57,7 @@ double megabytes(const SparseMatrix& matrix) {
 std::unique_ptr<Limits> make_limits(const SemidiscreteProblem& problem, const Scheme& scheme,
                                     std::size_t factor_entries) {
   if (std::isfinite(scheme.critical_step())) return std::make_unique<ExplicitLimits>(problem, factor_entries);
-  const OperatorCoefficients a = scheme.operators(problem).front();
+  const OperatorCoefficients a = scheme.operators(problem).back();
   return std::make_unique<DirectLimits>(a.stiffness * problem.internal_force->tangent() +
                                         a.mass * problem.mass.whole());
 }

@@ -58,6 +58,16 @@ class DiscClaims(TestCase):
               f"semi-explicit: loss {loss['semi-explicit']:.2e}, variation {variation['semi-explicit']:.4g}; "
               f"midpoint: energy x {growth:.4g}")
 
+    def test_the_figure_that_the_source_was_looking_for(self):
+        """Energy and momentum of every step to rounding, a smooth force, no interpenetration: the default."""
+        run = self.simulate(DISC, "reduced-kane", {"time.scheme": "reduced-kane", "output.fields_every": 0})
+        history = History(run / "history.csv")
+        energy = history["total_energy"]
+        self.assertLessEqual(max(abs(value - energy[0]) for value in energy), 1e-11 * energy[0])
+        self.assertLessEqual(max(history["max_penetration"]), 1e-12 * RADIUS)
+        self.assertGreater(max(history["lowest.reaction_normal"]), 10.0)
+        self.assertLess(total_variation(history["lowest.reaction_normal"]), 60.0)  # 39 is the least
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -4,7 +4,7 @@ import json
 import re
 import unittest
 
-from harness import TestCase, block_case, run, settings
+from harness import SOURCE, TestCase, block_case, run, settings
 
 SUPPORT = '[[support]]\ngroup = "sides"\ncomponents = ["x"]\nvalue = "{}"\n'
 
@@ -30,6 +30,24 @@ class Warnings(TestCase):
                 self.assertIn(f"case.toml:{line}:9", told[0])
                 self.assertIn("jumps at t = 0.1.", told[0])
                 self.assertIn("velocity of this support jumps", run("validate", self.folder / "case.toml").stderr)
+
+    def test_steps_that_are_long_for_their_scheme(self):
+        for scheme, limited in (("newmark", True), ("mean-reaction", True), ("reduced-kane", False)):
+            text = block_case()
+            if scheme != "newmark":
+                text = text.replace('scheme = "newmark"\npreset = "trapezoidal"', f'scheme = "{scheme}"')
+            for step in (0.1, 0.001):
+                told = self.warnings_of(text, **{"time.step": step, "mass.type": "equivalent", "time.end": 10 * step})
+                told = [line for line in told if "a compression wave crosses a median cell" in line]
+                self.assertEqual(len(told), 1 if limited and step == 0.1 else 0, (scheme, step, told))
+
+    def test_energy_that_long_steps_take(self):
+        ball = SOURCE / "cases" / "ball" / "ball.toml"
+        for weight, loses in (("end", True), ("adaptive", False)):
+            output = self.folder / weight
+            run("run", ball, "-o", output, "--quiet", "--set", "time.scheme=reduced-kane", "--set", f"time.reaction_weight={weight}")
+            told = json.loads((output / "summary.json").read_text(encoding="utf-8"))["warnings"]
+            self.assertEqual(any("the scheme itself have taken" in line for line in told), loses, told)
 
     def test_jumps_anywhere_in_a_long_run(self):
         # A corner at a step, between two steps, at the begin of the motion and after a million steps.

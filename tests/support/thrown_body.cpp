@@ -56,8 +56,16 @@ std::string time_of(const std::string& scheme) {
 
 std::vector<std::string> masses_of(const std::string& scheme) {
   if (scheme == "semi-explicit") return {"equivalent-lumped"};
-  if (scheme == "klr-conserving" || scheme == "contact-stabilized") return {"consistent", "lumped"};
-  return mass_names();
+  if (scheme == "klr-conserving" || scheme == "contact-stabilized" || scheme == "midpoint")
+    return {"consistent", "lumped"};
+  std::vector<std::string> result = mass_names();
+  if (scheme.starts_with("reduced-") || scheme == "mean-reaction")
+    std::erase_if(result, [](const std::string& mass) { return !mass.starts_with("equivalent"); });
+  return result;
+}
+
+bool takes_friction(const std::string& scheme) {
+  return scheme != "mean-reaction" && scheme != "reduced-midpoint";
 }
 
 bool Discretization::is_possible() const {
@@ -70,7 +78,8 @@ std::string Discretization::time() const {
 }
 
 std::string Discretization::contact() const {
-  return "friction = 0.3\nmultipliers = \"" + multipliers + "\"\nunstable_multipliers = \"allow\"\n";
+  return std::string(takes_friction(scheme) ? "friction = 0.3\n" : "") + "multipliers = \"" + multipliers +
+         "\"\nunstable_multipliers = \"allow\"\n";
 }
 
 std::vector<Discretization> all_discretizations() {
@@ -88,12 +97,17 @@ std::vector<SupportedCase> moving_support_cases() {
   for (const auto& [scheme, mass] :
        {std::pair{"newmark\"\npreset = \"trapezoidal", "equivalent"}, std::pair{"midpoint", "consistent"},
         std::pair{"klr-conserving", "consistent"}, std::pair{"semi-explicit", "equivalent-lumped"},
-        std::pair{"contact-stabilized", "consistent"}}) {
+        std::pair{"contact-stabilized", "consistent"}, std::pair{"reduced-kane", "equivalent"},
+        std::pair{"reduced-kane\"\nreaction_weight = \"adaptive", "equivalent"},
+        std::pair{"mean-reaction", "equivalent"}, std::pair{"reduced-midpoint", "equivalent"}}) {
+    const std::string name = scheme;
+    const char* const friction = takes_friction(name) ? "friction = 0.4\n" : "";
     result.push_back({scheme, "[mesh]\nfile = \"" + data_path("meshes/quadrilateral_o1_msh41_ascii.msh") +
                                   "\"\n"
                                   "[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n"
                                   "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.05]\nnormal = [0.0, 1.0]\n"
-                                  "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\nfriction = 0.4\n"
+                                  "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n" +
+                                  friction +
                                   "[[support]]\ngroup = \"sides\"\ncomponents = [\"x\", \"y\"]\nvalue = "
                                   "\"-0.1*sin(7*t)\"\n[mass]\ntype = \"" +
                                   std::string(mass) + "\"\n[time]\nscheme = \"" + scheme +

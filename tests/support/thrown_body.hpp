@@ -35,6 +35,9 @@ std::string time_of(const std::string& scheme);
 /// is tested with all of them.
 std::vector<std::string> masses_of(const std::string& scheme);
 
+/// Those that do not refuse it.
+bool takes_friction(const std::string& scheme);
+
 /// Every scheme, mass and multiplier space that is registered, whether they go together or not.
 struct Discretization {
   std::string scheme, mass, multipliers;

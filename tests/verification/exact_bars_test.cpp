@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/case_run.hpp"
@@ -114,6 +115,11 @@ struct Errors {
 
 constexpr const char* trapezoidal =
     "[mass]\ntype = \"equivalent\"\n[time]\nscheme = \"newmark\"\npreset = \"trapezoidal\"\n";
+constexpr const char* kane_end =
+    "[mass]\ntype = \"equivalent\"\n[time]\nscheme = \"reduced-kane\"\nreaction_weight = \"end\"\n";
+constexpr const char* kane = "[mass]\ntype = \"equivalent\"\n[time]\n";  // the default
+constexpr const char* mean_reaction = "[mass]\ntype = \"equivalent\"\n[time]\nscheme = \"mean-reaction\"\n";
+constexpr const char* reduced_midpoint = "[mass]\ntype = \"equivalent\"\n[time]\nscheme = \"reduced-midpoint\"\n";
 constexpr const char* semi_explicit = "[mass]\ntype = \"equivalent-lumped\"\n[time]\nscheme = \"semi-explicit\"\n";
 
 /// Runs a problem on `cells` cells with Δt = ½ h/c. Errors are relative L² norms over the bar and time (displacement of
@@ -183,12 +189,20 @@ double order(double coarse, double fine) {
   return fine > 0.0 ? std::log2(coarse / fine) : 0.0;
 }
 
+/// What `[time]` says before its step.
+std::string scheme_name(const std::string& text) {
+  const std::size_t begin = text.find("scheme");
+  std::string name = begin == std::string::npos ? "reduced-kane" : text.substr(begin);
+  std::replace(name.begin(), name.end(), '\n', ' ');
+  return name;
+}
+
 /// Prints the table of a problem and returns the errors by refinement.
 std::vector<Errors> table(const Problem& problem, const std::vector<int>& cells, int degree, bool triangles,
                           const char* scheme = trapezoidal) {
   std::vector<Errors> all;
   std::printf("%s, %s, degree %d, %s, dt = h/2c\n", problem.name.c_str(), triangles ? "triangles" : "quadrilaterals",
-              degree, scheme == trapezoidal ? "equivalent mass, beta 1/4" : "lumped equivalent mass, semi-explicit");
+              degree, scheme_name(scheme).c_str());
   std::printf("%6s %18s %18s %18s %18s  %s\n", "cells", "displacement", "velocity", "stress", "pressure",
               "contacts (in steps from the exact times)");
   for (const int n : cells) {
@@ -207,6 +221,7 @@ std::vector<Errors> table(const Problem& problem, const std::vector<int>& cells,
     }
     std::printf("%6d %s %s %s %s %s (%zu)\n", n, cell(&Errors::displacement).c_str(), cell(&Errors::velocity).c_str(),
                 cell(&Errors::stress).c_str(), cell(&Errors::pressure).c_str(), times.c_str(), e.contacts.size());
+    std::printf("       energy change %.2e\n", e.energy_change);
   }
   return all;
 }
@@ -298,6 +313,28 @@ TEST(ExactBars, SemiExplicit) {
     EXPECT_GT(mean_order(all, &Errors::pressure), 0.2);
     EXPECT_LT(all.back().energy_change, 5e-3);
     expect_late_releases(problem, all, cells);
+  }
+}
+
+TEST(ExactBars, ReducedSchemes) {
+  for (const Problem& problem : {impact(), bounce(), rod()}) {
+    const std::vector<int> cells{25, 50, 100, 200};
+    const std::vector<Errors> newmark = table(problem, cells, 1, false);
+    for (const char* const scheme : {kane_end, kane, mean_reaction, reduced_midpoint}) {
+      const std::vector<Errors> all = table(problem, cells, 1, false, scheme);
+      const std::string name = problem.name + scheme;
+      EXPECT_GT(mean_order(all, &Errors::displacement), 0.6) << name;
+      EXPECT_GT(mean_order(all, &Errors::pressure), 0.2) << name;
+      // As near to the closed form as the trapezoidal rule, or nearer.
+      EXPECT_LT(all.back().displacement, 1.5 * newmark.back().displacement) << name;
+      EXPECT_LT(all.back().pressure, 1.3 * newmark.back().pressure) << name;
+      expect_contact_times(problem, all, cells);
+      const bool is_exact = scheme == mean_reaction || scheme == kane;  // at half a crossing the default has μ = 0
+      EXPECT_LT(all.back().energy_change, is_exact ? 1e-11 : 1e-2) << name;
+      if (scheme == kane_end) {
+        EXPECT_GT(order(all.front().energy_change, all.back().energy_change) / 3.0, 0.9) << name;
+      }
+    }
   }
 }
 

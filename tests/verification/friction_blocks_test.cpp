@@ -70,7 +70,8 @@ std::vector<Method> methods() {
           {"newmark, consistent", {"mass.type=consistent"}},
           {"newmark 0.3025 0.6, equivalent", {"time.beta=0.3025", "time.gamma=0.6"}},
           {"klr-conserving, consistent", {"time.scheme=klr-conserving", "mass.type=consistent"}},
-          {"midpoint, equivalent", {"time.scheme=midpoint"}},
+          {"reduced-kane, equivalent", {"time.scheme=reduced-kane"}},
+          {"reduced-kane adaptive, equivalent", {"time.scheme=reduced-kane", "time.reaction_weight=adaptive"}},
           {"midpoint, consistent", {"time.scheme=midpoint", "mass.type=consistent"}}};
 }
 

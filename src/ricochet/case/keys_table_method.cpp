@@ -26,7 +26,12 @@ Section time_section() {
       .required = true,
       .doc = "The time scheme and its steps.",
       .keys = {
-          {.name = "scheme", .type = KeyType::choice, .required = true, .doc = "The time scheme."},
+          {.name = "scheme",
+           .type = KeyType::choice,
+           .standard = "reduced-kane",
+           .doc = "The time scheme. The default creates no energy on planes at any step; it needs a mass without "
+                  "inertia on the "
+                  "contact nodes (mass.type)."},
           {.name = "step",
            .type = KeyType::number,
            .unit = "time",

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "ricochet/base/text.hpp"
+#include "ricochet/fem/mesh_measures.hpp"
 #include "ricochet/fem/wave_speed.hpp"
 
 namespace ricochet {
@@ -94,6 +95,16 @@ std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies&
   for (std::size_t b = 0; b < count; ++b)
     result.push_back((highest[b] - lowest[b]).head(nodes.rows()).maxCoeff() / speed[b]);
   return result;
+}
+
+std::vector<double> cell_crossing_times(const Body& body) {
+  std::vector<double> times = cell_heights(*body.mesh);
+  for (std::size_t cell = 0; cell < times.size(); ++cell) {
+    const Material& material = body.materials[static_cast<std::size_t>(body.cell_material[cell])];
+    times[cell] /= compression_wave_speed(material, is_plane_stress(body));
+  }
+  std::sort(times.begin(), times.end());
+  return times;
 }
 
 }  // namespace ricochet

@@ -25,4 +25,7 @@ struct ConnectedBodies {
 /// slowest material. Nothing that happens at one end is known at the other one sooner.
 [[nodiscard]] std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies& bodies);
 
+/// Times that a compression wave takes through the height of cells, ascending.
+[[nodiscard]] std::vector<double> cell_crossing_times(const Body& body);
+
 }  // namespace ricochet

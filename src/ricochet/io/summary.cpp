@@ -122,6 +122,12 @@ double RunSummary::energy_scale() const {
   return largest_size(*this, std::array{"total_energy", "kinetic_energy", "elastic_energy"});
 }
 
+double RunSummary::loss_by_scheme() const {
+  const double scale = energy_scale();
+  const double lost = digest("numerical_dissipation").maximum - std::min(0.0, digest("contact_work").minimum);
+  return scale > 0.0 ? lost / scale : 0.0;
+}
+
 bool RunSummary::small_strain_holds_in(std::size_t impact) const {
   return rotation ? rotation->holds_in_impact(impact) : digest("max_rotation").maximum <= rotation_limit;
 }

@@ -121,6 +121,9 @@ struct RunSummary {
   /// Largest |total_energy| + |algorithmic_energy| bound, the scale of the energy account: max of |first|, |min|, |max|
   /// of total energy and of kinetic and elastic energy.
   [[nodiscard]] double energy_scale() const;
+  /// What contact forces and the scheme itself have taken away, over energy_scale(): no real body loses it. 0 where
+  /// there is no energy.
+  [[nodiscard]] double loss_by_scheme() const;
   /// False where cells had turned too far for small strain when an impact (numbered from 0) ended.
   [[nodiscard]] bool small_strain_holds_in(std::size_t impact) const;
   /// The same of all impacts; of a run without any at all times.

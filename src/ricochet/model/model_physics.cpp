@@ -12,6 +12,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/contact/multiplier_space.hpp"
 #include "ricochet/fem/cell_masses.hpp"
+#include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 #include "ricochet/model/model_parts.hpp"
@@ -63,6 +64,22 @@ void warn_of_creep(const Case& input, const Scheme& scheme, const SemidiscretePr
       "{}, friction and mass \"{}\": nodes that stick keep their velocity with alternating sign, their forces rattle "
       "and slips come out wrong; use mass \"equivalent\"",
       scheme_text(input.time), input.mass.type));
+}
+
+void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& model) {
+  if (model.problem.contact.size() == 0) return;
+  const Scheme::LongSteps limit = scheme.long_steps(model.problem);
+  if (limit.trouble.empty()) return;
+  const std::vector<double> times = cell_crossing_times(model.body);
+  const double median = times[times.size() / 2], crossings = input.time.step / median;
+  if (!(crossings > limit.crossings)) return;
+  log::warning(fmt::format(
+      "{}: in time.step = {:.3g} a compression wave crosses a median cell {:.3g} times, and with {} with steps of more "
+      "than {:g} such times {}; take a step of at most {:.2g}, or scheme \"reduced-kane\" with mass \"equivalent\", "
+      "which "
+      "takes any step",
+      input.where("time.step").text(), input.time.step, crossings, scheme_text(input.time), limit.crossings,
+      limit.trouble, limit.crossings * median));
 }
 
 /// With degree 1 a body whose skin is nearly all of its nodes has little left to carry the inertia of the skin: the
@@ -258,6 +275,7 @@ void assemble_operators(const Case& input, Model& model) {
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
   warn_of_creep(input, *scheme, model.problem);
+  warn_of_long_steps(input, *scheme, model);
   warn_of_thin_inside(model, mass_input.contact_nodes.size());
   warn_of_jumping_supports(input, *scheme);
 }

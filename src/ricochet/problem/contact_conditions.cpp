@@ -98,11 +98,11 @@ void require_friction(const SemidiscreteProblem& problem, const Vector& velocity
 
 void linearize_contact(const SemidiscreteProblem& problem, const Vector& increment, Stage& stage) {
   ContactMotion& motion = *stage.motion;
-  motion.solution = motion.displacement + increment;
+  motion.solution = motion.displacement + stage.gap_factor * increment;
   problem.contact.geometry->update(motion.solution, motion.time, own_rows(problem, stage));
   problem.gaps(motion.solution, motion.time, stage.gap_offset);
   stage.rows->normal_motion(increment, motion.gap_change);
-  stage.gap_offset -= motion.gap_change;
+  stage.gap_offset -= stage.gap_factor * motion.gap_change;
   if (stage.slip_offset.size() == 0) return;
   project_motion(*stage.rows, stage.obstacle);
   take_slip(problem, motion.velocity, stage.obstacle.tangential, stage);
@@ -111,22 +111,23 @@ void linearize_contact(const SemidiscreteProblem& problem, const Vector& increme
 LinearizationError linearization_error(const SemidiscreteProblem& problem, const StageSolution& solution, Stage& stage,
                                        Vector& gap) {
   ContactMotion& motion = *stage.motion;
-  motion.solution = motion.displacement + solution.increment;
+  const Vector& increment = solution.contact_motion();
+  motion.solution = motion.displacement + stage.gap_factor * increment;
   problem.gaps(motion.solution, motion.time, gap);
-  stage.rows->normal_motion(solution.increment, motion.gap_change);
-  problem.trace_rounding(solution.increment, motion.gap_change_rounding);
+  stage.rows->normal_motion(increment, motion.gap_change);
+  problem.trace_rounding(increment, motion.gap_change_rounding);
   constexpr double none = -std::numeric_limits<double>::infinity();
   LinearizationError error{none, none};
   for (Index i = 0; i < gap.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] == 0) continue;
     // What the solver leaves of the linear condition, it leaves whatever the rows are.
-    const double beside = std::abs(gap[i] - (stage.gap_offset[i] + motion.gap_change[i]));
+    const double beside = std::abs(gap[i] - (stage.gap_offset[i] + stage.gap_factor * motion.gap_change[i]));
     const double wrong = solution.normal_reaction[i] > 0.0 ? beside : std::min(-gap[i], beside);
     const double rounding = stage.gap_offset_rounding[i];
     error.beyond_rounding = std::max(error.beyond_rounding, wrong - rounding);
     // Both gaps are rounded, and the increment's part is taken off and added again.
-    error.beyond_all_rounding =
-        std::max(error.beyond_all_rounding, wrong - 2.0 * (rounding + motion.gap_change_rounding[i]));
+    error.beyond_all_rounding = std::max(error.beyond_all_rounding,
+                                         wrong - 2.0 * (rounding + stage.gap_factor * motion.gap_change_rounding[i]));
   }
   return error;
 }

@@ -18,6 +18,12 @@
 /// b is the residual force at the base, q the gap (or gap rate) and p the slip rate there: written in increments, no
 /// digits are lost between large inertia terms that cancel, and the energy account closes to rounding.
 /// A scheme knows nothing of how a stage is solved; a step solver knows nothing of time.
+///
+/// Where contact nodes have no inertia a stage may state its conditions at the end of a step whose forces are those of
+/// its middle. With A_c, the operator of an earlier number on the contact dofs, and ρ = (r_N, −r_T), H = [G; B_T], the
+/// body then gets forces ρ̄, and the contact conditions hold for ρ and the contact motion m in place of δ, with s = 2:
+///   A δ = b + Hᵀ ρ̄ + support reactions,   m = δ − ½ A_c⁻¹ Hᵀ (ℓ ρ + 2 (ρ̄ − ρ)).
+/// ρ̄ is ρ, or a mean of the reactions over the step (ReactionMean). docs/energy.md has the reasons.
 namespace ricochet {
 
 /// Which dofs a stage solves for; δ is zero on the others that no support prescribes.
@@ -27,20 +33,30 @@ enum class StageDofs {
   massive,  ///< those with inertia
 };
 
+/// What acts on the body over a stage with a layer, ρ̄.
+enum class ReactionMean : char {
+  end,   ///< ρ
+  path,  ///< the mean of the reactions while the gaps without them go straight from the start to the end
+  mixed  ///< (1−μ) of that and μ of ρ: the least μ that keeps reactions smooth, see mean_reaction.hpp
+};
+
 /// A = mass·M + stiffness·K + damping·C, constant over a run.
 struct OperatorCoefficients {
   double mass = 0.0;       ///< α
   double stiffness = 0.0;  ///< κ
   double damping = 0.0;    ///< η
   StageDofs dofs = StageDofs::all;
+  int layer = -1;  ///< number of the operator A_c, before this one and of contact dofs; −1: the stage has none
+  double layer_weight = 1.0;  ///< ℓ
+  ReactionMean mean = ReactionMean::end;
 };
 
 /// What the contact conditions of a stage are taken from, so that they can be taken again where rows follow the motion:
-/// the gap at displacement + δ at `time`, and the slip rate B_T (velocity + σ δ) less the obstacles'.
+/// the gap at displacement + s δ at `time`, and the slip rate B_T (velocity + σ δ) less the obstacles'.
 struct ContactMotion {
   Vector displacement, velocity;
   double time = 0.0;
-  Vector solution, gap_change, gap_change_rounding;  ///< work space: displacement + δ, G δ
+  Vector solution, gap_change, gap_change_rounding;  ///< work space: displacement + s δ, G δ
 };
 
 struct Stage {
@@ -60,6 +76,8 @@ struct Stage {
   Vector slip_offset;              ///< p, (d−1) per contact point; empty: no friction in this stage
   Vector slip_offset_rounding;     ///< size of the rounding error of p, per contact point
   std::vector<char> frictionless;  ///< per contact point: 1 where this stage leaves friction out; empty: nowhere
+  /// Where the mean is not that of the end: y and the reactions at the start of the step, per contact point.
+  Vector start_gap, start_normal_reaction, start_tangential_reaction;
 };
 
 struct StageSolution {
@@ -69,6 +87,23 @@ struct StageSolution {
   Vector support_reaction;                    ///< on supported dofs
   std::vector<ContactStatus> contact_status;  ///< per contact point
   int iterations = 0;                         ///< of the contact solver
+  Vector contact_increment;                   ///< m on contact nodes, where the operator has a layer; else empty
+  /// ρ̄, where it is not ρ: then not empty.
+  Vector mean_normal_reaction, mean_tangential_reaction;
+  double path_contact_work = 0.0;  ///< of normal reactions along the path: −(those just after its start) · start_gap
+  double end_weight = 1.0;         ///< μ of this stage
+
+  /// What acts on the body over the stage.
+  [[nodiscard]] const Vector& acting_normal() const {
+    return mean_normal_reaction.size() > 0 ? mean_normal_reaction : normal_reaction;
+  }
+  [[nodiscard]] const Vector& acting_tangential() const {
+    return mean_tangential_reaction.size() > 0 ? mean_tangential_reaction : tangential_reaction;
+  }
+  /// What the contact conditions hold for: m, or δ.
+  [[nodiscard]] const Vector& contact_motion() const {
+    return contact_increment.size() > 0 ? contact_increment : increment;
+  }
 };
 
 }  // namespace ricochet

@@ -25,6 +25,19 @@ bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, co
   return energy <= 1e-14 * terms;
 }
 
+/// Energy that no real body loses, in an impact whose step is long for its waves.
+void judge_loss(const RunSummary& summary, const SemidiscreteProblem& problem, const State& state) {
+  constexpr double most = 0.05;
+  const double loss = summary.loss_by_scheme();
+  if (!(loss > most) || is_rounding_of_energy(summary.energy_scale(), problem, state)) return;
+  log::warning(
+      fmt::format("contact forces and the scheme itself have taken {:.2g} % of the largest energy (contact_work and "
+                  "numerical_dissipation of the history), which a real body keeps as waves: rebounds are too slow by "
+                  "that; a smaller "
+                  "time.step and smaller cells lose less",
+                  100.0 * loss));
+}
+
 void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
                   const State& state) {
   const double scale = summary.energy_scale();
@@ -33,20 +46,24 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   const double rotation = summary.digest("max_rotation").maximum;
   // What a body does in free flight after its impacts does not change what they came to.
   const bool rotates = rotation > large_rotation && !summary.small_strain_holds_in_impacts();
+  judge_loss(summary, problem, state);
   if (!(contact_creates || friction_creates || rotates) || is_rounding_of_energy(scale, problem, state)) return;
   if (contact_creates) {
     const bool best = scheme.suits_singular_mass() && problem.has_singular_mass();
+    const char* const remedy = "scheme \"reduced-kane\" with mass \"equivalent\" creates none";
     log::warning(
-        fmt::format("contact forces have created energy: contact_work reaches {:.2g} of the largest energy; {}",
+        fmt::format("contact forces have created energy: contact_work reaches {:.2g} of the largest energy; {}{}",
                     summary.digest("contact_work").maximum / scale,
                     best ? "take a time.step below the time in which a wave crosses a cell, and see that no body "
-                           "starts inside an obstacle"
-                         : "it comes from the time scheme: use newmark with mass \"equivalent\""));
+                           "starts inside an obstacle; "
+                         : "it comes from the time scheme: ",
+                    remedy));
   }
   if (friction_creates) {
     log::warning(fmt::format(
         "friction has created energy: friction_work reaches {:.2g} of the largest energy; it comes from the "
-        "weights that {} gives to the forces at the two ends of a step: take a smaller time.step",
+        "weights that {} gives to the forces at the two ends of a step: take a smaller time.step, or "
+        "scheme \"reduced-kane\" with mass \"equivalent\", whose friction creates none",
         summary.digest("friction_work").maximum / scale, summary.scheme));
   }
   if (rotates) {

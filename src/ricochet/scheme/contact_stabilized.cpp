@@ -14,8 +14,9 @@ namespace {
 ///   (2/h²) M (U₁ − Û) + C (U₁−U₀)/h + K (U₀+U₁)/2 = L_½ + Gᵀ r_N − B_Tᵀ r_T,   0 ≤ r_N ⟂ g(U₁) ≥ 0,
 ///   friction on B_T (U₁−U₀)/h;   V₁ = V₀ + (2/h)(U₁ − Û).
 /// The second stage depends on the first. J changes in a step by ΔUᵀ(Gᵀr_N − …) − (2/h²)(Û−U₀−hV₀)ᵀM(U₁−Û), without
-/// friction by −r_N·g₀ − (2/h²) μ·g₁ ≤ 0 where gaps are linear: no step, however long, creates energy there. In hollows
-/// (concave gaps) it is less, on balls (convex ones) more by up to r_N s²/2R for a slide by s.
+/// friction and but for the work of supports by −r_N·g₀ − (2/h²) μ·g₁ ≤ 0 where gaps are linear: no step, however long,
+/// creates energy there. In hollows (concave gaps) it is less, on balls (convex ones) more by up to r_N s²/2R for a
+/// slide by s.
 class ContactStabilized final : public Scheme {
  public:
   using Scheme::Scheme;
@@ -25,13 +26,15 @@ class ContactStabilized final : public Scheme {
     return {{1.0, 0.0, 0.0}, {2.0 / (h * h), 0.5, 1.0 / h}};
   }
   [[nodiscard]] double force_instant() const override { return -0.5; }
-  [[nodiscard]] double numerical_dissipation(const SemidiscreteProblem&) const override { return dissipation_; }
+  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
+    return {.support_work = support_work_, .numerical_dissipation = dissipation_};
+  }
 
   void analyse(const SemidiscreteProblem& problem) override {
     if (!problem.has_singular_mass()) return;
     throw Error(ErrorKind::invalid_input,
                 "scheme \"contact-stabilized\" needs inertia on the contact nodes, in whose norm it projects: set "
-                "mass.type = \"consistent\" (or \"lumped\"), or use scheme \"newmark\" with this mass");
+                "mass.type = \"consistent\" (or \"lumped\"), or use scheme \"reduced-kane\" with this mass");
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
@@ -41,7 +44,8 @@ class ContactStabilized final : public Scheme {
     projection.right_hand_side.setZero(problem.dof_count());
     projection.prescribed.setZero(problem.supports.size());
     require_no_penetration(problem, base_, end, projection);
-    const Vector& shift = stages.solve(0).increment;  // Û − U₀ − hV₀
+    const StageSolution& projected = stages.solve(0);
+    const Vector& shift = projected.increment;  // Û − U₀ − hV₀
 
     Stage& stage = stages.stage(1);
     flight_ = h * state.velocity + shift;  // Û − U₀
@@ -56,7 +60,12 @@ class ContactStabilized final : public Scheme {
     const StageSolution& solution = stages.solve(1);
 
     problem.mass.multiply(solution.increment, momentum_);
-    dissipation_ = 2.0 / (h * h) * shift.dot(momentum_);
+    support_work_ = 0.0;  // of what holds supports during the projection
+    for (Index i = 0; i < problem.supports.size(); ++i) {
+      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+      support_work_ -= 2.0 / (h * h) * projected.support_reaction[i] * solution.increment[dof];
+    }
+    dissipation_ = 2.0 / (h * h) * shift.dot(momentum_) + support_work_;
     increment = flight_ + solution.increment;
     state.displacement += increment;
     state.velocity += (2.0 / h) * solution.increment;
@@ -65,7 +74,7 @@ class ContactStabilized final : public Scheme {
   }
 
  private:
-  double dissipation_ = 0.0;
+  double dissipation_ = 0.0, support_work_ = 0.0;
   Vector base_, flight_, middle_, rate_, momentum_;
   StepEquations equations_;
 };

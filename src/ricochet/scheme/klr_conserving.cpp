@@ -33,7 +33,7 @@ class KlrConserving final : public Scheme {
       throw Error(
           ErrorKind::invalid_input,
           "scheme \"klr-conserving\" needs inertia on the contact nodes: without it they oscillate more and more; "
-          "set mass.type = \"consistent\" (or \"lumped\"), or use scheme \"newmark\" with this mass");
+          "set mass.type = \"consistent\" (or \"lumped\"), or use scheme \"reduced-kane\" with this mass");
     }
   }
 

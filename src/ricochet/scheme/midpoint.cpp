@@ -1,3 +1,4 @@
+#include "ricochet/base/error.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
@@ -21,6 +22,13 @@ class Midpoint final : public Scheme {
     return {{4.0 / (h * h), 1.0, 2.0 / h, StageDofs::all}};
   }
   [[nodiscard]] double force_instant() const override { return -0.5; }
+
+  void analyse(const SemidiscreteProblem& problem) override {
+    if (!problem.has_singular_mass()) return;
+    throw Error(ErrorKind::invalid_input,
+                "scheme \"midpoint\" needs inertia on the contact nodes: without it they flip from step to "
+                "step; use scheme \"reduced-midpoint\" or \"reduced-kane\", or set mass.type = \"consistent\"");
+  }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step(), middle = state.time + 0.5 * h;

@@ -5,12 +5,15 @@ namespace ricochet {
 // The schemes, each by the function of its own file that registers it. One line each, in the order of the
 // documentation.
 // clang-format off
-#define RICOCHET_SCHEMES(scheme) \
-  scheme(midpoint_scheme)        \
-  scheme(klr_conserving_scheme)  \
-  scheme(newmark_scheme)         \
-  scheme(semi_explicit_scheme)   \
-  scheme(contact_stabilized_scheme)
+#define RICOCHET_SCHEMES(scheme)    \
+  scheme(midpoint_scheme)           \
+  scheme(klr_conserving_scheme)     \
+  scheme(newmark_scheme)            \
+  scheme(semi_explicit_scheme)      \
+  scheme(contact_stabilized_scheme) \
+  scheme(reduced_kane_scheme)       \
+  scheme(mean_reaction_scheme)      \
+  scheme(reduced_midpoint_scheme)
 // clang-format on
 
 RICOCHET_DEFINE_REGISTRY(scheme_registry, SchemeConstructor, "scheme", RICOCHET_SCHEMES)

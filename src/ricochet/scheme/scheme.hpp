@@ -22,6 +22,14 @@ struct WorkRule {
   double current_weight = 1.0;
 };
 
+/// What the balance of energy of the last step has besides the works of forces on increments, in closed form.
+struct StepCorrections {
+  double contact_work = 0.0;           ///< where the contact forces act along a path that is not straight
+  double support_work = 0.0;           ///< of reactions that are none of the step's own
+  double load_work = 0.0;              ///< of loads that vary on nodes without inertia
+  double numerical_dissipation = 0.0;  ///< energy that the scheme itself takes away, positive when it is lost
+};
+
 class Scheme {
  public:
   explicit Scheme(double step) : step_(step) {}
@@ -36,6 +44,8 @@ class Scheme {
   /// Instants of energies and forces in a row of the history, relative to its time, in steps; for docs and summary.
   [[nodiscard]] virtual double energy_instant() const { return 0.0; }
   [[nodiscard]] virtual double force_instant() const { return 0.0; }
+  /// The same of what acted over a step: its middle where the forces shown are those of its end.
+  [[nodiscard]] virtual double acting_instant() const { return force_instant(); }
   [[nodiscard]] virtual WorkRule work_rule() const { return {}; }
   /// Steps below this one are stable; infinite without such a limit. Known after analyse().
   [[nodiscard]] virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }
@@ -52,6 +62,13 @@ class Scheme {
   [[nodiscard]] virtual bool suits_singular_mass() const { return false; }
   /// Nodes with inertia that friction holds keep a velocity of alternating sign.
   [[nodiscard]] virtual bool stuck_nodes_alternate() const { return false; }
+  /// What goes wrong with steps of more than some times the time in which a wave crosses a cell: the rest of a sentence
+  /// that begins with such a step. Empty: nothing that is known.
+  struct LongSteps {
+    double crossings = 1.0;
+    std::string trouble = {};
+  };
+  [[nodiscard]] virtual LongSteps long_steps(const SemidiscreteProblem&) const { return {}; }
   /// What a jump in the velocity of a prescribed displacement leaves in the steps that follow.
   enum class JumpResponse { fades, alternates, grows };
   [[nodiscard]] virtual JumpResponse jump_response() const { return JumpResponse::fades; }
@@ -74,8 +91,7 @@ class Scheme {
   [[nodiscard]] virtual const Vector* internal_force(const State&) const { return nullptr; }
   /// A closed-form term that the scheme conserves together with the energy.
   [[nodiscard]] virtual double algorithmic_energy(const SemidiscreteProblem&, const State&) const { return 0.0; }
-  /// Energy that the scheme itself takes away in the last step, in closed form.
-  [[nodiscard]] virtual double numerical_dissipation(const SemidiscreteProblem&) const { return 0.0; }
+  [[nodiscard]] virtual StepCorrections step_corrections(const SemidiscreteProblem&) const { return {}; }
 
  private:
   double step_;

@@ -1,5 +1,8 @@
 #include "ricochet/scheme/state.hpp"
 
+#include <algorithm>
+#include <initializer_list>
+
 namespace ricochet {
 
 void save(const State& state, Snapshot& snapshot, const std::string& name) {
@@ -10,6 +13,8 @@ void save(const State& state, Snapshot& snapshot, const std::string& name) {
   snapshot.save(name + ".acceleration", state.acceleration);
   snapshot.save(name + ".normal_reaction", state.forces.normal_reaction);
   snapshot.save(name + ".tangential_reaction", state.forces.tangential_reaction);
+  snapshot.save(name + ".mean_normal_reaction", state.forces.mean_normal_reaction);
+  snapshot.save(name + ".mean_tangential_reaction", state.forces.mean_tangential_reaction);
   snapshot.save(name + ".support_reaction", state.forces.support_reaction);
   snapshot.save(name + ".varying_load", state.forces.varying_load);
   snapshot.save(name + ".damping_force", state.forces.damping_force);
@@ -30,6 +35,18 @@ void save(const State& state, Snapshot& snapshot, const std::string& name) {
   snapshot.save(name + ".memory", std::move(names));
 }
 
+namespace {
+
+/// Values of one of these lengths.
+const Vector& memory(const Snapshot& snapshot, const std::string& name, std::initializer_list<Index> lengths) {
+  const Vector& values = snapshot.reals(name);
+  if (std::find(lengths.begin(), lengths.end(), values.size()) == lengths.end())
+    Snapshot::refuse(name, "has a length that is none of this problem's");
+  return values;
+}
+
+}  // namespace
+
 State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, const std::string& name) {
   const Index dofs = problem.dof_count(), points = problem.contact.size();
   const Index tangents = points * (problem.dimension - 1);
@@ -41,6 +58,8 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   state.acceleration = snapshot.reals(name + ".acceleration", dofs);
   state.forces.normal_reaction = snapshot.reals(name + ".normal_reaction", points);
   state.forces.tangential_reaction = snapshot.reals(name + ".tangential_reaction", tangents, 0);
+  state.forces.mean_normal_reaction = snapshot.reals(name + ".mean_normal_reaction", points, 0);
+  state.forces.mean_tangential_reaction = snapshot.reals(name + ".mean_tangential_reaction", tangents, 0);
   state.forces.support_reaction = snapshot.reals(name + ".support_reaction", problem.supports.size());
   state.forces.varying_load = snapshot.reals(name + ".varying_load", dofs, 0);
   state.forces.damping_force = snapshot.reals(name + ".damping_force", dofs, 0);
@@ -59,7 +78,7 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   state.obstacle_increment.in_space = in_space.reshaped(problem.dimension, in_space.size() / problem.dimension);
   state.iterations = static_cast<int>(snapshot.integer(name + ".iterations"));
   for (const std::string& key : snapshot.texts(name + ".memory"))
-    state.memory[key] = snapshot.reals(name + ".memory." + key, dofs, problem.supports.size());
+    state.memory[key] = memory(snapshot, name + ".memory." + key, {dofs, problem.supports.size(), tangents});
   return state;
 }
 

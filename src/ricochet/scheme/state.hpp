@@ -17,9 +17,19 @@ struct StepForces {
   std::shared_ptr<const ContactRows> rows;  ///< directions of the reactions: Gᵀ r_N − B_Tᵀ r_T is their nodal force
   Vector normal_reaction;                   ///< r_N per contact point
   Vector tangential_reaction;               ///< r_T, (d−1) per contact point; empty without friction
-  Vector support_reaction;                  ///< on supported dofs
-  Vector varying_load;                      ///< varying part of L, per dof; empty without one
-  Vector damping_force;                     ///< C times the scheme's velocity, per dof; empty without damping
+  /// Mean reactions over the step, where those act on the body and the ones above hold at its end; else empty.
+  Vector mean_normal_reaction, mean_tangential_reaction;
+  Vector support_reaction;  ///< on supported dofs
+  Vector varying_load;      ///< varying part of L, per dof; empty without one
+  Vector damping_force;     ///< C times the scheme's velocity, per dof; empty without damping
+
+  /// What acted on the body over the step.
+  [[nodiscard]] const Vector& acting_normal() const {
+    return mean_normal_reaction.size() > 0 ? mean_normal_reaction : normal_reaction;
+  }
+  [[nodiscard]] const Vector& acting_tangential() const {
+    return mean_tangential_reaction.size() > 0 ? mean_tangential_reaction : tangential_reaction;
+  }
 };
 
 struct State {
@@ -33,7 +43,8 @@ struct State {
   /// Displacement of the obstacles at the contact points while the body made the increment of the last step.
   ObstacleMotion obstacle_increment;
   int iterations = 0;  ///< of the contact solver in the last step
-  /// What a scheme remembers besides, by name, so that a checkpoint can write it.
+  /// What a scheme remembers besides, by name, so that a checkpoint can write it: of a length per dof, per supported
+  /// dof, or (d−1) per contact point.
   std::map<std::string, Vector> memory;
 };
 

@@ -17,6 +17,13 @@ void StepEquations::balance(const SemidiscreteProblem& problem, double time, con
   if (problem.has_damping()) stage.right_hand_side.noalias() -= problem.damping * velocity;
 }
 
+void StepEquations::balance_with(const SemidiscreteProblem& problem, const Vector& load, const Vector& base,
+                                 const Vector& velocity, Stage& stage) {
+  problem.internal_force->evaluate(base, force_);
+  stage.right_hand_side = load - force_;
+  if (problem.has_damping()) stage.right_hand_side.noalias() -= problem.damping * velocity;
+}
+
 void StepEquations::observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement) {
   problem.obstacle_velocity(displacement, time, obstacle_velocity_);
 }
@@ -48,6 +55,8 @@ void StepEquations::take_contact(const Stage& stage, const StageSolution& soluti
   if (state.forces.rows != stage.rows) state.forces.rows = stage.rows;
   state.forces.normal_reaction = solution.normal_reaction;
   state.forces.tangential_reaction = solution.tangential_reaction;
+  state.forces.mean_normal_reaction = solution.mean_normal_reaction;
+  state.forces.mean_tangential_reaction = solution.mean_tangential_reaction;
   state.forces.support_reaction = solution.support_reaction;
   state.contact_status = solution.contact_status;
   if (obstacle_velocity_.normal.size() == 0) return;

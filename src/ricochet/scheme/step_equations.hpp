@@ -13,6 +13,11 @@ class StepEquations {
  public:
   /// b = L(t) − f(base), f the internal force. M A has no part in b: bases are chosen so.
   void balance(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage);
+  /// b = load − f(base) − C v, with loads that are no instant's.
+  void balance_with(const SemidiscreteProblem& problem, const Vector& load, const Vector& base, const Vector& velocity,
+                    Stage& stage);
+  /// f(base) of the last balance.
+  [[nodiscard]] const Vector& internal_force() const { return force_; }
   /// b = L(t) − f(base) − C v.
   void balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
                Stage& stage);

@@ -27,13 +27,12 @@ void EnergyAccount::save(Snapshot& snapshot, const std::string& name) const {
 EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const Vector& increment,
                                                  const ObstacleMotion& obstacle) {
   StepWorks result;
-  result.contact = forces.normal_reaction.dot(gap_increment_);
-  if (forces.tangential_reaction.size() > 0) result.friction = -forces.tangential_reaction.dot(slip_increment_);
+  const Vector &normal = forces.acting_normal(), &tangential = forces.acting_tangential();
+  result.contact = normal.dot(gap_increment_);
+  if (tangential.size() > 0) result.friction = -tangential.dot(slip_increment_);
   if (obstacle.normal.size() > 0) {
-    result.obstacle = forces.normal_reaction.dot(obstacle.normal);
-    if (forces.tangential_reaction.size() > 0) {
-      result.obstacle -= forces.tangential_reaction.dot(obstacle.tangential);
-    }
+    result.obstacle = normal.dot(obstacle.normal);
+    if (tangential.size() > 0) result.obstacle -= tangential.dot(obstacle.tangential);
   }
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
     result.support += forces.support_reaction[i] * increment[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
@@ -71,7 +70,11 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   };
   enter(previous_, rule_.previous_weight);
   enter(state.forces, rule_.current_weight);
-  works_.numerical_dissipation += scheme_.numerical_dissipation(problem_);
+  const StepCorrections corrections = scheme_.step_corrections(problem_);
+  works_.contact += corrections.contact_work;
+  works_.support += corrections.support_work;
+  works_.load += corrections.load_work;
+  works_.numerical_dissipation += corrections.numerical_dissipation;
   previous_ = state.forces;
 }
 

@@ -126,10 +126,10 @@ void ImpactRecorder::find_forces(const State& state, std::vector<Force>& forces)
   const int d = problem_.dimension;
   const ObstacleMotion& travel = state.obstacle_increment;
   for (Index point = 0; point < problem_.contact.size(); ++point) {
-    if (!carries_force(state.forces, point)) continue;
+    if (!carries_acting_force(state.forces, point)) continue;
     Force& force = forces[static_cast<std::size_t>(place_of_point_[static_cast<std::size_t>(point)])];
-    const double pressing = state.forces.normal_reaction[point];
-    const SpaceVector own = contact_force(state.forces, point);
+    const double pressing = state.forces.acting_normal()[point];
+    const SpaceVector own = acting_contact_force(state.forces, point);
     ++force.points;
     if (const double size = own.norm(); force.leading < 0 || size > force.leading_size) {
       force.leading = point;
@@ -148,7 +148,7 @@ void ImpactRecorder::enter_step(const State& state) {
   if (places_.empty()) return;
   find_forces(state, current_);
   motion_ = nullptr;
-  const double instant = state.time + scheme_.force_instant() * scheme_.step();
+  const double instant = state.time + scheme_.acting_instant() * scheme_.step();
   for (std::size_t place = 0; place < places_.size(); ++place) enter_place(place, instant);
   std::swap(previous_, current_);
   take_velocity(state, velocity_before_);

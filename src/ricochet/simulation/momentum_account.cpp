@@ -61,9 +61,10 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const 
     sum.size += part.force.norm();
   };
   Resultant contact, supports;
-  for (Index i = 0; i < forces.normal_reaction.size(); ++i) {
+  for (Index i = 0; i < forces.acting_normal().size(); ++i) {
     // Under Tresca's law a point without pressure may still carry friction.
-    if (carries_force(forces, i)) add(contact, in_space(positions_.col(i)), in_space(contact_force(forces, i)));
+    if (carries_acting_force(forces, i))
+      add(contact, in_space(positions_.col(i)), in_space(acting_contact_force(forces, i)));
   }
   include(contact);
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {

@@ -61,6 +61,11 @@ class Sensor {
 [[nodiscard]] inline SpaceVector contact_force(const StepForces& forces, Index point) {
   return forces.rows->force(point, forces.normal_reaction, forces.tangential_reaction);
 }
+/// The same of what acted over the step.
+[[nodiscard]] bool carries_acting_force(const StepForces& forces, Index point);
+[[nodiscard]] inline SpaceVector acting_contact_force(const StepForces& forces, Index point) {
+  return forces.rows->force(point, forces.acting_normal(), forces.acting_tangential());
+}
 template <class Values>
 void append(const Values& values, std::vector<double>& row) {
   for (Index k = 0; k < values.size(); ++k) row.push_back(values[k]);

@@ -70,7 +70,7 @@ const StageSolution& Simulation::solve(std::size_t number) {
   if (problem_.ranks->any(!is_finite(problem_, dofs, solution.increment))) {
     throw Error(ErrorKind::not_converged,
                 "the displacement is no longer finite, so the motion has grown beyond all bounds; use a stable scheme "
-                "or mass (newmark with mass \"equivalent\")");
+                "(reduced-kane with mass \"equivalent\")");
   }
   iterations_ += solution.iterations;
   return solution;

@@ -15,7 +15,7 @@
 namespace ricochet {
 
 CondensedContact::CondensedContact(const SemidiscreteProblem& problem, std::vector<int> unknown,
-                                   const SparseCholesky& factor, bool all_points)
+                                   const SparseCholesky& factor, bool all_points, std::unique_ptr<ContactLayer> layer)
     : problem_(problem),
       factor_(factor),
       unknown_(std::move(unknown)),
@@ -24,7 +24,8 @@ CondensedContact::CondensedContact(const SemidiscreteProblem& problem, std::vect
       all_points_(all_points),
       rows_(problem.contact.rows.get()),
       candidates_(problem.contact.size(), *problem.ranks),
-      columns_(factor) {
+      columns_(factor),
+      layer_(std::move(layer)) {
   contact_.reaction_scale = scale_;
   std::vector<Index> points(all_points ? static_cast<std::size_t>(problem.contact.size()) : 0);
   std::iota(points.begin(), points.end(), Index{0});
@@ -51,6 +52,8 @@ void CondensedContact::start_again_with(const std::vector<Index>& points) {
   revision_.clear();
   taken_up_.clear();
   columns_.clear();
+  if (layer_) layer_->clear();
+  condensed_.resize(0, 0);
   contact_.contact_operator.reset();
   contact_.row_offset.assign(1, 0);
   solver_.reset();
@@ -82,10 +85,9 @@ void CondensedContact::take_up(const std::vector<Index>& points) {
   sort_by_place(added);
   candidates_.take_up(added);
   taken_up_.push_back(static_cast<Index>(candidates_.points().size()));
-  Matrix w = contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
+  Matrix w = take_condensed();
   append_columns(added, w);
   append_supported();
-  hold_directions_without_trace(w);
   const auto count = static_cast<Index>(candidates_.points().size());
   coefficient_.resize(count);
   bound_.resize(count);
@@ -100,7 +102,7 @@ void CondensedContact::take_up(const std::vector<Index>& points) {
   contact_.offset.setZero(contact_.row_offset.back());
   contact_.offset_rounding.setZero(contact_.row_offset.back());
   contact_.eligible.assign(static_cast<std::size_t>(count), 1);
-  contact_.contact_operator = make_dense_operator(std::move(w));
+  give_condensed(std::move(w));
   if (solver_ == nullptr) solver_ = make_contact_solver();
   solver_->analyse(contact_);
   // The reactions of those that were there already, and none on the others.
@@ -134,17 +136,18 @@ void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
 }
 
 /// Hᵀ of some points, one after the other: unknowns × rows.
-SparseMatrix CondensedContact::transposed_rows(const std::vector<Index>& points) const {
+SparseMatrix CondensedContact::transposed_rows(const std::vector<Index>& points, const std::vector<int>& number,
+                                               Index unknowns) const {
   std::vector<Eigen::Triplet<double>> entries;
   Index row = 0;
   for (const Index point : points) {
     visit_rows(point, [&](Index k, Index dof, double value) {
-      const int unknown = unknown_[static_cast<std::size_t>(dof)];
+      const int unknown = number[static_cast<std::size_t>(dof)];
       if (unknown >= 0) entries.emplace_back(unknown, static_cast<int>(row + k), value);
     });
     row += rows_of(point);
   }
-  SparseMatrix transposed(factor_.size(), row);
+  SparseMatrix transposed(unknowns, row);
   transposed.setFromTriplets(entries.begin(), entries.end());
   return transposed;
 }
@@ -154,7 +157,8 @@ void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& 
     contact_.row_offset.push_back(contact_.row_offset.back() + rows_of(point));
     if (!rows_->revision.empty()) revision_.push_back(rows_->revision[static_cast<std::size_t>(point)]);
   }
-  columns_.append(transposed_rows(points), w);
+  columns_.append(transposed_rows(points, unknown_, factor_.size()), w);
+  if (layer_) layer_->append(transposed_rows(points, layer_->unknown(), layer_->size()));
 }
 
 /// The rows of the stage: of candidates whose rows are others than the last time, columns and W are made anew.
@@ -184,15 +188,41 @@ void CondensedContact::take_factor() {
 }
 
 void CondensedContact::renew_columns(const std::vector<char>& is_new) {
-  Matrix w = *contact_.contact_operator->dense();
-  columns_.renew(transposed_rows(candidates_.points()), is_new, w);
+  Matrix w = take_condensed();
+  columns_.renew(transposed_rows(candidates_.points(), unknown_, factor_.size()), is_new, w);
+  if (layer_) layer_->renew(transposed_rows(candidates_.points(), layer_->unknown(), layer_->size()), is_new);
   append_supported();
-  hold_directions_without_trace(w);
-  contact_.contact_operator = make_dense_operator(std::move(w));
+  give_condensed(std::move(w));
   Snapshot memory;
   solver_->save(memory, "solver");
   solver_->analyse(contact_);
   solver_->load(memory, "solver");
+}
+
+/// YᵀY of the candidates so far.
+Matrix CondensedContact::take_condensed() {
+  if (layer_) return std::move(condensed_);
+  return contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
+}
+
+/// The operator of the contact problem, from YᵀY of all candidates.
+void CondensedContact::give_condensed(Matrix w) {
+  if (!layer_) {
+    hold_directions_without_trace(w);
+    contact_.contact_operator = make_dense_operator(std::move(w));
+    return;
+  }
+  const Matrix layer = layer_->compliance() / scale_;
+  mean_.prepare((1.0 - 0.5 * layer_->weight()) * layer, w - layer, contact_.row_offset, layer_->mean());
+  condensed_ = std::move(w);
+  use_end_weight(mean_.theta());
+}
+
+/// U + θ Z.
+void CondensedContact::use_end_weight(double theta) {
+  Matrix w = mean_.combined(theta);
+  hold_directions_without_trace(w);
+  contact_.contact_operator = make_dense_operator(std::move(w));
 }
 
 void CondensedContact::append_supported() {
@@ -247,15 +277,66 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
   if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
   asked_ = false;
+  clear_mean(solution);
   take_rows(stage);
   if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
+  take_starting_points(stage);
   if (!all_points_ && !choose_candidates(stage)) return;
+  take_starting_points(stage);  // those that were not worth keeping
   find_offsets(stage, y);
   choose_friction(stage);
-  solve_contact();
+  const bool has_mean = layer_ && layer_->mean() != ReactionMean::end;
+  if (has_mean) {
+    solve_mean(stage);
+  } else {
+    solve_contact();
+  }
   asked_ = true;
-  columns_.add_reaction(contact_solution_.reaction, y);
+  columns_.add_reaction(has_mean ? mean_.mean() : contact_solution_.reaction, y);
   give(solution);
+}
+
+void CondensedContact::take_starting_points(const Stage& stage) {
+  std::vector<Index> pressing = pressing_at_start(layer_.get(), stage);
+  must_ask_ = must_ask_ || !pressing.empty();
+  std::erase_if(pressing, [&](Index point) { return candidates_.number(point) >= 0; });
+  if (!pressing.empty()) take_up(pressing);
+}
+
+void CondensedContact::solve_mean(const Stage& stage) {
+  const Index tangents = problem_.dimension - 1;
+  Vector start_gap(contact_.points()), start = Vector::Zero(contact_.rows());
+  for (Index i = 0; i < contact_.points(); ++i) {
+    const Index point = candidates_.points()[static_cast<std::size_t>(i)];
+    const Index row = contact_.row_offset[static_cast<std::size_t>(i)];
+    start_gap[i] = stage.start_gap[point] / stage.gap_factor;
+    start[row] = scale_ * stage.start_normal_reaction[point];
+    for (Index k = 1; row + k < contact_.row_offset[static_cast<std::size_t>(i) + 1]; ++k)
+      start[row + k] = -scale_ * stage.start_tangential_reaction[point * tangents + k - 1];
+  }
+  const Vector offset = contact_.offset;
+  const auto solve = [&] { return try_contact(); };
+  const bool found = mean_.solve(contact_, offset, start_gap, start, solve, contact_solution_);
+  contact_.offset = offset;
+  if (found) return;
+  if (layer_->mean() == ReactionMean::path) throw_no_mean();
+  if (!mean_.is_usable()) {  // the operator is that of the end reactions
+    solve_contact();
+    mean_.take_end(contact_solution_.reaction);
+    return;
+  }
+  // The end reaction alone is always right.
+  log::debug(
+      fmt::format("contact: the mean of the reactions was not found ({}), the end reactions act", mean_.reason()));
+  const Vector last = contact_solution_.reaction;
+  use_end_weight(1.0);
+  solver_->analyse(contact_);
+  solver_->set_warm_start(last);
+  solve_contact();
+  mean_.take_end(contact_solution_.reaction);
+  use_end_weight(mean_.theta());
+  solver_->analyse(contact_);
+  solver_->set_warm_start(contact_solution_.reaction);
 }
 
 /// False: nothing can touch.
@@ -278,10 +359,26 @@ void CondensedContact::give(StageSolution& solution) const {
     for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
       solution.tangential_reaction[point * tangents + k - 1] = -reaction[row + k] / scale_;
   }
+  if (layer_ && layer_->mean() != ReactionMean::end) give_mean(solution);
 }
 
-bool CondensedContact::take_up_penetrating(const Stage& stage, const Vector& increment) {
-  stage.rows->normal_motion(increment, motion_);
+void CondensedContact::give_mean(StageSolution& solution) const {
+  const Index tangents = problem_.dimension - 1;
+  solution.mean_normal_reaction.setZero(solution.normal_reaction.size());
+  solution.mean_tangential_reaction = solution.tangential_reaction;
+  solution.path_contact_work = -2.0 * mean_.path_work() / scale_;
+  solution.end_weight = mean_.end_weight();
+  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
+    const Index point = candidates_.points()[i], row = contact_.row_offset[i];
+    solution.mean_normal_reaction[point] = mean_.mean()[row] / scale_;
+    for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
+      solution.mean_tangential_reaction[point * tangents + k - 1] = -mean_.mean()[row + k] / scale_;
+  }
+}
+
+bool CondensedContact::take_up_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution) {
+  if (layer_) layer_->find_motion(*stage.rows, solution, increment, solution.contact_increment);
+  stage.rows->normal_motion(layer_ ? solution.contact_increment : increment, motion_);
   std::vector<Index> found = candidates_.penetrating(stage, motion_, !asked_);
   must_ask_ = !found.empty();
   if (!must_ask_) {
@@ -316,12 +413,17 @@ void CondensedContact::choose_friction(const Stage& stage) {
   }
 }
 
-void CondensedContact::solve_contact() {
+/// False: not solved.
+bool CondensedContact::try_contact() {
   const Timer timer;
   solver_->solve(contact_, {.record = log::enabled(log::Level::debug)}, contact_solution_);
   solver_seconds_ += timer.seconds();
   if (log::enabled(log::Level::debug)) log_iterations();
-  if (contact_solution_.solved()) return;
+  return contact_solution_.solved();
+}
+
+void CondensedContact::solve_contact() {
+  if (try_contact()) return;
   if (observer_) observer_(contact_, contact_solution_);
   throw_not_solved();
 }
@@ -375,6 +477,17 @@ void CondensedContact::throw_contradiction(const std::vector<Index>& contradicti
                   one ? " and where supports hold it" : ", and they leave it no room",
                   one ? "change the supports or the obstacle's motion"
                       : "leave more room between them, end their motion earlier, or remove one of these contacts"));
+}
+
+void CondensedContact::throw_no_mean() const {
+  const char* const cause =
+      mean_.is_usable()
+          ? "such steps are far longer than the time in which a wave crosses a cell, or next to nothing"
+          : "multipliers that the contact nodes cannot tell apart (\"p0\" on tetrahedra) have none: take others";
+  throw Error(ErrorKind::not_converged,
+              fmt::format("the mean of the reactions over the step was not found ({} points): {}; {}, or scheme "
+                          "\"reduced-kane\"",
+                          contact_.points(), mean_.reason(), cause));
 }
 
 void CondensedContact::throw_not_solved() const {

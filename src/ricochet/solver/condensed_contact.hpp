@@ -8,12 +8,16 @@
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/contact_candidates.hpp"
 #include "ricochet/solver/contact_columns.hpp"
+#include "ricochet/solver/contact_layer.hpp"
+#include "ricochet/solver/mean_reaction.hpp"
 
 /// @file The contact conditions of a stage, condensed on its candidates for contact.
 ///
 /// With 2ᵏA = PᵀLLᵀP, y = L⁻¹P 2ᵏb and, for the rows H = [G; B_T] of the candidates (those of a point together),
 /// Y = L⁻¹PHᵀ and W = YᵀY, a reaction ρ = 2ᵏ (r_N, −r_T) adds Yρ to y, and the contact problem is stated on
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + W ρ.
+/// Where the stage has a layer, with U = (1 − ℓ/2) V and Z = W − V, V = 2⁻ᵏ H A_c⁻¹ Hᵀ, on
+///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + Z ρ̄ + U ρ.
 namespace ricochet {
 
 class CondensedContact {
@@ -22,14 +26,14 @@ class CondensedContact {
   /// Keeps references to the problem and the factor.
   /// `all_points`: every contact point is a candidate from the start.
   CondensedContact(const SemidiscreteProblem& problem, std::vector<int> unknown, const SparseCholesky& factor,
-                   bool all_points = false);
+                   bool all_points = false, std::unique_ptr<ContactLayer> layer = nullptr);
 
   /// Finds the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
   /// Error(not_converged), and Error(invalid_input) where no motion meets the conditions of contact.
   void solve(const Stage& stage, Vector& y, StageSolution& solution);
   /// With the increment that followed: false when no other point penetrates. True: those that do are candidates now,
-  /// and the stage must be solved again.
-  bool take_up_penetrating(const Stage& stage, const Vector& increment);
+  /// and the stage must be solved again. Completes the solution by m where the stage has a layer.
+  bool take_up_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution);
 
   /// The factor has been made anew: so are columns and W.
   void take_factor();
@@ -57,16 +61,25 @@ class CondensedContact {
   bool choose_candidates(const Stage& stage);
   void start_again_with(const std::vector<Index>& points);
   void sort_by_place(std::vector<Index>& points) const;
-  [[nodiscard]] SparseMatrix transposed_rows(const std::vector<Index>& points) const;
+  [[nodiscard]] SparseMatrix transposed_rows(const std::vector<Index>& points, const std::vector<int>& unknown,
+                                             Index unknowns) const;
+  [[nodiscard]] Matrix take_condensed();
+  void give_condensed(Matrix w);
+  void use_end_weight(double theta);
+  void take_starting_points(const Stage& stage);
+  void solve_mean(const Stage& stage);
   void append_columns(const std::vector<Index>& points, Matrix& w);
   void append_supported();
   void hold_directions_without_trace(Matrix& w) const;
   void find_offsets(const Stage& stage, const Vector& y);
   void choose_friction(const Stage& stage);
+  [[nodiscard]] bool try_contact();
   void solve_contact();
   void log_iterations() const;
   [[nodiscard]] std::size_t closed_points() const;
   void give(StageSolution& solution) const;
+  void give_mean(StageSolution& solution) const;
+  [[noreturn]] void throw_no_mean() const;
   [[noreturn]] void throw_not_solved() const;
   [[noreturn]] void throw_contradiction(const std::vector<Index>& contradiction) const;
 
@@ -83,6 +96,9 @@ class CondensedContact {
   ContactCandidates candidates_;
   std::vector<Index> taken_up_;  ///< how many candidates there were after each call of take_up
   ContactColumns columns_;
+  std::unique_ptr<ContactLayer> layer_;  ///< null: the stage has none
+  Matrix condensed_;                     ///< YᵀY, where there is a layer; else W is the contact operator itself
+  MeanReaction mean_;
   SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
   Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r
   ContactProblem contact_;      ///< W, q, and the friction of the stage

@@ -21,7 +21,8 @@ SparseCholesky analysed_zone(const SemidiscreteProblem& problem, const OperatorC
 
 ContactZone::ContactZone(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                          const std::vector<char>& solved, const std::vector<Index>& nodes,
-                         const std::vector<Index>& points, bool all_candidates, const Vector& displacement)
+                         const std::vector<Index>& points, bool all_candidates, const Vector& displacement,
+                         FactoredStage* layer)
     : has_(static_cast<std::size_t>(problem.contact.size()), 0) {
   for (const Index point : points) has_[static_cast<std::size_t>(point)] = 1;
   std::vector<int> dofs;
@@ -31,8 +32,8 @@ ContactZone::ContactZone(const SemidiscreteProblem& problem, const OperatorCoeff
     }
   }
   // A principal block of a positive definite matrix is one; where A is not, conjugate gradients say so too.
-  zone_ = std::make_unique<FactoredStage>(problem, coefficients, dofs,
-                                          analysed_zone(problem, coefficients, dofs, displacement), all_candidates);
+  zone_ = std::make_unique<FactoredStage>(
+      problem, coefficients, dofs, analysed_zone(problem, coefficients, dofs, displacement), all_candidates, layer);
   correction_.setZero(problem.dof_count());
 }
 

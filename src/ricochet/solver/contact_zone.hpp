@@ -19,7 +19,7 @@ class ContactZone {
   /// reference to the problem only.
   ContactZone(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
               const std::vector<char>& solved, const std::vector<Index>& nodes, const std::vector<Index>& points,
-              bool all_candidates, const Vector& displacement = {});
+              bool all_candidates, const Vector& displacement = {}, FactoredStage* layer = nullptr);
 
   /// With the residual b − A x of the whole body, reactions left out: x_P and the reactions.
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution);

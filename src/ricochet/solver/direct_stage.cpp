@@ -35,7 +35,7 @@ SparseMatrix on_dofs(const SemidiscreteProblem& problem, const std::vector<int>&
 class DirectStage final : public StageSolver {
  public:
   DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, AnalysedOperator analysed,
-              const StepSolverOptions& options);
+              const StepSolverOptions& options, FactoredStage* layer);
 
   void solve(const Stage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
@@ -45,6 +45,7 @@ class DirectStage final : public StageSolver {
   void load(const Snapshot& snapshot, const std::string& name) override { stage_.load(snapshot, name); }
   [[nodiscard]] double contact_seconds() const override { return stage_.contact_seconds(); }
   [[nodiscard]] std::size_t factor_entries() const override { return stage_.factor_entries(); }
+  [[nodiscard]] FactoredStage* factored() override { return &stage_; }
 
  private:
   [[nodiscard]] const Vector& right_hand_side(const Stage& stage);
@@ -58,11 +59,11 @@ class DirectStage final : public StageSolver {
 };
 
 DirectStage::DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                         AnalysedOperator analysed, const StepSolverOptions& options)
+                         AnalysedOperator analysed, const StepSolverOptions& options, FactoredStage* layer)
     : problem_(problem),
       coefficients_(coefficients),
       supported_(std::move(analysed.supported)),
-      stage_(problem, coefficients, analysed.dofs, std::move(analysed.factor), options.all_points) {}
+      stage_(problem, coefficients, analysed.dofs, std::move(analysed.factor), options.all_points, layer) {}
 
 void DirectStage::refactorize(const Vector& displacement) {
   SparseMatrix matrix = combine_operator(problem_, coefficients_, displacement);
@@ -75,7 +76,7 @@ void DirectStage::recover_support_reaction(const Stage& stage, StageSolution& so
   solution.support_reaction.resize(problem_.supports.size());
   if (dofs.empty()) return;
   contact_force_.setZero(problem_.dof_count());
-  stage.rows->add_force(solution.normal_reaction, solution.tangential_reaction, contact_force_);
+  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), contact_force_);
   supported_force_.noalias() = supported_ * solution.increment;
   for (Index i = 0; i < problem_.supports.size(); ++i) {
     const Index dof = dofs[static_cast<std::size_t>(i)];
@@ -115,8 +116,8 @@ AnalysedOperator analyse_operator(const SemidiscreteProblem& problem, const Oper
 
 std::unique_ptr<StageSolver> make_direct_stage(const SemidiscreteProblem& problem,
                                                const OperatorCoefficients& coefficients, AnalysedOperator analysed,
-                                               const StepSolverOptions& options) {
-  return std::make_unique<DirectStage>(problem, coefficients, std::move(analysed), options);
+                                               const StepSolverOptions& options, FactoredStage* layer) {
+  return std::make_unique<DirectStage>(problem, coefficients, std::move(analysed), options, layer);
 }
 
 }  // namespace ricochet

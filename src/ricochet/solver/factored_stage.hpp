@@ -13,8 +13,9 @@ class FactoredStage {
  public:
   /// Factorizes. `dofs` are those of the unknowns of `factor`, which has been analysed; `coefficients` are those of A,
   /// for the error. Keeps a reference to the problem. Throws Error(invalid_input) when A is not positive definite.
+  /// `layer`: the stage of the operator A_c, where these coefficients name one; kept, and solved with.
   FactoredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                const std::vector<int>& dofs, SparseCholesky factor, bool all_points);
+                const std::vector<int>& dofs, SparseCholesky factor, bool all_points, FactoredStage* layer = nullptr);
   FactoredStage(const FactoredStage&) = delete;
   FactoredStage& operator=(const FactoredStage&) = delete;
 
@@ -28,6 +29,7 @@ class FactoredStage {
 
   /// In the order of the factor.
   [[nodiscard]] const std::vector<int>& dofs() const { return dof_at_; }
+  [[nodiscard]] SparseCholesky& factor() { return factor_; }
   /// What the contact conditions leave for later stages.
   void save(Snapshot& snapshot, const std::string& name) const { contact_.save(snapshot, name); }
   void load(const Snapshot& snapshot, const std::string& name) { contact_.load(snapshot, name); }

@@ -28,7 +28,7 @@ constexpr int iteration_limit = 5000;
 class IterativeStage final : public StageSolver {
  public:
   IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                 const StepSolverOptions& options);
+                 const StepSolverOptions& options, FactoredStage* layer);
 
   void solve(const Stage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
@@ -61,15 +61,18 @@ class IterativeStage final : public StageSolver {
   const SemidiscreteProblem& problem_;
   OperatorCoefficients coefficients_;
   StepSolverOptions options_;
-  std::vector<char> solved_;   ///< per dof
-  std::vector<int> unsolved_;  ///< dofs
-  StageProduct product_;       ///< with A
+  FactoredStage* layer_stage_;           ///< of A_c; null: none
+  std::unique_ptr<ContactLayer> layer_;  ///< likewise
+  std::vector<char> solved_;             ///< per dof
+  std::vector<int> unsolved_;            ///< dofs
+  StageProduct product_;                 ///< with A
   std::unique_ptr<Preconditioner> preconditioner_;
   ConjugateGradients gradients_;
   ContactCandidates near_;  ///< the points that the zone is made for
   std::unique_ptr<ContactZone> zone_;
   ContactObserver observer_;
-  bool touches_ = false;  ///< the last stage had a contact problem
+  bool presses_at_start_ = false;  ///< points whose reactions at the start of the step are part of a mean
+  bool touches_ = false;           ///< the last stage had a contact problem
   double earlier_contact_seconds_ = 0.0;
   Vector displacement_;          ///< of the tangent; empty: the undeformed body
   Vector increment_, previous_;  ///< of this stage and the last one, for the guess
@@ -78,8 +81,13 @@ class IterativeStage final : public StageSolver {
 };
 
 IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                               const StepSolverOptions& options)
-    : problem_(problem), coefficients_(coefficients), options_(options), near_(problem.contact.size(), *problem.ranks) {
+                               const StepSolverOptions& options, FactoredStage* layer)
+    : problem_(problem),
+      coefficients_(coefficients),
+      options_(options),
+      layer_stage_(layer),
+      near_(problem.contact.size(), *problem.ranks) {
+  if (layer != nullptr) layer_ = std::make_unique<ContactLayer>(problem, coefficients, *layer);
   const auto count = static_cast<std::size_t>(problem.dof_count());
   solved_.assign(count, 0);
   for (const int dof : solved_dofs(problem, coefficients.dofs)) solved_[static_cast<std::size_t>(dof)] = 1;
@@ -146,7 +154,7 @@ void IterativeStage::make_zone_of(const std::vector<Index>& points, const std::v
   near_.clear();
   near_.take_up(points);
   zone_ = std::make_unique<ContactZone>(problem_, coefficients_, solved_, nodes, points, options_.all_points,
-                                        displacement_);
+                                        displacement_, layer_stage_);
   zone_->observe(observer_);
 }
 
@@ -183,11 +191,16 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   solution.normal_reaction.setZero(points);
   if (problem_.contact.has_friction()) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
+  clear_mean(solution);
   solution.iterations = 0;
+  const std::vector<Index> pressing = pressing_at_start(layer_.get(), stage);
+  presses_at_start_ = !pressing.empty();
   if (near_.some_may_touch(stage)) {
     if (const std::vector<Index> approaching = near_.approaching(stage); !approaching.empty())
       make_zone(stage, approaching);
   }
+  const auto is_outside = [&](Index point) { return near_.number(point) < 0; };
+  if (std::any_of(pressing.begin(), pressing.end(), is_outside)) make_zone(stage, pressing);
 }
 
 /// b − A x, on the dofs that are solved for.
@@ -198,7 +211,7 @@ void IterativeStage::find_residual(const Stage& stage) {
 }
 
 void IterativeStage::add_reactions(const Stage& stage, const StageSolution& solution, Vector& force) const {
-  stage.rows->add_force(solution.normal_reaction, solution.tangential_reaction, force);
+  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), force);
   mask(force);
 }
 
@@ -237,7 +250,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   bool must_touch = false;  // points have penetrated where none was thought to touch
   for (int round = 0; round < round_limit; ++round) {
     find_residual(stage);
-    const bool touches = zone_ != nullptr && (must_touch || near_.some_may_touch(stage));
+    const bool touches = zone_ != nullptr && (must_touch || presses_at_start_ || near_.some_may_touch(stage));
     if (touches) {
       zone_->solve(stage, residual_, guess_, solution);
       find_residual(stage);
@@ -246,7 +259,8 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
     if (target == 0.0) target = options_.tolerance * forces(stage, solution);
     const double norm = gradients_.norm(*preconditioner_, residual_);
     if (norm <= target) {
-      stage.rows->normal_motion(guess_, motion_);
+      if (layer_) layer_->find_motion(*stage.rows, solution, guess_, solution.contact_increment);
+      stage.rows->normal_motion(layer_ ? solution.contact_increment : guess_, motion_);
       const std::vector<Index> penetrating = near_.penetrating(stage, motion_, !touches);
       if (penetrating.empty()) {
         touches_ = touches;
@@ -279,7 +293,7 @@ void IterativeStage::end(const Stage& stage, StageSolution& solution) {
   if (supported.empty()) return;
   product_.multiply(guess_, work_);
   work_ -= stage.right_hand_side;
-  stage.rows->add_force(-solution.normal_reaction, -solution.tangential_reaction, work_);
+  stage.rows->add_force(-solution.acting_normal(), -solution.acting_tangential(), work_);
   for (std::size_t i = 0; i < supported.size(); ++i)
     solution.support_reaction[static_cast<Index>(i)] = work_[supported[i]];
 }
@@ -288,8 +302,8 @@ void IterativeStage::end(const Stage& stage, StageSolution& solution) {
 
 std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
                                                   const OperatorCoefficients& coefficients,
-                                                  const StepSolverOptions& options) {
-  return std::make_unique<IterativeStage>(problem, coefficients, options);
+                                                  const StepSolverOptions& options, FactoredStage* layer) {
+  return std::make_unique<IterativeStage>(problem, coefficients, options, layer);
 }
 
 }  // namespace ricochet

@@ -12,6 +12,8 @@
 /// @file Solvers of the stages of one operator. Everything that is constant is computed when they are made.
 namespace ricochet {
 
+class FactoredStage;
+
 class StageSolver {
  public:
   virtual ~StageSolver() = default;
@@ -28,6 +30,8 @@ class StageSolver {
   virtual void load(const Snapshot& snapshot, const std::string& name) = 0;
   [[nodiscard]] virtual double contact_seconds() const = 0;
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
+  /// The factor of the whole operator, where there is one: what a later stage's layer is solved with.
+  [[nodiscard]] virtual FactoredStage* factored() { return nullptr; }
 };
 
 /// A on the dofs that a stage solves for, and what its factorization would take.
@@ -39,15 +43,18 @@ struct AnalysedOperator {
 [[nodiscard]] AnalysedOperator analyse_operator(const SemidiscreteProblem& problem,
                                                 const OperatorCoefficients& coefficients);
 
-/// Forward solve, condensed contact, back solve. Throws Error(invalid_input) when A is not positive definite.
+/// Forward solve, condensed contact, back solve. `layer`: of A_c, where the coefficients name one; kept. Throws
+/// Error(invalid_input) when A is not positive definite.
 [[nodiscard]] std::unique_ptr<StageSolver> make_direct_stage(const SemidiscreteProblem& problem,
                                                              const OperatorCoefficients& coefficients,
                                                              AnalysedOperator analysed,
-                                                             const StepSolverOptions& options);
+                                                             const StepSolverOptions& options,
+                                                             FactoredStage* layer = nullptr);
 
 /// Conjugate gradients on all dofs around a direct solve near the contact.
 [[nodiscard]] std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
                                                                 const OperatorCoefficients& coefficients,
-                                                                const StepSolverOptions& options);
+                                                                const StepSolverOptions& options,
+                                                                FactoredStage* layer = nullptr);
 
 }  // namespace ricochet

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
@@ -93,13 +95,17 @@ class StagesStepSolver final : public StepSolver {
       chosen.ordering_seconds = timer.restart();
       if (chosen.method == SolverMethod::iterative) log_iterations(chosen);
     }
+    FactoredStage* const layer =
+        coefficients.layer >= 0 ? stages_.at(static_cast<std::size_t>(coefficients.layer))->factored() : nullptr;
+    if (coefficients.layer >= 0 && layer == nullptr)
+      throw std::logic_error("the layer of a stage needs a factor, and its operator is solved by iterations");
     if (chosen.method == SolverMethod::direct) {
       log_factorization(chosen, analysed.dofs.size());
-      stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options));
+      stages_.push_back(make_direct_stage(problem, coefficients, std::move(analysed), options, layer));
       chosen.factorization_seconds = timer.seconds();
     } else {
       analysed = {};
-      stages_.push_back(make_iterative_stage(problem, coefficients, options));
+      stages_.push_back(make_iterative_stage(problem, coefficients, options, layer));
     }
     methods_.push_back(chosen);
   }

@@ -48,7 +48,7 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
       acceleration_.restart();
       last_start = round;
     }
-    linearize_at(solution.increment, round > plain_rounds);
+    linearize_at(solution.contact_motion(), round > plain_rounds);
     linearize_contact(problem_, linearized_at_, stage);
     solver.solve(stage, solution);
     iterations += solution.iterations;

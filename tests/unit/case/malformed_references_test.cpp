@@ -172,8 +172,8 @@ TEST(MalformedCase, References) {
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"time.shceme\" = \"midpoint\" }",
        "15:10: \"when\" names \"time.shceme\": unknown key \"shceme\" in [time]; did you mean \"scheme\"?"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"time.scheme\" = \"midpont\" }",
-       "15:26: \"time.scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\", \"semi-explicit\" or "
-       "\"contact-stabilized\"; "
+       "15:26: \"time.scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\", \"semi-explicit\", "
+       "\"contact-stabilized\", \"reduced-kane\", \"mean-reaction\" or \"reduced-midpoint\"; "
        "found the text "
        "\"midpont\"; did you mean \"midpoint\"?"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"contact.0.friction\" = 0 }",

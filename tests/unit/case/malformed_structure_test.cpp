@@ -49,7 +49,8 @@ TEST(MalformedCase, Structure) {
       {0, "[contact]\ngroup = \"a\"\nobstacle = \"floor\"",
        "12:2: there can be several [[contact]]: write [[contact]], not [contact]"},
       {0, "contact = []\n",
-       "12:1: unknown key \"contact\" in [time]; its keys are \"scheme\", \"beta\", \"gamma\", \"preset\", \"step\" "
+       "12:1: unknown key \"contact\" in [time]; its keys are \"scheme\", \"beta\", \"gamma\", \"preset\", "
+       "\"reaction_weight\", \"step\" "
        "and \"end\""},
       {1, "contact = [1, 2]\n[mesh]",
        "1:1: \"contact\" must be a list of tables, [[contact]]; found a list of 2 values"},

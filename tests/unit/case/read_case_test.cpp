@@ -267,8 +267,7 @@ TEST(ReadCase, AnEmptyFileLacksTheRequiredSections) {
       "1:1: there is no section [mesh], which must have \"file\". The body and how it is discretized.\n"
       "1:1: there is no section [[material]], which must have \"group\" and \"density\". The material of one or more "
       "groups of cells.\n"
-      "1:1: there is no section [time], which must have \"scheme\", \"step\" and \"end\". The time scheme and "
-      "its steps.");
+      "1:1: there is no section [time], which must have \"step\" and \"end\". The time scheme and its steps.");
 }
 
 }  // namespace ricochet::case_test

@@ -125,8 +125,8 @@ TEST(Registry, MakesByNameWithParametersInCode) {
     }
   };
   EXPECT_EQ(message("euler", {}),
-            "unknown scheme \"euler\"; known: \"midpoint\", \"klr-conserving\", \"newmark\", \"semi-explicit\" and "
-            "\"contact-stabilized\"");
+            "unknown scheme \"euler\"; known: \"midpoint\", \"klr-conserving\", \"newmark\", \"semi-explicit\", "
+            "\"contact-stabilized\", \"reduced-kane\", \"mean-reaction\" and \"reduced-midpoint\"");
   EXPECT_EQ(message("midpoint", {{"beta", 0.25}}), "scheme \"midpoint\" has no parameter \"beta\"; it has none");
   EXPECT_EQ(message("newmark", {{"beta", 0.25}}), "the parameter \"gamma\" is missing");
   EXPECT_EQ(message("newmark", {{"beta", "a"}, {"gamma", 0.5}}),

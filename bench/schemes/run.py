@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Random cases of every kind under every scheme: what becomes of their energy.
+
+    ./dev bench schemes [--cases 2400] [--first 1] [--from FILE.csv…]
+
+Runs ricochet_random_cases on all processors and writes the tables of docs/energy.md; --from reads what it has printed
+before. The cases are those of their numbers, on every machine.
+"""
+
+import argparse
+import collections
+import csv
+import io
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench"))
+from page import write_parts
+
+REFERENCE = "reduced-kane end, equivalent"
+BINS = ((0.1, 1), (1, 3), (3, 10), (10, 30), (30, 1000))
+
+
+def measure(program, first, count):
+    """Rows of all cases."""
+    parts = min(os.cpu_count() or 1, count)
+    begins = [first + count * k // parts for k in range(parts + 1)]
+    processes = [subprocess.Popen([program, str(a), str(b - a)], stdout=subprocess.PIPE, text=True)
+                 for a, b in zip(begins, begins[1:])]
+    rows = []
+    for process in processes:
+        output = process.communicate()[0]
+        if process.returncode != 0:
+            raise SystemExit(f"{program} failed")
+        rows += csv.DictReader(io.StringIO(output))
+    return rows
+
+
+def is_refusal(failure):
+    """Said before the first step: the method does not take such a case."""
+    return failure and not failure.startswith("step ")
+
+
+def number(value):
+    return "0" if value == 0 else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e+")
+
+
+def part(values):
+    return f"{100 * sum(values) / len(values):.0f} %" if values else "–"
+
+
+def summary(rows):
+    """A line per method: runs, refusals, failures, and over those that ended: energy, penetration, variation."""
+    by_method = collections.defaultdict(list)
+    for row in rows:
+        by_method[row["method"]].append(row)
+    reference = {row["case"]: float(row["variation"]) for row in by_method[REFERENCE] if not row["failure"]}
+    lines = ["| scheme, mass | cases | refused | failed | created > 1e-8 | most created | median lost | deepest, cells | variation, median | 90 % |",
+             "|---|---|---|---|---|---|---|---|---|---|"]
+    created_by_step = ["| scheme, mass | " + " | ".join(f"{low:g}–{high:g}" for low, high in BINS) + " |", "|---" * (len(BINS) + 1) + "|"]
+    for method, all_rows in by_method.items():
+        refused = sum(1 for row in all_rows if is_refusal(row["failure"]))
+        ended = [row for row in all_rows if not row["failure"]]
+        created = [float(row["created"]) for row in ended]
+        variation = sorted(float(row["variation"]) / reference[row["case"]] for row in ended if reference.get(row["case"], 0) > 0)
+        lines.append(f"| {method} | {len(all_rows)} | {refused} | {len(all_rows) - refused - len(ended)} | "
+                     f"{sum(value > 1e-8 for value in created)} | {number(max(created))} | "
+                     f"{100 * statistics.median(float(row['lost']) for row in ended):.0f} % | "
+                     f"{number(max(float(row['penetration']) for row in ended))} | {statistics.median(variation):.2f} | "
+                     f"{variation[int(0.9 * len(variation))]:.2f} |")
+        cells = [part([float(row["created"]) > 0.01 for row in ended if low <= float(row["crossings"]) < high]) for low, high in BINS]
+        created_by_step.append(f"| {method} | {' | '.join(cells)} |")
+    return "\n".join(lines), "\n".join(created_by_step)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./dev bench schemes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", type=int, default=2400, help="how many (default: %(default)s)")
+    parser.add_argument("--first", type=int, default=1, help="number of the first (default: %(default)s)")
+    parser.add_argument("--from", dest="files", nargs="+", type=pathlib.Path, help="read what was printed before")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="where the programs are")
+    parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
+    arguments = parser.parse_args()
+    if arguments.cases < 1:
+        parser.error("there must be a case")
+    if arguments.check:
+        return 0
+    if arguments.files:
+        rows = [row for file in arguments.files for row in csv.DictReader(file.open(encoding="utf-8"))]
+    else:
+        rows = measure(str(arguments.build / "ricochet_random_cases"), arguments.first, arguments.cases)
+    table, by_step = summary(rows)
+    print(table + "\n\n" + by_step)
+    write_parts(ROOT / "docs" / "energy.md", {"random-cases": table, "random-cases-by-step": by_step})
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

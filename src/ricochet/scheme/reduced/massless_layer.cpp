@@ -1,0 +1,217 @@
+#include "ricochet/scheme/reduced/massless_layer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr std::size_t layer_stage = 0;
+/// C_c = ηK_c to this.
+constexpr double same_damping = 1e-12;
+
+}  // namespace
+
+void MasslessLayer::analyse(const SemidiscreteProblem& problem) {
+  const auto has_inertia = [&](Index dof) { return problem.is_massless[static_cast<std::size_t>(dof)] == 0; };
+  if (std::any_of(problem.contact_dofs.begin(), problem.contact_dofs.end(), has_inertia)) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("scheme \"{}\" needs a mass without inertia on the contact nodes, which it keeps in "
+                            "equilibrium: set mass.type = \"equivalent\", or use scheme \"contact-stabilized\", which "
+                            "creates no energy with this mass",
+                            scheme_));
+  }
+  stiffness_.analyse(problem);
+  find_damping(problem);
+}
+
+void MasslessLayer::find_damping(const SemidiscreteProblem& problem) {
+  damps_ = false;
+  one_damping_ = true;
+  eta_ = 0.0;
+  if (!problem.has_damping()) return;
+  ContactStiffness damping;
+  damping.analyse(problem, 0.0, 1.0);
+  const double size = damping.rows().norm();
+  if (size == 0.0) return;
+  damps_ = true;
+  eta_ = size / stiffness_.rows().norm();
+  const SparseRowMatrix difference = damping.rows() - eta_ * stiffness_.rows();
+  one_damping_ = difference.norm() <= same_damping * size;
+  if (one_damping_) return;
+  layer_rows_.analyse(problem, 1.0, 2.0 / step_);
+  log::info(
+      fmt::format("scheme \"{}\": stiffness damping differs between the cells at contact nodes, so it is doubled "
+                  "on those nodes",
+                  scheme_));
+}
+
+std::vector<OperatorCoefficients> MasslessLayer::operators(const SemidiscreteProblem& problem,
+                                                           ReactionMean mean) const {
+  const double h = step_;
+  OperatorCoefficients midpoint{.mass = 4.0 / (h * h), .stiffness = 1.0, .damping = 2.0 / h};
+  if (problem.contact_dofs.empty()) return {midpoint};
+  const OperatorCoefficients layer{
+      .mass = 0.0, .stiffness = 1.0, .damping = one_damping_ ? 1.0 / h : 2.0 / h, .dofs = StageDofs::contact};
+  midpoint.layer = static_cast<int>(layer_stage);
+  midpoint.layer_weight = one_damping_ ? 1.0 / (1.0 + 2.0 * eta_ / h) : 1.0;
+  midpoint.mean = mean;
+  return {layer, midpoint};
+}
+
+void MasslessLayer::balance(const SemidiscreteProblem& problem, const State& state, Stage& stage) {
+  load_ = problem.loads.constant();
+  load_change_.setZero(static_cast<Index>(problem.contact_dofs.size()));
+  if (problem.loads.varies()) {
+    problem.loads.varying(state.time, middle_);
+    problem.loads.varying(state.time + step_, next_varying_);
+    for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+      const Index dof = problem.contact_dofs[i];
+      load_change_[static_cast<Index>(i)] = next_varying_[dof] - middle_[dof];
+    }
+    next_varying_ = 0.5 * (middle_ + next_varying_);  // the mean, from now on
+    load_ += next_varying_;
+  }
+  base_ = state.displacement + (0.5 * step_) * state.velocity;
+  equations_.balance_with(problem, load_, base_, state.velocity, stage);
+  const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - base_[dof]; };
+  equations_.prescribe(problem, state.time + step_, half_way, stage);
+}
+
+/// K u₀ is K base less K of the small difference: no digits are lost to a rigid motion.
+void MasslessLayer::find_residual(const SemidiscreteProblem& problem, const State& state) {
+  stiffness_.multiply(state.velocity, residual_);
+  residual_ *= 0.5 * step_;
+  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    const Index dof = problem.contact_dofs[i];
+    residual_[at] += load_[dof] - 0.5 * load_change_[at] - equations_.internal_force()[dof];
+  }
+}
+
+const Vector& MasslessLayer::solve_layer(const SemidiscreteProblem& problem, const Vector& right, StageSolve& stages) {
+  Stage& stage = stages.stage(layer_stage);
+  if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
+  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i)
+    stage.right_hand_side[problem.contact_dofs[i]] = right[static_cast<Index>(i)];
+  stage.prescribed.setZero(problem.supports.size());
+  stage.motion.reset();
+  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
+  return stages.solve(layer_stage).increment;
+}
+
+void MasslessLayer::require_mean(const SemidiscreteProblem& problem, const State& state, Stage& stage) const {
+  problem.gaps(state.displacement, state.time, stage.start_gap);
+  stage.start_normal_reaction = state.forces.normal_reaction;
+  stage.start_tangential_reaction = state.forces.tangential_reaction;
+}
+
+void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean, State& state, StageSolve& stages,
+                            Vector& increment) {
+  const double h = step_;
+  const bool has_layer = !problem.contact_dofs.empty();
+  Stage& stage = stages.stage(has_layer ? layer_stage + 1 : 0);
+  balance(problem, state, stage);
+  contact_base_ = state.displacement + h * state.velocity;  // of the end, at δ = 0
+  if (has_layer) {
+    find_residual(problem, state);
+    const double eta_part = one_damping_ ? eta_ / h : 0.0, weight = 1.0 / (1.0 + 2.0 * eta_part);
+    right_ = residual_ - eta_part * load_change_;
+    const Vector& shift = solve_layer(problem, right_, stages);
+    for (const Index dof : problem.contact_dofs) contact_base_[dof] -= weight * shift[dof];
+  }
+  require_no_penetration(problem, contact_base_, state.time + h, stage);
+  stage.gap_factor = 2.0;
+  middle_ = 0.5 * (state.displacement + contact_base_);
+  if (problem.has_moving_obstacles()) equations_.observe_obstacles(problem, state.time + 0.5 * h, middle_);
+  rate_ = (contact_base_ - state.displacement) / h;
+  equations_.require_friction(problem, rate_, 2.0 / h, stage);
+  stick_.require(problem, state, h, stage);
+  if (mean != ReactionMean::end) require_mean(problem, state, stage);
+
+  const StageSolution& solution = stages.solve(has_layer ? layer_stage + 1 : 0);
+  increment = h * state.velocity + 2.0 * solution.increment;
+  for (const Index dof : problem.contact_dofs)
+    increment[dof] = contact_base_[dof] - state.displacement[dof] + 2.0 * solution.contact_increment[dof];
+  before_ = state.displacement;
+  move(problem, solution.increment, increment, state);
+  take_forces(problem, stage, solution, increment, state);
+  stick_.learn(problem, before_, state);
+  if (has_layer) correct(problem, mean, stage, solution, increment, state, stages);
+}
+
+void MasslessLayer::move(const SemidiscreteProblem& problem, const Vector& solution, const Vector& increment,
+                         State& state) const {
+  state.displacement += increment;
+  state.velocity += (4.0 / step_) * solution;               // 2 (u₁−u₀)/h − v₀
+  state.acceleration = (4.0 / (step_ * step_)) * solution;  // (v₁−v₀)/h
+  follow_without_inertia(problem, increment, step_, state);
+}
+
+void MasslessLayer::take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                                const Vector& increment, State& state) {
+  equations_.take_forces(problem, stage, solution, step_, increment, 1.0 / step_, state);
+  if (problem.loads.varies()) state.forces.varying_load = next_varying_;
+}
+
+MasslessLayer::LayerWork MasslessLayer::layer_work(const SemidiscreteProblem& problem, const ContactRows& rows,
+                                                   const StageSolution& solution, const Vector& increment,
+                                                   StageSolve& stages) {
+  (one_damping_ ? stiffness_ : layer_rows_).multiply(increment, row_force_);
+  const Vector& solved = solve_layer(problem, row_force_, stages);
+  const double factor = one_damping_ ? 1.0 + eta_ / step_ : 1.0;
+  of_layer_.resize(row_force_.size());
+  nodal_.setZero(problem.dof_count());
+  normal_ = solution.acting_normal() - 0.5 * solution.normal_reaction;
+  tangential_ = solution.acting_tangential() - 0.5 * solution.tangential_reaction;
+  rows.add_force(normal_, tangential_, nodal_);
+  LayerWork work{0.0, 0.0};
+  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    of_layer_[at] = factor * solved[problem.contact_dofs[i]];
+    work.reactions += of_layer_[at] * (nodal_[problem.contact_dofs[i]] + 0.5 * residual_[at]);
+    work.load += 0.5 * of_layer_[at] * load_change_[at];
+  }
+  return work;
+}
+
+/// aᵀK_cc⁻¹(L₁−L₀) with the nodal forces a = Hᵀ(ρ̄ − ½ρ) + ½r₀ that layer_work has left.
+double MasslessLayer::work_on_load_change(const SemidiscreteProblem& problem, StageSolve& stages) {
+  if (load_change_.isZero(0.0)) return 0.0;
+  const Vector& place = solve_layer(problem, load_change_, stages);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+    const Index dof = problem.contact_dofs[i];
+    sum += place[dof] * (nodal_[dof] + 0.5 * residual_[static_cast<Index>(i)]);
+  }
+  return sum;
+}
+
+void MasslessLayer::correct(const SemidiscreteProblem& problem, ReactionMean mean, const Stage& stage,
+                            const StageSolution& solution, const Vector& increment, const State& state,
+                            StageSolve& stages) {
+  const LayerWork work = layer_work(problem, *stage.rows, solution, increment, stages);
+  if (mean == ReactionMean::end) {
+    corrections_ = {.load_work = work.load, .numerical_dissipation = 0.5 * of_layer_.dot(row_force_)};
+    return;
+  }
+  const bool touches = solution.mean_normal_reaction.size() > 0;
+  const double mu = touches ? solution.end_weight : 0.0;
+  corrections_ = {.load_work = mu * work.load};
+  if (mu < 1.0) corrections_.load_work -= (1.0 - mu) * work_on_load_change(problem, stages);
+  if (touches) {
+    stage.rows->normal_motion(increment, gap_change_);
+    if (state.obstacle_increment.normal.size() > 0) gap_change_ -= state.obstacle_increment.normal;
+    const double along = (1.0 - mu) * solution.path_contact_work - mu * solution.normal_reaction.dot(stage.start_gap);
+    corrections_.contact_work = along - solution.mean_normal_reaction.dot(gap_change_);
+  }
+  corrections_.numerical_dissipation = corrections_.contact_work + work.reactions + corrections_.load_work;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/scheme/reduced/massless_layer.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// C. Kane, E. A. Repetto, M. Ortiz, J. E. Marsden, Comput. Methods Appl. Mech. Engrg. 180 (1999) 1–26, have the
+/// reactions of the end of the step act over all of it. Here nodes without inertia are in equilibrium with them, and
+/// the others follow the midpoint rule (massless_layer.hpp, ρ̄ = ρ): with z the change of the contact nodes' place
+/// relative to the others,
+///   E₁ − E₀ = −r_N·g₀ − Σ F r_N |Δy_T| − ½ zᵀK_cc z + work of loads, supports, obstacles and damping,
+/// each part ≤ 0 at each point, for every step and friction. With weight "adaptive" ρ̄ is a mean (mean_reaction.hpp),
+/// whose parts have the same signs, and which loses much less at impacts.
+class ReducedKane final : public Scheme {
+ public:
+  ReducedKane(double step, const std::string& weight) : Scheme(step), weight_(weight), layer_("reduced-kane", step) {}
+
+  void analyse(const SemidiscreteProblem& problem) override {
+    layer_.analyse(problem);
+    if (weight_ == "end" || problem.contact_dofs.empty() || has_mean(problem)) return;
+    if (weight_ == "automatic" && problem.contact.has_friction()) return;
+    log::info(fmt::format(
+        "time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,
+        problem.contact.follows_motion() ? "an obstacle is curved" : "there is stiffness damping at contact nodes"));
+  }
+  [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
+    return layer_.operators(problem, mean(problem));
+  }
+  [[nodiscard]] double acting_instant() const override { return -0.5; }
+  [[nodiscard]] bool suits_singular_mass() const override { return true; }
+
+  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
+    layer_.advance(problem, mean(problem), state, stages, increment);
+  }
+  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
+    return layer_.corrections();
+  }
+
+ private:
+  /// A mean is of gaps that are linear, and of nodes without memory.
+  [[nodiscard]] bool has_mean(const SemidiscreteProblem& problem) const {
+    return !problem.contact.follows_motion() && !layer_.damps_contact_nodes();
+  }
+  [[nodiscard]] ReactionMean mean(const SemidiscreteProblem& problem) const {
+    const bool wanted = weight_ == "adaptive" || (weight_ == "automatic" && !problem.contact.has_friction());
+    return has_mean(problem) && wanted && !problem.contact_dofs.empty() ? ReactionMean::mixed : ReactionMean::end;
+  }
+
+  std::string weight_;
+  MasslessLayer layer_;
+};
+
+}  // namespace
+
+SchemeRegistration reduced_kane_scheme() {
+  const auto make = [](double step, const Parameters& parameters) {
+    return std::make_unique<ReducedKane>(step, parameters.text("reaction_weight"));
+  };
+  return {"reduced-kane",
+          make,
+          {{.name = "reaction_weight",
+            .type = KeyType::choice,
+            .standard = "automatic",
+            .choices = {"automatic", "end", "adaptive"},
+            .doc = "Which reactions act over a step: \"end\", those of its end; \"adaptive\", a mean of those of the "
+                   "step, as near to the exact one as smooth reactions allow (planes, no stiffness "
+                   "damping at contact nodes; else as \"end\"); \"automatic\": \"end\" with friction, else "
+                   "\"adaptive\"."}}};
+}
+
+}  // namespace ricochet

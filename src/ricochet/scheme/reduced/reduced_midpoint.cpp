@@ -1,0 +1,94 @@
+#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/reduced/massless_layer.hpp"
+#include "ricochet/scheme/reduced/requirements.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// The midpoint scheme where contact nodes have no inertia: contact at the middle of the step decides the motion of the
+/// other nodes, and contact nodes are in equilibrium, contact included, at its end:
+///   1. A δ = b + Gᵀ r̄,   0 ≤ r̄ ⟂ g(x) ≥ 0,   u_f1 = 2x_f − u_f0   (massless_layer.hpp, ρ̄ = r̄);
+///   2. K_cc u_c1 + K_cf u_f1 = L₁ + Gᵀ r₁,   0 ≤ r₁ ⟂ g(u₁) ≥ 0.
+/// With W_c = G K_cc⁻¹ Gᵀ:   E₁ − E₀ = r̄·Δg − (r̄ − ½(r₀+r₁))ᵀW_c(r₁−r₀) + work of loads, supports and obstacles;
+/// the first two, which are the contact work here, vanish while the points that press stay the same.
+/// The midpoint alone would have u_c1 = 2x_c − u_c0, which flips contact nodes from step to step.
+class ReducedMidpoint final : public Scheme {
+ public:
+  explicit ReducedMidpoint(double step) : Scheme(step), layer_("reduced-midpoint", step) {}
+
+  void analyse(const SemidiscreteProblem& problem) override {
+    layer_.analyse(problem);
+    require_frictionless_planes(problem, layer_, "reduced-midpoint");
+  }
+  [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
+    std::vector<OperatorCoefficients> result = layer_.operators(problem, ReactionMean::end);
+    result.back().layer = -1;
+    return result;
+  }
+  [[nodiscard]] double acting_instant() const override { return -0.5; }
+  [[nodiscard]] bool suits_singular_mass() const override { return true; }
+
+  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
+    const double h = step(), middle = state.time + 0.5 * h;
+    const bool has_layer = !problem.contact_dofs.empty();
+    const std::size_t number = has_layer ? 1 : 0;
+    Stage& stage = stages.stage(number);
+    layer_.balance(problem, state, stage);
+    require_no_penetration(problem, layer_.base(), middle, stage);
+    if (problem.has_moving_obstacles()) layer_.equations().observe_obstacles(problem, middle, layer_.base());
+    if (has_layer) layer_.find_residual(problem, state);
+    const StageSolution& solution = stages.solve(number);
+    increment = h * state.velocity + 2.0 * solution.increment;
+    take(solution);
+    if (has_layer) settle(problem, state, stages, increment);
+    layer_.move(problem, solution.increment, increment, state);
+    layer_.take_forces(problem, stage, result_, increment, state);
+    corrections_ = {};
+    if (has_layer)
+      corrections_.contact_work = -layer_.layer_work(problem, *stage.rows, result_, increment, stages).reactions;
+  }
+  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override { return corrections_; }
+
+ private:
+  /// The contact nodes at the end: K_cc δ = L₁ + Gᵀr₁ − (K u)_c, from where the step left them.
+  void settle(const SemidiscreteProblem& problem, const State& state, StageSolve& stages, Vector& increment) {
+    for (const Index dof : problem.contact_dofs) increment[dof] = step() * state.velocity[dof];
+    layer_.stiffness().multiply(increment, row_force_);
+    Stage& stage = stages.stage(0);
+    if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
+    for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+      const auto at = static_cast<Index>(i);
+      stage.right_hand_side[problem.contact_dofs[i]] =
+          layer_.residual()[at] + layer_.load_change()[at] - row_force_[at];
+    }
+    stage.prescribed.setZero(problem.supports.size());
+    base_ = state.displacement + increment;
+    require_no_penetration(problem, base_, state.time + step(), stage);
+    const StageSolution& end = stages.solve(0);
+    for (const Index dof : problem.contact_dofs) increment[dof] += end.increment[dof];
+    result_.normal_reaction = end.normal_reaction;
+    result_.contact_status = end.contact_status;
+  }
+
+  /// What the contact at the middle gives; part by part, so that storage is kept.
+  void take(const StageSolution& solution) {
+    result_.normal_reaction = solution.normal_reaction;
+    result_.mean_normal_reaction = solution.normal_reaction;
+    result_.support_reaction = solution.support_reaction;
+    result_.contact_status = solution.contact_status;
+  }
+
+  MasslessLayer layer_;
+  StepCorrections corrections_;
+  StageSolution result_;
+  Vector row_force_, base_;
+};
+
+}  // namespace
+
+SchemeRegistration reduced_midpoint_scheme() {
+  return {"reduced-midpoint", [](double step, const Parameters&) { return std::make_unique<ReducedMidpoint>(step); }};
+}
+
+}  // namespace ricochet
