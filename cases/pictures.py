@@ -2,7 +2,7 @@
 """Draws the pictures of the cases' READMEs: runs the cases into out/pictures and plots their history.csv beside the
 closed forms. From the repository root, with python3-matplotlib installed:
 
-    /usr/bin/python3 cases/pictures.py [puck disc rod bar ball hertz layer incline conveyor oblique ball-spin bowl]
+    /usr/bin/python3 cases/pictures.py [puck disc rod bar ball hertz layer incline dragged conveyor oblique ball-spin bowl]
 """
 import csv
 import subprocess
@@ -194,6 +194,40 @@ def incline():
     save(figure, "cases/incline/incline.png")
 
 
+def rigid_slips(times, force=8.0, limit=0.8 * 9.81, mass=1.0, step=1e-4):
+    """Place of a rigid block under force cos(t) and friction, at these times: it sticks, or slips until it stops."""
+    place, velocity, result, t = 0.0, 0.0, [], 0.0
+    for wanted in times:
+        while t < wanted - 0.5 * step:
+            push = force * np.cos(t + 0.5 * step)
+            if velocity == 0.0 and abs(push) > limit:
+                velocity += step * (push - np.sign(push) * limit) / mass
+            elif velocity != 0.0:
+                after = velocity + step * (push - np.sign(velocity) * limit) / mass
+                velocity = after if after * velocity > 0.0 else 0.0
+            place += step * velocity
+            t += step
+        result.append(place)
+    return np.array(result)
+
+
+def dragged():
+    figure, (place, energy) = plt.subplots(1, 2, figsize=(11, 3.8))
+    histories = {"reduced-kane, Δt = 1 ms": run("dragged/dragged", "dragged"),
+                 "reduced-kane, Δt = 10 ms": run("dragged/dragged", "dragged-long", "time.step=1e-2", "output.history_every=1"),
+                 "newmark, Δt = 1 ms": run("dragged/dragged", "dragged-newmark", "time.scheme=newmark", "time.preset=trapezoidal")}
+    exact = histories["reduced-kane, Δt = 1 ms"]["time"]
+    place.plot(exact, 1e3 * rigid_slips(exact), label="rigid block", **EXACT)
+    for (name, history), style in zip(histories.items(), ("-", "--", ":")):
+        place.plot(history["time"], 1e3 * history["centre.displacement_x"], style, label=name)
+        energy.plot(history["time"], np.maximum(history["kinetic_energy"] + history["elastic_energy"], 1e-12), style, label=name)
+    place.set(xlabel="time, s", title="displacement of the centre, mm", ylim=(-12, 12))
+    energy.set(xlabel="time, s", title="kinetic and elastic energy, J/m", yscale="log")
+    place.legend(loc="upper right", fontsize=8)
+    energy.legend(loc="center right", fontsize=8)
+    save(figure, "cases/dragged/dragged.png")
+
+
 def conveyor():
     history = run("conveyor/conveyor", "conveyor")
     figure, (velocity, work) = plt.subplots(1, 2, figsize=(10, 3.6))
@@ -317,7 +351,7 @@ def hertz_pressure():
 
 
 if __name__ == "__main__":
-    known = {"puck": puck, "disc": disc, "rod": rod, "bar": bar, "ball": ball, "hertz": hertz_pressure, "layer": layer, "incline": incline,
+    known = {"puck": puck, "disc": disc, "rod": rod, "bar": bar, "ball": ball, "hertz": hertz_pressure, "layer": layer, "incline": incline, "dragged": dragged,
              "conveyor": conveyor, "oblique": oblique, "ball-spin": ball_spin, "bowl": bowl}
     for wanted in sys.argv[1:] or known:
         known[wanted]()

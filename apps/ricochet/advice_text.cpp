@@ -73,19 +73,8 @@ void print_bodies(const Model& model, const ConnectedBodies& connected) {
     fmt::print("  {}\n", counted(rigid.bodies().size() - shown, "more body", "more bodies"));
 }
 
-/// Times that a compression wave takes through cells, ascending.
-std::vector<double> crossing_times(const Body& body) {
-  std::vector<double> times = cell_heights(*body.mesh);
-  for (std::size_t cell = 0; cell < times.size(); ++cell) {
-    const Material& material = body.materials[static_cast<std::size_t>(body.cell_material[cell])];
-    times[cell] /= compression_wave_speed(material, is_plane_stress(body));
-  }
-  std::sort(times.begin(), times.end());
-  return times;
-}
-
 void print_steps(const Case& input, const Model& model, const ConnectedBodies& connected) {
-  const std::vector<double> times = crossing_times(model.body);
+  const std::vector<double> times = cell_crossing_times(model.body);
   const std::vector<double> bodies = wave_crossing_times(model.body, connected);
   fmt::print("  a compression wave crosses the smallest cell in {:.4g}, a median one in {:.4g}, {} in {:.4g}\n",
              times.front(), times[times.size() / 2], bodies.size() > 1 ? "the largest body" : "the body",
