@@ -30,8 +30,7 @@ Section time_section() {
            .type = KeyType::choice,
            .standard = "reduced-kane",
            .doc = "The time scheme. The default creates no energy on planes at any step; it needs a mass without "
-                  "inertia on the "
-                  "contact nodes (mass.type)."},
+                  "inertia on the contact nodes (mass.type)."},
           {.name = "step",
            .type = KeyType::number,
            .unit = "time",

@@ -76,8 +76,7 @@ void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& mo
   log::warning(fmt::format(
       "{}: in time.step = {:.3g} a compression wave crosses a median cell {:.3g} times, and with {} with steps of more "
       "than {:g} such times {}; take a step of at most {:.2g}, or scheme \"reduced-kane\" with mass \"equivalent\", "
-      "which "
-      "takes any step",
+      "which takes any step",
       input.where("time.step").text(), input.time.step, crossings, scheme_text(input.time), limit.crossings,
       limit.trouble, limit.crossings * median));
 }

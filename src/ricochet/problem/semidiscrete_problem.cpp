@@ -84,18 +84,23 @@ void SemidiscreteProblem::trace_rounding(const Vector& values, Vector& rounding)
   }
 }
 
+std::vector<Index> contact_node_dofs(const SemidiscreteProblem& problem) {
+  std::vector<Index> dofs;
+  for (const Index node : problem.contact.unique_nodes()) {
+    for (int k = 0; k < problem.dimension; ++k) dofs.push_back(node * problem.dimension + k);
+  }
+  return dofs;
+}
+
 void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, bool mass_without_contact_inertia) {
   problem.is_massless.assign(static_cast<std::size_t>(problem.dof_count()), 0);
   problem.massless_dofs.clear();
   problem.contact_dofs.clear();
-  for (const Index node : problem.contact.unique_nodes()) {
-    for (int k = 0; k < problem.dimension; ++k) {
-      const Index dof = node * problem.dimension + k;
-      if (!problem.supports.contains(dof)) problem.contact_dofs.push_back(dof);
-      if (!mass_without_contact_inertia) continue;
-      problem.massless_dofs.push_back(dof);
-      problem.is_massless[static_cast<std::size_t>(dof)] = 1;
-    }
+  for (const Index dof : contact_node_dofs(problem)) {
+    if (!problem.supports.contains(dof)) problem.contact_dofs.push_back(dof);
+    if (!mass_without_contact_inertia) continue;
+    problem.massless_dofs.push_back(dof);
+    problem.is_massless[static_cast<std::size_t>(dof)] = 1;
   }
   problem.mass = NodeMatrix(mass, problem.dimension);
 }

@@ -54,6 +54,9 @@ struct SemidiscreteProblem {
   void trace_rounding(const Vector& values, Vector& rounding) const;
 };
 
+/// Dofs of the contact nodes, supported ones too, ascending.
+[[nodiscard]] std::vector<Index> contact_node_dofs(const SemidiscreteProblem& problem);
+
 /// Fills massless_dofs, is_massless and contact_dofs from contact and supports, and takes the mass: dofs × dofs,
 /// symmetric to the bit.
 void finish_problem(SemidiscreteProblem& problem, const SparseMatrix& mass, bool mass_without_contact_inertia);

@@ -93,6 +93,13 @@ struct StageSolution {
   double path_contact_work = 0.0;  ///< of normal reactions along the path: −(those just after its start) · start_gap
   double end_weight = 1.0;         ///< μ of this stage
 
+  /// The mean reactions are those of the end, until a stage says otherwise.
+  void clear_mean() {
+    mean_normal_reaction.resize(0);
+    mean_tangential_reaction.resize(0);
+    path_contact_work = 0.0;
+    end_weight = 1.0;
+  }
   /// What acts on the body over the stage.
   [[nodiscard]] const Vector& acting_normal() const {
     return mean_normal_reaction.size() > 0 ? mean_normal_reaction : normal_reaction;

@@ -1,12 +1,9 @@
 #include "ricochet/solver/condensed_contact.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
-#include <set>
-#include <string>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -199,32 +196,6 @@ void CondensedContact::renew_columns(const std::vector<char>& is_new) {
   solver_->load(memory, "solver");
 }
 
-/// YᵀY of the candidates so far.
-Matrix CondensedContact::take_condensed() {
-  if (layer_) return std::move(condensed_);
-  return contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
-}
-
-/// The operator of the contact problem, from YᵀY of all candidates.
-void CondensedContact::give_condensed(Matrix w) {
-  if (!layer_) {
-    hold_directions_without_trace(w);
-    contact_.contact_operator = make_dense_operator(std::move(w));
-    return;
-  }
-  const Matrix layer = layer_->compliance() / scale_;
-  mean_.prepare((1.0 - 0.5 * layer_->weight()) * layer, w - layer, contact_.row_offset, layer_->mean());
-  condensed_ = std::move(w);
-  use_end_weight(mean_.theta());
-}
-
-/// U + θ Z.
-void CondensedContact::use_end_weight(double theta) {
-  Matrix w = mean_.combined(theta);
-  hold_directions_without_trace(w);
-  contact_.contact_operator = make_dense_operator(std::move(w));
-}
-
 void CondensedContact::append_supported() {
   std::vector<Eigen::Triplet<double>> entries;
   const std::vector<Index>& dofs = problem_.supports.dofs();
@@ -277,7 +248,7 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
   if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
   asked_ = false;
-  clear_mean(solution);
+  solution.clear_mean();
   take_rows(stage);
   if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
   take_starting_points(stage);
@@ -294,49 +265,6 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
   asked_ = true;
   columns_.add_reaction(has_mean ? mean_.mean() : contact_solution_.reaction, y);
   give(solution);
-}
-
-void CondensedContact::take_starting_points(const Stage& stage) {
-  std::vector<Index> pressing = pressing_at_start(layer_.get(), stage);
-  must_ask_ = must_ask_ || !pressing.empty();
-  std::erase_if(pressing, [&](Index point) { return candidates_.number(point) >= 0; });
-  if (!pressing.empty()) take_up(pressing);
-}
-
-void CondensedContact::solve_mean(const Stage& stage) {
-  const Index tangents = problem_.dimension - 1;
-  Vector start_gap(contact_.points()), start = Vector::Zero(contact_.rows());
-  for (Index i = 0; i < contact_.points(); ++i) {
-    const Index point = candidates_.points()[static_cast<std::size_t>(i)];
-    const Index row = contact_.row_offset[static_cast<std::size_t>(i)];
-    start_gap[i] = stage.start_gap[point] / stage.gap_factor;
-    start[row] = scale_ * stage.start_normal_reaction[point];
-    for (Index k = 1; row + k < contact_.row_offset[static_cast<std::size_t>(i) + 1]; ++k)
-      start[row + k] = -scale_ * stage.start_tangential_reaction[point * tangents + k - 1];
-  }
-  const Vector offset = contact_.offset;
-  const auto solve = [&] { return try_contact(); };
-  const bool found = mean_.solve(contact_, offset, start_gap, start, solve, contact_solution_);
-  contact_.offset = offset;
-  if (found) return;
-  if (layer_->mean() == ReactionMean::path) throw_no_mean();
-  if (!mean_.is_usable()) {  // the operator is that of the end reactions
-    solve_contact();
-    mean_.take_end(contact_solution_.reaction);
-    return;
-  }
-  // The end reaction alone is always right.
-  log::debug(
-      fmt::format("contact: the mean of the reactions was not found ({}), the end reactions act", mean_.reason()));
-  const Vector last = contact_solution_.reaction;
-  use_end_weight(1.0);
-  solver_->analyse(contact_);
-  solver_->set_warm_start(last);
-  solve_contact();
-  mean_.take_end(contact_solution_.reaction);
-  use_end_weight(mean_.theta());
-  solver_->analyse(contact_);
-  solver_->set_warm_start(contact_solution_.reaction);
 }
 
 /// False: nothing can touch.
@@ -360,20 +288,6 @@ void CondensedContact::give(StageSolution& solution) const {
       solution.tangential_reaction[point * tangents + k - 1] = -reaction[row + k] / scale_;
   }
   if (layer_ && layer_->mean() != ReactionMean::end) give_mean(solution);
-}
-
-void CondensedContact::give_mean(StageSolution& solution) const {
-  const Index tangents = problem_.dimension - 1;
-  solution.mean_normal_reaction.setZero(solution.normal_reaction.size());
-  solution.mean_tangential_reaction = solution.tangential_reaction;
-  solution.path_contact_work = -2.0 * mean_.path_work() / scale_;
-  solution.end_weight = mean_.end_weight();
-  for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
-    const Index point = candidates_.points()[i], row = contact_.row_offset[i];
-    solution.mean_normal_reaction[point] = mean_.mean()[row] / scale_;
-    for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
-      solution.mean_tangential_reaction[point * tangents + k - 1] = -mean_.mean()[row + k] / scale_;
-  }
 }
 
 bool CondensedContact::take_up_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution) {
@@ -445,63 +359,6 @@ void CondensedContact::log_iterations() const {
 
 void CondensedContact::report() const {
   if (asked_ && observer_) observer_(contact_, contact_solution_);
-}
-
-/// Where, and between which contacts, by their numbers in the case and the normals of their obstacles.
-void CondensedContact::throw_contradiction(const std::vector<Index>& contradiction) const {
-  const auto as_text = [](const auto& vector) {
-    std::string text;
-    for (const double component : vector) text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", component);
-    return "(" + text + ")";
-  };
-  std::set<std::string> places, contacts;
-  for (const Index candidate : contradiction) {
-    const Index point = candidates_.points()[static_cast<std::size_t>(candidate)];
-    Vector at = Vector::Zero(problem_.dimension);
-    problem_.contact.visit_nodes(point, [&](Index node, double weight) { at += weight * problem_.nodes.col(node); });
-    places.insert(as_text(at));
-    contacts.insert(fmt::format("contact.{} (normal {})", problem_.contact.pair[static_cast<std::size_t>(point)],
-                                as_text(rows_->normals.col(point))));
-  }
-  constexpr std::size_t shown = 3;
-  std::vector<std::string> some(places.begin(), places.end());
-  const std::size_t more = some.size() > shown ? some.size() - shown : 0;
-  some.resize(some.size() - more);
-  const bool one = contacts.size() == 1;
-  throw Error(
-      ErrorKind::invalid_input,
-      fmt::format("no motion meets the conditions of contact: the body at {}{} (reference position) would have to be "
-                  "outside of the {} of {} at once{}; {}",
-                  fmt::join(some, ", "), more > 0 ? fmt::format(" and {} more places", more) : "",
-                  one ? "obstacle" : "obstacles", fmt::join(contacts, ", "),
-                  one ? " and where supports hold it" : ", and they leave it no room",
-                  one ? "change the supports or the obstacle's motion"
-                      : "leave more room between them, end their motion earlier, or remove one of these contacts"));
-}
-
-void CondensedContact::throw_no_mean() const {
-  const char* const cause =
-      mean_.is_usable()
-          ? "such steps are far longer than the time in which a wave crosses a cell, or next to nothing"
-          : "multipliers that the contact nodes cannot tell apart (\"p0\" on tetrahedra) have none: take others";
-  throw Error(ErrorKind::not_converged,
-              fmt::format("the mean of the reactions over the step was not found ({} points): {}; {}, or scheme "
-                          "\"reduced-kane\"",
-                          contact_.points(), mean_.reason(), cause));
-}
-
-void CondensedContact::throw_not_solved() const {
-  if (!contact_solution_.contradiction.empty()) throw_contradiction(contact_solution_.contradiction);
-  const bool tresca = ((bound_.array() > 0.0) && (coefficient_.array() == 0.0)).any();
-  const char* const advice = tresca ? "; with a friction_bound alone a step need not have a solution: give a friction "
-                                      "coefficient beside it"
-                                    : "";
-  throw Error(
-      ErrorKind::not_converged,
-      fmt::format("the contact problem{} of {} points was not solved in {} iterations (relative residual {:.3g}): "
-                  "{}{}",
-                  friction_ ? " with friction" : "", contact_.points(), contact_solution_.iterations,
-                  contact_solution_.residual, contact_solution_.reason, advice));
 }
 
 }  // namespace ricochet

@@ -13,10 +13,8 @@ ContactLayer::ContactLayer(const SemidiscreteProblem& problem, const OperatorCoe
       factor_(layer.factor()),
       dof_at_(layer.dofs()),
       unknown_(number_dofs(problem, solved_dofs(problem, StageDofs::contact))),
+      node_dofs_(contact_node_dofs(problem)),
       columns_(layer.factor()) {
-  for (const Index node : problem.contact.unique_nodes()) {
-    for (int k = 0; k < problem.dimension; ++k) node_dofs_.push_back(node * problem.dimension + k);
-  }
   layer_.setZero(factor_.work_size());
 }
 

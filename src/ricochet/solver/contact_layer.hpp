@@ -60,12 +60,4 @@ inline std::vector<Index> pressing_at_start(const ContactLayer* layer, const Sta
   return result;
 }
 
-/// The solution's mean reactions are those of the end, until a stage says otherwise.
-inline void clear_mean(StageSolution& solution) {
-  solution.mean_normal_reaction.resize(0);
-  solution.mean_tangential_reaction.resize(0);
-  solution.path_contact_work = 0.0;
-  solution.end_weight = 1.0;
-}
-
 }  // namespace ricochet

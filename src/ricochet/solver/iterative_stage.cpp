@@ -191,7 +191,7 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   solution.normal_reaction.setZero(points);
   if (problem_.contact.has_friction()) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
-  clear_mean(solution);
+  solution.clear_mean();
   solution.iterations = 0;
   const std::vector<Index> pressing = pressing_at_start(layer_.get(), stage);
   presses_at_start_ = !pressing.empty();

@@ -59,8 +59,7 @@ void MeanReaction::prepare(Matrix u, Matrix z, const std::vector<Index>& row_off
   normal_rows_.assign(row_offset.begin(), row_offset.end() - 1);
   has_friction_ = row_offset.back() > static_cast<Index>(normal_rows_.size());
   normal_u_ = u_(normal_rows_, normal_rows_);
-  normal_z_ = z_(normal_rows_, normal_rows_);
-  const double lambda = largest_ratio(normal_u_, normal_z_);
+  const double lambda = largest_ratio(normal_u_, z_(normal_rows_, normal_rows_));
   usable_ = std::isfinite(lambda);
   if (!usable_) return;
   mu_ = mean == ReactionMean::path ? 0.0 : least_end_weight(lambda, has_friction_ ? 0.0 : 0.5);
@@ -85,9 +84,7 @@ bool MeanReaction::find_mean(const Vector& acting, const Vector& offset, const V
   const Vector q0 = start_gap_ - normals(u_ * start_) + shift, q1 = normals(motion) + shift;
   mean = reaction;
   NormalPath path(normal_u_, eligible_);
-  std::vector<char> pressing(normal_rows_.size());
-  for (std::size_t i = 0; i < pressing.size(); ++i) pressing[i] = start_[normal_rows_[i]] > 0.0 ? 1 : 0;
-  if (!path.follow(q0, q1, pressing)) {
+  if (!path.follow(q0, q1, pressing_)) {
     reason_ = "the points that press were not found along the path of the step";
     return false;
   }
@@ -150,12 +147,10 @@ bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const s
 bool MeanReaction::newton(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
                           ContactSolution& solution) {
   const Vector q0 = start_gap_ - u_ * start_;
-  std::vector<char> pressing(eligible_.size());
-  for (std::size_t i = 0; i < pressing.size(); ++i) pressing[i] = start_[static_cast<Index>(i)] > 0.0 ? 1 : 0;
   NormalPath path(normal_u_, eligible_);
   Vector mean;
   const auto evaluate = [&](const Vector& acting, Vector& residual) {
-    if (!path.follow(q0, offset + z_ * acting, pressing)) return false;
+    if (!path.follow(q0, offset + z_ * acting, pressing_)) return false;
     mean = (1.0 - mu_) * path.mean() + mu_ * path.end();
     residual = acting - mean;
     return true;
@@ -203,6 +198,8 @@ bool MeanReaction::solve(ContactProblem& contact, const Vector& offset, const Ve
   acting_ = start;
   eligible_.assign(static_cast<std::size_t>(contact.points()), 1);
   for (Index i = 0; i < contact.points(); ++i) eligible_[static_cast<std::size_t>(i)] = contact.is_eligible(i) ? 1 : 0;
+  pressing_.clear();
+  for (const Index row : normal_rows_) pressing_.push_back(start_[row] > 0.0 ? 1 : 0);
   acting_weight_ = mu_;
   if (!usable_) {
     reason_ = "the compliance of the contact nodes is not positive definite on them";

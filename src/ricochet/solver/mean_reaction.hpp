@@ -51,11 +51,11 @@ class MeanReaction {
   [[nodiscard]] bool find_mean(const Vector& acting, const Vector& offset, const Vector& reaction, Vector& mean);
   [[nodiscard]] Vector normals(const Vector& rows) const;
 
-  Matrix u_, z_, normal_u_, normal_z_;
+  Matrix u_, z_, normal_u_;
   std::vector<Index> normal_rows_;
   bool has_friction_ = false, usable_ = false;
   double mu_ = 1.0, acting_weight_ = 1.0, path_work_ = 0.0;
-  std::vector<char> eligible_;
+  std::vector<char> eligible_, pressing_;           ///< per point; pressing_: at the start
   Vector start_gap_, start_, difference_, acting_;  ///< y₀, ρ₀, ρ̄ − θρ, ρ̄
   std::string reason_;
 };

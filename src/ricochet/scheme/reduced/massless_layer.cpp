@@ -12,7 +12,6 @@ namespace ricochet {
 
 namespace {
 
-constexpr std::size_t layer_stage = 0;
 /// C_c = ηK_c to this.
 constexpr double same_damping = 1e-12;
 
@@ -29,6 +28,16 @@ void MasslessLayer::analyse(const SemidiscreteProblem& problem) {
   }
   stiffness_.analyse(problem);
   find_damping(problem);
+}
+
+void MasslessLayer::require_frictionless_planes(const SemidiscreteProblem& problem) const {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorKind::invalid_input, fmt::format("scheme \"{}\" {}; use scheme \"reduced-kane\"", scheme_, what));
+  };
+  if (problem.contact.has_friction()) refuse("takes no friction: its balance of energy has no sign with it");
+  if (problem.contact.follows_motion()) refuse("takes planes only: it needs gaps that are linear in the motion");
+  if (damps_contact_nodes())
+    refuse("takes no stiffness damping at contact nodes, whose place must be a function of the others'");
 }
 
 void MasslessLayer::find_damping(const SemidiscreteProblem& problem) {
@@ -95,12 +104,16 @@ void MasslessLayer::find_residual(const SemidiscreteProblem& problem, const Stat
   }
 }
 
-const Vector& MasslessLayer::solve_layer(const SemidiscreteProblem& problem, const Vector& right, StageSolve& stages) {
-  Stage& stage = stages.stage(layer_stage);
+void MasslessLayer::set_layer_force(const SemidiscreteProblem& problem, const Vector& force, Stage& stage) {
   if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i)
-    stage.right_hand_side[problem.contact_dofs[i]] = right[static_cast<Index>(i)];
+    stage.right_hand_side[problem.contact_dofs[i]] = force[static_cast<Index>(i)];
   stage.prescribed.setZero(problem.supports.size());
+}
+
+const Vector& MasslessLayer::solve_layer(const SemidiscreteProblem& problem, const Vector& right, StageSolve& stages) {
+  Stage& stage = stages.stage(layer_stage);
+  set_layer_force(problem, right, stage);
   stage.motion.reset();
   stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
   return stages.solve(layer_stage).increment;
@@ -116,7 +129,7 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
                             Vector& increment) {
   const double h = step_;
   const bool has_layer = !problem.contact_dofs.empty();
-  Stage& stage = stages.stage(has_layer ? layer_stage + 1 : 0);
+  Stage& stage = stages.stage(midpoint_stage(problem));
   balance(problem, state, stage);
   contact_base_ = state.displacement + h * state.velocity;  // of the end, at δ = 0
   if (has_layer) {
@@ -135,7 +148,7 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
   stick_.require(problem, state, h, stage);
   if (mean != ReactionMean::end) require_mean(problem, state, stage);
 
-  const StageSolution& solution = stages.solve(has_layer ? layer_stage + 1 : 0);
+  const StageSolution& solution = stages.solve(midpoint_stage(problem));
   increment = h * state.velocity + 2.0 * solution.increment;
   for (const Index dof : problem.contact_dofs)
     increment[dof] = contact_base_[dof] - state.displacement[dof] + 2.0 * solution.contact_increment[dof];
@@ -156,8 +169,9 @@ void MasslessLayer::move(const SemidiscreteProblem& problem, const Vector& solut
 
 void MasslessLayer::take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
                                 const Vector& increment, State& state) {
-  equations_.take_forces(problem, stage, solution, step_, increment, 1.0 / step_, state);
+  equations_.take_contact(stage, solution, step_, state);
   if (problem.loads.varies()) state.forces.varying_load = next_varying_;
+  if (problem.has_damping()) state.forces.damping_force.noalias() = problem.damping * increment * (1.0 / step_);
 }
 
 MasslessLayer::LayerWork MasslessLayer::layer_work(const SemidiscreteProblem& problem, const ContactRows& rows,

@@ -27,6 +27,9 @@ class MasslessLayer {
 
   /// Throws Error(invalid_input) where contact nodes have inertia.
   void analyse(const SemidiscreteProblem& problem);
+  /// For schemes whose balance of energy holds without friction, against planes, and without stiffness damping at
+  /// contact nodes. After analyse(). Throws Error(invalid_input) that says what to use.
+  void require_frictionless_planes(const SemidiscreteProblem& problem) const;
   [[nodiscard]] bool damps_contact_nodes() const { return damps_; }
   /// The layer's and the midpoint's; the midpoint's alone where there is no contact dof.
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem,
@@ -49,6 +52,13 @@ class MasslessLayer {
   /// L₁ − L₀, per contact dof.
   [[nodiscard]] const Vector& load_change() const { return load_change_; }
   [[nodiscard]] const ContactStiffness& stiffness() const { return stiffness_; }
+  /// Number of the midpoint's stage.
+  [[nodiscard]] static std::size_t midpoint_stage(const SemidiscreteProblem& problem) {
+    return problem.contact_dofs.empty() ? 0 : layer_stage + 1;
+  }
+  static constexpr std::size_t layer_stage = 0;
+  /// Forces on contact nodes alone, per contact dof, that nothing else moves: the right-hand side of the layer's stage.
+  static void set_layer_force(const SemidiscreteProblem& problem, const Vector& force, Stage& stage);
   /// Solves with the layer's operator, no contact: the solution's increment, per dof. `right`: per contact dof.
   const Vector& solve_layer(const SemidiscreteProblem& problem, const Vector& right, StageSolve& stages);
   /// u₁, v₁ from δ of the midpoint's stage and the increment of the step.

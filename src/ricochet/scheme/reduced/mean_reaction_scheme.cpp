@@ -1,8 +1,4 @@
-#include <fmt/format.h>
-
-#include "ricochet/base/error.hpp"
-#include "ricochet/scheme/reduced/massless_layer.hpp"
-#include "ricochet/scheme/reduced/requirements.hpp"
+#include "ricochet/scheme/reduced/end_scheme.hpp"
 
 namespace ricochet {
 
@@ -14,38 +10,22 @@ namespace {
 ///   E₁ − E₀ = work of loads, supports and obstacles,
 /// the contact works nothing, and momenta are exact; each step has one solution, however long it is. Beyond the time in
 /// which a wave crosses a cell the end reactions alternate: reduced-kane is for such steps.
-class MeanReactionScheme final : public Scheme {
+class MeanReactionScheme final : public EndScheme {
  public:
-  explicit MeanReactionScheme(double step) : Scheme(step), layer_("mean-reaction", step) {}
+  explicit MeanReactionScheme(double step) : EndScheme("mean-reaction", step) {}
 
   void analyse(const SemidiscreteProblem& problem) override {
-    layer_.analyse(problem);
-    require_frictionless_planes(problem, layer_, "mean-reaction");
+    EndScheme::analyse(problem);
+    layer().require_frictionless_planes(problem);
   }
-  [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
-    return layer_.operators(problem, mean(problem));
-  }
-  [[nodiscard]] double acting_instant() const override { return -0.5; }
-  [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] LongSteps long_steps(const SemidiscreteProblem&) const override {
     return {.trouble =
                 "the contact forces at the ends of steps rattle: those of a block at rest alternated between "
                 "nothing and four times its weight at ten crossings, for ever (their means, which act, do not)"};
   }
 
-  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
-    layer_.advance(problem, mean(problem), state, stages, increment);
-  }
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return layer_.corrections();
-  }
-
  private:
-  [[nodiscard]] static ReactionMean mean(const SemidiscreteProblem& problem) {
-    return problem.contact_dofs.empty() ? ReactionMean::end : ReactionMean::path;
-  }
-
-  MasslessLayer layer_;
+  [[nodiscard]] ReactionMean mean(const SemidiscreteProblem&) const override { return ReactionMean::path; }
 };
 
 }  // namespace

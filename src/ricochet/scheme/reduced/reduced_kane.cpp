@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "ricochet/base/log.hpp"
-#include "ricochet/scheme/reduced/massless_layer.hpp"
+#include "ricochet/scheme/reduced/end_scheme.hpp"
 
 namespace ricochet {
 
@@ -14,43 +14,30 @@ namespace {
 ///   E₁ − E₀ = −r_N·g₀ − Σ F r_N |Δy_T| − ½ zᵀK_cc z + work of loads, supports, obstacles and damping,
 /// each part ≤ 0 at each point, for every step and friction. With weight "adaptive" ρ̄ is a mean (mean_reaction.hpp),
 /// whose parts have the same signs, and which loses much less at impacts.
-class ReducedKane final : public Scheme {
+class ReducedKane final : public EndScheme {
  public:
-  ReducedKane(double step, const std::string& weight) : Scheme(step), weight_(weight), layer_("reduced-kane", step) {}
+  ReducedKane(double step, const std::string& weight) : EndScheme("reduced-kane", step), weight_(weight) {}
 
   void analyse(const SemidiscreteProblem& problem) override {
-    layer_.analyse(problem);
+    EndScheme::analyse(problem);
     if (weight_ == "end" || problem.contact_dofs.empty() || has_mean(problem)) return;
     if (weight_ == "automatic" && problem.contact.has_friction()) return;
     log::info(fmt::format(
         "time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,
         problem.contact.follows_motion() ? "an obstacle is curved" : "there is stiffness damping at contact nodes"));
   }
-  [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
-    return layer_.operators(problem, mean(problem));
-  }
-  [[nodiscard]] double acting_instant() const override { return -0.5; }
-  [[nodiscard]] bool suits_singular_mass() const override { return true; }
-
-  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
-    layer_.advance(problem, mean(problem), state, stages, increment);
-  }
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return layer_.corrections();
-  }
 
  private:
   /// A mean is of gaps that are linear, and of nodes without memory.
   [[nodiscard]] bool has_mean(const SemidiscreteProblem& problem) const {
-    return !problem.contact.follows_motion() && !layer_.damps_contact_nodes();
+    return !problem.contact.follows_motion() && !layer().damps_contact_nodes();
   }
-  [[nodiscard]] ReactionMean mean(const SemidiscreteProblem& problem) const {
+  [[nodiscard]] ReactionMean mean(const SemidiscreteProblem& problem) const override {
     const bool wanted = weight_ == "adaptive" || (weight_ == "automatic" && !problem.contact.has_friction());
-    return has_mean(problem) && wanted && !problem.contact_dofs.empty() ? ReactionMean::mixed : ReactionMean::end;
+    return has_mean(problem) && wanted ? ReactionMean::mixed : ReactionMean::end;
   }
 
   std::string weight_;
-  MasslessLayer layer_;
 };
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/reduced/massless_layer.hpp"
-#include "ricochet/scheme/reduced/requirements.hpp"
 
 namespace ricochet {
 
@@ -19,7 +18,7 @@ class ReducedMidpoint final : public Scheme {
 
   void analyse(const SemidiscreteProblem& problem) override {
     layer_.analyse(problem);
-    require_frictionless_planes(problem, layer_, "reduced-midpoint");
+    layer_.require_frictionless_planes(problem);
   }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     std::vector<OperatorCoefficients> result = layer_.operators(problem, ReactionMean::end);
@@ -32,7 +31,7 @@ class ReducedMidpoint final : public Scheme {
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step(), middle = state.time + 0.5 * h;
     const bool has_layer = !problem.contact_dofs.empty();
-    const std::size_t number = has_layer ? 1 : 0;
+    const std::size_t number = MasslessLayer::midpoint_stage(problem);
     Stage& stage = stages.stage(number);
     layer_.balance(problem, state, stage);
     require_no_penetration(problem, layer_.base(), middle, stage);
@@ -55,17 +54,12 @@ class ReducedMidpoint final : public Scheme {
   void settle(const SemidiscreteProblem& problem, const State& state, StageSolve& stages, Vector& increment) {
     for (const Index dof : problem.contact_dofs) increment[dof] = step() * state.velocity[dof];
     layer_.stiffness().multiply(increment, row_force_);
-    Stage& stage = stages.stage(0);
-    if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
-    for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
-      const auto at = static_cast<Index>(i);
-      stage.right_hand_side[problem.contact_dofs[i]] =
-          layer_.residual()[at] + layer_.load_change()[at] - row_force_[at];
-    }
-    stage.prescribed.setZero(problem.supports.size());
+    Stage& stage = stages.stage(MasslessLayer::layer_stage);
+    row_force_ = layer_.residual() + layer_.load_change() - row_force_;
+    MasslessLayer::set_layer_force(problem, row_force_, stage);
     base_ = state.displacement + increment;
     require_no_penetration(problem, base_, state.time + step(), stage);
-    const StageSolution& end = stages.solve(0);
+    const StageSolution& end = stages.solve(MasslessLayer::layer_stage);
     for (const Index dof : problem.contact_dofs) increment[dof] += end.increment[dof];
     result_.normal_reaction = end.normal_reaction;
     result_.contact_status = end.contact_status;

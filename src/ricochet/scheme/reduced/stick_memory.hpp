@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/state.hpp"
 
 /// @file How far points that stick have come from where they began to: a remainder of rounding, which the next step

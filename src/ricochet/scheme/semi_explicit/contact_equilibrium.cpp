@@ -12,10 +12,7 @@ void ContactEquilibrium::analyse(const SemidiscreteProblem& problem) {
     for (SparseRowMatrix::InnerIterator entry(stiffness_.rows(), row); entry; ++entry)
       is_near[static_cast<std::size_t>(entry.col())] = 1;
   }
-  contact_node_dofs_.clear();
-  for (const Index node : problem.contact.unique_nodes()) {
-    for (int k = 0; k < problem.dimension; ++k) contact_node_dofs_.push_back(node * problem.dimension + k);
-  }
+  contact_node_dofs_ = ricochet::contact_node_dofs(problem);
   for (const Index dof : contact_node_dofs_) is_near[static_cast<std::size_t>(dof)] = 1;
   near_dofs_.clear();
   for (Index dof = 0; dof < dofs; ++dof) {

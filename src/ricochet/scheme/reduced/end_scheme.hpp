@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include "ricochet/scheme/reduced/massless_layer.hpp"
+
+/// @file Schemes whose contact conditions at the end of a step decide it (MasslessLayer::advance). They differ in the
+/// reactions that act over the step.
+namespace ricochet {
+
+class EndScheme : public Scheme {
+ public:
+  EndScheme(const std::string& name, double step) : Scheme(step), layer_(name, step) {}
+
+  void analyse(const SemidiscreteProblem& problem) override { layer_.analyse(problem); }
+  [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
+    return layer_.operators(problem, mean_of(problem));
+  }
+  [[nodiscard]] double acting_instant() const override { return -0.5; }
+  [[nodiscard]] bool suits_singular_mass() const override { return true; }
+
+  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
+    layer_.advance(problem, mean_of(problem), state, stages, increment);
+  }
+  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
+    return layer_.corrections();
+  }
+
+ protected:
+  [[nodiscard]] const MasslessLayer& layer() const { return layer_; }
+
+ private:
+  /// What acts over a step where there is a contact dof.
+  [[nodiscard]] virtual ReactionMean mean(const SemidiscreteProblem& problem) const = 0;
+  [[nodiscard]] ReactionMean mean_of(const SemidiscreteProblem& problem) const {
+    return problem.contact_dofs.empty() ? ReactionMean::end : mean(problem);
+  }
+
+  MasslessLayer layer_;
+};
+
+}  // namespace ricochet
