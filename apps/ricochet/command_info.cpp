@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "comparison_text.hpp"
 #include "contact_text.hpp"
+#include "method_text.hpp"
 #include "outcome_text.hpp"
 #include "penetration_text.hpp"
 #include "probe_text.hpp"
@@ -129,6 +130,7 @@ void describe_result(const std::string& directory) {
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
              energy.maximum);
   fmt::print("  {}\n", energy_account_text(s));
+  print_method(s);
   for (const CheckResult& check : s.checks) {
     if (check.limit > 0.0 && check.largest > check.limit)
       fmt::print("  CHECK FAILED: {} reaches {:.2g}, more than {:g}\n", check.name, check.largest, check.limit);

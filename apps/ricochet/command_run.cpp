@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "contact_text.hpp"
+#include "method_text.hpp"
 #include "outcome_text.hpp"
 #include "penetration_text.hpp"
 #include "progress_text.hpp"
@@ -56,6 +57,7 @@ void print_summary(const RunSummary& s, const std::string& directory) {
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
              energy.maximum);
   fmt::print("  {}\n", energy_account_text(s));
+  print_method(s);
   print_friction(s);
   print_impacts(s, most_impacts_shown);
   print_peak_stress(s);

@@ -6,11 +6,13 @@
 #include <array>
 #include <set>
 
+#include "method_text.hpp"
 #include "penetration_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/summary.hpp"
+#include "ricochet/simulation/restitution.hpp"
 
 namespace ricochet::program {
 
@@ -34,18 +36,18 @@ double force_variation(const RunSummary& s) {
 void print_methods(const std::vector<Run>& runs, int width) {
   std::size_t scheme_width = 15;
   for (const auto& [directory, s] : runs) scheme_width = std::max(scheme_width, s.scheme.size());
-  constexpr const char* row = "{:<{}} {:<{}} {:<18} {:>11} {:>11} {:>11} {:>14} {:>14} {:>9}\n";
-  fmt::print(row, "run", width, "scheme", scheme_width, "mass", "energy at", "energy at", "largest", "variation of",
-             "deepest inter-", "time per");
-  fmt::print(row, "", width, "", scheme_width, "", "the start", "the end", "energy", "contact force", "penetration",
-             "step, ms");
+  constexpr const char* row = "{:<{}} {:<{}} {:<18} {:>11} {:>11} {:>11} {:>11} {:>14} {:>14} {:>9}\n";
+  fmt::print(row, "run", width, "scheme", scheme_width, "mass", "energy at", "energy at", "largest", "energy by",
+             "variation of", "deepest inter-", "time per");
+  fmt::print(row, "", width, "", scheme_width, "", "the start", "the end", "energy", "the method", "contact force",
+             "penetration", "step, ms");
   bool any_skips = false;
   for (const auto& [directory, s] : runs) {
     const ColumnDigest energy = s.digest("total_energy");
     const bool skips = s.history_every > 1;
     any_skips = any_skips || skips;
-    fmt::print("{:<{}} {:<{}} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>14} {:>14} {:>9.3g}{}\n", directory, width,
-               s.scheme, scheme_width, s.mass, energy.first, energy.last, energy.maximum,
+    fmt::print("{:<{}} {:<{}} {:<18} {:>11.6g} {:>11.6g} {:>11.6g} {:>11} {:>14} {:>14} {:>9.3g}{}\n", directory, width,
+               s.scheme, scheme_width, s.mass, energy.first, energy.last, energy.maximum, method_energy_mark(s),
                fmt::format("{}{:.4g}", skips ? "≥ " : "", force_variation(s)), deepest_penetration_text(s),
                1e3 * s.time_per_step, status_text(directory, s));
   }
@@ -54,15 +56,21 @@ void print_methods(const std::vector<Run>& runs, int width) {
         "  ≥ of the rows of the history, which are not of every step: a force that alternates from step to step "
         "varies more (output.history_every)\n");
   for (const auto& [directory, s] : runs) {
-    if (!s.mass_built.empty() && s.mass_built != s.mass) fmt::print("  {}: mass {}\n", directory, s.mass_text());
+    std::vector<std::string> notes;
+    if (!s.mass_built.empty() && s.mass_built != s.mass) notes.push_back("mass " + s.mass_text());
+    if (const std::string reactions = reactions_text(s); !reactions.empty()) notes.push_back("reactions: " + reactions);
+    if (!notes.empty()) fmt::print("  {}: {}\n", directory, fmt::join(notes, "; "));
   }
 }
 
 /// Marks, and what each means, in the order in which they are explained.
-constexpr std::array<std::pair<const char*, const char*>, 4> meanings{{
+constexpr std::array<std::pair<const char*, const char*>, 5> meanings{{
     {"≥", "not every step was looked at: the stress may have been higher between two looks (output.fields_every)"},
     {"~", "the contact zone is too coarse to trust the force: refine the mesh there"},
     {"?", "cells turn by more than 0.1 rad, which small strain takes for a strain that is not there"},
+    {"!",
+     "the method itself lost or created more than a tenth of the energy that this restitution says was lost: take a "
+     "smaller time.step, and smaller cells"},
     {"*", "of the first impact with a restitution; there are more, which `ricochet info` lists for one run"},
 }};
 
@@ -76,7 +84,8 @@ class Outcome {
                                     [](const Impact& impact) { return impact.restitution().has_value(); });
     if (first == s_.impacts.end()) return "-";
     const bool more = s_.impacts.size() > 1 || s_.impacts_left_out > 0;
-    return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", turned_in(first));
+    return fmt::format("{:.4g}", *first->restitution()) + mark("*", more) + mark("?", turned_in(first)) +
+           mark("!", restitution_error(*first).is_large);
   }
 
   /// Of a body on an obstacle; "-" where the results tell no impacts.

@@ -78,6 +78,15 @@ std::string rotation_text(std::size_t impact, const RunSummary& summary) {
                      summary.small_strain_holds_in(impact) ? "" : " (BEYOND SMALL STRAIN)");
 }
 
+/// Where the method has changed the energy by much of what the restitution says that the body lost.
+std::string restitution_error_text(const Impact& impact) {
+  const RestitutionError error = restitution_error(impact);
+  if (!error.is_large) return "";
+  return fmt::format(" (inexact: of the energy of the approach the method {} {}, where the body {} {})",
+                     error.by_method < 0.0 ? "lost" : "created", percent(std::abs(error.by_method)),
+                     error.by_impact < 0.0 ? "gained" : "lost", percent(std::abs(error.by_impact)));
+}
+
 std::string impact_text(std::size_t number, const RunSummary& summary) {
   const Impact& impact = summary.impacts[number];
   std::string text;
@@ -92,8 +101,9 @@ std::string impact_text(std::size_t number, const RunSummary& summary) {
     text += ", not ended";
   }
   if (const auto restitution = impact.restitution()) {
-    text += fmt::format(", restitution {:.4g}{}", *restitution,
-                        *restitution < 0.0 ? " (its centre still goes towards the obstacle after the last force)" : "");
+    text += fmt::format(", restitution {:.4g}{}{}", *restitution,
+                        *restitution < 0.0 ? " (its centre still goes towards the obstacle after the last force)" : "",
+                        restitution_error_text(impact));
   } else if (impact.ended) {
     text += fmt::format(", no restitution ({})", why_no_restitution(impact));
   }

@@ -40,9 +40,6 @@ std::string energy_account_text(const RunSummary& summary) {
   const double energy = summary.energy_scale(), work = summary.work_scale();
   std::string text =
       fmt::format("energy account closes to {:.1e} of the largest energy", energy > 0.0 ? largest / energy : largest);
-  constexpr double worth_telling = 1e-3;
-  if (const double loss = summary.loss_by_scheme(); loss > worth_telling)
-    text += fmt::format("; contact and the scheme have taken {:.2g} % of it", 100.0 * loss);
   if (work > 1e3 * energy) text += fmt::format(", {:.1e} of the largest work", largest / work);
   return text;
 }

@@ -126,7 +126,7 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
         const long before = allocation_count();
         run.simulation().advance();
         (void)recorder.row(run.state(), run.simulation().account());
-        impacts.enter_step(run.state());
+        impacts.enter_step(run.state(), run.simulation().account().of_method(run.state()));
         peak.enter(run.state(), false);
         watch.look(run.state());
         const long count = allocation_count() - before;

@@ -37,10 +37,14 @@ ImpactRecorder make_recorder(CaseRun& run) {
           obstacles,     bodies.of_node, wave_crossing_times(run.model().body, bodies)};
 }
 
+double of_method(CaseRun& run) {
+  return run.simulation().account().of_method(run.state());
+}
+
 std::vector<Impact> impacts_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
   CaseRun run(text, overrides);
   ImpactRecorder recorder = make_recorder(run);
-  run.run([&] { recorder.enter_step(run.state()); }, false);
+  run.run([&] { recorder.enter_step(run.state(), of_method(run)); }, false);
   return recorder.impacts();
 }
 
@@ -141,7 +145,7 @@ TEST(Impacts, BalanceMomentumInEveryScheme) {
       MomentumAccount account(run.problem(), run.scheme(), run.state());
       run.run(
           [&] {
-            recorder.enter_step(run.state());
+            recorder.enter_step(run.state(), of_method(run));
             account.enter_step(run.state());
           },
           false);
@@ -253,8 +257,8 @@ TEST(Impacts, GoOnFromASnapshot) {
   std::vector<ImpactRecorder> resumed;
   run.run(
       [&] {
-        recorder.enter_step(run.state());
-        for (ImpactRecorder& other : resumed) other.enter_step(run.state());
+        recorder.enter_step(run.state(), of_method(run));
+        for (ImpactRecorder& other : resumed) other.enter_step(run.state(), of_method(run));
         if (run.state().step % 60 != 0) return;
         Snapshot snapshot;
         recorder.save(snapshot, "impacts");

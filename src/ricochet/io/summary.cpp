@@ -17,6 +17,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/run_directory.hpp"
+#include "ricochet/io/summary_method.hpp"
 #include "ricochet/io/summary_outcome.hpp"
 
 namespace ricochet {
@@ -122,10 +123,17 @@ double RunSummary::energy_scale() const {
   return largest_size(*this, std::array{"total_energy", "kinetic_energy", "elastic_energy"});
 }
 
-double RunSummary::loss_by_scheme() const {
+double RunSummary::loss_by_method() const {
+  if (method_energy) return method_energy->lost;
   const double scale = energy_scale();
   const double lost = digest("numerical_dissipation").maximum - std::min(0.0, digest("contact_work").minimum);
   return scale > 0.0 ? lost / scale : 0.0;
+}
+
+double RunSummary::creation_by_method() const {
+  if (method_energy) return method_energy->created;
+  const double scale = energy_scale();
+  return scale > 0.0 ? digest("contact_work").maximum / scale : 0.0;
 }
 
 bool RunSummary::small_strain_holds_in(std::size_t impact) const {
@@ -191,6 +199,8 @@ std::string to_json(const RunSummary& s) {
                {"timings_seconds", timings},
                {"seconds_per_step", s.time_per_step},
                {"energy_scale", Json::number(s.energy_scale())},
+               {"energy_budget", energy_budget_to_json(s)},
+               {"reactions", reactions_to_json(s)},
                {"contacts", contacts_to_json(s)},
                {"probes", probes_to_json(s)},
                {"extrema", extrema_to_json(s)},
@@ -275,6 +285,7 @@ RunSummary read_summary(const std::string& path) {
     const Json checks = json.value("checks", Json::object());
     for (const auto& [name, check] : checks.items())
       s.checks.push_back({name, check.at("limit").to_number(), check.at("largest").to_number()});
+    read_method(json, s);
     read_outcome(json, path, s);
     for (const auto& contact : json.at("contacts")) {
       s.contacts.push_back({contact.at("group"), contact.at("obstacle"), contact.at("multipliers"),

@@ -70,6 +70,22 @@ struct PeakStressDescription {
   std::string material;
 };
 
+/// What the discretization of time, and nothing of the model, has done to the energy: contact_work less
+/// numerical_dissipation and the change of algorithmic_energy, of every step. As parts of energy_scale().
+struct MethodEnergy {
+  double lost = 0.0, created = 0.0;  ///< the most that was missing, and the most that was too much, since the start
+  double at_end = 0.0;               ///< negative: missing
+};
+
+/// Which reactions acted over the steps, where the scheme has a choice.
+struct ActingReactions {
+  std::string kind;  ///< "end", "mean" or "adaptive"
+  /// Of the reactions at the end in the means that acted; the least is above the largest where none did.
+  double least_weight = std::numeric_limits<double>::infinity(), largest_weight = -least_weight;
+  long mean_steps = 0;  ///< with contact, in which a mean acted
+  long end_steps = 0;   ///< in which the end reactions had to, as no mean was found
+};
+
 struct RunSummary {
   std::string status = "done";  ///< "running", "done", "failed" or "interrupted"
   std::string message;          ///< of the failure or the interruption
@@ -108,7 +124,9 @@ struct RunSummary {
   std::vector<Impact> impacts = {};
   long impacts_left_out = 0;  ///< that were only counted
   std::optional<PeakStressDescription> peak_stress;
-  std::optional<RotationReport> rotation = {};  ///< none: results of a version that did not tell
+  std::optional<MethodEnergy> method_energy = {};  ///< none: results of a version that did not tell
+  std::optional<ActingReactions> reactions = {};   ///< none: the scheme has no choice, or likewise
+  std::optional<RotationReport> rotation = {};     ///< none: results of a version that did not tell
   PenetrationReport penetration = {};  ///< where no contact is; what the contact points do is a column of the history
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;
@@ -121,9 +139,10 @@ struct RunSummary {
   /// Largest |total_energy| + |algorithmic_energy| bound, the scale of the energy account: max of |first|, |min|, |max|
   /// of total energy and of kinetic and elastic energy.
   [[nodiscard]] double energy_scale() const;
-  /// What contact forces and the scheme itself have taken away, over energy_scale(): no real body loses it. 0 where
-  /// there is no energy.
-  [[nodiscard]] double loss_by_scheme() const;
+  /// What contact forces and the scheme itself have taken away (and put in), over energy_scale(): no real body loses
+  /// it. 0 where there is no energy. Of older results by the rows of the history.
+  [[nodiscard]] double loss_by_method() const;
+  [[nodiscard]] double creation_by_method() const;
   /// False where cells had turned too far for small strain when an impact (numbered from 0) ended.
   [[nodiscard]] bool small_strain_holds_in(std::size_t impact) const;
   /// The same of all impacts; of a run without any at all times.

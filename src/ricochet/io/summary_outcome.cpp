@@ -79,6 +79,8 @@ Json impact_to_json(const Impact& impact, int dimension) {
           {"coarse", impact.is_coarse()},
           {"first_place", numbers(impact.first_place)},
           {"restitution", restitution ? Json::number(*restitution) : Json()},
+          {"restitution_inexact", restitution_error(impact).is_large},
+          {"method_energy", impact.method_energy ? Json::number(*impact.method_energy) : Json()},
           {"why_no_restitution", restitution ? Json() : Json(why_no_restitution(impact))},
           {"normal_velocity_before", Json::number(impact.normal_velocity_before())},
           {"normal_velocity_after", if_ended(Json::number(impact.normal_velocity_after()))},
@@ -190,6 +192,8 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies,
   impact.contact_points = json.value("contact_points", 0L);
   impact.all_contact_points = json.value("all_contact_points", 0L);
   impact.first_place = to_numbers(json.value("first_place", Json::array()));
+  const Json method_energy = json.value("method_energy", Json());
+  if (method_energy.is_number() || method_energy.is_string()) impact.method_energy = method_energy.to_number();
   impact.obstacle_velocity = json.at("obstacle_normal_velocity").to_number();
   impact.obstacle_sliding = vector_from(json.value("obstacle_sliding_velocity", Json::array()));
   if (impact.body < 0 || impact.body >= static_cast<int>(bodies.size()))

@@ -97,6 +97,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       peak_stress_(model.body, step_work(model.body, factor_entries)),
       penetration_(make_penetration_watch(input, model)),
       rotation_(model.body, column_index(recorder_.columns(), "max_rotation")),
+      method_(scheme.acting_reactions(model.problem)),
       history_every_(input.output.history_every.value_or(scheme.history_every())) {
   for (const auto& [every, sensors] : model.sampled_sensors) {
     SensorRecorder recorder(model.problem, sensors);
@@ -110,13 +111,16 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   peak_stress_.load(*snapshot, "peak_stress");
   penetration_.load(*snapshot, "penetration");
   rotation_.load(*snapshot, "rotation");
+  method_.load(*snapshot, "method");
 }
 
 void Recording::record(const State& state, EnergyAccount& account) {
   Timer timer;
   if (state.step > 0) {
     checks_.enter_step(state);
-    impacts_.enter_step(state);
+    const double of_method = account.of_method(state);
+    impacts_.enter_step(state, of_method);
+    method_.enter_step(state, of_method);
   }
   const bool is_frame = results_ && fields_.includes(state.step);
   peak_stress_.enter(state, is_frame);
@@ -184,6 +188,7 @@ void Recording::save(Snapshot& snapshot) {
   peak_stress_.save(snapshot, "peak_stress");
   penetration_.save(snapshot, "penetration");
   rotation_.save(snapshot, "rotation");
+  method_.save(snapshot, "method");
 }
 
 void Recording::describe(RunSummary& summary) const {
@@ -192,6 +197,8 @@ void Recording::describe(RunSummary& summary) const {
   summary.columns = recorder_.columns();
   summary.digests = digest_.columns();
   summary.checks = checks_.results();
+  summary.method_energy = method_.energy(summary.energy_scale());
+  summary.reactions = method_.reactions();
   summary.impacts = impacts_.impacts();
   summary.impacts_left_out = impacts_.left_out();
   summary.penetration = penetration_.report();

@@ -7,6 +7,7 @@
 #include "ricochet/io/results_file.hpp"
 #include "ricochet/io/summary.hpp"
 #include "ricochet/model/model.hpp"
+#include "ricochet/run/method_watch.hpp"
 #include "ricochet/run/rotation_watch.hpp"
 #include "ricochet/run/run_checks.hpp"
 #include "ricochet/simulation/impacts.hpp"
@@ -83,6 +84,7 @@ class Recording {
   PeakStress peak_stress_;
   PenetrationWatch penetration_;
   RotationWatch rotation_;
+  MethodWatch method_;
   long history_every_;
   Timer since_flush_;
   double seconds_ = 0.0, watch_seconds_ = 0.0;

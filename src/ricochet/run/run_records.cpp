@@ -135,6 +135,10 @@ void Run::write_end() {
     summary_.message = failure_->what();
   }
   describe_progress(summary_);
+  // Parts of rounding say nothing.
+  if (summary_.method_energy &&
+      is_rounding_of_energy(summary_.energy_scale(), session_.model().problem, session_.simulation().state()))
+    summary_.method_energy = MethodEnergy{};
   // A step that cannot be solved is often the end of a motion that has gained energy.
   const bool fails_to_converge = failure_ && failure_->kind() == ErrorKind::not_converged;
   if (summary_.status == "done" || fails_to_converge) {

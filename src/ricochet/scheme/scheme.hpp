@@ -69,6 +69,10 @@ class Scheme {
     std::string trouble = {};
   };
   [[nodiscard]] virtual LongSteps long_steps(const SemidiscreteProblem&) const { return {}; }
+  /// Which reactions act on the body over a step, of schemes that leave it open; none where there is no contact.
+  [[nodiscard]] virtual std::optional<ReactionMean> acting_reactions(const SemidiscreteProblem&) const {
+    return std::nullopt;
+  }
   /// What a jump in the velocity of a prescribed displacement leaves in the steps that follow.
   enum class JumpResponse { fades, alternates, grows };
   [[nodiscard]] virtual JumpResponse jump_response() const { return JumpResponse::fades; }

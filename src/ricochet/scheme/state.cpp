@@ -15,6 +15,7 @@ void save(const State& state, Snapshot& snapshot, const std::string& name) {
   snapshot.save(name + ".tangential_reaction", state.forces.tangential_reaction);
   snapshot.save(name + ".mean_normal_reaction", state.forces.mean_normal_reaction);
   snapshot.save(name + ".mean_tangential_reaction", state.forces.mean_tangential_reaction);
+  snapshot.save(name + ".end_weight", state.forces.end_weight);
   snapshot.save(name + ".support_reaction", state.forces.support_reaction);
   snapshot.save(name + ".varying_load", state.forces.varying_load);
   snapshot.save(name + ".damping_force", state.forces.damping_force);
@@ -60,6 +61,7 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   state.forces.tangential_reaction = snapshot.reals(name + ".tangential_reaction", tangents, 0);
   state.forces.mean_normal_reaction = snapshot.reals(name + ".mean_normal_reaction", points, 0);
   state.forces.mean_tangential_reaction = snapshot.reals(name + ".mean_tangential_reaction", tangents, 0);
+  state.forces.end_weight = snapshot.real(name + ".end_weight");
   state.forces.support_reaction = snapshot.reals(name + ".support_reaction", problem.supports.size());
   state.forces.varying_load = snapshot.reals(name + ".varying_load", dofs, 0);
   state.forces.damping_force = snapshot.reals(name + ".damping_force", dofs, 0);

@@ -19,6 +19,7 @@ struct StepForces {
   Vector tangential_reaction;               ///< r_T, (d−1) per contact point; empty without friction
   /// Mean reactions over the step, where those act on the body and the ones above hold at its end; else empty.
   Vector mean_normal_reaction, mean_tangential_reaction;
+  double end_weight = 1.0;  ///< of the reactions at the end in that mean
   Vector support_reaction;  ///< on supported dofs
   Vector varying_load;      ///< varying part of L, per dof; empty without one
   Vector damping_force;     ///< C times the scheme's velocity, per dof; empty without damping

@@ -57,6 +57,7 @@ void StepEquations::take_contact(const Stage& stage, const StageSolution& soluti
   state.forces.tangential_reaction = solution.tangential_reaction;
   state.forces.mean_normal_reaction = solution.mean_normal_reaction;
   state.forces.mean_tangential_reaction = solution.mean_tangential_reaction;
+  state.forces.end_weight = solution.end_weight;
   state.forces.support_reaction = solution.support_reaction;
   state.contact_status = solution.contact_status;
   if (obstacle_velocity_.normal.size() == 0) return;

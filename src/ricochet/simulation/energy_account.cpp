@@ -6,6 +6,7 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
     : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
   const Energies start = energies(state);
   initial_ = start.total() + start.algorithmic;
+  initial_algorithmic_ = start.algorithmic;
 }
 
 EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
@@ -14,6 +15,7 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
   const Vector& works = snapshot.reals(name + ".works", 7);
   works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6]};
   initial_ = snapshot.real(name + ".initial");
+  initial_algorithmic_ = snapshot.real(name + ".initial_algorithmic");
 }
 
 void EnergyAccount::save(Snapshot& snapshot, const std::string& name) const {
@@ -22,6 +24,7 @@ void EnergyAccount::save(Snapshot& snapshot, const std::string& name) const {
       works_.numerical_dissipation;
   snapshot.save(name + ".works", works);
   snapshot.save(name + ".initial", initial_);
+  snapshot.save(name + ".initial_algorithmic", initial_algorithmic_);
 }
 
 EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const Vector& increment,
@@ -76,6 +79,17 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   works_.load += corrections.load_work;
   works_.numerical_dissipation += corrections.numerical_dissipation;
   previous_ = state.forces;
+  algorithmic_.reset();
+}
+
+/// Rows of the history and what watches the method ask for the same.
+double EnergyAccount::algorithmic(const State& state) {
+  if (!algorithmic_) algorithmic_ = scheme_.algorithmic_energy(problem_, state);
+  return *algorithmic_;
+}
+
+double EnergyAccount::of_method(const State& state) {
+  return works_.contact - works_.numerical_dissipation - (algorithmic(state) - initial_algorithmic_);
 }
 
 Energies EnergyAccount::energies(const State& state) {
@@ -88,7 +102,7 @@ Energies EnergyAccount::energies(const State& state) {
   result.elastic = force != nullptr ? problem_.internal_force->energy(displacement, *force)
                                     : problem_.internal_force->energy(displacement);
   result.load_potential = -problem_.loads.constant().dot(displacement);
-  result.algorithmic = scheme_.algorithmic_energy(problem_, state);
+  result.algorithmic = algorithmic(state);
   return result;
 }
 

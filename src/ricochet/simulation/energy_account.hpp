@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "ricochet/scheme/scheme.hpp"
 
 /// @file The account of energy: each part computed from forces and increments, never as a remainder.
@@ -41,6 +43,10 @@ class EnergyAccount {
   /// Energies at the scheme's own instant.
   [[nodiscard]] Energies energies(const State& state);
   [[nodiscard]] const Works& works() const { return works_; }
+  /// What the discretization of time has put into the body since the start; negative where it has taken energy away:
+  /// contact work, which exact motions have none of, less numerical dissipation and the change of the algorithmic
+  /// energy. Of the state of the last step; what total energy then changes besides is the other works.
+  [[nodiscard]] double of_method(const State& state);
   /// total + algorithmic − initial values − Σ works + numerical dissipation: zero to rounding.
   [[nodiscard]] double residual(const Energies& now) const;
   /// The velocity that `energies` was last computed from, for this state.
@@ -52,6 +58,7 @@ class EnergyAccount {
   struct StepWorks {
     double load = 0.0, contact = 0.0, friction = 0.0, support = 0.0, obstacle = 0.0, damping = 0.0;
   };
+  [[nodiscard]] double algorithmic(const State& state);
   [[nodiscard]] StepWorks works_of(const StepForces& forces, const Vector& increment, const ObstacleMotion& obstacle);
   /// Motion of the contact points over the step along these rows, and that of the obstacles.
   void find_motion(const ContactRows& rows, const Vector& increment, ObstacleMotion& obstacle);
@@ -61,8 +68,9 @@ class EnergyAccount {
   WorkRule rule_;
   Works works_;
   StepForces previous_;
-  double initial_ = 0.0;
-  Vector displacement_, velocity_;  ///< of the scheme's instant, where that is not the state's
+  double initial_ = 0.0, initial_algorithmic_ = 0.0;
+  std::optional<double> algorithmic_;  ///< of the last step, once it was asked for
+  Vector displacement_, velocity_;     ///< of the scheme's instant, where that is not the state's
   Vector gap_increment_, slip_increment_;
   ObstacleMotion obstacle_;
 };

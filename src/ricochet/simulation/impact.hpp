@@ -29,6 +29,9 @@ struct Impact {
   Eigen::Vector3d obstacle_sliding = Eigen::Vector3d::Zero();
   double mass = 0.0;               ///< of the body
   RigidMotionState before, after;  ///< `after`: zero where it has not ended
+  /// What the discretization of time has put into all bodies meanwhile (EnergyAccount::of_method); negative: it has
+  /// taken it away. Of older results it is not known.
+  std::optional<double> method_energy = {};
 
   /// Mean direction of the normal impulse, out of the obstacle; zero without one.
   [[nodiscard]] Eigen::Vector3d normal() const;

@@ -144,13 +144,15 @@ void ImpactRecorder::find_forces(const State& state, std::vector<Force>& forces)
   }
 }
 
-void ImpactRecorder::enter_step(const State& state) {
+void ImpactRecorder::enter_step(const State& state, double method_energy) {
   if (places_.empty()) return;
+  method_energy_ = method_energy;
   find_forces(state, current_);
   motion_ = nullptr;
   const double instant = state.time + scheme_.acting_instant() * scheme_.step();
   for (std::size_t place = 0; place < places_.size(); ++place) enter_place(place, instant);
   std::swap(previous_, current_);
+  method_before_ = method_energy_;
   take_velocity(state, velocity_before_);
 }
 
@@ -168,6 +170,7 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
     if (touched) {
       const RigidMotionState now = motion();
       interval.after = {numbers_of(now.velocity), numbers_of(now.spin), now.kinetic_energy, now.rigid_kinetic_energy};
+      interval.method_after = method_energy_;  // letting go costs energy, too
       interval.phase = apart;
     }
     return;
@@ -235,6 +238,7 @@ void ImpactRecorder::begin(Interval& interval, double time, const Force& first, 
   interval.first_place = place_of(first.leading);
   interval.before = {numbers_of(motion.velocity), numbers_of(motion.spin), motion.kinetic_energy,
                      motion.rigid_kinetic_energy};
+  interval.method_before = method_before_;
 }
 
 void ImpactRecorder::file(const Interval& interval) {
@@ -276,6 +280,7 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
   result.mass = rigid_.bodies()[static_cast<std::size_t>(place.body)].mass;
   result.before = motion(interval.before);
   if (result.ended) result.after = motion(interval.after);
+  result.method_energy = (result.ended ? interval.method_after : method_before_) - interval.method_before;
   return result;
 }
 
@@ -293,6 +298,7 @@ void ImpactRecorder::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".open", as_numbers(open_));
   snapshot.save(name + ".filed", as_numbers(filed_));
   snapshot.save(name + ".left_out", std::int64_t{left_out_});
+  snapshot.save(name + ".method_energy", method_before_);
 }
 
 void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
@@ -306,6 +312,7 @@ void ImpactRecorder::load(const Snapshot& snapshot, const std::string& name) {
   if (filed.size() % size != 0 || filed.size() / size > static_cast<Index>(most_impacts)) damaged();
   from_numbers(filed, filed_);
   left_out_ = snapshot.integer(name + ".left_out");
+  method_before_ = snapshot.real(name + ".method_energy");
   for (const auto* list : {&open_, &filed_}) {
     for (const Interval& interval : *list) {
       // Also false where it is no number.

@@ -35,8 +35,9 @@ class ImpactRecorder {
 
   /// These contact points are inside their obstacle when the run begins.
   void begin_inside(const std::vector<Index>& points);
-  /// Enters a step with the forces at its end (in the state). Allocates nothing.
-  void enter_step(const State& state);
+  /// Enters a step with the forces at its end (in the state), and what the discretization of time has put into the
+  /// bodies since the start (EnergyAccount::of_method). Allocates nothing.
+  void enter_step(const State& state, double method_energy);
   /// By their begin.
   [[nodiscard]] std::vector<Impact> impacts() const;
   /// Those beyond most_impacts, which only have been counted.
@@ -63,6 +64,7 @@ class ImpactRecorder {
     double most_points;
     Three first_place;
     Motion before, after;
+    double method_before, method_after;
   };
   /// Of an interval: numbers, too.
   static constexpr double no_contact = 0.0, touching = 1.0, apart = 2.0;
@@ -103,7 +105,8 @@ class ImpactRecorder {
   std::vector<Interval> open_;   ///< per place
   std::vector<Interval> filed_;  ///< that are over
   long left_out_ = 0;
-  Vector velocity_before_;  ///< at the beginning of a step
+  double method_before_ = 0.0, method_energy_ = 0.0;  ///< at the beginning and the end of a step
+  Vector velocity_before_;                            ///< at the beginning of a step
   Vector scratch_;
   const std::vector<RigidMotionState>* motion_ = nullptr;  ///< of velocity_before_, once it was asked for
 };

@@ -29,4 +29,17 @@ std::string why_no_restitution(const Impact& impact) {
   return {};
 }
 
+RestitutionError restitution_error(const Impact& impact) {
+  // A tenth of what the impact has lost, and nothing that the first three digits of e would not show.
+  constexpr double large_beside_impact = 0.1, visible = 1e-3;
+  const std::optional<double> restitution = impact.restitution();
+  if (!restitution || !impact.method_energy) return {};
+  const double velocity = impact.normal_velocity_before();
+  RestitutionError result;
+  result.by_method = *impact.method_energy / (0.5 * impact.mass * velocity * velocity);
+  result.by_impact = 1.0 - *restitution * *restitution;
+  result.is_large = std::abs(result.by_method) > std::max(visible, large_beside_impact * std::abs(result.by_impact));
+  return result;
+}
+
 }  // namespace ricochet

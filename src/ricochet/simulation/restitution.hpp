@@ -12,4 +12,15 @@ namespace ricochet {
 /// these. Empty: there is one.
 [[nodiscard]] std::string why_no_restitution(const Impact& impact);
 
+/// What the discretization of time did to the energy during an impact, and 1 − e² of its restitution e: both as parts
+/// of ½ m v², v the normal velocity before.
+struct RestitutionError {
+  double by_method = 0.0;  ///< negative: energy is missing
+  double by_impact = 0.0;
+  /// The method's part cannot be told from what the impact itself has lost.
+  bool is_large = false;
+};
+/// All zero where there is no restitution, or where the method's part is not known.
+[[nodiscard]] RestitutionError restitution_error(const Impact& impact);
+
 }  // namespace ricochet

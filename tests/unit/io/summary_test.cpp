@@ -110,6 +110,74 @@ TEST_F(SummaryTest, KnowsInWhichImpactsCellsHadTurnedTooFar) {
   EXPECT_EQ(read_back(summary).rotation->time_beyond, INFINITY);
 }
 
+RunSummary summary_of_works() {
+  RunSummary summary;
+  summary.columns = {"total_energy", "contact_work", "numerical_dissipation", "friction_work"};
+  summary.digests = {
+      {8.0, 4.0, 4.0, 8.0, 4.0}, {0.0, -1.0, -1.0, 0.5, 2.0}, {0.0, 1.0, 0.0, 1.0, 1.0}, {0.0, -2.0, -2.0, 0.0, 2.0}};
+  return summary;
+}
+
+TEST_F(SummaryTest, TellsWhatTheMethodDidToTheEnergy) {
+  RunSummary summary = summary_of_works();
+  summary.method_energy = MethodEnergy{0.375, 0.0625, -0.25};
+  const RunSummary back = read_back(summary);
+  ASSERT_TRUE(back.method_energy.has_value());
+  EXPECT_EQ(back.loss_by_method(), 0.375);
+  EXPECT_EQ(back.creation_by_method(), 0.0625);
+  EXPECT_EQ(back.method_energy->at_end, -0.25);
+  const auto written = [text = to_json(summary)](const std::string& path) { return summary_value(text, path); };
+  EXPECT_EQ(written("energy_budget.largest_energy"), 8.0);
+  EXPECT_EQ(written("energy_budget.lost_by_method"), 0.375);
+  EXPECT_EQ(written("energy_budget.at_end.method"), -0.25);
+  EXPECT_EQ(written("energy_budget.at_end.friction"), -0.25);
+  EXPECT_EQ(written("energy_budget.at_end.loads"), 0.0);
+}
+
+/// By the columns that they have: the largest energy is 8.
+TEST_F(SummaryTest, EstimatesTheMethodsEnergyOfOlderResults) {
+  const RunSummary back = read_back(summary_of_works());
+  EXPECT_FALSE(back.method_energy.has_value());
+  EXPECT_FALSE(back.reactions.has_value());
+  EXPECT_EQ(back.loss_by_method(), 0.25);
+  EXPECT_EQ(back.creation_by_method(), 0.0625);
+  EXPECT_EQ(RunSummary().loss_by_method(), 0.0) << "no energy";
+  // Before these entries: as if they were not there.
+  std::string text = to_json(summary_of_works());
+  for (const std::string entry : {"  \"energy_budget\": null,\n", "  \"reactions\": null,\n"}) {
+    ASSERT_NE(text.find(entry), std::string::npos) << text;
+    text.erase(text.find(entry), entry.size());
+  }
+  std::ofstream(path()) << text;
+  EXPECT_EQ(read_summary(path()).loss_by_method(), 0.25);
+}
+
+TEST_F(SummaryTest, TellsWhichReactionsActed) {
+  RunSummary summary;
+  summary.reactions = ActingReactions{"adaptive", 0.0, 0.375, 12, 3};
+  const RunSummary back = read_back(summary);
+  ASSERT_TRUE(back.reactions.has_value());
+  EXPECT_EQ(back.reactions->kind, "adaptive");
+  EXPECT_EQ(back.reactions->least_weight, 0.0);
+  EXPECT_EQ(back.reactions->largest_weight, 0.375);
+  EXPECT_EQ(back.reactions->mean_steps, 12);
+  EXPECT_EQ(back.reactions->end_steps, 3);
+  summary.reactions = ActingReactions{.kind = "end"};
+  const RunSummary end = read_back(summary);
+  EXPECT_EQ(end.reactions->kind, "end");
+  EXPECT_GT(end.reactions->least_weight, end.reactions->largest_weight) << "no mean acted";
+}
+
+TEST_F(SummaryTest, KeepsWhatTheMethodDidInAnImpact) {
+  RunSummary summary;
+  summary.bodies.push_back({{}, 0.1});
+  summary.impacts.resize(2);
+  summary.impacts[0].method_energy = -0.125;
+  const RunSummary back = read_back(summary);
+  EXPECT_EQ(back.impacts[0].method_energy, -0.125);
+  EXPECT_FALSE(back.impacts[1].method_energy.has_value());
+}
+
 TEST_F(SummaryTest, NamesTheFileThatListsAnImpactOfNoBody) {
   RunSummary summary;
   summary.impacts.emplace_back();

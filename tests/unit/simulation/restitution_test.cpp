@@ -87,5 +87,28 @@ TEST(Restitution, LooksAtSlidingOnTheObstacle) {
   expect_none(dropped, "along the obstacle");
 }
 
+/// At an approach of 1 the energy of a body of mass 2 is 1, and of a restitution of 0.5 the body has lost 0.75.
+TEST(Restitution, IsInexactWhereTheMethodDidATenthOfIt) {
+  Impact lossy = impact(3.0, 1.0);
+  EXPECT_FALSE(restitution_error(lossy).is_large) << "results that do not tell";
+  for (const double sign : {-1.0, 1.0}) {
+    lossy.method_energy = sign * 0.07;
+    EXPECT_FALSE(restitution_error(lossy).is_large);
+    lossy.method_energy = sign * 0.08;
+    const RestitutionError error = restitution_error(lossy);
+    EXPECT_TRUE(error.is_large);
+    EXPECT_NEAR(error.by_method, sign * 0.08, 1e-15);
+    EXPECT_NEAR(error.by_impact, 0.75, 1e-15);
+  }
+  lossy.ended = false;
+  EXPECT_FALSE(restitution_error(lossy).is_large) << "there is no restitution";
+  // Of a restitution of 1 no loss is left to be a tenth of: what changes the third digit is told.
+  Impact elastic = impact(0.0, 1.0, 0.5);
+  elastic.method_energy = -0.0009;
+  EXPECT_FALSE(restitution_error(elastic).is_large);
+  elastic.method_energy = -0.0011;
+  EXPECT_TRUE(restitution_error(elastic).is_large);
+}
+
 }  // namespace
 }  // namespace ricochet

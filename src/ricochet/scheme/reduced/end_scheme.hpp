@@ -18,6 +18,9 @@ class EndScheme : public Scheme {
   }
   [[nodiscard]] double acting_instant() const override { return -0.5; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
+  [[nodiscard]] std::optional<ReactionMean> acting_reactions(const SemidiscreteProblem& problem) const override {
+    return problem.contact_dofs.empty() ? std::nullopt : std::optional(mean(problem));
+  }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     layer_.advance(problem, mean_of(problem), state, stages, increment);

@@ -1,0 +1,71 @@
+#include "method_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "number_text.hpp"
+#include "ricochet/base/text.hpp"
+
+namespace ricochet::program {
+
+namespace {
+
+/// Of the largest energy: below it is rounding of many steps.
+constexpr double rounding_of_energies = 1e-8;
+/// Of the larger of two numbers: what is less beside it is not told.
+constexpr double beside = 0.01;
+
+std::string energy_text(const RunSummary& summary) {
+  const double lost = summary.loss_by_method(), created = summary.creation_by_method();
+  const double most = std::max(lost, created);
+  if (!(most > rounding_of_energies)) return fmt::format("the method kept the energy to {:.1e} of the largest", most);
+  const bool both = std::min(lost, created) > beside * most;
+  // Not where it is the number that was just said.
+  const bool gave_back =
+      summary.method_energy && std::abs(std::abs(summary.method_energy->at_end) - most) > beside * most;
+  const char* const up_to = both || gave_back ? "up to " : "";
+  std::string text = "the method";
+  if (both || created > lost) text += fmt::format(" created {}{}", up_to, percent(created));
+  if (both) text += " and";
+  if (both || lost >= created) text += fmt::format(" lost {}{}", up_to, percent(lost));
+  text += " of the largest energy";
+  if (gave_back)
+    text += fmt::format(", {}{} at the end", summary.method_energy->at_end > 0.0 ? "+" : "",
+                        percent(summary.method_energy->at_end));
+  return text + " (contact work and numerical dissipation)";
+}
+
+}  // namespace
+
+std::string method_energy_mark(const RunSummary& summary) {
+  const double lost = summary.loss_by_method(), created = summary.creation_by_method();
+  if (!(std::max(lost, created) > rounding_of_energies)) return "0";
+  return created > lost ? "+" + percent(created) : "-" + percent(lost);
+}
+
+std::string reactions_text(const RunSummary& summary) {
+  if (!summary.reactions) return "";
+  const ActingReactions& acting = *summary.reactions;
+  if (acting.kind == "end") return "those of the end of a step";
+  if (acting.mean_steps + acting.end_steps == 0) return "mean, but none acted";
+  std::string text = "mean";
+  if (acting.mean_steps > 0) {
+    const std::string least = fmt::format("{:.2g}", acting.least_weight);
+    const std::string largest = fmt::format("{:.2g}", acting.largest_weight);
+    text += ", end weight " + (least == largest ? least : least + " to " + largest);
+  }
+  if (acting.end_steps > 0)
+    text += fmt::format(", those of the end in {} of {} with contact, where no mean was found", acting.end_steps,
+                        counted(acting.mean_steps + acting.end_steps, "step"));
+  return text;
+}
+
+void print_method(const RunSummary& summary) {
+  if (summary.steps == 0) return;
+  const std::string reactions = reactions_text(summary);
+  fmt::print("  {}{}\n", energy_text(summary), reactions.empty() ? "" : "; reactions: " + reactions);
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,63 @@
+#include "ricochet/io/summary_method.hpp"
+
+#include <array>
+#include <utility>
+
+namespace ricochet {
+
+namespace {
+
+/// What else changes the energy, and the column that says how much.
+constexpr std::array<std::pair<const char*, const char*>, 5> others{{{"friction", "friction_work"},
+                                                                     {"damping", "damping_work"},
+                                                                     {"supports", "support_work"},
+                                                                     {"obstacles", "obstacle_work"},
+                                                                     {"loads", "load_work"}}};
+
+}  // namespace
+
+Json energy_budget_to_json(const RunSummary& summary) {
+  if (!summary.method_energy) return {};
+  const double scale = summary.energy_scale();
+  const auto part = [scale](double energy) { return Json::number(scale > 0.0 ? energy / scale : 0.0); };
+  const MethodEnergy& method = *summary.method_energy;
+  Json at_end = {{"method", Json::number(method.at_end)}};
+  for (const auto& [name, column] : others) at_end[name] = part(summary.digest(column).last);
+  return {{"largest_energy", Json::number(scale)},
+          {"lost_by_method", Json::number(method.lost)},
+          {"created_by_method", Json::number(method.created)},
+          {"at_end", at_end}};
+}
+
+Json reactions_to_json(const RunSummary& summary) {
+  if (!summary.reactions) return {};
+  const ActingReactions& acting = *summary.reactions;
+  const bool any = acting.mean_steps > 0;
+  return {{"acting", acting.kind},
+          {"least_end_weight", any ? Json::number(acting.least_weight) : Json()},
+          {"largest_end_weight", any ? Json::number(acting.largest_weight) : Json()},
+          {"steps_of_means", acting.mean_steps},
+          {"steps_without_mean", acting.end_steps}};
+}
+
+void read_method(const Json& json, RunSummary& summary) {
+  if (json.contains("energy_budget") && json.at("energy_budget").is_object()) {
+    const Json& budget = json.at("energy_budget");
+    summary.method_energy =
+        MethodEnergy{budget.at("lost_by_method").to_number(), budget.at("created_by_method").to_number(),
+                     budget.at("at_end").at("method").to_number()};
+  }
+  if (!json.contains("reactions") || !json.at("reactions").is_object()) return;
+  const Json& reactions = json.at("reactions");
+  ActingReactions acting;
+  acting.kind = reactions.at("acting");
+  acting.mean_steps = reactions.at("steps_of_means");
+  acting.end_steps = reactions.at("steps_without_mean");
+  if (acting.mean_steps > 0) {
+    acting.least_weight = reactions.at("least_end_weight").to_number();
+    acting.largest_weight = reactions.at("largest_end_weight").to_number();
+  }
+  summary.reactions = acting;
+}
+
+}  // namespace ricochet

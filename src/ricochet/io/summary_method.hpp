@@ -1,0 +1,18 @@
+#pragma once
+
+#include "ricochet/base/json.hpp"
+#include "ricochet/io/summary.hpp"
+
+/// @file What the method did, as entries of summary.json: the budget of energy, and the reactions that acted. Not part
+/// of the public interface.
+namespace ricochet {
+
+/// What there was, what the method has lost and created, and what each has come to at the end; null in results of a
+/// version that did not tell.
+[[nodiscard]] Json energy_budget_to_json(const RunSummary& summary);
+/// Null where the scheme has no choice.
+[[nodiscard]] Json reactions_to_json(const RunSummary& summary);
+/// Reads those that the summary has. Throws Json::Exception.
+void read_method(const Json& json, RunSummary& summary);
+
+}  // namespace ricochet

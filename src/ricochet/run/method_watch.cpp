@@ -1,0 +1,75 @@
+#include "ricochet/run/method_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+std::string name_of(ReactionMean acting) {
+  switch (acting) {
+    case ReactionMean::end:
+      return "end";
+    case ReactionMean::path:
+      return "mean";
+    case ReactionMean::mixed:
+      return "adaptive";
+  }
+  return "";
+}
+
+}  // namespace
+
+void MethodWatch::save(Snapshot& snapshot, const std::string& name) const {
+  Vector numbers(5);
+  numbers << least_, largest_, last_, least_weight_, largest_weight_;
+  snapshot.save(name + ".numbers", numbers);
+  snapshot.save(name + ".steps", Snapshot::Integers{mean_steps_, end_steps_});
+}
+
+void MethodWatch::load(const Snapshot& snapshot, const std::string& name) {
+  const Vector& numbers = snapshot.reals(name + ".numbers", 5);
+  const Snapshot::Integers& steps = snapshot.integers(name + ".steps", 0, std::numeric_limits<std::int64_t>::max());
+  if (steps.size() != 2) throw Error(ErrorKind::invalid_input, "the checkpoint's record of reactions is damaged");
+  least_ = numbers[0];
+  largest_ = numbers[1];
+  last_ = numbers[2];
+  least_weight_ = numbers[3];
+  largest_weight_ = numbers[4];
+  mean_steps_ = steps[0];
+  end_steps_ = steps[1];
+}
+
+void MethodWatch::enter_step(const State& state, double of_method) {
+  last_ = of_method;
+  least_ = std::min(least_, last_);
+  largest_ = std::max(largest_, last_);
+  if (acting_ && *acting_ != ReactionMean::end) enter_weight(state.forces);
+}
+
+/// Steps in which nothing presses have a weight, too, but it acts on nothing.
+void MethodWatch::enter_weight(const StepForces& forces) {
+  if (!(forces.mean_normal_reaction.array() > 0.0).any()) return;
+  if (forces.end_weight == 1.0) {  // a mean that was found has less
+    ++end_steps_;
+    return;
+  }
+  ++mean_steps_;
+  least_weight_ = std::min(least_weight_, forces.end_weight);
+  largest_weight_ = std::max(largest_weight_, forces.end_weight);
+}
+
+MethodEnergy MethodWatch::energy(double largest_energy) const {
+  if (!(largest_energy > 0.0)) return {};
+  return {std::max(0.0, -least_) / largest_energy, largest_ / largest_energy, last_ / largest_energy};
+}
+
+std::optional<ActingReactions> MethodWatch::reactions() const {
+  if (!acting_) return std::nullopt;
+  return ActingReactions{name_of(*acting_), least_weight_, largest_weight_, mean_steps_, end_steps_};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "ricochet/io/summary.hpp"
+#include "ricochet/scheme/scheme.hpp"
+
+/// @file What the method itself does to the energy, and which reactions act: of every step, whatever rows are written.
+namespace ricochet {
+
+class MethodWatch {
+ public:
+  /// Of a scheme that lets such reactions act; none: it has no choice.
+  explicit MethodWatch(std::optional<ReactionMean> acting) : acting_(acting) {}
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// With EnergyAccount::of_method at its end. Allocates nothing.
+  void enter_step(const State& state, double of_method);
+  /// As parts of the largest energy.
+  [[nodiscard]] MethodEnergy energy(double largest_energy) const;
+  [[nodiscard]] std::optional<ActingReactions> reactions() const;
+
+ private:
+  void enter_weight(const StepForces& forces);
+
+  std::optional<ReactionMean> acting_;
+  double least_ = 0.0, largest_ = 0.0, last_ = 0.0;  ///< of what the method has put in
+  double least_weight_ = std::numeric_limits<double>::infinity(), largest_weight_ = -least_weight_;
+  long mean_steps_ = 0, end_steps_ = 0;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,67 @@
+#include "ricochet/run/method_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+namespace {
+
+/// A step at whose end this was put in so far, with a mean of this weight that acts on a point, or on none.
+void enter(MethodWatch& watch, double of_method, double weight = 0.0, double reaction = 1.0) {
+  State state;
+  state.forces.mean_normal_reaction = Vector::Constant(1, reaction);
+  state.forces.end_weight = weight;
+  watch.enter_step(state, of_method);
+}
+
+TEST(MethodWatch, TellsLossAndCreationAndWhatIsLeftOfThem) {
+  MethodWatch watch(std::nullopt);
+  enter(watch, 1.0);
+  enter(watch, -3.0);
+  enter(watch, -1.5);
+  const MethodEnergy energy = watch.energy(8.0);
+  EXPECT_EQ(energy.created, 1.0 / 8.0);
+  EXPECT_EQ(energy.lost, 3.0 / 8.0);
+  EXPECT_EQ(energy.at_end, -1.5 / 8.0);
+  EXPECT_EQ(watch.energy(0.0).lost, 0.0) << "there is no energy";
+  EXPECT_FALSE(watch.reactions().has_value()) << "the scheme has no choice";
+}
+
+TEST(MethodWatch, TellsTheWeightsThatActed) {
+  MethodWatch watch(ReactionMean::mixed);
+  EXPECT_EQ(watch.reactions()->mean_steps, 0);
+  enter(watch, 0.0, 0.25);
+  enter(watch, 0.0, 0.5, 0.0);  // nothing presses
+  enter(watch, 0.0, 0.125);
+  enter(watch, 0.0, 1.0);  // no mean was found
+  const ActingReactions acting = *watch.reactions();
+  EXPECT_EQ(acting.kind, "adaptive");
+  EXPECT_EQ(acting.least_weight, 0.125);
+  EXPECT_EQ(acting.largest_weight, 0.25);
+  EXPECT_EQ(acting.mean_steps, 2);
+  EXPECT_EQ(acting.end_steps, 1);
+  MethodWatch of_end(ReactionMean::end);
+  enter(of_end, 0.0, 0.25);
+  EXPECT_EQ(of_end.reactions()->kind, "end");
+  EXPECT_EQ(of_end.reactions()->mean_steps, 0);
+}
+
+TEST(MethodWatch, GoesOnFromASnapshot) {
+  MethodWatch watch(ReactionMean::mixed), resumed(ReactionMean::mixed);
+  enter(watch, -1.0, 0.25);
+  Snapshot snapshot;
+  watch.save(snapshot, "method");
+  resumed.load(snapshot, "method");
+  for (MethodWatch* each : {&watch, &resumed}) enter(*each, -0.5, 0.5);
+  Snapshot one, other;
+  watch.save(one, "method");
+  resumed.save(other, "method");
+  EXPECT_TRUE(one.values() == other.values());
+  EXPECT_EQ(resumed.energy(1.0).lost, 1.0);
+  snapshot.save("method.steps", Snapshot::Integers{1});
+  EXPECT_THROW(resumed.load(snapshot, "method"), Error);
+}
+
+}  // namespace
+}  // namespace ricochet
