@@ -2,6 +2,7 @@ import { runColour } from "./colours";
 import type { Run } from "./data/run";
 import { el } from "./elements";
 import { count, number, seconds } from "./format";
+import { reactionsWords } from "./glance";
 import { impactTable } from "./results/outcomes";
 import type { Store } from "./store";
 
@@ -28,6 +29,7 @@ function sizes(runs: Run[]): HTMLElement {
   return table(runs, rowsOf(runs, [
     ["scheme", ({ summary }) => summary.scheme],
     ["mass", ({ summary }) => summary.mass],
+    ["reactions that act over a step", ({ summary }) => reactionsWords(summary) || "–"],
     ["time step", ({ summary }) => number(summary.time_step, 6)],
     ["steps", ({ summary }) => count(summary.steps) + (summary.steps < summary.steps_asked_for ? ` of ${count(summary.steps_asked_for)}` : "")],
     ["dimension, degree", ({ summary }) => `${summary.dimension}, ${summary.degree}`],

@@ -1,7 +1,7 @@
 import type { Run } from "./data/run";
-import type { Judgement } from "./data/types";
+import type { Judgement, Summary } from "./data/types";
 import { el } from "./elements";
-import { columnName, number } from "./format";
+import { columnName, number, toNumber } from "./format";
 
 /** What came out of each run, in words: the first thing that a reader sees. */
 
@@ -24,25 +24,52 @@ const broken = (what: string, time: number): Finding => ({ what, grade: "poor", 
 const unbounded = (what: string): Finding => ({ what, grade: "poor", words: "beyond all numbers", short: "infinite", detail: "infinite, or not a number" });
 const finite = (...values: (number | null)[]) => values.every((value) => value === null || Number.isFinite(value));
 
-export function energyFinding(j: Judgement): Finding {
-  // Where loads or friction change the energy, what contact does to it is looked at.
+/** Which reactions act over a step, in words; "": the scheme has no choice. */
+export function reactionsWords({ reactions }: Summary): string {
+  if (!reactions) return "";
+  if (reactions.acting === "end") return "those of the end of a step";
+  const { steps_of_means: means, steps_without_mean: ends } = reactions;
+  if (means + ends === 0) return "mean, but none acted";
+  const [least, largest] = [reactions.least_end_weight, reactions.largest_end_weight].map((weight) => number(weight, 2));
+  const weights = means === 0 ? "" : `, end weight ${least === largest ? least : `${least} to ${largest}`}`;
+  return `mean${weights}${ends === 0 ? "" : `, those of the end in ${ends} of ${means + ends} steps`}`;
+}
+
+/** Of a card: what ran. */
+export function methodWords(summary: Summary): string {
+  const reactions = reactionsWords(summary);
+  return `${summary.scheme}, ${summary.mass} mass${reactions === "" ? "" : `; reactions: ${reactions}`}`;
+}
+
+interface EnergyChange {
+  gain: number;
+  loss: number;
+  /** What the parts are parts of. */
+  whole: string;
+}
+
+/** Where loads or friction change the energy, what the method does to it is looked at: by every step, if the run says. */
+function energyChange(j: Judgement, { energy_budget: budget }: Summary): EnergyChange {
+  if (!j.is_isolated && budget) return { gain: toNumber(budget.created_by_method), loss: toNumber(budget.lost_by_method), whole: "the largest energy" };
+  return { gain: j.energy_gain / j.energy_scale, loss: j.energy_loss / j.energy_scale, whole: j.is_isolated ? "that of the start" : "the energy of the start" };
+}
+
+const budgetWords = ({ energy_budget: budget }: Summary): string =>
+  budget ? `; of the largest energy the method created ${percent(toNumber(budget.created_by_method))} and lost ${percent(toNumber(budget.lost_by_method))} at most` : "";
+
+export function energyFinding(j: Judgement, summary: Summary): Finding {
   const what = j.is_isolated ? "Energy" : "Energy in contact";
   if (j.energy_broken_at !== null) return broken(what, j.energy_broken_at);
   if (!finite(j.energy_scale, j.energy_gain, j.energy_loss)) return unbounded(what);
-  const scale = j.energy_scale;
-  const source = j.is_isolated ? "total energy against that of the start" : "work of the contact forces against the energy of the start";
-  if (!(scale > 0)) return { what, grade: "none", words: "there is none", short: "none", detail: "" };
-  const gain = j.energy_gain / scale;
-  const loss = j.energy_loss / scale;
-  const detail = `${source}: rises by ${number(gain, 3)}, falls by ${number(loss, 3)} of it; the account closes to ${number(j.energy_residual / scale, 2)}`;
-  if (gain > 0.02) {
-    const words = gain > 1 ? `created: ${number(1 + gain, 3)} times what there was` : `created: +${percent(gain)}`;
-    return { what, grade: "poor", words, short: words, detail };
-  }
-  if (Math.max(gain, loss) < 1e-8) return { what, grade: "good", words: "kept to rounding", short: "kept", detail };
-  if (gain > loss) return { what, grade: gain > 0.005 ? "fair" : "good", words: `kept, but for +${percent(gain)}`, short: `+${percent(gain)}`, detail };
-  const words = loss < 0.01 ? `kept, but for ${percent(loss)}` : `contact takes ${percent(loss)}`;
-  return { what, grade: loss < 0.01 ? "good" : "fair", words, short: `−${percent(loss)}`, detail };
+  if (!(j.energy_scale > 0)) return { what, grade: "none", words: "there is none", short: "none", detail: "" };
+  const { gain, loss, whole } = energyChange(j, summary);
+  const source = j.is_isolated ? "total energy" : "contact work less numerical dissipation";
+  const detail = `${source} against ${whole}: rises by ${number(gain, 3)}, falls by ${number(loss, 3)} of it${budgetWords(summary)}; the account closes to ${number(j.energy_residual / j.energy_scale, 2)}`;
+  const finding = (grade: Grade, words: string, short = words): Finding => ({ what, grade, words, short, detail });
+  if (gain > 0.02) return finding("poor", gain > 1 ? `created: ${number(1 + gain, 3)} times what there was` : `created: +${percent(gain)}`);
+  if (Math.max(gain, loss) < 1e-8) return finding("good", "kept to rounding", "kept");
+  if (gain > loss) return finding(gain > 0.005 ? "fair" : "good", `kept, but for +${percent(gain)}`, `+${percent(gain)}`);
+  return finding(loss < 0.01 ? "good" : "fair", loss < 0.01 ? `kept, but for ${percent(loss)}` : `the method lost ${percent(loss)}`, `−${percent(loss)}`);
 }
 
 export function forceFinding(j: Judgement): Finding {
@@ -105,7 +132,7 @@ export function rotationFinding(j: Judgement): Finding {
 }
 
 export const findings = (run: Run): Finding[] => [
-  energyFinding(run.data.judgement),
+  energyFinding(run.data.judgement, run.summary),
   forceFinding(run.data.judgement),
   penetrationFinding(run.data.judgement),
   rotationFinding(run.data.judgement),

@@ -8,7 +8,7 @@ import { readPage, type Run } from "./data/run";
 import { details } from "./details";
 import { el, select } from "./elements";
 import { fieldName, number } from "./format";
-import { conclusion, findingsElement } from "./glance";
+import { conclusion, findingsElement, methodWords } from "./glance";
 import { connectKeys, helpDialog } from "./keys";
 import { ContactMap } from "./maps/contact_map";
 import { ProfileChart } from "./maps/profile";
@@ -53,7 +53,7 @@ function card(store: Store, run: Run, stage: () => Stage | null): HTMLElement {
   const findings = findingsElement(run);
   findings.append(...outcomeElements(run, { time: (time) => store.setTime(time), peak: () => stage()?.showPeak(run) }));
   const element = el("article.card", {}, el("h2", {}, button, status),
-    el("p.muted", {}, `${run.summary.scheme}, ${run.summary.mass} mass`), findings,
+    el("p.muted", {}, methodWords(run.summary)), findings,
     warnings > 0 && el("a.warned", { href: "#messages" }, `${warnings} ${warnings === 1 ? "warning" : "warnings"}`));
   const show = () => {
     swatch.style.background = runColour(run.number);

@@ -53,6 +53,15 @@ std::optional<double> broken_at(const RunData& run, const std::vector<std::strin
   return first;
 }
 
+/// What the discretization of time has put into the body, row by row.
+std::vector<double> energy_of_method(const RunData& run) {
+  std::vector<double> result = run.column("contact_work");
+  const std::vector<double>& taken = run.column("numerical_dissipation");
+  const std::vector<double>& algorithmic = run.column("algorithmic_energy");
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] -= taken[i] + (algorithmic[i] - algorithmic.front());
+  return result;
+}
+
 void judge_energy(const RunData& run, Judgement& result) {
   const std::vector<double>& total = run.column("total_energy");
   if (total.empty()) return;
@@ -65,7 +74,7 @@ void judge_energy(const RunData& run, Judgement& result) {
     result.is_isolated = result.is_isolated && largest_magnitude(run.column(work)) == 0.0;
   // Where nothing else acts a start that is small is a start, and what grows out of it was created.
   if (!(result.energy_scale > (result.is_isolated ? 0.0 : 1e-12 * most))) result.energy_scale = most;
-  const std::vector<double>& changing = result.is_isolated ? total : run.column("contact_work");
+  const std::vector<double> changing = result.is_isolated ? total : energy_of_method(run);
   const auto [least, largest] = std::minmax_element(changing.begin(), changing.end());
   result.energy_gain = *largest - changing.front();
   result.energy_loss = changing.front() - *least;
@@ -148,7 +157,8 @@ void judge_penetration(const RunData& run, Judgement& result) {
 
 Judgement judge(const RunData& run) {
   Judgement result;
-  result.energy_broken_at = broken_at(run, {"total_energy", "kinetic_energy", "elastic_energy", "contact_work"});
+  result.energy_broken_at =
+      broken_at(run, {"total_energy", "kinetic_energy", "elastic_energy", "contact_work", "numerical_dissipation"});
   judge_energy(run, result);
   judge_force(run, result);
   std::vector<std::string> forces{result.force};

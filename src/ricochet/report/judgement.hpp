@@ -17,7 +17,8 @@ struct Judgement {
   /// others than contact do work and it is tiny, the largest kinetic + elastic energy of the run.
   double energy_scale = 0.0;
   /// Nothing but contact acts on the energy: no loads that vary, friction, supports, moving obstacles or damping. Then
-  /// changes are those of the total energy, else those that the contact forces' normal part has made (contact_work).
+  /// changes are those of the total energy, else those that the method has made (contact_work less
+  /// numerical_dissipation and the change of algorithmic_energy).
   bool is_isolated = false;
   double energy_gain = 0.0;      ///< the largest rise above the start, ≥ 0
   double energy_loss = 0.0;      ///< the largest fall below the start, ≥ 0

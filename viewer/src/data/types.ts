@@ -126,6 +126,9 @@ export interface Impact {
   restitution: Value;
   /** A sentence, where the restitution is null. */
   why_no_restitution?: string | null;
+  /** What the method put into the bodies meanwhile, and whether that spoils the restitution; not in older results. */
+  method_energy?: Value;
+  restitution_inexact?: boolean;
   /** That carried a force at once, at most, and how many there are; not in results of older versions. */
   contact_points?: number;
   all_contact_points?: number;
@@ -160,6 +163,24 @@ export interface PeakStress {
   states: number;
 }
 
+/** Of the largest energy; what the method itself did, apart from what acts on the body. */
+export interface EnergyBudget {
+  largest_energy: Value;
+  lost_by_method: Value;
+  created_by_method: Value;
+  at_end: Record<string, Value>;
+}
+
+/** Which reactions acted over the steps. */
+export interface Reactions {
+  acting: "end" | "mean" | "adaptive";
+  /** null: no mean acted. */
+  least_end_weight: Value;
+  largest_end_weight: Value;
+  steps_of_means: number;
+  steps_without_mean: number;
+}
+
 /** summary.json of a run; see docs/results.md. */
 export interface Summary {
   status: string;
@@ -187,6 +208,9 @@ export interface Summary {
   instants: { energy: string; force: string };
   timings_seconds: Record<string, number>;
   seconds_per_step: number;
+  /** Not in results of older versions; of schemes without a choice the reactions are null. */
+  energy_budget?: EnergyBudget | null;
+  reactions?: Reactions | null;
   contacts: { group: string; obstacle: string; multipliers: string; friction: number; friction_bound: number }[];
   probes: { name: string; position: number[]; distance: number; in_contact_boundary: boolean }[];
   checks: Record<string, CheckOutcome>;

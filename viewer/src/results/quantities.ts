@@ -44,6 +44,8 @@ export function quantities(runs: Run[]): Quantity[] {
     { id: "energy", title: "total energy, end / start", value: (run) => ratio(run.column("total_energy")) },
     { id: "kinetic", title: "kinetic energy, end / start", value: (run) => ratio(run.column("kinetic_energy")) },
     { id: "energy-change", title: "change of the total energy", value: (run) => last(run.column("total_energy")) - run.column("total_energy")[0] },
+    { id: "method-loss", title: "energy lost by the method", value: (run) => toNumber(run.summary.energy_budget?.lost_by_method ?? null) },
+    { id: "method-gain", title: "energy created by the method", value: (run) => toNumber(run.summary.energy_budget?.created_by_method ?? null) },
     { id: "friction-work", title: "work of friction", value: (run) => last(run.column("friction_work")) },
     { id: "penetration", title: "deepest interpenetration", value: (run) => run.data.judgement.penetration },
     { id: "rotation", title: "largest rotation", value: (run) => largest(run.column("max_rotation")) },

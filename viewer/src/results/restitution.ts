@@ -2,7 +2,7 @@ import { extentOf } from "../charts/scale";
 import { indexAt, type Run } from "../data/run";
 import type { Impact } from "../data/types";
 import { turnsInImpacts, type Grade } from "../glance";
-import { toNumber } from "../format";
+import { number, toNumber } from "../format";
 
 /** What a restitution above 1 means, whether it is possible, and what has made it; or why one below cannot be trusted. */
 export interface RestitutionRemark {
@@ -46,11 +46,23 @@ function reasons(run: Run): string[] {
 /** Of the energy that there was: a run that creates more has made the velocities after its impacts up. */
 const muchEnergy = 0.1;
 
+/** Where the method has changed the energy by much of what the body lost. */
+function inexact(run: Run, impact: Impact): RestitutionRemark | null {
+  if (!impact.restitution_inexact) return null;
+  const approach = 0.5 * toNumber(run.summary.bodies[impact.body]?.mass) * toNumber(impact.normal_velocity_before) ** 2;
+  const method = toNumber(impact.method_energy ?? null) / approach;
+  const body = 1 - toNumber(impact.restitution) ** 2;
+  const share = (part: number) => `${number(100 * Math.abs(part), 2)} %`;
+  return { grade: "fair", words: `inexact: the method ${method < 0 ? "lost" : "created"} ${share(method)}, the body lost ${share(body)}`,
+    detail: "of the energy of the approach; a smaller time step, and smaller cells, leave less to the method" };
+}
+
 /** Null where there is nothing to remark. */
 export function restitutionRemark(run: Run, impact: Impact): RestitutionRemark | null {
   const { energy_gain: gain, energy_scale: scale } = run.data.judgement;
   if (!(toNumber(impact.restitution) > 1 + tolerance)) {
-    if (!Number.isFinite(toNumber(impact.restitution)) || !(gain > muchEnergy * scale)) return null;
+    if (!Number.isFinite(toNumber(impact.restitution))) return null;
+    if (!(gain > muchEnergy * scale)) return inexact(run, impact);
     return { grade: "poor", words: `not to be trusted: ${reasons(run).join("; ")}`, detail: "the run creates more than a tenth of the energy that there was: any ratio may come out" };
   }
   if (["load_work", "support_work", "obstacle_work"].some((work) => acts(run, work)))
