@@ -248,6 +248,7 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
   if (friction_) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
   asked_ = false;
+  iterations_ = 0;
   solution.clear_mean();
   take_rows(stage);
   if (std::none_of(stage.eligible.begin(), stage.eligible.end(), [](char e) { return e != 0; })) return;
@@ -277,7 +278,7 @@ bool CondensedContact::choose_candidates(const Stage& stage) {
 
 void CondensedContact::give(StageSolution& solution) const {
   const Vector& reaction = contact_solution_.reaction;
-  solution.iterations += contact_solution_.iterations;
+  solution.iterations += iterations_;
   const Index tangents = problem_.dimension - 1;
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     const Index point = candidates_.points()[i];
@@ -332,6 +333,7 @@ bool CondensedContact::try_contact() {
   const Timer timer;
   solver_->solve(contact_, {.record = log::enabled(log::Level::debug)}, contact_solution_);
   solver_seconds_ += timer.seconds();
+  iterations_ += contact_solution_.iterations;
   if (log::enabled(log::Level::debug)) log_iterations();
   return contact_solution_.solved();
 }

@@ -107,6 +107,7 @@ class CondensedContact {
   Vector motion_;  ///< G δ, per contact point
   ContactObserver observer_;
   double solver_seconds_ = 0.0;
+  int iterations_ = 0;  ///< of all contact problems of the last stage: a mean may need several
 };
 
 }  // namespace ricochet

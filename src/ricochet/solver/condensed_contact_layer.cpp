@@ -54,9 +54,9 @@ void CondensedContact::solve_mean(const Stage& stage) {
   }
   const Vector offset = contact_.offset;
   const auto solve = [&] { return try_contact(); };
-  const bool found = mean_.solve(contact_, offset, start_gap, start, solve, contact_solution_);
+  // The problem that is left, and exported, is the last that was solved.
+  if (mean_.solve(contact_, offset, start_gap, start, solve, contact_solution_)) return;
   contact_.offset = offset;
-  if (found) return;
   if (layer_->mean() == ReactionMean::path) throw_no_mean();
   if (!mean_.is_usable()) {  // the operator is that of the end reactions
     solve_contact();
