@@ -18,10 +18,10 @@ mkdir -p "$folder"
 run() {
   [[ -f "$runs/$1/summary.json" ]] ||
     "$ricochet" run "$here/disc.toml" -o "$runs/$1" --quiet --log-level error --set "time.scheme=$1" --set "mass.type=$2" \
-      --set output.fields_every=5 >/dev/null
+      --set output.fields_every=5 "${@:3}" >/dev/null
 }
 run klr-conserving consistent
-run newmark equivalent
+run newmark equivalent --set time.preset=textbook-half
 run reduced-kane equivalent
 "$ricochet" plot "$runs/klr-conserving" --what energy --what pressure -o "$folder/figure-1.$form"
 "$ricochet" plot "$runs/newmark" --what energy --what pressure -o "$folder/figure-2.$form"

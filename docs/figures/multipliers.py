@@ -33,7 +33,7 @@ def pressures(degree, size, space, step):
     subprocess.run(command, check=True)
     every = round(0.001 / step)
     settings = [f"mesh.file={pathlib.Path(mesh).resolve()}", f"mesh.degree={degree}", f"contact.0.multipliers={space}", f"time.step={step:g}"]
-    settings += [f"time.end={END}", f"output.fields_every={every}", "time.beta=0.25"]
+    settings += [f"time.end={END}", f"output.fields_every={every}", "time.scheme=newmark", "time.preset=trapezoidal"]
     if degree == 1 and space == "p0":
         settings.append("contact.0.unstable_multipliers=allow")
     command = ["build/ricochet", "run", "cases/disc/disc.toml", "-o", name, "--force", "--quiet", "--log-level", "error"]

@@ -22,7 +22,14 @@ DISC = SOURCE / "cases" / "disc" / "disc.toml"
 
 # Each scheme with the mass that it is shown with.
 SCHEMES = {"midpoint": "consistent", "klr-conserving": "consistent", "newmark": "equivalent",
-           "semi-explicit": "equivalent-lumped"}
+           "semi-explicit": "equivalent-lumped", "reduced-kane": "equivalent"}
+
+
+def method(scheme, preset="textbook-half"):
+    """The settings that give a case a scheme, with its mass; newmark needs its parameters, too."""
+    values = {"time.scheme": scheme, "mass.type": SCHEMES[scheme]}
+    return values | {"time.preset": preset} if scheme == "newmark" else values
+
 
 def body_case(mesh, point, up, drive, *, body="body", bottom="bottom", degree=None, lame=(100.0, 50.0), mass="consistent",
               scheme="newmark", step=0.01, end=0.3):

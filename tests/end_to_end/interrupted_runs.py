@@ -3,7 +3,7 @@
 import json
 import subprocess
 
-from harness import DISC, PROGRAM, SCHEMES, TestCase, settings, with_more
+from harness import DISC, PROGRAM, TestCase, method, settings, with_more
 
 RESULTS = {"history.csv", "results.h5", "results.xdmf", "obstacles.xdmf", "probes-3.csv"}
 
@@ -23,10 +23,7 @@ BUSY = {"contact.0.friction": 0.3, "initial.velocity": "[0.03,-0.1]", "output.ch
 
 
 def busy(scheme):
-    values = dict(BUSY, **{"time.scheme": scheme, "mass.type": SCHEMES[scheme]})
-    if scheme == "newmark":
-        values["time.beta"] = 0.25
-    return values
+    return BUSY | method(scheme, "trapezoidal")
 
 
 def start(case, output, values, *options, **more):

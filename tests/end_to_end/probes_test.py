@@ -55,7 +55,8 @@ class Probes(TestCase):
     def test_a_disc_with_friction(self):
         case = self.write("disc.toml", with_more(DISC, DISC_PROBES))
         results = self.simulate(case, values={
-            "contact.0.friction": 0.3, "initial.velocity": "[0.05,-0.1]", "time.end": 0.03, "mass.type": "consistent",
+            "contact.0.friction": 0.3, "initial.velocity": "[0.05,-0.1]", "time.end": 0.03,
+            "time.scheme": "newmark", "time.preset": "textbook-half", "mass.type": "consistent",
             "output.fields_every": 10, "output.fields": '["all"]'})
         history = History(results / "history.csv")
         # One contact, whose nodes are those of the boundary: three ways to the same force.
@@ -174,7 +175,7 @@ class Probes(TestCase):
     def test_a_ball(self):
         path = SOURCE / "cases/ball/ball.toml"
         case = self.write("ball.toml", with_more(path, BALL_PROBES))
-        results = self.simulate(case, values={"output.fields_every": 40})
+        results = self.simulate(case, values={"output.fields_every": 80})
         history = History(results / "history.csv")
         force = vector(history, "contact_force", "xyz")
         size = numpy.abs(force).max()

@@ -176,7 +176,7 @@ class ReportWords(ReportTestCase):
         case = DISC.parents[1] / "hertz" / "cylinder.toml"
         self.report(self.simulate(case, "static", {}))
         self.assertEqual(Page(self.folder / "static" / "report.html").runs[0]["judgement"]["roughness"], 1)
-        self.report(self.simulate(DISC, "explosion", {"time.beta": 0.25, "time.gamma": 0.2, "time.end": 0.2}))
+        self.report(self.simulate(DISC, "explosion", {"time.scheme": "newmark", "time.beta": 0.25, "time.gamma": 0.2, "time.end": 0.2}))
         judgement = Page(self.folder / "explosion" / "report.html").runs[0]["judgement"]
         self.assertGreater(judgement["energy_gain"], 1e12 * judgement["energy_scale"])
 
