@@ -62,15 +62,16 @@ def puck():
 
 def disc():
     figure, (energy, force) = plt.subplots(1, 2, figsize=(10, 3.6))
-    for scheme, mass in (("midpoint", "consistent"), ("klr-conserving", "consistent"), ("newmark", "equivalent")):
-        history = run("disc/disc", f"disc-{scheme}", f"time.scheme={scheme}", f"mass.type={mass}")
+    for scheme, mass in (("midpoint", "consistent"), ("klr-conserving", "consistent"), ("newmark", "equivalent"), ("reduced-kane", "equivalent")):
+        preset = ("time.preset=textbook-half",) if scheme == "newmark" else ()
+        history = run("disc/disc", f"disc-{scheme}", f"time.scheme={scheme}", f"mass.type={mass}", *preset)
         label = f"{scheme}, {mass} mass"
         milliseconds = 1e3 * history["time"]
-        line = "--" if scheme == "newmark" else "-"  # it would hide the one below
+        line = {"newmark": "--", "reduced-kane": ":"}.get(scheme, "-")  # they would hide those below
         energy.semilogy(milliseconds, history["total_energy"] / history["total_energy"][0], line, label=label)
         if scheme != "midpoint":
-            style = {"linewidth": 0.5, "color": "C1"} if mass == "consistent" else {"linewidth": 1.6, "color": "C2"}
-            force.plot(milliseconds, history["lowest.reaction_normal"], label=label, **style)
+            style = {"klr-conserving": {"linewidth": 0.5, "color": "C1"}, "newmark": {"linewidth": 1.6, "color": "C2"}}
+            force.plot(milliseconds, history["lowest.reaction_normal"], label=label, **style.get(scheme, {"linestyle": ":", "color": "C3"}))
     energy.set(xlabel="time, ms", title="total energy / its value at the start")
     force.set(xlabel="time, ms", title="contact force at the lowest node, N/m", ylim=(0, 90))
     energy.legend(loc="center right")

@@ -74,7 +74,7 @@ class Exports(ContactTestCase):
         self.assertGreater(min(counts.values()), 0, f"open, sticking and slipping points are seen: {counts}")
 
     def test_export_in_three_dimensions(self):
-        files, _, counts = self.check_export(BALL, "170,186", {"time.end": 0.04}, 3)
+        files, _, counts = self.check_export(BALL, "340,372", {"time.end": 0.04}, 3)
         self.assertEqual(len(files), 2)
         self.assertGreater(counts["slip"] + counts["stick"], 0)
 

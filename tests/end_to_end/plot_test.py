@@ -60,7 +60,7 @@ class Plot(TestCase):
 
     def test_instants_are_those_of_the_scheme(self):
         """Energies of klr-conserving are those half a step later: its curve lies that much to the right of the other's."""
-        runs = [self.simulate("klr", **{"time.scheme": "klr-conserving", "mass.type": "consistent"}), self.simulate("newmark")]
+        runs = [self.simulate("klr", **{"time.scheme": "klr-conserving", "mass.type": "consistent"}), self.simulate("default")]
         self.plot(*runs, "--what", "kinetic_energy", "-o", "figure.svg")
         first, second = curves(self.folder / "figure.svg")
         step = (first[-1, 0] - first[0, 0]) / (len(first) - 1)
@@ -97,7 +97,7 @@ class Plot(TestCase):
     def test_a_run_that_grows_does_not_hide_the_others(self):
         values = {"time.end": 0.06}
         runs = [self.simulate("midpoint", **values, **{"time.scheme": "midpoint", "mass.type": "consistent"}),
-                self.simulate("newmark", **values)]
+                self.simulate("default", **values)]
         self.plot(*runs, "--what", "energy", "-o", "figure.svg")
         # Matplotlib cuts curves off where they leave the picture: of the midpoint scheme's most is outside.
         lengths = sorted(len(points) for points in curves(self.folder / "figure.svg"))

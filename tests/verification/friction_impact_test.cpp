@@ -166,7 +166,10 @@ TEST(ObliqueImpact, ImpulseRatioIsAtMostTheCoefficient) {
     EXPECT_GT(ratio, last_ratio) << speed;
     EXPECT_LT(found.most_per_point, 1e-14) << speed;
     EXPECT_LT(found.friction_work, 0.0) << speed;
-    EXPECT_NEAR(found.energy_change, found.friction_work, 1e-3 * found.kinetic) << speed;
+    // Besides friction points that touch or stick take some, of first order in the step: 1.1e-3 at most, 5.7e-4 with
+    // half the step. Nothing gives any.
+    EXPECT_LT(found.energy_change, found.friction_work + 1e-12 * found.kinetic) << speed;
+    EXPECT_GT(found.energy_change, found.friction_work - 1.5e-3 * found.kinetic) << speed;
     last_ratio = ratio;
   }
   EXPECT_NEAR(last_ratio, 0.3, 1e-12);
@@ -186,9 +189,10 @@ TEST(ObliqueImpact, SlipsSticksAndSlipsBack) {
 TEST(ObliqueImpact, SchemesThatConserveEnergyAgree) {
   const Throw reference = throw_disc(0.1, {});
   for (const std::vector<std::string>& overrides :
-       std::vector<std::vector<std::string>>{{"time.preset=textbook-half"},
+       std::vector<std::vector<std::string>>{{"time.scheme=newmark", "time.preset=trapezoidal"},
+                                             {"time.preset=textbook-half", "time.scheme=newmark"},
                                              {"time.step=1e-5"},
-                                             {"time.scheme=reduced-kane", "time.reaction_weight=adaptive"},
+                                             {"time.reaction_weight=adaptive"},
                                              {"time.scheme=klr-conserving", "mass.type=consistent"}}) {
     const Throw found = throw_disc(0.1, overrides);
     EXPECT_NEAR(found.end[0], reference.end[0], 3e-3 * reference.start[0]) << overrides[0];
@@ -240,8 +244,7 @@ TEST(SpinningBall, RaisesTheWarningOfSmallStrain) {
   const std::filesystem::path directory =
       std::filesystem::path(test_support::write_temporary("marker", "")).parent_path() / "results";
   log::set_level(log::Level::error);
-  const Case input = read_case(cases() + "ball-spin/ball-spin.toml",
-                               {"time.scheme=reduced-kane", "time.step=1e-3", "output.fields_every=0"});
+  const Case input = read_case(cases() + "ball-spin/ball-spin.toml", {"time.step=1e-3", "output.fields_every=0"});
   const RunSummary summary = run_case(input, {directory.string(), true, true});
   ASSERT_GE(summary.warnings.size(), 2U);
   EXPECT_NE(summary.warnings[0].find("small strain no longer holds"), std::string::npos) << summary.warnings[0];
