@@ -24,7 +24,7 @@ const ball = report("ball", ballRun());
 await picture(disc, "report-disc.png", { width: 1300, height: 1660 }, () => window.ricochet.store.setTime(0.05));
 await picture(friction, "report-friction-dark.png", { width: 1300, height: 1130, colorScheme: "dark" }, () => {
   const { store } = window.ricochet;
-  store.setTime(0.0104);
+  store.setTime(0.01052);
   store.set("quantity", "contact_status", "contact");
   document.querySelector("#bodies").scrollIntoView();
 });
