@@ -32,14 +32,19 @@ class CurvedContact final : public ContactGeometry {
     return curved->obstacle->normal(position(*curved, displacement, time));
   }
 
-  void update(const Vector& displacement, double time, ContactRows& rows) const override {
+  void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const override {
     ++revision_;
     gap_ = rows.gap;
     gaps(displacement, time, rows.gap);
     const double reach = ahead * (rows.gap - gap_).lpNorm<Eigen::Infinity>();
     for (const CurvedContactData::Point& point : data_.points) {
       if (rows.gap[point.number] > std::max(reach, rows.gap_rounding[point.number])) continue;
-      write_rows(point, point.obstacle->normal(position(point, displacement, time)), rows);
+      const SpaceVector at = position(point, displacement, time);
+      write_rows(point,
+                 start == nullptr
+                     ? point.obstacle->normal(at)
+                     : point.obstacle->normal_of_step(position(point, start->displacement, start->time), at),
+                 rows);
     }
   }
 

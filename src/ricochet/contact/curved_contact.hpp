@@ -7,7 +7,8 @@
 #include "ricochet/contact/contact_boundary.hpp"
 
 /// @file Contact with curved obstacles. A contact point is at x_i = Σ_j c_ij (X + U)_j, its gap is that of the obstacle
-/// there, and its rows are c ⊗ n(x_i) and c ⊗ t(x_i): G is the derivative of the gap, exactly.
+/// there, and its rows are c ⊗ n(x_i) and c ⊗ t(x_i): G is the derivative of the gap, exactly, or the normals are those
+/// of a step.
 namespace ricochet {
 
 struct CurvedContactData {

@@ -16,6 +16,11 @@ std::unique_ptr<Obstacle> make_obstacle(const std::string& type, Parameters para
   return obstacle_registry().find(type, parameters).type(parameters);
 }
 
+SpaceVector Obstacle::normal_of_step(const SpaceVector& from, const SpaceVector& to) const {
+  const SpaceVector middle = normal(0.5 * (from + to)), end = normal(to);
+  return middle.dot(end) > 0.5 && middle.dot(normal(from)) > 0.5 ? middle : end;
+}
+
 Key obstacle_velocity_key() {
   return {.name = "velocity",
           .type = KeyType::vector,

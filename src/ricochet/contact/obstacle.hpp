@@ -33,6 +33,15 @@ class Obstacle {
   [[nodiscard]] virtual double gap(const SpaceVector& position) const = 0;
   /// Unit normal out of the obstacle at the surface's nearest point.
   [[nodiscard]] virtual SpaceVector normal(const SpaceVector& position) const = 0;
+  /// A unit normal of the step from one position to another: with some a > 0
+  ///   n·(to − from) = a (gap(to) − gap(from)),
+  /// so that a force along it works on a body that slides no more than a plane's does. The normal at the middle has
+  /// this property on planes and spheres. For another surface override it: with n the normal at the middle, the
+  /// direction of
+  ///   n + (gap(to) − gap(from) − n·(to − from)) (to − from)/|to − from|²
+  /// (the discrete gradient of O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467), and n itself where the bracket is
+  /// rounding. A step that goes so far round that it leans by more than 60° from the normals at the ends gets the last.
+  [[nodiscard]] virtual SpaceVector normal_of_step(const SpaceVector& from, const SpaceVector& to) const;
   /// Size of the rounding error of `gap` at this position: gaps no larger than this are zero.
   [[nodiscard]] virtual double gap_rounding(const SpaceVector& position) const = 0;
   /// The gap is a linear function of the position.

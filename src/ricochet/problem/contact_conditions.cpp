@@ -1,6 +1,7 @@
 #include "ricochet/problem/contact_conditions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace ricochet {
@@ -25,13 +26,14 @@ ContactRows& own_rows(const SemidiscreteProblem& problem, Stage& stage) {
   return *stage.rows_in_store.back();
 }
 
-/// Rows at a displacement and a time.
-void take_rows(const SemidiscreteProblem& problem, const Vector& displacement, double time, Stage& stage) {
+/// Rows at a displacement and a time, or of the step that ends there.
+void take_rows(const SemidiscreteProblem& problem, const Vector& displacement, double time, const StepStart* start,
+               Stage& stage) {
   if (!problem.contact.follows_motion()) {
     if (stage.rows != problem.contact.rows) stage.rows = problem.contact.rows;
     return;
   }
-  problem.contact.geometry->update(displacement, time, own_rows(problem, stage));
+  problem.contact.geometry->update(displacement, time, start, own_rows(problem, stage));
 }
 
 /// The obstacles' velocities along the rows of the stage.
@@ -57,21 +59,27 @@ void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const
 
 }  // namespace
 
-void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage) {
-  take_rows(problem, base, time, stage);
+void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
+                            const StepStart* start) {
+  take_rows(problem, base, time, start, stage);
   problem.gaps(base, time, stage.gap_offset);
   stage.gap_offset_rounding = stage.rows->gap_rounding;
   stage.gap_factor = 1.0;
   stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
   if (!problem.contact.follows_motion()) return;
   if (!stage.motion) stage.motion.emplace();
-  stage.motion->displacement = base;
-  stage.motion->time = time;
+  ContactMotion& motion = *stage.motion;
+  motion.displacement = base;
+  motion.time = time;
+  motion.start.resize(0);
+  if (start == nullptr) return;
+  motion.start = start->displacement;
+  motion.start_time = start->time;
 }
 
 void require_no_approach(const SemidiscreteProblem& problem, const Vector& displacement, double time,
                          const Vector& velocity, const ObstacleMotion& obstacle, double step, Stage& stage) {
-  take_rows(problem, displacement, time, stage);
+  take_rows(problem, displacement, time, nullptr, stage);
   stage.motion.reset();
   problem.gaps(displacement, time, stage.gap_offset);
   // A displacement is the sum of its increments, and this condition on velocities takes back nothing of their rounding:
@@ -99,7 +107,8 @@ void require_friction(const SemidiscreteProblem& problem, const Vector& velocity
 void linearize_contact(const SemidiscreteProblem& problem, const Vector& increment, Stage& stage) {
   ContactMotion& motion = *stage.motion;
   motion.solution = motion.displacement + stage.gap_factor * increment;
-  problem.contact.geometry->update(motion.solution, motion.time, own_rows(problem, stage));
+  const StepStart start{motion.start, motion.start_time};
+  take_rows(problem, motion.solution, motion.time, motion.start.size() > 0 ? &start : nullptr, stage);
   problem.gaps(motion.solution, motion.time, stage.gap_offset);
   stage.rows->normal_motion(increment, motion.gap_change);
   stage.gap_offset -= stage.gap_factor * motion.gap_change;

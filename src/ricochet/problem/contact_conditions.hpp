@@ -7,8 +7,10 @@
 namespace ricochet {
 
 /// Every contact point is eligible and y is its gap: y = g₀ + G (base + δ) at `time`; where gaps are not linear,
-/// y = g(base + δ) with the rows at base, and the solver takes them again.
-void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage);
+/// y = g(base + δ) with the rows at base, and the solver takes them again. `start`: the rows are those of the step from
+/// there, so that reactions of its end work on its whole motion what they would on a plane.
+void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
+                            const StepStart* start = nullptr);
 
 /// Points that touch at `displacement` and `time` do not approach their obstacle, the others carry no force:
 /// y = G (velocity + s δ) − the obstacle's, eligible where the gap is not positive. `velocity` is a difference of

@@ -56,6 +56,8 @@ struct OperatorCoefficients {
 struct ContactMotion {
   Vector displacement, velocity;
   double time = 0.0;
+  Vector start;  ///< displacement at the start of the step, if rows are those of the step; else empty
+  double start_time = 0.0;
   Vector solution, gap_change, gap_change_rounding;  ///< work space: displacement + s δ, G δ
 };
 
@@ -91,13 +93,14 @@ struct StageSolution {
   /// ρ̄, where it is not ρ: then not empty.
   Vector mean_normal_reaction, mean_tangential_reaction;
   double path_contact_work = 0.0;  ///< of normal reactions along the path: −(those just after its start) · start_gap
-  double end_weight = 1.0;         ///< μ of this stage
+  double path_friction_work = 0.0;  ///< of tangential reactions along the path
+  double end_weight = 1.0;          ///< μ of this stage
 
   /// The mean reactions are those of the end, until a stage says otherwise.
   void clear_mean() {
     mean_normal_reaction.resize(0);
     mean_tangential_reaction.resize(0);
-    path_contact_work = 0.0;
+    path_contact_work = path_friction_work = 0.0;
     end_weight = 1.0;
   }
   /// What acts on the body over the stage.

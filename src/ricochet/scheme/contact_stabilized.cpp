@@ -15,8 +15,8 @@ namespace {
 ///   friction on B_T (U₁−U₀)/h;   V₁ = V₀ + (2/h)(U₁ − Û).
 /// The second stage depends on the first. J changes in a step by ΔUᵀ(Gᵀr_N − …) − (2/h²)(Û−U₀−hV₀)ᵀM(U₁−Û), without
 /// friction and but for the work of supports by −r_N·g₀ − (2/h²) μ·g₁ ≤ 0 where gaps are linear: no step, however long,
-/// creates energy there. In hollows (concave gaps) it is less, on balls (convex ones) more by up to r_N s²/2R for a
-/// slide by s.
+/// creates energy there. r_N acts along normals of the step, so that its part holds on spheres, too; that of μ is less
+/// in hollows (concave gaps) and more on balls (convex ones), by up to (2/h²) μ |U₁−Û|²/2R.
 class ContactStabilized final : public Scheme {
  public:
   using Scheme::Scheme;
@@ -55,7 +55,8 @@ class ContactStabilized final : public Scheme {
     equations_.balance(problem, state.time + 0.5 * h, middle_, rate_, stage);
     equations_.prescribe(
         problem, end, [&](Index dof, double value) { return value - base_[dof]; }, stage);
-    require_no_penetration(problem, base_, end, stage);
+    const StepStart start{state.displacement, state.time};
+    require_no_penetration(problem, base_, end, stage, &start);
     equations_.require_friction_over_step(problem, state, flight_, h, stage);
     const StageSolution& solution = stages.solve(1);
 

@@ -66,7 +66,7 @@ TEST_P(TwoPoints, HaveRowsThatAreTheDerivativesOfTheirGaps) {
   const Index d = GetParam(), dofs = 2 * d;
   Vector displacement = 0.1 * Vector::LinSpaced(dofs, -1.0, 1.0);
   constexpr double time = 0.2, h = 1e-6;
-  geometry_->update(displacement, time, rows_);
+  geometry_->update(displacement, time, nullptr, rows_);
   EXPECT_EQ(rows_.gap, gaps(displacement, time));
   for (Index dof = 0; dof < dofs; ++dof) {
     Vector ahead = displacement, behind = displacement;
@@ -96,14 +96,14 @@ TEST_P(TwoPoints, SeeTheObstacleMove) {
 
 TEST_P(TwoPoints, ChangeTheirRevisionWithTheirRowsAlone) {
   Vector displacement = Vector::Zero(2 * GetParam());
-  geometry_->update(displacement, 0.0, rows_);
+  geometry_->update(displacement, 0.0, nullptr, rows_);
   const std::vector<long> first = rows_.revision;
-  geometry_->update(displacement, 0.0, rows_);
+  geometry_->update(displacement, 0.0, nullptr, rows_);
   EXPECT_EQ(rows_.revision, first);
   // The first point is at the first node alone, which stays.
   displacement[GetParam()] = 0.05;
   displacement[2 * GetParam() - 1] = -1.0;
-  geometry_->update(displacement, 0.0, rows_);
+  geometry_->update(displacement, 0.0, nullptr, rows_);
   EXPECT_EQ(rows_.revision[0], first[0]);
   EXPECT_GT(rows_.revision[1], first[1]);
 }
@@ -111,9 +111,9 @@ TEST_P(TwoPoints, ChangeTheirRevisionWithTheirRowsAlone) {
 /// What a checkpoint keeps of them, normals and gaps, makes them again to the bit.
 TEST_P(TwoPoints, AreRestoredToTheBit) {
   const Vector displacement = 0.05 * Vector::LinSpaced(2 * GetParam(), -1.0, 1.0);
-  geometry_->update(displacement, 0.1, rows_);
+  geometry_->update(displacement, 0.1, nullptr, rows_);
   const ContactRows saved = rows_;
-  geometry_->update(Vector::Zero(displacement.size()), 0.7, rows_);
+  geometry_->update(Vector::Zero(displacement.size()), 0.7, nullptr, rows_);
   ASSERT_NE(rows_.normals, saved.normals);
   geometry_->restore(saved.normals, saved.gap, rows_);
   EXPECT_EQ(rows_.normals, saved.normals);

@@ -63,6 +63,31 @@ TEST_P(Obstacles, HaveUnitNormalsThatAreTheDerivativeOfTheGap) {
   }
 }
 
+/// Along the normal of a step it goes out where the gap grows, in where it shrinks, and neither where it stays.
+TEST_P(Obstacles, HaveNormalsOfStepsThatKnowTheChangeOfTheGap) {
+  const auto obstacle = make();
+  int near = 0;
+  for (int k = 0; k < 200; ++k) {
+    const Vector from = random_point();
+    Vector to = from + 0.3 * random_point();
+    SpaceVector normal = obstacle->normal_of_step(from, to);
+    EXPECT_NEAR(normal.norm(), 1.0, 1e-15);
+    EXPECT_GE(normal.dot(obstacle->normal(to)), 0.5);
+    if (normal == obstacle->normal(to) && !obstacle->is_flat()) continue;  // too far round
+    ++near;
+    const double change = obstacle->gap(to) - obstacle->gap(from);
+    EXPECT_GE(normal.dot(to - from) * change, -1e-15);
+    EXPECT_GE(std::abs(normal.dot(to - from)), std::abs(change) - 2e-15);  // a ≥ 1 on planes and spheres
+    EXPECT_EQ(obstacle->normal_of_step(to, to), obstacle->normal(to));
+    to += (obstacle->gap(from) - obstacle->gap(to)) * obstacle->normal(to);
+    normal = obstacle->normal_of_step(from, to);
+    if (normal != obstacle->normal(to)) {
+      EXPECT_NEAR(normal.dot(to - from), 0.0, 2e-15);
+    }
+  }
+  EXPECT_GT(near, 50);
+}
+
 /// The gap is a distance: along the normal it changes by as much as one goes, until the surface and beyond.
 TEST_P(Obstacles, HaveGapsThatAreDistances) {
   const auto obstacle = make();

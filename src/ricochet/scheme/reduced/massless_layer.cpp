@@ -139,7 +139,8 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
     const Vector& shift = solve_layer(problem, right_, stages);
     for (const Index dof : problem.contact_dofs) contact_base_[dof] -= weight * shift[dof];
   }
-  require_no_penetration(problem, contact_base_, state.time + h, stage);
+  const StepStart start{state.displacement, state.time};
+  require_no_penetration(problem, contact_base_, state.time + h, stage, &start);
   stage.gap_factor = 2.0;
   middle_ = 0.5 * (state.displacement + contact_base_);
   if (problem.has_moving_obstacles()) equations_.observe_obstacles(problem, state.time + 0.5 * h, middle_);
