@@ -32,7 +32,7 @@ class MethodEnergy(TestCase):
 
     def test_it_is_what_is_missing_in_the_total_energy(self):
         """Nothing but contact acts on the disc: what its energy has lost since the start the method has taken."""
-        for name, values in (("end", {"time.reaction_weight": "end"}), ("newmark", {"time.scheme": "newmark", "time.step": 2e-3}),
+        for name, values in (("end", {"time.reaction_weight": "end"}), ("newmark", {"time.scheme": "newmark", "time.preset": "textbook-half", "time.step": 2e-3}),
                              ("midpoint", {"time.scheme": "midpoint", "mass.type": "consistent"})):
             with self.subTest(name):
                 folder = self.simulate(DISC, name, LONG | values)
@@ -63,6 +63,14 @@ class MethodEnergy(TestCase):
         self.assertEqual(found["reactions"], {"acting": "end", "least_end_weight": None, "largest_end_weight": None, "steps_of_means": 0,
                                               "steps_without_mean": 0})
         self.assertTrue(self.said(folder).endswith("; reactions: those of the end of a step"), self.said(folder))
+        adaptive = self.simulate(DISC, "friction-adaptive", LONG | {
+            "contact.0.friction": 0.3, "initial.velocity": "[0.1,-0.1]", "time.reaction_weight": "adaptive"})
+        acting = summary(adaptive)["reactions"]
+        self.assertEqual(acting["acting"], "adaptive")
+        self.assertGreater(acting["steps_of_means"], 10)
+        self.assertLess(acting["steps_without_mean"], 0.1 * acting["steps_of_means"])
+        self.assertRegex(self.said(adaptive), "; reactions: mean, end weight ")
+        self.assertLess(summary(adaptive)["energy_budget"]["lost_by_method"], budget["lost_by_method"])
 
     def test_it_does_not_depend_on_the_rows_that_are_written(self):
         often, rarely = (summary(self.simulate(DISC, f"every-{every}", LONG | {"time.reaction_weight": "end", "output.history_every": every}))
@@ -89,7 +97,8 @@ class MethodEnergy(TestCase):
         self.assertLessEqual(reactions["largest_end_weight"], 1 / 3 + 1e-12)
         self.assertRegex(self.said(folder), r"; reactions: mean, end weight \S+( to 0\.\d+)?$")
         for scheme, mass, acting in (("newmark", "equivalent", None), ("mean-reaction", "equivalent", "mean"), ("midpoint", "consistent", None)):
-            folder = self.simulate(DISC, scheme, LONG | {"time.scheme": scheme, "mass.type": mass, "time.step": 1e-4, "time.end": 0.02})
+            preset = {"time.preset": "textbook-half"} if scheme == "newmark" else {}
+            folder = self.simulate(DISC, scheme, LONG | preset | {"time.scheme": scheme, "mass.type": mass, "time.step": 1e-4, "time.end": 0.02})
             reactions = summary(folder)["reactions"]
             self.assertEqual(reactions and reactions["acting"], acting)
             self.assertEqual("reactions:" in self.said(folder), acting is not None)

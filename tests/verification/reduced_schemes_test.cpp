@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/mass/mass.hpp"
@@ -161,7 +162,7 @@ TEST(ReducedKane, AdaptiveWeightCreatesNoEnergyAndLosesLess) {
           lost[adaptive ? 1 : 0] = -works.contact + works.numerical_dissipation;
         }
         if (step < 0.005) {
-          EXPECT_LT(lost[1], 0.5 * lost[0]) << name;
+          EXPECT_LT(lost[1], 0.1 * lost[0]) << name;
         }
       }
     }
@@ -210,12 +211,15 @@ TEST(MeanReaction, KeepsEnergyAndMomentaForEveryStep) {
 /// Loads that vary on contact nodes work along the path, too: they are no loss of the scheme.
 TEST(MeanReaction, BooksTheWorkOfLoadsOnContactNodes) {
   for (const ThrownBody& body : bodies()) {
-    for (const std::string& scheme : {std::string("scheme = \"mean-reaction\"\n"), reduced_kane("adaptive")}) {
-      std::string text = thrown_case(body, "equivalent", scheme);
+    for (const auto& [scheme, friction, step] :
+         {std::tuple(std::string("scheme = \"mean-reaction\"\n"), 0.0, 0.01),
+          std::tuple(reduced_kane("adaptive"), 0.0, 0.01), std::tuple(reduced_kane("adaptive"), 0.0, 0.1),
+          std::tuple(reduced_kane("adaptive"), 0.3, 0.1), std::tuple(reduced_kane("adaptive"), 0.3, 1.0)}) {
+      std::string text = thrown_case(body, "equivalent", scheme, "friction = " + std::to_string(friction) + "\n");
       const bool flat = body.dimension == 2;
       text.insert(text.find("[initial]"),
                   std::string("body_force = [\"sin(20*t)\", ") + (flat ? "" : "\"0\", ") + "\"3*cos(11*t)*x\"]\n");
-      CaseRun run(text);
+      CaseRun run(text, overrides(step));
       double least = 0.0, most = 0.0, contact = 0.0, residual = 0.0, size = 0.0;
       Works before;
       run.run(
@@ -232,7 +236,8 @@ TEST(MeanReaction, BooksTheWorkOfLoadsOnContactNodes) {
             before = now;
           },
           false);
-      EXPECT_GT(least, -1e-13 * size) << body.name << scheme;
+      // With friction the rounds that find a mean stop at 1e-10 of the reactions where rounding stops them.
+      EXPECT_GT(least, (friction > 0.0 ? -1e-11 : -1e-12) * size) << body.name << scheme << step;
       EXPECT_LT(residual, 1e-12 * size) << body.name << scheme;
       if (scheme.find("mean") == std::string::npos) continue;
       EXPECT_LT(most, 1e-13 * size) << body.name << scheme;

@@ -25,6 +25,7 @@ struct WorkRule {
 /// What the balance of energy of the last step has besides the works of forces on increments, in closed form.
 struct StepCorrections {
   double contact_work = 0.0;           ///< where the contact forces act along a path that is not straight
+  double friction_work = 0.0;          ///< likewise
   double support_work = 0.0;           ///< of reactions that are none of the step's own
   double load_work = 0.0;              ///< of loads that vary on nodes without inertia
   double numerical_dissipation = 0.0;  ///< energy that the scheme itself takes away, positive when it is lost

@@ -75,6 +75,7 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   enter(state.forces, rule_.current_weight);
   const StepCorrections corrections = scheme_.step_corrections(problem_);
   works_.contact += corrections.contact_work;
+  works_.friction += corrections.friction_work;
   works_.support += corrections.support_work;
   works_.load += corrections.load_work;
   works_.numerical_dissipation += corrections.numerical_dissipation;

@@ -66,7 +66,7 @@ void CondensedContact::solve_mean(const Stage& stage) {
   // The end reaction alone is always right.
   log::debug(
       fmt::format("contact: the mean of the reactions was not found ({}), the end reactions act", mean_.reason()));
-  const Vector last = contact_solution_.reaction;
+  const Vector last = solver_->warm_start();  // of the last problem that was solved
   use_end_weight(1.0);
   solver_->analyse(contact_);
   solver_->set_warm_start(last);
@@ -82,6 +82,7 @@ void CondensedContact::give_mean(StageSolution& solution) const {
   solution.mean_normal_reaction.setZero(solution.normal_reaction.size());
   solution.mean_tangential_reaction = solution.tangential_reaction;
   solution.path_contact_work = -2.0 * mean_.path_work() / scale_;
+  solution.path_friction_work = 2.0 * mean_.friction_work() / scale_;
   solution.end_weight = mean_.end_weight();
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     const Index point = candidates_.points()[i], row = contact_.row_offset[i];
@@ -92,14 +93,11 @@ void CondensedContact::give_mean(StageSolution& solution) const {
 }
 
 void CondensedContact::throw_no_mean() const {
-  const char* const cause =
-      mean_.is_usable()
-          ? "such steps are far longer than the time in which a wave crosses a cell, or next to nothing"
-          : "multipliers that the contact nodes cannot tell apart (\"p0\" on tetrahedra) have none: take others";
   throw Error(ErrorKind::not_converged,
-              fmt::format("the mean of the reactions over the step was not found ({} points): {}; {}, or scheme "
+              fmt::format("the mean of the reactions over the step was not found ({} points): {}; such steps are far "
+                          "longer than the time in which a wave crosses a cell: take shorter ones, or scheme "
                           "\"reduced-kane\"",
-                          contact_.points(), mean_.reason(), cause));
+                          contact_.points(), mean_.reason()));
 }
 
 }  // namespace ricochet

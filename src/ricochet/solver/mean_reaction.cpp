@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
-#include "ricochet/solver/normal_path.hpp"
 
 namespace ricochet {
 
@@ -22,6 +22,8 @@ constexpr int most_mean_rounds = 60, most_newton_steps = 60, patience_of_mean = 
 /// Of the power iteration for λ, whose value is a lower bound.
 constexpr int power_steps = 30;
 constexpr double power_reserve = 1.05;
+/// Of the largest diagonal of U, where U is not definite: added to it for λ.
+constexpr double own_compliance = 1e-10;
 
 /// The largest eigenvalue λ of U⁻¹Z; not finite where U is not positive definite.
 double largest_ratio(const Matrix& u, const Matrix& z) {
@@ -59,9 +61,17 @@ void MeanReaction::prepare(Matrix u, Matrix z, const std::vector<Index>& row_off
   normal_rows_.assign(row_offset.begin(), row_offset.end() - 1);
   has_friction_ = row_offset.back() > static_cast<Index>(normal_rows_.size());
   normal_u_ = u_(normal_rows_, normal_rows_);
-  const double lambda = largest_ratio(normal_u_, z_(normal_rows_, normal_rows_));
+  const Matrix normal_z = z_(normal_rows_, normal_rows_);
+  double lambda = largest_ratio(normal_u_, normal_z);
+  is_dependent_ = !std::isfinite(lambda);
+  if (is_dependent_) {
+    Matrix regular = normal_u_;
+    regular.diagonal().array() += own_compliance * regular.diagonal().maxCoeff();
+    lambda = largest_ratio(regular, normal_z);
+  }
   usable_ = std::isfinite(lambda);
   if (!usable_) return;
+  path_.prepare(u_, row_offset, !is_dependent_);
   mu_ = mean == ReactionMean::path ? 0.0 : least_end_weight(lambda, has_friction_ ? 0.0 : 0.5);
 }
 
@@ -69,31 +79,37 @@ void MeanReaction::take_end(const Vector& reaction) {
   acting_ = reaction;
   acting_weight_ = 1.0;
   path_work_ = reaction.size() > 0 ? normals(reaction).dot(start_gap_) : 0.0;
+  has_path_ = false;
 }
 
 Vector MeanReaction::normals(const Vector& rows) const {
   return rows(normal_rows_);
 }
 
-/// With friction's part of y in q₀ and q₁ alike.
 bool MeanReaction::find_mean(const Vector& acting, const Vector& offset, const Vector& reaction, Vector& mean) {
-  const Vector motion = offset + z_ * acting;
-  Vector of_friction = reaction;
-  for (const Index row : normal_rows_) of_friction[row] = 0.0;
-  const Vector shift = normals(u_ * of_friction);
-  const Vector q0 = start_gap_ - normals(u_ * start_) + shift, q1 = normals(motion) + shift;
-  mean = reaction;
-  NormalPath path(normal_u_, eligible_);
-  if (!path.follow(q0, q1, pressing_)) {
+  has_path_ = !(start_.isZero(0.0) && reaction.isZero(0.0) && acting.isZero(0.0));
+  if (!has_path_) {  // open at both ends: straight gaps are open in between, whatever their rounding
+    mean.setZero(reaction.size());
+    path_work_ = 0.0;
+    return true;
+  }
+  q1_ = offset;
+  q1_.noalias() += z_ * acting;
+  if (!path_.follow({q0_, q1_, start_, reaction, friction_, eligible_, pressing_})) {
     reason_ = "the points that press were not found along the path of the step";
     return false;
   }
-  for (std::size_t i = 0; i < normal_rows_.size(); ++i) {
-    const auto at = static_cast<Index>(i);
-    mean[normal_rows_[i]] = (1.0 - mu_) * path.mean()[at] + mu_ * reaction[normal_rows_[i]];
-  }
-  path_work_ = path.start().dot(start_gap_);
+  mean = (1.0 - mu_) * path_.mean() + mu_ * reaction;
+  path_work_ = path_.start().dot(start_gap_);
   return true;
+}
+
+/// The largest, as the motion of the contact points sees it where different reactions may be the same force.
+double MeanReaction::difference_of(const Vector& mean, const Vector& acting) const {
+  const Vector difference = mean - acting;
+  if (!is_dependent_) return difference.lpNorm<Eigen::Infinity>();
+  const double compliance = (u_.diagonal() + z_.diagonal()).maxCoeff();
+  return (u_ * difference + z_ * difference).lpNorm<Eigen::Infinity>() / compliance;
 }
 
 /// Solves with ρ̄ − θρ = difference_: ρ̄ is then right for y; `error` says how far it is from the mean of the path, and
@@ -110,8 +126,8 @@ bool MeanReaction::solve_with(ContactProblem& contact, const Vector& offset, con
   if (!find_mean(acting, offset, solution.reaction, mean)) return false;
   const double size = std::max({solution.reaction.lpNorm<Eigen::Infinity>(), start_.lpNorm<Eigen::Infinity>(),
                                 mean.lpNorm<Eigen::Infinity>(), acting.lpNorm<Eigen::Infinity>()});
-  error = size > 0.0 ? (mean - acting).lpNorm<Eigen::Infinity>() / size : 0.0;
-  acting_ = acting;
+  error = size > 0.0 ? difference_of(mean, acting) / size : 0.0;
+  acting_ = is_dependent_ ? mean : acting;
   difference_ = mean - theta() * solution.reaction;
   return true;
 }
@@ -122,8 +138,8 @@ bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const s
   AndersonAcceleration acceleration(8);
   double least = std::numeric_limits<double>::infinity();
   int last_progress = 0;
-  const int limit = has_friction_ ? most_mean_rounds : 3;
-  for (int round = 0; round < limit; ++round) {
+  const int patience = has_friction_ ? patience_of_mean : 5;  // Newton's steps come after it
+  for (int round = 0; round < most_mean_rounds; ++round) {
     const Vector asked = difference_;
     double error = 0.0;
     if (!solve_with(contact, offset, solve_contact, solution, error)) return false;
@@ -133,7 +149,7 @@ bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const s
       last_progress = round;
     } else if (error <= rounding_of_rounds && round - last_progress > 2) {
       return true;
-    } else if (round - last_progress > patience_of_mean) {
+    } else if (round - last_progress > patience) {
       break;
     }
     difference_ = acceleration.next(asked, difference_);
@@ -146,22 +162,22 @@ bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const s
 /// where the gradient along them changes sign.
 bool MeanReaction::newton(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
                           ContactSolution& solution) {
-  const Vector q0 = start_gap_ - u_ * start_;
-  NormalPath path(normal_u_, eligible_);
+  NormalPath& path = path_.normal();
   Vector mean;
   const auto evaluate = [&](const Vector& acting, Vector& residual) {
-    if (!path.follow(q0, offset + z_ * acting, pressing_)) return false;
+    if (!path.follow(q0_, offset + z_ * acting, eligible_, pressing_)) return false;
     mean = (1.0 - mu_) * path.mean() + mu_ * path.end();
     residual = acting - mean;
     return true;
   };
   Vector acting = acting_, residual, trial;
+  reason_ = "the points that press were not found along the path of the step";
   if (!evaluate(acting, residual)) return false;
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0, last_progress = 0; k < most_newton_steps; ++k) {
     const double size = std::max(
         {mean.lpNorm<Eigen::Infinity>(), path.end().lpNorm<Eigen::Infinity>(), acting.lpNorm<Eigen::Infinity>()});
-    const double error = residual.lpNorm<Eigen::Infinity>();
+    const double error = difference_of(mean, acting);
     if (error < 0.5 * least) {
       least = error;
       last_progress = k;
@@ -173,8 +189,21 @@ bool MeanReaction::newton(ContactProblem& contact, const Vector& offset, const s
       return solve_with(contact, offset, solve_contact, solution, left) && left <= 10.0 * rounding_of_rounds;
     }
     const Matrix derivative = (1.0 - mu_) * path.mean_derivative() + mu_ * path.end_derivative();
-    const Matrix jacobian = Matrix::Identity(z_.rows(), z_.cols()) + derivative * z_;
-    const Vector step = jacobian.partialPivLu().solve(-residual);
+    // Where nothing presses on the path, rows of I + DZ are those of the identity.
+    pressed_.clear();
+    for (Index i = 0; i < derivative.cols(); ++i) {
+      if (derivative(i, i) != 0.0) pressed_.push_back(i);
+    }
+    Vector step = -residual;
+    if (!pressed_.empty()) {
+      const Matrix on_pressed = derivative(pressed_, pressed_), motion = z_(pressed_, pressed_);
+      Vector right = -residual;
+      for (const Index i : pressed_) right[i] = 0.0;
+      const Vector rest = -residual(pressed_) - on_pressed * Vector(z_ * right)(pressed_);
+      const Index count = on_pressed.rows();
+      const Vector solved = (Matrix::Identity(count, count) + on_pressed * motion).partialPivLu().solve(rest);
+      step(pressed_) = solved;
+    }
     const Vector weights = z_ * step;
     const double slope = weights.dot(residual);
     double length = 1.0;
@@ -205,9 +234,19 @@ bool MeanReaction::solve(ContactProblem& contact, const Vector& offset, const Ve
     reason_ = "the compliance of the contact nodes is not positive definite on them";
     return false;
   }
+  friction_ = contact.friction_coefficient;
+  if (contact.friction_bound.size() > 0) friction_ = (contact.friction_bound.array() > 0.0).select(0.0, friction_);
+  q0_ = -(u_ * start_);
+  for (std::size_t i = 0; i < normal_rows_.size(); ++i) q0_[normal_rows_[i]] += start_gap_[static_cast<Index>(i)];
+  has_path_ = true;
+  path_.begin_step();
   difference_ = (1.0 - theta()) * start_;
   if (rounds(contact, offset, solve_contact, solution)) return true;
-  return !has_friction_ && newton(contact, offset, solve_contact, solution);
+  if (has_friction_) return false;
+  path_.normal().keep_derivatives(true);
+  const bool found = newton(contact, offset, solve_contact, solution);
+  path_.normal().keep_derivatives(false);
+  return found;
 }
 
 }  // namespace ricochet

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <random>
@@ -45,7 +45,7 @@ Vector by_enumeration(const Path& path, const Vector& q) {
     Vector r = Vector::Zero(count);
     if (!pressing.empty()) {
       const Matrix block = path.u(pressing, pressing);
-      const Vector solution = block.ldlt().solve(-Vector(q(pressing)));
+      const Vector solution = block.partialPivLu().solve(-Vector(q(pressing)));
       for (std::size_t i = 0; i < pressing.size(); ++i) r[pressing[i]] = solution[static_cast<Index>(i)];
     }
     const Vector y = q + path.u * r;
@@ -64,11 +64,12 @@ Vector by_enumeration(const Path& path, const Vector& q) {
 TEST(NormalPath, EndsAndItsMeanAreRight) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     const Path path = random_path(seed, 1 + static_cast<Index>(seed % 6));
-    NormalPath found(path.u, path.eligible);
+    NormalPath found;
+    found.prepare(path.u, seed % 3 == 0 ? PathMatrix::semidefinite : PathMatrix::definite);
     const Vector start = by_enumeration(path, path.q0), end = by_enumeration(path, path.q1);
     std::vector<char> pressing;
     for (Index i = 0; i < start.size(); ++i) pressing.push_back(seed % 2 == 0 && start[i] > 0.0 ? 1 : 0);
-    ASSERT_TRUE(found.follow(path.q0, path.q1, pressing)) << seed;
+    ASSERT_TRUE(found.follow(path.q0, path.q1, path.eligible, pressing)) << seed;
     EXPECT_LT((found.start() - start).norm(), 1e-7 * (1.0 + start.norm())) << seed;
     EXPECT_LT((found.end() - end).norm(), 1e-7 * (1.0 + end.norm())) << seed;
     EXPECT_GE(found.mean().minCoeff(), -1e-12 * (1.0 + end.norm())) << seed;
@@ -88,15 +89,70 @@ TEST(NormalPath, DerivativesAreThoseOfDifferences) {
   constexpr double change = 1e-6;
   for (unsigned seed = 0; seed < 60; ++seed) {
     const Path path = random_path(seed, 4);
-    NormalPath found(path.u, path.eligible);
+    NormalPath found;
+    found.prepare(path.u, PathMatrix::definite);
+    found.keep_derivatives(true);
     const std::vector<char> none(4, 0);
-    ASSERT_TRUE(found.follow(path.q0, path.q1, none));
+    ASSERT_TRUE(found.follow(path.q0, path.q1, path.eligible, none));
     const Vector mean = found.mean();
     const Matrix derivative = found.mean_derivative();
     for (Index i = 0; i < 4; ++i) {
-      ASSERT_TRUE(found.follow(path.q0, path.q1 + change * Vector::Unit(4, i), none));
+      ASSERT_TRUE(found.follow(path.q0, path.q1 + change * Vector::Unit(4, i), path.eligible, none));
       EXPECT_LT(((found.mean() - mean) / change + derivative.col(i)).norm(), 1e-4 * (1.0 + derivative.norm())) << seed;
     }
+  }
+}
+
+/// Without symmetry, as friction that goes with the normal reactions has it: the conditions hold all along.
+TEST(NormalPath, TakesMatricesWithoutSymmetry) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    Path path = random_path(seed, 1 + static_cast<Index>(seed % 6));
+    const Matrix skew = path.u.triangularView<Eigen::StrictlyUpper>();
+    path.u += 0.3 * (skew - skew.transpose());
+    NormalPath found;
+    found.prepare(path.u, PathMatrix::general);
+    const std::vector<char> none(static_cast<std::size_t>(path.q0.size()), 0);
+    ASSERT_TRUE(found.follow(path.q0, path.q1, path.eligible, none)) << seed;
+    for (const double time : {1e-8, 0.31, 0.77, 1.0}) {
+      const Vector q = path.q0 + time * (path.q1 - path.q0), r = by_enumeration(path, q);
+      std::size_t k = 0;
+      while (found.piece(k).end < time) ++k;
+      const NormalPath::Piece& piece = found.piece(k);
+      const double part = (time - piece.begin) / (piece.end - piece.begin);
+      EXPECT_LT((piece.first + part * (piece.last - piece.first) - r).norm(), 1e-7 * (1.0 + r.norm())) << seed;
+    }
+  }
+}
+
+/// More points than motions of what they are on: gaps and forces are unique, reactions are those of some points.
+TEST(NormalPath, TakesPointsThatDependOnOneAnother) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  const auto entry = [&] { return number(engine); };
+  for (int seed = 0; seed < 200; ++seed) {
+    const Index motions = 1 + seed % 5, count = 2 * motions;
+    // Rows of nonnegative weights, as multipliers on facets have them, of points of a definite compliance.
+    const Matrix weights = Matrix::NullaryExpr(count, motions, [&] { return std::max(0.0, number(engine)) + 0.01; });
+    const Matrix b = Matrix::NullaryExpr(motions, motions, entry);
+    const Matrix compliance = b * b.transpose() + 0.1 * Matrix::Identity(motions, motions);
+    const Path path{weights * compliance * weights.transpose(), weights * Vector::NullaryExpr(motions, entry),
+                    weights * Vector::NullaryExpr(motions, entry),
+                    std::vector<char>(static_cast<std::size_t>(count), 1)};
+    NormalPath found;
+    found.prepare(path.u, PathMatrix::semidefinite);
+    const std::vector<char> all(static_cast<std::size_t>(count), 1);
+    ASSERT_TRUE(found.follow(path.q0, path.q1, path.eligible, all)) << seed;
+    for (const auto& [q, r] : {std::pair(path.q0, found.start()), std::pair(path.q1, found.end())}) {
+      const Vector gap = q + path.u * r;
+      const double size = 1.0 + r.norm();
+      EXPECT_GE(r.minCoeff(), -1e-10 * size) << seed;
+      EXPECT_GE(gap.minCoeff(), -1e-9 * size) << seed;
+      EXPECT_NEAR(r.dot(gap), 0.0, 1e-9 * size * size) << seed;
+    }
+    const Vector start = found.start(), end = found.end();
+    const double potential = 0.5 * (end.dot(path.u * end) - start.dot(path.u * start));
+    const double size = 1.0 + end.dot(path.u * end) + start.dot(path.u * start);
+    EXPECT_NEAR(found.mean().dot(path.q1 - path.q0), -potential, 1e-10 * size) << seed;
   }
 }
 

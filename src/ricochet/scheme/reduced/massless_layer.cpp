@@ -196,16 +196,20 @@ MasslessLayer::LayerWork MasslessLayer::layer_work(const SemidiscreteProblem& pr
   return work;
 }
 
-/// aᵀK_cc⁻¹(L₁−L₀) with the nodal forces a = Hᵀ(ρ̄ − ½ρ) + ½r₀ that layer_work has left.
-double MasslessLayer::work_on_load_change(const SemidiscreteProblem& problem, StageSolve& stages) {
+/// Of a mean, what loads that change work on contact nodes: ½ zᵀΔL of the part μ of the end reactions, and
+/// −ΔLᵀK_cc⁻¹Hᵀ(ρ̄_path − ½(ρ₀+ρ)) of the rest. With the nodal forces a = Hᵀ(ρ̄ − ½ρ) + ½r₀ that layer_work has left.
+double MasslessLayer::load_work_of_mean(const SemidiscreteProblem& problem, double mu, double at_end,
+                                        StageSolve& stages) {
   if (load_change_.isZero(0.0)) return 0.0;
   const Vector& place = solve_layer(problem, load_change_, stages);
-  double sum = 0.0;
+  double of_reactions = 0.0, of_change = 0.0;
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+    const auto at = static_cast<Index>(i);
     const Index dof = problem.contact_dofs[i];
-    sum += place[dof] * (nodal_[dof] + 0.5 * residual_[static_cast<Index>(i)]);
+    of_reactions += place[dof] * (nodal_[dof] + 0.5 * residual_[at]);
+    of_change += 0.5 * place[dof] * load_change_[at];
   }
-  return sum;
+  return mu * at_end - of_reactions + mu * (at_end - of_change);
 }
 
 void MasslessLayer::correct(const SemidiscreteProblem& problem, ReactionMean mean, const Stage& stage,
@@ -218,15 +222,22 @@ void MasslessLayer::correct(const SemidiscreteProblem& problem, ReactionMean mea
   }
   const bool touches = solution.mean_normal_reaction.size() > 0;
   const double mu = touches ? solution.end_weight : 0.0;
-  corrections_ = {.load_work = mu * work.load};
-  if (mu < 1.0) corrections_.load_work -= (1.0 - mu) * work_on_load_change(problem, stages);
+  corrections_ = {.load_work = load_work_of_mean(problem, mu, work.load, stages)};
   if (touches) {
     stage.rows->normal_motion(increment, gap_change_);
     if (state.obstacle_increment.normal.size() > 0) gap_change_ -= state.obstacle_increment.normal;
     const double along = (1.0 - mu) * solution.path_contact_work - mu * solution.normal_reaction.dot(stage.start_gap);
     corrections_.contact_work = along - solution.mean_normal_reaction.dot(gap_change_);
+    if (problem.contact.has_friction()) {
+      stage.rows->tangential_motion(increment, slip_change_);
+      if (state.obstacle_increment.tangential.size() > 0) slip_change_ -= state.obstacle_increment.tangential;
+      corrections_.friction_work = (1.0 - mu) * solution.path_friction_work -
+                                   mu * solution.tangential_reaction.dot(slip_change_) +
+                                   solution.mean_tangential_reaction.dot(slip_change_);
+    }
   }
-  corrections_.numerical_dissipation = corrections_.contact_work + work.reactions + corrections_.load_work;
+  corrections_.numerical_dissipation =
+      corrections_.contact_work + corrections_.friction_work + work.reactions + corrections_.load_work;
 }
 
 }  // namespace ricochet

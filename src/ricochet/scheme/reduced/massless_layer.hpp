@@ -76,7 +76,8 @@ class MasslessLayer {
  private:
   void find_damping(const SemidiscreteProblem& problem);
   void require_mean(const SemidiscreteProblem& problem, const State& state, Stage& stage) const;
-  [[nodiscard]] double work_on_load_change(const SemidiscreteProblem& problem, StageSolve& stages);
+  [[nodiscard]] double load_work_of_mean(const SemidiscreteProblem& problem, double mu, double at_end,
+                                         StageSolve& stages);
   void correct(const SemidiscreteProblem& problem, ReactionMean mean, const Stage& stage, const StageSolution& solution,
                const Vector& increment, const State& state, StageSolve& stages);
 
@@ -89,7 +90,7 @@ class MasslessLayer {
   StepEquations equations_;
   StepCorrections corrections_;
   Vector load_, next_varying_, base_, residual_, load_change_, right_, contact_base_, rate_, middle_, before_;
-  Vector row_force_, of_layer_, nodal_, gap_change_, normal_, tangential_;
+  Vector row_force_, of_layer_, nodal_, gap_change_, slip_change_, normal_, tangential_;
 };
 
 }  // namespace ricochet

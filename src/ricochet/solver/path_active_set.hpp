@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+/// @file Points that press, one after the other: the dual method of D. Goldfarb and A. Idnani (Math. Program. 27 (1983)
+/// 1–33) for
+///   0 ≤ r ⟂ q + U r ≥ 0,
+/// U symmetric and positive semi-definite. The points that it finds are independent: U is definite on them, also where
+/// other points could press instead.
+namespace ricochet {
+
+class PathActiveSet {
+ public:
+  /// Of points that are eligible. `pressing`: a guess, then the answer. False where no reactions meet the conditions.
+  /// A gap above −gap_rounding is none.
+  [[nodiscard]] bool find(const Matrix& u, const Vector& q, const std::vector<char>& eligible, double gap_rounding,
+                          std::vector<char>& pressing);
+
+ private:
+  bool append(const Matrix& u, Index point, double least);
+  void factorize(const Matrix& u);
+  void remove(const Matrix& u, std::size_t place);
+  void solve(Vector& x) const;
+  void start(const Matrix& u, const Vector& q);
+  bool take_in(const Matrix& u, Index point, double gap);
+
+  std::vector<Index> set_, asked_;
+  Matrix factor_;  ///< L of U on the set, L Lᵀ
+  Vector row_, reaction_, direction_, gap_;
+};
+
+}  // namespace ricochet
