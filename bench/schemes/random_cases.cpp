@@ -1,8 +1,11 @@
 // Random cases of every kind under every scheme, and what became of their energy: a line of CSV per case and method.
 //
-//   ricochet_random_cases FIRST COUNT [FOLDER]     (the cases of these numbers; FOLDER receives their files)
+//   ricochet_random_cases plane|sphere FIRST COUNT [METHOD [FOLDER]]
 //
-// report.py makes the table of docs/energy.md from it.
+// runs the cases of these numbers on one kind of obstacle; METHOD: only methods whose name contains it; FOLDER receives
+// the cases' files.
+//
+// run.py makes the tables of docs/energy.md from it.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -149,7 +152,19 @@ std::string vector_text(int d, const std::array<double, 3>& of) {
                 : fmt::format("[{:.9g}, {:.9g}, {:.9g}]", of[0], of[1], of[2]);
 }
 
-RandomCase make_case(unsigned seed, const std::filesystem::path& folder) {
+/// A ball under the middle of a box, or a hollow that its lower corners touch first; 0.3 to 100 times as large.
+std::string sphere_text(Random& random, int d, double size, double gap) {
+  const bool hollow = random.chance(0.5);
+  const double radius = size * (hollow ? random.power(0.2, 2.0) : random.power(-0.5, 2.0));
+  std::array<double, 3> centre{0.5 * size, 0.5 * size, 0.5 * size};
+  const double half_diagonal = 0.5 * size * std::sqrt(d - 1.0);
+  centre[static_cast<std::size_t>(d - 1)] =
+      hollow ? std::sqrt(radius * radius - half_diagonal * half_diagonal) - gap : -radius - gap;
+  return fmt::format("type = \"sphere\"\ncentre = {}\nradius = {:.9g}\nside = \"{}\"\n", vector_text(d, centre), radius,
+                     hollow ? "inside" : "outside");
+}
+
+RandomCase make_case(unsigned seed, bool sphere, const std::filesystem::path& folder) {
   Random random(seed);
   RandomCase result;
   const int d = random.chance(0.65) ? 2 : 3;
@@ -198,8 +213,10 @@ RandomCase make_case(unsigned seed, const std::filesystem::path& folder) {
       "{:.9g}\npoisson = {:.9g}\n",
       mesh, degree, density, young, poisson);
   if (damped) text += fmt::format("damping = {{ stiffness = {:.9g} }}\n", crossing * random.power(-1.0, 3.0));
-  text += fmt::format("[obstacle.floor]\ntype = \"plane\"\npoint = {}\nnormal = {}\n", vector_text(d, point),
-                      vector_text(d, normal));
+  text += "[obstacle.floor]\n";
+  text += sphere ? sphere_text(random, d, size, gap)
+                 : fmt::format("type = \"plane\"\npoint = {}\nnormal = {}\n", vector_text(d, point),
+                               vector_text(d, normal));
   if (moving) {
     std::array<double, 3> drift{0.0, 0.0, 0.0};
     for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k)
@@ -282,24 +299,27 @@ Outcome run_case_with(const RandomCase& random_case, const Method& method) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::cerr << "usage: ricochet_random_cases FIRST COUNT [FOLDER]\n";
+  const std::string kind = argc > 1 ? argv[1] : "";
+  if (argc < 4 || (kind != "plane" && kind != "sphere")) {
+    std::cerr << "usage: ricochet_random_cases plane|sphere FIRST COUNT [METHOD [FOLDER]]\n";
     return 1;
   }
   log::set_level(log::Level::off);
-  const auto first = static_cast<unsigned>(std::strtoul(argv[1], nullptr, 10));
-  const auto count = static_cast<unsigned>(std::strtoul(argv[2], nullptr, 10));
-  const bool keeps = argc > 3;
+  const auto first = static_cast<unsigned>(std::strtoul(argv[2], nullptr, 10));
+  const auto count = static_cast<unsigned>(std::strtoul(argv[3], nullptr, 10));
+  const std::string wanted = argc > 4 ? argv[4] : "";
+  const bool keeps = argc > 5;
   const std::filesystem::path folder =
-      keeps ? std::filesystem::path(argv[3])
+      keeps ? std::filesystem::path(argv[5])
             : std::filesystem::temp_directory_path() / fmt::format("ricochet_random_{}", getpid());
   std::filesystem::create_directories(folder);
   std::cout << "case,description,friction,crossings,method,created,lost,penetration,variation,largest,failure\n";
   for (unsigned number = first; number < first + count; ++number) {
-    const RandomCase random_case = make_case(number, folder);
+    const RandomCase random_case = make_case(number, kind == "sphere", folder);
     if (keeps) std::ofstream(folder / fmt::format("case_{}.toml", number)) << random_case.text;
     for (const Method& method : methods) {
       if (!method.takes_friction && random_case.friction > 0.0) continue;
+      if (std::string(method.name).find(wanted) == std::string::npos) continue;
       const Outcome outcome = run_case_with(random_case, method);
       fmt::print("{},\"{}\",{:.3g},{:.3g},\"{}\",{:.3e},{:.3e},{:.3e},{:.4e},{:.4e},\"{}\"\n", number,
                  random_case.description, random_case.friction, random_case.crossings, method.name, outcome.created,

@@ -1,21 +1,22 @@
 #!/usr/bin/env python3
 """Random cases of every kind under every scheme: what becomes of their energy.
 
-    ./dev bench schemes [--cases 2400] [--first 1] [--from FILE.csv…]
+    ./dev bench schemes [--cases 2400] [--first 1]
 
-Runs ricochet_random_cases on all processors and writes the tables of docs/energy.md; --from reads what it has printed
-before. The cases are those of their numbers, on every machine.
+Runs ricochet_random_cases on all processors, on planes and, a quarter as many, on spheres, and writes the tables of
+docs/energy.md. The cases are those of their numbers, on every machine.
 """
 
 import argparse
 import collections
+import contextlib
 import csv
-import io
 import os
 import pathlib
 import statistics
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
@@ -25,18 +26,21 @@ REFERENCE = "reduced-kane end, equivalent"
 BINS = ((0.1, 1), (1, 3), (3, 10), (10, 30), (30, 1000))
 
 
-def measure(program, first, count):
-    """Rows of all cases."""
+def measure(program, kind, first, count):
+    """Rows of all cases on one kind of obstacle."""
     parts = min(os.cpu_count() or 1, count)
     begins = [first + count * k // parts for k in range(parts + 1)]
-    processes = [subprocess.Popen([program, str(a), str(b - a)], stdout=subprocess.PIPE, text=True)
-                 for a, b in zip(begins, begins[1:])]
     rows = []
-    for process in processes:
-        output = process.communicate()[0]
-        if process.returncode != 0:
-            raise SystemExit(f"{program} failed")
-        rows += csv.DictReader(io.StringIO(output))
+    with contextlib.ExitStack() as stack:
+        # Files: a pipe that nobody reads yet stops its process.
+        outputs = [stack.enter_context(tempfile.TemporaryFile("w+", encoding="utf-8")) for _ in range(parts)]
+        processes = [subprocess.Popen([program, kind, str(a), str(b - a)], stdout=output)
+                     for a, b, output in zip(begins, begins[1:], outputs)]
+        for process, output in zip(processes, outputs):
+            if process.wait() != 0:
+                raise SystemExit(f"{program} failed")
+            output.seek(0)
+            rows += csv.DictReader(output)
     return rows
 
 
@@ -63,6 +67,8 @@ def summary(rows):
              "|---|---|---|---|---|---|---|---|---|---|"]
     created_by_step = ["| scheme, mass | " + " | ".join(f"{low:g}–{high:g}" for low, high in BINS) + " |", "|---" * (len(BINS) + 1) + "|"]
     for method, all_rows in by_method.items():
+        if all(is_refusal(row["failure"]) for row in all_rows):
+            continue
         refused = sum(1 for row in all_rows if is_refusal(row["failure"]))
         ended = [row for row in all_rows if not row["failure"]]
         created = [float(row["created"]) for row in ended]
@@ -79,9 +85,8 @@ def summary(rows):
 
 def main():
     parser = argparse.ArgumentParser(prog="./dev bench schemes", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=2400, help="how many (default: %(default)s)")
+    parser.add_argument("--cases", type=int, default=2400, help="how many on planes (default: %(default)s)")
     parser.add_argument("--first", type=int, default=1, help="number of the first (default: %(default)s)")
-    parser.add_argument("--from", dest="files", nargs="+", type=pathlib.Path, help="read what was printed before")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build", help="where the programs are")
     parser.add_argument("--check", action="store_true", help="only look whether these arguments are right")
     arguments = parser.parse_args()
@@ -89,13 +94,11 @@ def main():
         parser.error("there must be a case")
     if arguments.check:
         return 0
-    if arguments.files:
-        rows = [row for file in arguments.files for row in csv.DictReader(file.open(encoding="utf-8"))]
-    else:
-        rows = measure(str(arguments.build / "ricochet_random_cases"), arguments.first, arguments.cases)
-    table, by_step = summary(rows)
-    print(table + "\n\n" + by_step)
-    write_parts(ROOT / "docs" / "energy.md", {"random-cases": table, "random-cases-by-step": by_step})
+    program = str(arguments.build / "ricochet_random_cases")
+    planes, by_step = summary(measure(program, "plane", arguments.first, arguments.cases))
+    spheres, _ = summary(measure(program, "sphere", arguments.first, max(1, arguments.cases // 4)))
+    print("\n\n".join((planes, by_step, spheres)))
+    write_parts(ROOT / "docs" / "energy.md", {"random-cases": planes, "random-cases-by-step": by_step, "random-cases-on-spheres": spheres})
     return 0
 
 
