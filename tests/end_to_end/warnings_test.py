@@ -4,7 +4,7 @@ import json
 import re
 import unittest
 
-from harness import SOURCE, TestCase, block_case, run, settings
+from harness import SOURCE, TestCase, block_case, run, settings, with_more
 
 SUPPORT = '[[support]]\ngroup = "sides"\ncomponents = ["x"]\nvalue = "{}"\n'
 
@@ -40,6 +40,18 @@ class Warnings(TestCase):
                 told = self.warnings_of(text, **{"time.step": step, "mass.type": "equivalent", "time.end": 10 * step})
                 told = [line for line in told if "a compression wave crosses a median cell" in line]
                 self.assertEqual(len(told), 1 if limited and step == 0.1 else 0, (scheme, step, told))
+
+    def test_bodies_that_slide_without_damping(self):
+        """A block of another material than the slope's of the collection, which does not flutter: damping keeps it down."""
+        damped = with_more(SOURCE / "cases" / "incline" / "incline.toml", "")
+        for text, flutters in ((re.sub("damping = .*\n", "", damped), True), (damped, False)):
+            told = self.warnings_of(text, **{
+                "time.step": 1e-4, "time.end": 1.0, "material.0.poisson": 0.3, "contact.0.friction": 0.5,
+                "initial.displacement": "[0,0]", "initial.velocity": "[6.0,0.0]", "output.fields_every": 0})
+            told = [line for line in told if "a body that slides without damping flutters" in line]
+            self.assertEqual(len(told), 1 if flutters else 0, told)
+            if flutters:
+                self.assertRegex(told[0], r"contact was made [0-9]+ times: .* damping = \{ stiffness = 8[0-9.]*e-06 \}")
 
     def test_energy_that_long_steps_take(self):
         ball = SOURCE / "cases" / "ball" / "ball.toml"

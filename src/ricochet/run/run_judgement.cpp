@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ricochet/base/log.hpp"
+#include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/run/rotation_watch.hpp"
 
 namespace ricochet {
@@ -74,6 +75,18 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
         "{} rad; check the units, too",
         rotation, spurious_strain(rotation), rotation_limit));
   }
+}
+
+void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem, const Body& body) {
+  constexpr long many = 30;
+  const long impacts = static_cast<long>(summary.impacts.size()) + summary.impacts_left_out;
+  if (impacts <= many || !problem.contact.has_friction() || problem.has_damping()) return;
+  const std::vector<double> times = cell_crossing_times(body);
+  log::warning(
+      fmt::format("contact was made {} times: a body that slides without damping flutters, and contact forces and "
+                  "stresses are those of its vibrations. If it is to slide, give its [[material]] damping = "
+                  "{{ stiffness = {:.2g} }}, a tenth of the time in which a wave crosses a cell",
+                  impacts, 0.1 * times[times.size() / 2]));
 }
 
 void judge_strain(const RunSummary& summary, const Body& body) {

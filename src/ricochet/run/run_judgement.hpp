@@ -12,6 +12,9 @@ namespace ricochet {
 void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,
                   const State& state);
 
+/// Warns of a body with friction and without damping that loses contact again and again.
+void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem, const Body& body);
+
 /// Warns where the largest von Mises stress goes with an equivalent strain √(2/3 e:e) = σ/(3μ), e the deviatoric
 /// strain, that is not small.
 void judge_strain(const RunSummary& summary, const Body& body);
