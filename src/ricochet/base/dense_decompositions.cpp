@@ -18,6 +18,16 @@ Matrix SmallCholesky::solve_lower(const Matrix& right) const {
   return factor_.matrixL().solve(right);
 }
 
+PivotedLu::PivotedLu(const Matrix& matrix) : factor_(matrix) {}
+
+Vector PivotedLu::solve(const Vector& right) const {
+  return factor_.solve(right);
+}
+
+Matrix PivotedLu::inverse() const {
+  return factor_.inverse();
+}
+
 PivotedCholesky::PivotedCholesky(const Matrix& matrix) : factor_(matrix) {}
 
 Vector PivotedCholesky::solve(const Vector& right) const {

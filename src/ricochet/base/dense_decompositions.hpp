@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <optional>
 
@@ -22,6 +23,17 @@ class SmallCholesky {
 
  private:
   Eigen::LLT<Matrix> factor_;
+};
+
+/// P A = L U, A square. Of a singular matrix, what comes out is not finite or worth nothing.
+class PivotedLu {
+ public:
+  explicit PivotedLu(const Matrix& matrix);
+  [[nodiscard]] Vector solve(const Vector& right) const;
+  [[nodiscard]] Matrix inverse() const;
+
+ private:
+  Eigen::PartialPivLU<Matrix> factor_;
 };
 
 /// P A Pᵀ = L D Lᵀ, A symmetric and semi-definite. Reads the lower triangle.

@@ -40,4 +40,15 @@ void project_motion(const ContactRows& rows, ObstacleMotion& motion) {
   }
 }
 
+void motion_from_obstacles(const ContactRows& rows, const Vector& values, const ObstacleMotion& motion,
+                           Vector& gap_change) {
+  rows.normal_motion(values, gap_change);
+  if (motion.normal.size() > 0) gap_change -= motion.normal;
+}
+
+void slip_on_obstacles(const ContactRows& rows, const Vector& values, const ObstacleMotion& motion, Vector& slip) {
+  rows.tangential_motion(values, slip);
+  if (motion.tangential.size() > 0) slip -= motion.tangential;
+}
+
 }  // namespace ricochet

@@ -56,4 +56,9 @@ struct ObstacleMotion {
 /// Components of a motion of the obstacles along the directions of these rows.
 void project_motion(const ContactRows& rows, ObstacleMotion& motion);
 
+/// G v and B_T v less what the obstacles do: changes of gaps, and slips.
+void motion_from_obstacles(const ContactRows& rows, const Vector& values, const ObstacleMotion& motion,
+                           Vector& gap_change);
+void slip_on_obstacles(const ContactRows& rows, const Vector& values, const ObstacleMotion& motion, Vector& slip);
+
 }  // namespace ricochet

@@ -47,11 +47,8 @@ EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const
 
 void EnergyAccount::find_motion(const ContactRows& rows, const Vector& increment, ObstacleMotion& obstacle) {
   project_motion(rows, obstacle);
-  rows.normal_motion(increment, gap_increment_);
-  if (obstacle.normal.size() > 0) gap_increment_ -= obstacle.normal;
-  if (!problem_.contact.has_friction()) return;
-  rows.tangential_motion(increment, slip_increment_);
-  if (obstacle.tangential.size() > 0) slip_increment_ -= obstacle.tangential;
+  motion_from_obstacles(rows, increment, obstacle, gap_increment_);
+  if (problem_.contact.has_friction()) slip_on_obstacles(rows, increment, obstacle, slip_increment_);
 }
 
 void EnergyAccount::enter_step(const Vector& increment, const State& state) {

@@ -265,7 +265,7 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
   }
   asked_ = true;
   columns_.add_reaction(has_mean ? mean_.mean() : contact_solution_.reaction, y);
-  give(solution);
+  give(stage, solution);
 }
 
 /// False: nothing can touch.
@@ -276,7 +276,7 @@ bool CondensedContact::choose_candidates(const Stage& stage) {
   return !candidates_.points().empty();
 }
 
-void CondensedContact::give(StageSolution& solution) const {
+void CondensedContact::give(const Stage& stage, StageSolution& solution) const {
   const Vector& reaction = contact_solution_.reaction;
   solution.iterations += iterations_;
   const Index tangents = problem_.dimension - 1;
@@ -288,7 +288,7 @@ void CondensedContact::give(StageSolution& solution) const {
     for (Index k = 1; row + k < contact_.row_offset[i + 1]; ++k)
       solution.tangential_reaction[point * tangents + k - 1] = -reaction[row + k] / scale_;
   }
-  if (layer_ && layer_->mean() != ReactionMean::end) give_mean(solution);
+  if (layer_ && layer_->mean() != ReactionMean::end) give_mean(stage, solution);
 }
 
 bool CondensedContact::take_up_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution) {

@@ -77,8 +77,8 @@ class CondensedContact {
   void solve_contact();
   void log_iterations() const;
   [[nodiscard]] std::size_t closed_points() const;
-  void give(StageSolution& solution) const;
-  void give_mean(StageSolution& solution) const;
+  void give(const Stage& stage, StageSolution& solution) const;
+  void give_mean(const Stage& stage, StageSolution& solution) const;
   [[noreturn]] void throw_no_mean() const;
   [[noreturn]] void throw_not_solved() const;
   [[noreturn]] void throw_contradiction(const std::vector<Index>& contradiction) const;

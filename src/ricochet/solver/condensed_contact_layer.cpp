@@ -77,12 +77,13 @@ void CondensedContact::solve_mean(const Stage& stage) {
   solver_->set_warm_start(contact_solution_.reaction);
 }
 
-void CondensedContact::give_mean(StageSolution& solution) const {
+void CondensedContact::give_mean(const Stage& stage, StageSolution& solution) const {
   const Index tangents = problem_.dimension - 1;
   solution.mean_normal_reaction.setZero(solution.normal_reaction.size());
   solution.mean_tangential_reaction = solution.tangential_reaction;
-  solution.path_contact_work = -2.0 * mean_.path_work() / scale_;
-  solution.path_friction_work = 2.0 * mean_.friction_work() / scale_;
+  // Gaps and slips are gap_factor times the motions of the contact problem.
+  solution.path_contact_work = -stage.gap_factor * mean_.path_work() / scale_;
+  solution.path_friction_work = stage.gap_factor * mean_.friction_work() / scale_;
   solution.end_weight = mean_.end_weight();
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
     const Index point = candidates_.points()[i], row = contact_.row_offset[i];

@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
 
 namespace ricochet {
@@ -27,9 +25,9 @@ constexpr double own_compliance = 1e-10;
 
 /// The largest eigenvalue λ of U⁻¹Z; not finite where U is not positive definite.
 double largest_ratio(const Matrix& u, const Matrix& z) {
-  const Eigen::LLT<Matrix> factor(u);
-  const bool definite = factor.info() == Eigen::Success &&
-                        factor.matrixLLT().diagonal().cwiseAbs2().minCoeff() > 1e-13 * u.diagonal().maxCoeff();
+  const SmallCholesky factor(u);
+  const bool definite =
+      factor.positive_definite() && factor.lower().diagonal().cwiseAbs2().minCoeff() > 1e-13 * u.diagonal().maxCoeff();
   if (!definite) return std::numeric_limits<double>::infinity();
   Vector x(u.rows());
   for (Index i = 0; i < x.size(); ++i) x[i] = 1.0 + 0.5 * std::sin(1.0 + 2.4 * static_cast<double>(i));
@@ -201,7 +199,7 @@ bool MeanReaction::newton(ContactProblem& contact, const Vector& offset, const s
       for (const Index i : pressed_) right[i] = 0.0;
       const Vector rest = -residual(pressed_) - on_pressed * Vector(z_ * right)(pressed_);
       const Index count = on_pressed.rows();
-      const Vector solved = (Matrix::Identity(count, count) + on_pressed * motion).partialPivLu().solve(rest);
+      const Vector solved = PivotedLu(Matrix::Identity(count, count) + on_pressed * motion).solve(rest);
       step(pressed_) = solved;
     }
     const Vector weights = z_ * step;

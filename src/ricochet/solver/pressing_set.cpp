@@ -1,9 +1,9 @@
 #include "ricochet/solver/pressing_set.hpp"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
+
+#include "ricochet/base/dense_decompositions.hpp"
 
 namespace ricochet {
 
@@ -23,8 +23,7 @@ void PressingSet::prepare(const Matrix& u) {
 
 bool PressingSet::renew() {
   if (points_.empty()) return true;
-  const Eigen::PartialPivLU<Matrix> factor((*u_)(points_, points_));
-  inverse() = factor.inverse();
+  inverse() = PivotedLu((*u_)(points_, points_)).inverse();
   return inverse().allFinite();
 }
 

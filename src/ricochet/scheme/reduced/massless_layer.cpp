@@ -224,13 +224,11 @@ void MasslessLayer::correct(const SemidiscreteProblem& problem, ReactionMean mea
   const double mu = touches ? solution.end_weight : 0.0;
   corrections_ = {.load_work = load_work_of_mean(problem, mu, work.load, stages)};
   if (touches) {
-    stage.rows->normal_motion(increment, gap_change_);
-    if (state.obstacle_increment.normal.size() > 0) gap_change_ -= state.obstacle_increment.normal;
+    motion_from_obstacles(*stage.rows, increment, state.obstacle_increment, gap_change_);
     const double along = (1.0 - mu) * solution.path_contact_work - mu * solution.normal_reaction.dot(stage.start_gap);
     corrections_.contact_work = along - solution.mean_normal_reaction.dot(gap_change_);
     if (problem.contact.has_friction()) {
-      stage.rows->tangential_motion(increment, slip_change_);
-      if (state.obstacle_increment.tangential.size() > 0) slip_change_ -= state.obstacle_increment.tangential;
+      slip_on_obstacles(*stage.rows, increment, state.obstacle_increment, slip_change_);
       corrections_.friction_work = (1.0 - mu) * solution.path_friction_work -
                                    mu * solution.tangential_reaction.dot(slip_change_) +
                                    solution.mean_tangential_reaction.dot(slip_change_);
