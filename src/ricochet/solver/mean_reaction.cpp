@@ -16,7 +16,7 @@ namespace {
 
 /// Part of the largest reaction that the mean may be off by; and what is left where rounding stops the rounds.
 constexpr double tolerance = 1e-13, rounding_of_rounds = 1e-10;
-constexpr int most_mean_rounds = 60, most_newton_steps = 60, patience_of_mean = 12;
+constexpr int rounds_before_settling = 2, most_mean_rounds = 60, most_newton_steps = 60, patience_of_mean = 12;
 /// Of the power iteration for λ, whose value is a lower bound.
 constexpr int power_steps = 30;
 constexpr double power_reserve = 1.05;
@@ -150,6 +150,7 @@ bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const s
     } else if (round - last_progress > patience) {
       break;
     }
+    if (round == rounds_before_settling) path_.settle();
     difference_ = acceleration.next(asked, difference_);
   }
   reason_ = fmt::format("rounds stopped at {:.2g} of the reactions", least);

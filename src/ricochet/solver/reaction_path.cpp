@@ -30,15 +30,21 @@ void ReactionPath::prepare(const Matrix& u, const std::vector<Index>& row_offset
   begin_step();
 }
 
+void ReactionPath::begin_step() {
+  normal_.prepare(normal_u_, definite_ ? PathMatrix::definite : PathMatrix::semidefinite);
+  most_.assign(normal_rows_.size(), on_cone);
+  settles_ = false;
+}
+
 /// On the cone where the point slips at the end, or did at the start and is open at the end.
 void ReactionPath::choose_friction(const Step& step) {
   share_.assign(normal_rows_.size(), 0.0);
   for (std::size_t i = 0; i < share_.size(); ++i) {
     if (!has_friction(i)) continue;
     const Index row = normal_rows_[i], count = row_offset_[i + 1] - row - 1;
-    share_[i] = 1.0;
+    share_[i] = std::min(1.0, most_[i]);
     const double limit = step.friction[static_cast<Index>(i)];
-    if (!definite_ || limit == 0.0) continue;
+    if (!definite_ || limit == 0.0 || most_[i] < on_cone) continue;
     const Vector& of = step.end[row] > 0.0 ? step.end : step.start;
     const auto tangential = of.segment(row + 1, count);
     if (of[row] <= 0.0 || tangential.norm() < (1.0 - cone_tolerance) * limit * of[row]) continue;
@@ -162,8 +168,10 @@ bool ReactionPath::follow(const Step& step) {
       continue;
     }
     find_works(step);
-    if (dissipates(step, round >= most_share_rounds)) return true;
+    if (dissipates(step, round >= most_share_rounds)) break;
   }
+  if (settles_) most_ = share_;
+  return true;
 }
 
 }  // namespace ricochet

@@ -27,7 +27,10 @@ class ReactionPath {
   void prepare(const Matrix& u, const std::vector<Index>& row_offset, bool definite);
 
   /// Forgets what the steps before have left, so that a run that goes on has the same bits.
-  void begin_step() { normal_.prepare(normal_u_, definite_ ? PathMatrix::definite : PathMatrix::semidefinite); }
+  void begin_step();
+  /// From now on, until the next step, shares get no larger, and points that have left the cone stay off it: the mean
+  /// is then the same function of ρ₁ from round to round, but for finitely many changes.
+  void settle() { settles_ = true; }
 
   struct Step {
     const Vector &q0, &q1, &start, &end;  ///< q₀, q₁, ρ₀, ρ₁, all rows
@@ -63,7 +66,9 @@ class ReactionPath {
   NormalPath normal_, along_;  ///< along_: with friction that goes with the normal reactions
   NormalPath* taken_ = &normal_;
   std::vector<double> share_;  ///< κ per point; on_cone: ρ_T = D r
-  Vector ratio_;               ///< D per tangential row
+  std::vector<double> most_;   ///< the largest that a share may be
+  bool settles_ = false;
+  Vector ratio_;  ///< D per tangential row
   Vector friction_start_, friction_end_, normal_q0_, normal_q1_, work_, mean_;
   Vector reaction_, motion_, reaction_before_, motion_before_, all_;
   double friction_work_ = 0.0;
