@@ -19,8 +19,9 @@ constexpr int most_rounds = 400;
 /// Rounds without progress after which the acceleration forgets what it knows: points touch and leave, and the map has
 /// changed; and after which the step fails.
 constexpr int patience_of_acceleration = 20, patience_of_rounds = 60;
-/// After so many rounds some times the rounding of the gaps may be left: forces that turn with large surfaces keep it.
-constexpr int patient_rounds = 40;
+/// After so many rounds, where the last ones came no nearer, some times the rounding of the gaps may be left: forces
+/// that turn with large surfaces keep it.
+constexpr int patient_rounds = 40, patience_of_rounding = 5;
 constexpr double rounding_left = 100.0;
 
 }  // namespace
@@ -41,7 +42,9 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
       least = error;
       last_progress = round;
     }
-    if (round >= patient_rounds && error <= rounding_left * stage.gap_offset_rounding.maxCoeff()) break;
+    if (round >= patient_rounds && round - last_progress >= patience_of_rounding &&
+        error <= rounding_left * stage.gap_offset_rounding.maxCoeff())
+      break;
     if (round == most_rounds || round - last_progress > patience_of_rounds || !std::isfinite(error)) {
       throw Error(ErrorKind::not_converged,
                   fmt::format("the contact forces on curved obstacles, which turn with the surface, did not settle in "
