@@ -4,13 +4,14 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "ricochet/base/registry.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/stage_solve.hpp"
-#include "ricochet/scheme/state.hpp"
+#include "ricochet/scheme/step_part.hpp"
 
 /// @file Time schemes. To add one: a file with a class and its registration, one line in registry.cpp, and its tests.
 namespace ricochet {
@@ -86,17 +87,21 @@ class Scheme {
   virtual void start(const SemidiscreteProblem&, State&) {}
   /// Takes the state to the end of the step: fills stages, has them solved, and reads their solutions. `increment`
   /// receives the displacement that the step's forces work on: of all stages those of one, in state.forces, are the
-  /// step's (another's must do no work of their own). Changes the state only after the last solve, so that a
-  /// step that fails leaves it as it was.
+  /// step's; what another's do is in step_corrections() or other_parts(). Changes the state only after the last solve,
+  /// so that a step that fails leaves it as it was.
   virtual void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) = 0;
 
   /// Displacement and velocity at which the scheme accounts for energy: the state's where energy_instant() is 0.
   virtual void energy_state(const State& state, Vector& displacement, Vector& velocity) const;
   /// The internal force at that displacement, where the state has it: then the elastic energy needs no product with K.
   [[nodiscard]] virtual const Vector* internal_force(const State&) const { return nullptr; }
+  /// A velocity w such that M (V + w) is the momentum that impulses change, where M V is not: true, and w.
+  [[nodiscard]] virtual bool algorithmic_velocity(const State&, Vector&) const { return false; }
   /// A closed-form term that the scheme conserves together with the energy.
   [[nodiscard]] virtual double algorithmic_energy(const SemidiscreteProblem&, const State&) const { return 0.0; }
   [[nodiscard]] virtual StepCorrections step_corrections(const SemidiscreteProblem&) const { return {}; }
+  /// Forces of the last step that are not in the state.
+  [[nodiscard]] virtual std::span<const StepPart> other_parts() const { return {}; }
 
  private:
   double step_;

@@ -47,25 +47,41 @@ void StepEquations::require_friction_over_step(const SemidiscreteProblem& proble
 void StepEquations::take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
                                 double step, const Vector& motion, double rate, State& state) const {
   take_contact(stage, solution, step, state);
-  if (problem.loads.varies()) problem.loads.varying(time_, state.forces.varying_load);
-  if (problem.has_damping()) state.forces.damping_force.noalias() = problem.damping * motion * rate;
+  take_loads(problem, motion, rate, state.forces);
 }
 
 void StepEquations::take_contact(const Stage& stage, const StageSolution& solution, double step, State& state) const {
-  if (state.forces.rows != stage.rows) state.forces.rows = stage.rows;
-  state.forces.normal_reaction = solution.normal_reaction;
-  state.forces.tangential_reaction = solution.tangential_reaction;
-  state.forces.mean_normal_reaction = solution.mean_normal_reaction;
-  state.forces.mean_tangential_reaction = solution.mean_tangential_reaction;
-  state.forces.end_weight = solution.end_weight;
-  state.forces.support_reaction = solution.support_reaction;
+  take_reactions(stage, solution, step, state.forces, state.obstacle_increment);
   state.contact_status = solution.contact_status;
+}
+
+void StepEquations::take_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                              double step, const Vector& motion, double rate, StepPart& part) const {
+  take_reactions(stage, solution, step, part.forces, part.obstacle_increment);
+  take_loads(problem, motion, rate, part.forces);
+}
+
+void StepEquations::take_loads(const SemidiscreteProblem& problem, const Vector& motion, double rate,
+                               StepForces& forces) const {
+  if (problem.loads.varies()) problem.loads.varying(time_, forces.varying_load);
+  if (problem.has_damping()) forces.damping_force.noalias() = problem.damping * motion * rate;
+}
+
+void StepEquations::take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
+                                   ObstacleMotion& travel) const {
+  if (forces.rows != stage.rows) forces.rows = stage.rows;
+  forces.normal_reaction = solution.normal_reaction;
+  forces.tangential_reaction = solution.tangential_reaction;
+  forces.mean_normal_reaction = solution.mean_normal_reaction;
+  forces.mean_tangential_reaction = solution.mean_tangential_reaction;
+  forces.end_weight = solution.end_weight;
+  forces.support_reaction = solution.support_reaction;
   if (obstacle_velocity_.normal.size() == 0) return;
-  state.obstacle_increment.normal = step * obstacle_velocity_.normal;
-  state.obstacle_increment.tangential = step * obstacle_velocity_.tangential;
+  travel.normal = step * obstacle_velocity_.normal;
+  travel.tangential = step * obstacle_velocity_.tangential;
   if (obstacle_velocity_.in_space.size() == 0) return;
-  state.obstacle_increment.in_space = step * obstacle_velocity_.in_space;
-  project_motion(*stage.rows, state.obstacle_increment);
+  travel.in_space = step * obstacle_velocity_.in_space;
+  project_motion(*stage.rows, travel);
 }
 
 void follow_without_inertia(const SemidiscreteProblem& problem, const Vector& increment, double step, State& state) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ricochet/problem/stage.hpp"
-#include "ricochet/scheme/state.hpp"
+#include "ricochet/scheme/step_part.hpp"
 
 /// @file What every scheme says of its stages, and takes from them: written once.
 namespace ricochet {
@@ -53,8 +53,15 @@ class StepEquations {
                    const Vector& motion, double rate, State& state) const;
   /// The reactions alone.
   void take_contact(const Stage& stage, const StageSolution& solution, double step, State& state) const;
+  /// The same as take_forces of a stage whose forces are not those of the state.
+  void take_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, double step,
+                 const Vector& motion, double rate, StepPart& part) const;
 
  private:
+  void take_loads(const SemidiscreteProblem& problem, const Vector& motion, double rate, StepForces& forces) const;
+  void take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
+                      ObstacleMotion& travel) const;
+
   double time_ = 0.0;
   Vector force_, middle_, rate_;
   ObstacleMotion obstacle_velocity_;

@@ -51,25 +51,32 @@ void EnergyAccount::find_motion(const ContactRows& rows, const Vector& increment
   if (problem_.contact.has_friction()) slip_on_obstacles(rows, increment, obstacle, slip_increment_);
 }
 
+/// `rows`: those that the motion was found along before.
+void EnergyAccount::enter(const StepForces& forces, double weight, const Vector& increment, const ContactRows*& rows) {
+  if (weight == 0.0) return;
+  if (rows != forces.rows.get()) find_motion(*forces.rows, increment, obstacle_);
+  rows = forces.rows.get();
+  const StepWorks step = works_of(forces, increment, obstacle_);
+  works_.contact += weight * step.contact;
+  works_.friction += weight * step.friction;
+  works_.obstacle += weight * step.obstacle;
+  works_.support += weight * step.support;
+  works_.load += weight * step.load;
+  works_.damping += weight * step.damping;
+}
+
 void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   obstacle_ = state.obstacle_increment;
-  const ContactRows* rows = nullptr;
   // Forces work along the rows that they act through: those of the two ends of a step differ where they follow the
   // motion, and with the account of either for the other energy would be missing.
-  const auto enter = [&](const StepForces& forces, double weight) {
-    if (weight == 0.0) return;
-    if (rows != forces.rows.get()) find_motion(*forces.rows, increment, obstacle_);
-    rows = forces.rows.get();
-    const StepWorks step = works_of(forces, increment, obstacle_);
-    works_.contact += weight * step.contact;
-    works_.friction += weight * step.friction;
-    works_.obstacle += weight * step.obstacle;
-    works_.support += weight * step.support;
-    works_.load += weight * step.load;
-    works_.damping += weight * step.damping;
-  };
-  enter(previous_, rule_.previous_weight);
-  enter(state.forces, rule_.current_weight);
+  const ContactRows* rows = nullptr;
+  enter(previous_, rule_.previous_weight, increment, rows);
+  enter(state.forces, rule_.current_weight, increment, rows);
+  for (const StepPart& part : scheme_.other_parts()) {
+    obstacle_ = part.obstacle_increment;
+    rows = nullptr;
+    enter(part.forces, part.weight, part.increment, rows);
+  }
   const StepCorrections corrections = scheme_.step_corrections(problem_);
   works_.contact += corrections.contact_work;
   works_.friction += corrections.friction_work;

@@ -60,6 +60,7 @@ class EnergyAccount {
   };
   [[nodiscard]] double algorithmic(const State& state);
   [[nodiscard]] StepWorks works_of(const StepForces& forces, const Vector& increment, const ObstacleMotion& obstacle);
+  void enter(const StepForces& forces, double weight, const Vector& increment, const ContactRows*& rows);
   /// Motion of the contact points over the step along these rows, and that of the obstacles.
   void find_motion(const ContactRows& rows, const Vector& increment, ObstacleMotion& obstacle);
 

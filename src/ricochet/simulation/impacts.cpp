@@ -86,7 +86,7 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
   for (std::size_t place = 0; place < places_.size(); ++place) open_[place].place = static_cast<double>(place);
   filed_.reserve(most_impacts);
   current_.resize(places_.size());
-  find_forces(state, previous_);
+  find_forces(state.forces, state.obstacle_increment, previous_);
   take_velocity(state, velocity_before_);
 }
 
@@ -121,33 +121,52 @@ void ImpactRecorder::take_velocity(const State& state, Vector& velocity) {
   }
 }
 
-void ImpactRecorder::find_forces(const State& state, std::vector<Force>& forces) const {
+void ImpactRecorder::find_forces(const StepForces& acting, const ObstacleMotion& travel,
+                                 std::vector<Force>& forces) const {
   forces.assign(places_.size(), Force{});
   const int d = problem_.dimension;
-  const ObstacleMotion& travel = state.obstacle_increment;
   for (Index point = 0; point < problem_.contact.size(); ++point) {
-    if (!carries_acting_force(state.forces, point)) continue;
+    if (!carries_acting_force(acting, point)) continue;
     Force& force = forces[static_cast<std::size_t>(place_of_point_[static_cast<std::size_t>(point)])];
-    const double pressing = state.forces.acting_normal()[point];
-    const SpaceVector own = acting_contact_force(state.forces, point);
+    const double pressing = acting.acting_normal()[point];
+    const SpaceVector own = acting_contact_force(acting, point);
     ++force.points;
     if (const double size = own.norm(); force.leading < 0 || size > force.leading_size) {
       force.leading = point;
       force.leading_size = size;
     }
     force.all.head(d) += own;
-    force.normal.head(d) += pressing * state.forces.rows->normal(point);
+    force.normal.head(d) += pressing * acting.rows->normal(point);
     force.pressing += pressing;
     if (travel.normal.size() == 0) continue;
     force.travel += pressing * travel.normal[point];
-    force.sliding.head(d) += pressing * state.forces.rows->along_tangents(point, travel.tangential);
+    force.sliding.head(d) += pressing * acting.rows->along_tangents(point, travel.tangential);
   }
+}
+
+void ImpactRecorder::find_other_forces() {
+  const std::span<const StepPart> parts = scheme_.other_parts();
+  others_.resize(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    others_[i].weight = parts[i].weight;
+    find_forces(parts[i].forces, parts[i].obstacle_increment, others_[i].forces);
+  }
+}
+
+const ImpactRecorder::Force* ImpactRecorder::other_force(std::size_t place) const {
+  const Force* result = nullptr;
+  for (const OtherForces& other : others_) {
+    const Force& force = other.forces[place];
+    if (force.any() && (result == nullptr || force.leading_size > result->leading_size)) result = &force;
+  }
+  return result;
 }
 
 void ImpactRecorder::enter_step(const State& state, double method_energy) {
   if (places_.empty()) return;
   method_energy_ = method_energy;
-  find_forces(state, current_);
+  find_forces(state.forces, state.obstacle_increment, current_);
+  find_other_forces();
   motion_ = nullptr;
   const double instant = state.time + scheme_.acting_instant() * scheme_.step();
   for (std::size_t place = 0; place < places_.size(); ++place) enter_place(place, instant);
@@ -162,7 +181,8 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
   const WorkRule rule = scheme_.work_rule();
   const double h = scheme_.step();
   const bool acts_before = rule.previous_weight != 0.0 && previous.any();
-  const bool touches = acts_before || current.any();
+  const Force* const other = other_force(place);
+  const bool touches = acts_before || current.any() || other != nullptr;
   const bool touched = interval.phase == touching;
   if (touches != touched && motion_ == nullptr) motion_ = &rigid_.motion(velocity_before_);
   const auto motion = [&] { return (*motion_)[static_cast<std::size_t>(places_[place].body)]; };
@@ -182,7 +202,7 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
       interval.intervals += 1.0;
     } else {
       if (interval.phase == apart) file(interval);
-      begin(interval, time, acts_before ? previous : current, motion());
+      begin(interval, time, acts_before ? previous : current.any() ? current : *other, motion());
     }
     interval.phase = touching;
     if (acts_before) {
@@ -197,7 +217,18 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
     add(interval.impulse, h * weight, force->all);
     add(interval.normal_impulse, h * weight, force->normal);
   }
-  if (!current.any()) return;
+  for (const OtherForces& each : others_) {
+    add(interval.impulse, h * each.weight, each.forces[place].all);
+    add(interval.normal_impulse, h * each.weight, each.forces[place].normal);
+  }
+  if (!current.any()) {
+    if (other == nullptr) return;
+    // It acts before the instant of the others.
+    interval.end = instant;
+    interval.contact_time += 0.5 * h;
+    take_largest(interval, *other, instant);
+    return;
+  }
   interval.end = instant + 0.5 * h;
   interval.contact_time += h;
   interval.pressing += current.pressing;

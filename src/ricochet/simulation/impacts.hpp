@@ -86,7 +86,10 @@ class ImpactRecorder {
     [[nodiscard]] bool any() const { return points > 0; }
   };
   void find_places(const std::vector<std::string>& obstacles);
-  void find_forces(const State& state, std::vector<Force>& forces) const;
+  void find_forces(const StepForces& acting, const ObstacleMotion& travel, std::vector<Force>& forces) const;
+  void find_other_forces();
+  /// The largest of the forces that are not in the state; null where none acts.
+  [[nodiscard]] const Force* other_force(std::size_t place) const;
   void take_velocity(const State& state, Vector& velocity);
   void enter_place(std::size_t place, double instant);
   void begin(Interval& interval, double time, const Force& first, const RigidMotionState& motion) const;
@@ -102,6 +105,12 @@ class ImpactRecorder {
   std::vector<Place> places_;
   std::vector<int> place_of_point_;
   std::vector<Force> previous_, current_;
+  /// Of Scheme::other_parts.
+  struct OtherForces {
+    double weight = 0.0;
+    std::vector<Force> forces;
+  };
+  std::vector<OtherForces> others_;
   std::vector<Interval> open_;   ///< per place
   std::vector<Interval> filed_;  ///< that are over
   long left_out_ = 0;

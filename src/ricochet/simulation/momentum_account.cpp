@@ -24,11 +24,19 @@ void add(Resultant& sum, const Eigen::Vector3d& position, const Eigen::Vector3d&
 }  // namespace
 
 MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state)
-    : problem_(problem), step_(scheme.step()), rule_(scheme.work_rule()) {
+    : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()) {
   arm_ = problem.nodes.colwise().norm().maxCoeff();
   constant_load_ = of_nodes(problem.loads.constant());
   positions_ = problem.contact.positions(problem.nodes);
   previous_ = resultant(state.forces);
+  algorithmic_ = algorithmic(state);
+}
+
+/// Of the momentum that is not M V.
+Resultant MomentumAccount::algorithmic(const State& state) {
+  if (!scheme_.algorithmic_velocity(state, velocity_)) return {};
+  problem_.mass.multiply(velocity_, momentum_);
+  return of_nodes(momentum_);
 }
 
 void MomentumAccount::save(Snapshot& snapshot, const std::string& name) const {
@@ -54,7 +62,7 @@ Resultant MomentumAccount::of_nodes(const Vector& force) const {
 
 MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const {
   const Index d = problem_.dimension;
-  Sum sum{constant_load_, constant_load_.force.norm()};
+  Sum sum;
   const auto include = [&sum](const Resultant& part, double sign = 1.0) {
     sum.total.force += sign * part.force;
     sum.total.moment += sign * part.moment;
@@ -80,14 +88,20 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const 
 
 void MomentumAccount::enter_step(const State& state) {
   const auto enter = [this](const Sum& sum, double weight) {
-    impulse_.force += step_ * weight * sum.total.force;
-    impulse_.moment += step_ * weight * sum.total.moment;
-    size_ += step_ * weight * sum.size;
+    impulse_.force += scheme_.step() * weight * sum.total.force;
+    impulse_.moment += scheme_.step() * weight * sum.total.moment;
+    size_ += scheme_.step() * weight * sum.size;
   };
+  enter({constant_load_, constant_load_.force.norm()}, 1.0);
   const Sum current = resultant(state.forces);
   if (rule_.previous_weight != 0.0) enter(previous_, rule_.previous_weight);
   enter(current, rule_.current_weight);
+  for (const StepPart& part : scheme_.other_parts()) enter(resultant(part.forces), part.weight);
   previous_ = current;
+  const Resultant now = algorithmic(state);
+  impulse_.force -= now.force - algorithmic_.force;
+  impulse_.moment -= now.moment - algorithmic_.moment;
+  algorithmic_ = now;
 }
 
 }  // namespace ricochet

@@ -39,15 +39,18 @@ class MomentumAccount {
     double size = 0.0;
   };
   [[nodiscard]] Sum resultant(const StepForces& forces) const;
+  [[nodiscard]] Resultant algorithmic(const State& state);
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;
 
   const SemidiscreteProblem& problem_;
-  double step_;
+  const Scheme& scheme_;
   WorkRule rule_;
   double arm_ = 0.0;
   Resultant constant_load_;
   Points positions_;  ///< of the contact points: Σ_j c_ij X_j
   Sum previous_;
+  Resultant algorithmic_;  ///< of Scheme::algorithmic_velocity
+  Vector velocity_, momentum_;
   Resultant impulse_;
   double size_ = 0.0;
 };
