@@ -1,6 +1,8 @@
 #include "support/thrown_body.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "ricochet/case/names.hpp"
 #include "support/case_run.hpp"
@@ -26,6 +28,18 @@ ThrownBody one_sided_block() {
                     0.2, 1)};
 }
 
+namespace {
+
+/// The critical step of lumped masses is that of the smallest cells.
+std::string step_of(const std::string& time) {
+  const bool is_explicit = time.find("\"cd-lagrange\"") != std::string::npos ||
+                           time.find("\"taylor-flanagan\"") != std::string::npos ||
+                           time.find("\"explicit\"") != std::string::npos;
+  return is_explicit ? "step = 0.0015\n" : "step = 0.01\n";
+}
+
+}  // namespace
+
 std::string thrown_case(const ThrownBody& body, const std::string& mass, const std::string& time,
                         const std::string& contact, const std::string& obstacle) {
   const bool flat = body.dimension == 2;
@@ -37,7 +51,7 @@ std::string thrown_case(const ThrownBody& body, const std::string& mass, const s
          obstacle + "[[contact]]\ngroup = \"contact\"\nobstacle = \"plane\"\n" + contact + "[load]\n" +
          (flat ? "gravity = [0.3, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*y\", \"-0.5+0.2*x\"]\n"
                : "gravity = [0.3, 0.1, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*z\", \"0.1\", \"-0.5+0.2*x\"]\n") +
-         "[mass]\ntype = \"" + mass + "\"\n[time]\n" + time + "step = 0.01\nend = 1.5\n";
+         "[mass]\ntype = \"" + mass + "\"\n[time]\n" + time + step_of(time) + "end = 1.5\n";
 }
 
 std::string dragged_case(const ThrownBody& body, const std::string& mass, const std::string& time,
@@ -55,9 +69,16 @@ std::string time_of(const std::string& scheme) {
 }
 
 std::vector<std::string> masses_of(const std::string& scheme) {
-  if (scheme == "semi-explicit") return {"equivalent-lumped"};
-  if (scheme == "klr-conserving" || scheme == "contact-stabilized" || scheme == "midpoint")
-    return {"consistent", "lumped"};
+  static const std::map<std::string, std::vector<std::string>> known = {
+      {"semi-explicit", {"equivalent-lumped"}},
+      {"cd-lagrange", {"lumped"}},
+      {"taylor-flanagan", {"lumped"}},
+  };
+  if (const auto found = known.find(scheme); found != known.end()) return found->second;
+  static const std::set<std::string> with_inertia = {
+      "midpoint",        "klr-conserving", "contact-stabilized", "kane", "laursen-chawla", "moreau-jean",
+      "paoli-schatzman", "laursen-love",   "penalty-midpoint"};
+  if (with_inertia.contains(scheme)) return {"consistent", "lumped"};
   std::vector<std::string> result = mass_names();
   if (scheme.starts_with("reduced-") || scheme == "mean-reaction")
     std::erase_if(result, [](const std::string& mass) { return !mass.starts_with("equivalent"); });
@@ -65,7 +86,11 @@ std::vector<std::string> masses_of(const std::string& scheme) {
 }
 
 bool takes_friction(const std::string& scheme) {
-  return scheme != "mean-reaction" && scheme != "reduced-midpoint";
+  return scheme != "mean-reaction" && scheme != "reduced-midpoint" && scheme != "penalty-midpoint";
+}
+
+bool takes_stiffness_damping(const std::string& scheme) {
+  return scheme != "mean-reaction" && scheme != "reduced-midpoint" && scheme != "semi-explicit";
 }
 
 bool Discretization::is_possible() const {

@@ -37,6 +37,8 @@ std::vector<std::string> masses_of(const std::string& scheme);
 
 /// Those that do not refuse it.
 bool takes_friction(const std::string& scheme);
+/// Also at contact nodes.
+bool takes_stiffness_damping(const std::string& scheme);
 
 /// Every scheme, mass and multiplier space that is registered, whether they go together or not.
 struct Discretization {

@@ -7,6 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "support/case_run.hpp"
+#include "support/energy_identity.hpp"
 #include "support/thrown_body.hpp"
 
 // The discrete energy identities of each scheme: exact, for one step, on any mesh, frictionless. Energies and gaps are
@@ -17,31 +18,13 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::expect_identity;
 using test_support::masses_of;
 using test_support::StepEnd;
 using test_support::thrown_bodies;
 using test_support::thrown_case;
 using test_support::ThrownBody;
 using test_support::time_of;
-
-/// Runs a case and compares the energy change of every step with `identity(before, after)`.
-void expect_identity(CaseRun& run, const std::string& name,
-                     const std::function<double(const StepEnd&, const StepEnd&)>& identity) {
-  StepEnd before(run);
-  double worst = 0.0;
-  double touched = 0.0;
-  run.run(
-      [&] {
-        const StepEnd after(run);
-        const double size = std::max(before.size_of_energy_terms, after.size_of_energy_terms);
-        worst = std::max(worst, std::abs(after.energy - before.energy - identity(before, after)) / size);
-        touched = std::max(touched, after.normal.maxCoeff());
-        before = after;
-      },
-      false);
-  EXPECT_LT(worst, 20.0 * std::numeric_limits<double>::epsilon()) << name;
-  EXPECT_GT(touched, 0.0) << name << ": the body never touched the obstacle";
-}
 
 TEST(EnergyIdentity, MidpointChangesByMinusTwiceForceTimesFirstGap) {
   for (const ThrownBody& body : thrown_bodies()) {
@@ -199,11 +182,28 @@ TEST(EnergyIdentity, SchemesRefuseTheMassesThatTheyDoNotTake) {
   }
 }
 
-/// Every scheme there is has an identity in this file.
+/// Every scheme there is has an identity in this file or in published_schemes_test.cpp.
 TEST(EnergyIdentity, IsKnownOfEveryScheme) {
-  EXPECT_EQ(scheme_names(),
-            (std::vector<std::string>{"midpoint", "klr-conserving", "newmark", "semi-explicit", "contact-stabilized",
-                                      "reduced-kane", "mean-reaction", "reduced-midpoint"}));
+  EXPECT_EQ(scheme_names(), (std::vector<std::string>{"midpoint",
+                                                      "klr-conserving",
+                                                      "newmark",
+                                                      "semi-explicit",
+                                                      "contact-stabilized",
+                                                      "reduced-kane",
+                                                      "mean-reaction",
+                                                      "reduced-midpoint",
+                                                      "kane",
+                                                      "generalized-alpha",
+                                                      "hht-alpha",
+                                                      "wbz-alpha",
+                                                      "bathe",
+                                                      "laursen-chawla",
+                                                      "moreau-jean",
+                                                      "paoli-schatzman",
+                                                      "cd-lagrange",
+                                                      "taylor-flanagan",
+                                                      "laursen-love",
+                                                      "penalty-midpoint"}));
 }
 
 TEST(EnergyIdentity, AccountClosesWithSupportsDampingAndLoadsThatVary) {
@@ -216,14 +216,11 @@ TEST(EnergyIdentity, AccountClosesWithSupportsDampingAndLoadsThatVary) {
   schemes.emplace_back("newmark", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n");
   for (const auto& [name, scheme] : schemes) {
     for (const std::string& mass : masses_of(name)) {
-      const bool is_explicit = name == "semi-explicit";
-      // Of the reduced schemes only this one takes damping at contact nodes.
-      const bool takes_damping = name != "mean-reaction" && name != "reduced-midpoint" && !is_explicit;
       CaseRun run(
           "[mesh]\nfile = \"" + mesh +
           "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 50.0\npoisson = 0.3\ndamping = { mass = 0.1, "
           "stiffness = " +
-          std::string(takes_damping ? "0.002" : "0.0") +
+          std::string(test_support::takes_stiffness_damping(name) ? "0.002" : "0.0") +
           " }\n"
           "[obstacle.floor]\ntype = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
           "[[contact]]\ngroup = \"contact\"\nobstacle = \"floor\"\n"

@@ -1,5 +1,5 @@
-#include "ricochet/base/error.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/requirements.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -31,10 +31,7 @@ class ContactStabilized final : public Scheme {
   }
 
   void analyse(const SemidiscreteProblem& problem) override {
-    if (!problem.has_singular_mass()) return;
-    throw Error(ErrorKind::invalid_input,
-                "scheme \"contact-stabilized\" needs inertia on the contact nodes, in whose norm it projects: set "
-                "mass.type = \"consistent\" (or \"lumped\"), or use scheme \"reduced-kane\" with this mass");
+    require_contact_inertia(problem, "contact-stabilized", "it projects in their norm");
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {

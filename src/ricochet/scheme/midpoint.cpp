@@ -1,5 +1,5 @@
-#include "ricochet/base/error.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/requirements.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -24,10 +24,7 @@ class Midpoint final : public Scheme {
   [[nodiscard]] double force_instant() const override { return -0.5; }
 
   void analyse(const SemidiscreteProblem& problem) override {
-    if (!problem.has_singular_mass()) return;
-    throw Error(ErrorKind::invalid_input,
-                "scheme \"midpoint\" needs inertia on the contact nodes: without it they flip from step to "
-                "step; use scheme \"reduced-midpoint\" or \"reduced-kane\", or set mass.type = \"consistent\"");
+    require_contact_inertia(problem, "midpoint", "without it they flip from step to step");
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {

@@ -13,7 +13,19 @@ namespace ricochet {
   scheme(contact_stabilized_scheme) \
   scheme(reduced_kane_scheme)       \
   scheme(mean_reaction_scheme)      \
-  scheme(reduced_midpoint_scheme)
+  scheme(reduced_midpoint_scheme)   \
+  scheme(kane_scheme)               \
+  scheme(generalized_alpha_scheme)  \
+  scheme(hht_alpha_scheme)          \
+  scheme(wbz_alpha_scheme)          \
+  scheme(bathe_scheme)              \
+  scheme(laursen_chawla_scheme)     \
+  scheme(moreau_jean_scheme)        \
+  scheme(paoli_schatzman_scheme)    \
+  scheme(cd_lagrange_scheme)        \
+  scheme(taylor_flanagan_scheme)    \
+  scheme(laursen_love_scheme)       \
+  scheme(penalty_midpoint_scheme)
 // clang-format on
 
 RICOCHET_DEFINE_REGISTRY(scheme_registry, SchemeConstructor, "scheme", RICOCHET_SCHEMES)

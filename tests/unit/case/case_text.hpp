@@ -10,7 +10,10 @@
 #include <vector>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/case/keys_table.hpp"
 #include "ricochet/case/read_case.hpp"
+#include "ricochet/scheme/scheme.hpp"
 
 /// @file Case files made for one test.
 namespace ricochet::case_test {
@@ -67,6 +70,17 @@ inline std::string problems_of(const std::string& document, const std::vector<st
     for (std::size_t at = message.find(name); at != std::string::npos; at = message.find(name))
       message.erase(at, name.size());
     return message;
+  }
+  return "";
+}
+
+/// How a message lists the schemes there are, and the keys of [time].
+inline std::string all_schemes() {
+  return join_names(scheme_names(), " or ");
+}
+inline std::string keys_of_time() {
+  for (const Section& section : case_sections()) {
+    if (section.name == "time") return join_names(names_of(section.keys));
   }
   return "";
 }

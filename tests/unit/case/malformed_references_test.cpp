@@ -172,10 +172,10 @@ TEST(MalformedCase, References) {
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"time.shceme\" = \"midpoint\" }",
        "15:10: \"when\" names \"time.shceme\": unknown key \"shceme\" in [time]; did you mean \"scheme\"?"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"time.scheme\" = \"midpont\" }",
-       "15:26: \"time.scheme\" must be one of \"midpoint\", \"klr-conserving\", \"newmark\", \"semi-explicit\", "
-       "\"contact-stabilized\", \"reduced-kane\", \"mean-reaction\" or \"reduced-midpoint\"; "
-       "found the text "
-       "\"midpont\"; did you mean \"midpoint\"?"},
+       "15:26: \"time.scheme\" must be one of " + all_schemes() +
+           "; "
+           "found the text "
+           "\"midpont\"; did you mean \"midpoint\"?"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"contact.0.friction\" = 0 }",
        "15:10: \"when\" names \"contact.0.friction\": there is no entry 0 of [[contact]]: the case has none"},
       {0, "[[expect]]\nquantity = \"history.time[-1]\"\nminimum = 3.0\nwhen = { \"contact.friction\" = 0 }",

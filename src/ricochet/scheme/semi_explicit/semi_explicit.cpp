@@ -1,4 +1,5 @@
 #include "ricochet/scheme/critical_step.hpp"
+#include "ricochet/scheme/requirements.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/semi_explicit/contact_equilibrium.hpp"
 #include "ricochet/scheme/semi_explicit/explicit_motion.hpp"
@@ -42,9 +43,9 @@ class SemiExplicit final : public Scheme {
   }
 
   void analyse(const SemidiscreteProblem& problem) override {
-    require_semi_explicit(problem);
+    require_semi_explicit(problem, "semi-explicit");
     critical_step_ = central_difference_limit(problem);
-    if (!at_any_step_) check_critical_step(step(), critical_step_);
+    if (!at_any_step_) check_critical_step("semi-explicit", step(), critical_step_);
     motion_.analyse(problem, step());
     contact_.analyse(problem);
   }

@@ -1,0 +1,95 @@
+#include "ricochet/scheme/alpha/alpha_scheme.hpp"
+
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+AlphaWeights::AlphaWeights(double step, double inertia_weight, double force_weight)
+    : inertia(inertia_weight),
+      force(force_weight),
+      gamma(0.5 + force_weight - inertia_weight),
+      beta(0.25 * (0.5 + gamma) * (0.5 + gamma)),
+      alpha((1.0 - inertia_weight) / ((1.0 - force_weight) * beta * step * step)),
+      energy_factor(0.5 * step * step * (beta - 0.5 * gamma)) {}
+
+AlphaWeights generalized_alpha_weights(double step, double spectral_radius) {
+  return {step, (2.0 * spectral_radius - 1.0) / (spectral_radius + 1.0), spectral_radius / (spectral_radius + 1.0)};
+}
+
+void AlphaScheme::start(const SemidiscreteProblem&, State& state) {
+  state.memory[algorithmic_acceleration] = state.acceleration;
+}
+
+void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
+  const double h = step(), end = state.time + h;
+  Vector& before = state.memory.at(algorithmic_acceleration);
+  shift_ = (weights_.inertia * before - weights_.force * state.acceleration) /
+           ((1.0 - weights_.force) * weights_.alpha);  // c/α
+  predicted_ = h * state.velocity + (h * h * (0.5 - weights_.beta)) * before - shift_;
+  base_ = state.displacement + predicted_;
+  Stage& stage = stages.stage(0);
+  if (problem.has_damping()) find_damping_velocity(problem, state, before);
+  equations_.balance(problem, end, base_, velocity_, stage);
+  const auto to_end = [&](Index dof, double value) { return value - base_[dof]; };
+  equations_.prescribe(problem, end, to_end, stage);
+  require_no_penetration(problem, base_, end, stage);
+  equations_.require_friction_over_step(problem, state, predicted_, h, stage);
+
+  const StageSolution& solution = stages.solve(0);
+  increment = predicted_ + solution.increment;
+  change_ = (solution.increment - shift_) / (weights_.beta * h * h);  // A₁
+  for (const Index dof : problem.massless_dofs) change_[dof] = 0.0;
+  state.displacement += increment;
+  state.velocity += h * ((1.0 - weights_.gamma) * before + weights_.gamma * change_);
+  change_ -= before;
+  before += change_;
+  dissipate(problem, increment);
+  state.acceleration = weights_.alpha * solution.increment;
+  follow_without_inertia(problem, increment, h, state);
+  if (problem.has_damping()) velocity_ += damping_factor(problem) * solution.increment;
+  equations_.take_forces(problem, stage, solution, h, velocity_, 1.0, state);
+}
+
+/// The velocity that damping acts on, at δ = 0.
+void AlphaScheme::find_damping_velocity(const SemidiscreteProblem& problem, const State& state, const Vector& before) {
+  if (problem.has_singular_mass()) {
+    velocity_ = predicted_ / step();
+  } else {
+    velocity_ = state.velocity + (step() * (1.0 - weights_.gamma)) * before -
+                (weights_.gamma / (weights_.beta * step())) * shift_;
+  }
+}
+
+void AlphaScheme::dissipate(const SemidiscreteProblem& problem, const Vector& increment) {
+  problem.mass.multiply(change_, force_);
+  dissipation_ = weights_.energy_factor * (2.0 * weights_.gamma - 1.0) * change_.dot(force_);
+  if (weights_.force == 0.5) return;
+  dissipation_ += (0.5 - weights_.force) * increment.dot(force_);
+  problem.internal_force->evaluate(increment, force_);  // linear: K ΔU
+  dissipation_ += (0.5 - weights_.force) * increment.dot(force_);
+}
+
+double AlphaScheme::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {
+  return weights_.energy_factor == 0.0
+             ? 0.0
+             : weights_.energy_factor * problem.mass.form(state.memory.at(algorithmic_acceleration));
+}
+
+bool AlphaScheme::algorithmic_velocity(const State& state, Vector& velocity) const {
+  if (weights_.force == 0.5) return false;
+  velocity = ((0.5 - weights_.force) * step()) * state.memory.at(algorithmic_acceleration);
+  return true;
+}
+
+Key spectral_radius_key(double least) {
+  return {.name = "spectral_radius",
+          .type = KeyType::number,
+          .unit = "1",
+          .standard = "0.8",
+          .range = {.at_least = least, .at_most = 1.0},
+          .doc =
+              "What a step leaves of vibrations much faster than it: 1 damps none; at least 1/2 for hht-alpha, 0 "
+              "for the others."};
+}
+
+}  // namespace ricochet

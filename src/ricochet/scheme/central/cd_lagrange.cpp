@@ -1,0 +1,47 @@
+#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/central/central_scheme.hpp"
+#include "ricochet/scheme/restitution_key.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// CD-Lagrange, central differences with impulses (F.-E. Fekak, M. Brun, A. Gravouil, B. Depale, Comput. Mech. 60
+/// (2017) 547–567): κ = 0, and with the velocities V^{n±½} = ±(U^{n±1}−Uⁿ)/h, relative to the obstacle,
+///   gⁿ > 0 ⇒ r_N = 0,   gⁿ ≤ 0 ⇒ 0 ≤ r_N ⟂ G V^{n+½} + e G V^{n−½} ≥ 0,   friction on the slip rate B_T V^{n+½}.
+/// h r are impulses; V^{n+½} = V^{n−½} + δ/h. Contact changes the energy by ½h r_N·G(V^{n+½}+V^{n−½}), which for e = 0
+/// is what an impact takes from the contact nodes, ½(1−e²)m|G V|² at each, as long as they approach; of a point that
+/// touches and leaves it can have either sign. Points penetrate by what they move in a step.
+class CdLagrange final : public CentralScheme {
+ public:
+  CdLagrange(double step, double restitution)
+      : CentralScheme("cd-lagrange", step, 0.0, ""), restitution_(restitution) {}
+
+ private:
+  void require_contact(const SemidiscreteProblem& problem, const Instant& instant, Stage& stage) override {
+    const double h = step();
+    impact_ = equations().obstacle_velocity();
+    impact_.normal *= 1.0 + restitution_;
+    impact_.in_space *= 1.0 + restitution_;
+    approach_ = (1.0 + restitution_) * instant.velocity;
+    require_no_approach(problem, instant.now, instant.time, approach_, impact_, h, stage);
+    stage.gap_factor = 1.0 / h;
+    equations().require_friction(problem, instant.velocity, 1.0 / h, stage);
+    if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
+  }
+
+  double restitution_;
+  ObstacleMotion impact_;
+  Vector approach_;
+};
+
+}  // namespace
+
+SchemeRegistration cd_lagrange_scheme() {
+  const auto make = [](double step, const Parameters& parameters) {
+    return std::make_unique<CdLagrange>(step, parameters.number("restitution"));
+  };
+  return {"cd-lagrange", make, {restitution_key()}};
+}
+
+}  // namespace ricochet

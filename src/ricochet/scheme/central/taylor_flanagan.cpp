@@ -1,0 +1,36 @@
+#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/central/central_scheme.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Central differences with forces that stop a node at the obstacle: κ = 0 and
+///   0 ≤ r_N ⟂ g(Uⁿ⁺¹) ≥ 0,   friction on the slip rate B_T (Uⁿ⁺¹−Uⁿ)/h.
+/// This is the position form of the contact of L. M. Taylor and D. P. Flanagan's PRONTO 3D (Sandia report SAND87-1912,
+/// 1989), r = −m g*/h² with the gap g* that a step without contact ends at, written for every mass matrix; N. J.
+/// Carpenter, R. L. Taylor and M. G. Katona's forward increment multipliers (Int. J. Numer. Meth. Engng. 32 (1991)
+/// 103–128) are the same. Its normal part is that of Paoli and Schatzman with e = 0: contact changes the energy by
+/// −½ r_N·g(Uⁿ⁻¹) ≤ 0. (Others mean r = −m G V*/h by this name, which holds a node where it was, apart from the
+/// obstacle.)
+class TaylorFlanagan final : public CentralScheme {
+ public:
+  explicit TaylorFlanagan(double step) : CentralScheme("taylor-flanagan", step, 0.0, "") {}
+
+ private:
+  void require_contact(const SemidiscreteProblem& problem, const Instant& instant, Stage& stage) override {
+    next_ = instant.now + instant.ahead;
+    require_no_penetration(problem, next_, instant.time + step(), stage);
+    equations().require_friction(problem, instant.velocity, 1.0 / step(), stage);
+  }
+
+  Vector next_;
+};
+
+}  // namespace
+
+SchemeRegistration taylor_flanagan_scheme() {
+  return {"taylor-flanagan", [](double step, const Parameters&) { return std::make_unique<TaylorFlanagan>(step); }};
+}
+
+}  // namespace ricochet

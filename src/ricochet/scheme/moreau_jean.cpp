@@ -1,0 +1,111 @@
+#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/requirements.hpp"
+#include "ricochet/scheme/restitution_key.hpp"
+#include "ricochet/scheme/scheme.hpp"
+#include "ricochet/scheme/step_equations.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// The θ scheme of M. Jean and J. J. Moreau with contact on velocities and Newton's restitution e (M. Jean, Comput.
+/// Methods Appl. Mech. Engrg. 177 (1999) 235–257):
+///   M (V₁−V₀)/h + C V_θ + K U_θ = L_θ + Gᵀ r_N − B_Tᵀ r_T,   V_θ = (1−θ)V₀+θV₁ = (U₁−U₀)/h,   U_θ = (1−θ)U₀+θU₁,
+///   g(U₀ + (h/2)V₀) > 0 ⇒ r_N = 0,   else 0 ≤ r_N ⟂ G V₁ + e G V₀ ≥ 0,
+/// friction on the slip rate B_T V₁, or on B_T V_θ (V. Acary, Z. Angew. Math. Mech. 96 (2016) 585–603);
+/// velocities are relative to the obstacle. h r are impulses. Unknown x = U₁, base U₀ + hV₀, so that δ = θh(V₁−V₀).
+/// J changes in a step by h (r_N·G V_θ − r_T·B_T V_θ) − (θ−½)(|ΔV|²_M + |ΔU|²_K). Of these friction has a sign where it
+/// acts on V_θ; contact's is (1−θ(1+e)) h r_N·G V₀, and points that leave have G V₀ > 0: it can create energy.
+/// Positions are never corrected: points stay where an impact caught them, by what they move in a step too deep.
+class MoreauJean final : public Scheme {
+ public:
+  MoreauJean(double step, double theta, double restitution, bool slip_at_end)
+      : Scheme(step),
+        theta_(theta),
+        restitution_(restitution),
+        slip_factor_(1.0 / (slip_at_end ? theta * step : step)) {}
+
+  [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
+    const double h = step();
+    return {{1.0 / (theta_ * h * h), theta_, 1.0 / h}};
+  }
+  [[nodiscard]] double force_instant() const override { return theta_ - 1.0; }
+  /// V₁ = V₀ + (ΔU/h − V₀)/θ.
+  [[nodiscard]] JumpResponse jump_response() const override {
+    return theta_ > 0.5 ? JumpResponse::fades : JumpResponse::alternates;
+  }
+  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
+    return {.numerical_dissipation = dissipation_};
+  }
+
+  void analyse(const SemidiscreteProblem& problem) override {
+    require_contact_inertia(problem, "moreau-jean", "its impulses change their velocities");
+  }
+
+  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
+    const double h = step(), instant = state.time + theta_ * h;
+    Stage& stage = stages.stage(0);
+    place_ = state.displacement + (theta_ * h) * state.velocity;
+    equations_.balance(problem, instant, place_, state.velocity, stage);
+    const auto to_end = [&](Index dof, double end) { return end - state.displacement[dof] - h * state.velocity[dof]; };
+    equations_.prescribe(problem, state.time + h, to_end, stage);
+    place_ = state.displacement + (0.5 * h) * state.velocity;
+    equations_.observe_obstacles(problem, state.time + 0.5 * h, place_);
+    impact_ = equations_.obstacle_velocity();
+    impact_.normal *= 1.0 + restitution_;
+    impact_.in_space *= 1.0 + restitution_;
+    rate_ = (1.0 + restitution_) * state.velocity;
+    require_no_approach(problem, place_, state.time + 0.5 * h, rate_, impact_, h, stage);
+    stage.gap_factor = 1.0 / (theta_ * h);
+    equations_.require_friction(problem, state.velocity, slip_factor_, stage);
+    if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
+
+    const StageSolution& solution = stages.solve(0);
+    increment = h * state.velocity + solution.increment;
+    rate_ = solution.increment / (theta_ * h);  // V₁ − V₀
+    dissipate(problem, increment);
+    state.displacement += increment;
+    state.velocity += rate_;
+    state.acceleration = rate_ / h;
+    equations_.take_forces(problem, stage, solution, h, increment, 1.0 / h, state);
+  }
+
+ private:
+  void dissipate(const SemidiscreteProblem& problem, const Vector& increment) {
+    dissipation_ = 0.0;
+    if (theta_ == 0.5) return;
+    problem.internal_force->evaluate(increment, place_);  // linear: K ΔU
+    dissipation_ = (theta_ - 0.5) * (problem.mass.form(rate_) + increment.dot(place_));
+  }
+
+  double theta_, restitution_, slip_factor_;
+  double dissipation_ = 0.0;
+  ObstacleMotion impact_;
+  Vector place_, rate_;
+  StepEquations equations_;
+};
+
+}  // namespace
+
+SchemeRegistration moreau_jean_scheme() {
+  const auto make = [](double step, const Parameters& parameters) {
+    return std::make_unique<MoreauJean>(step, parameters.number("theta"), parameters.number("restitution"),
+                                        parameters.text("slip") == "end");
+  };
+  return {"moreau-jean",
+          make,
+          {{.name = "theta",
+            .type = KeyType::number,
+            .unit = "1",
+            .standard = "0.5",
+            .range = {.at_least = 0.5, .at_most = 1.0},
+            .doc = "Where in the step forces are taken: 1/2 is the midpoint, more damps."},
+           restitution_key(),
+           {.name = "slip",
+            .type = KeyType::choice,
+            .standard = "end",
+            .choices = {"end", "theta"},
+            .doc = "Of which instant Coulomb's law takes the slip rate; at \"theta\" friction never creates energy."}}};
+}
+
+}  // namespace ricochet

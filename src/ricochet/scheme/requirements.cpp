@@ -1,0 +1,50 @@
+#include "ricochet/scheme/requirements.hpp"
+
+#include <fmt/format.h>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Of the critical step: above it changes of contact leave high frequencies of large amplitude.
+constexpr double safe_fraction = 0.9;
+
+}  // namespace
+
+void require_contact_inertia(const SemidiscreteProblem& problem, const std::string& scheme, const std::string& why) {
+  if (!problem.has_singular_mass()) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("scheme \"{}\" needs inertia on the contact nodes: {}; set mass.type = \"consistent\" (or "
+                          "\"lumped\"), or use scheme \"reduced-kane\" with this mass",
+                          scheme, why));
+}
+
+void require_explicit(const SemidiscreteProblem& problem, const std::string& scheme) {
+  require_linear(*problem.internal_force, "scheme \"" + scheme + "\"");
+  if (!problem.has_singular_mass() && problem.mass.is_diagonal()) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("scheme \"{}\" is explicit and needs a diagonal mass with inertia at every node; set "
+                          "mass.type = \"lumped\", or use scheme \"reduced-kane\", which takes the equivalent mass",
+                          scheme));
+}
+
+void check_critical_step(const std::string& scheme, double step, double critical_step) {
+  const double fraction = step / critical_step;
+  if (fraction >= 1.0) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("scheme \"{}\": time.step = {:.6g} is {:.3g} times the critical step, {:.6g}: the motion "
+                            "would grow without bound; set time.step = {:.3g} or less, or use scheme "
+                            "\"reduced-kane\", which is stable for any step",
+                            scheme, step, fraction, critical_step, safe_fraction * critical_step));
+  }
+  if (fraction <= safe_fraction) return;
+  log::warning(
+      fmt::format("scheme \"{}\": time.step = {:.6g} is {:.3g} of the critical step, {:.6g}; near to it changes of "
+                  "contact leave high frequencies of large amplitude, take {:.3g} or less",
+                  scheme, step, fraction, critical_step, safe_fraction * critical_step));
+}
+
+}  // namespace ricochet

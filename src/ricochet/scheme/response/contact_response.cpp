@@ -1,0 +1,46 @@
+#include "ricochet/scheme/response/contact_response.hpp"
+
+namespace ricochet {
+
+const StageSolution& solve_with_forces(const SemidiscreteProblem& problem, const Vector& normal, std::size_t number,
+                                       StageSolve& stages) {
+  Stage& stage = stages.stage(number);
+  stage.rows->add_force(normal, Vector(), stage.right_hand_side);
+  stage.motion.reset();
+  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
+  stage.gap_offset.setZero(problem.contact.size());
+  stage.gap_offset_rounding.setZero(problem.contact.size());
+  stage.gap_factor = 1.0;
+  stage.slip_offset.resize(0);
+  return stages.solve(number);
+}
+
+const Vector& ContactResponse::column(const SemidiscreteProblem& problem, const ContactRows& rows, Index point,
+                                      StageSolve& stages) {
+  Vector& column = columns_[static_cast<std::size_t>(point)];
+  if (column.size() > 0) return column;
+  Stage& stage = stages.stage(number_);
+  stage.right_hand_side.setZero(problem.dof_count());
+  stage.prescribed.setZero(problem.supports.size());
+  unit_.setZero(problem.contact.size());
+  unit_[point] = 1.0;
+  rows.normal_motion(solve_with_forces(problem, unit_, number_, stages).increment, column);
+  return column;
+}
+
+const Matrix& ContactResponse::among(const SemidiscreteProblem& problem, const ContactRows& rows,
+                                     const std::vector<Index>& points, StageSolve& stages) {
+  if (revision_ != rows.revision || columns_.empty()) {
+    columns_.assign(static_cast<std::size_t>(problem.contact.size()), Vector());
+    revision_ = rows.revision;
+  }
+  const auto count = static_cast<Index>(points.size());
+  among_.resize(count, count);
+  for (Index j = 0; j < count; ++j) {
+    const Vector& whole = column(problem, rows, points[static_cast<std::size_t>(j)], stages);
+    for (Index i = 0; i < count; ++i) among_(i, j) = whole[points[static_cast<std::size_t>(i)]];
+  }
+  return among_;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/dense_decompositions.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/scheme/kane.hpp"
+#include "ricochet/scheme/response/contact_response.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Finds p > 0 with p_i (a_i + ½(Wp)_i) = c_i, the only minimum of a·p + ¼pᵀWp − Σc_i ln p_i, which is convex: Newton's
+/// method in ln p, from the solution that a diagonal W has.
+Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector& lost) {
+  const Vector diagonal = w.diagonal();
+  Vector p = ((approach.array().square() + 2.0 * diagonal.array() * lost.array()).sqrt() - approach.array()) /
+             diagonal.array();
+  const double scale = lost.lpNorm<Eigen::Infinity>();
+  const auto residual = [&](const Vector& at) { return Vector(at.cwiseProduct(approach + 0.5 * (w * at)) - lost); };
+  const auto energy = [&](const Vector& at) {
+    return approach.dot(at) + 0.25 * at.dot(w * at) - lost.dot(Vector(at.array().log()));
+  };
+  constexpr int most_iterations = 100;
+  for (int k = 0; k < most_iterations; ++k) {
+    const Vector error = residual(p);
+    if (error.lpNorm<Eigen::Infinity>() <= 1e-14 * scale) return p;
+    // d error / d ln p, which is positive definite: diag(c) + ½ diag(p) W diag(p) where error = 0.
+    Matrix tangent = 0.5 * p.asDiagonal() * w * p.asDiagonal();
+    tangent.diagonal() += (error + lost).cwiseMax(lost);
+    Vector change = -SmallCholesky(tangent).solve(error);
+    change *= std::min(1.0, 3.0 / change.lpNorm<Eigen::Infinity>());
+    const double before = energy(p);
+    Vector next = p.cwiseProduct(Vector(change.array().exp()));
+    for (int halving = 0; halving < 30 && energy(next) > before; ++halving) {
+      change *= 0.5;
+      next = p.cwiseProduct(Vector(change.array().exp()));
+    }
+    if (next == p) return p;  // to rounding
+    p = next;
+  }
+  throw Error(ErrorKind::not_converged, "the impulses that give back the energy of contact were not found");
+}
+
+/// The velocity update of T. A. Laursen and G. R. Love (Int. J. Numer. Meth. Engng. 53 (2002) 245–274) on Kane's
+/// scheme: positions are Kane's, and impulses p ≥ 0 of the obstacle, at the points that pressed at the end of a step
+/// they began apart from it, give back what their forces took,
+///   V₁ = V₁* + M⁻¹Gᵀp,   p_i [(G V₁*)_i + ½(W p)_i] = r_N,i g₀,i,   W = G M⁻¹Gᵀ   (velocities relative to the
+///   obstacle).
+/// J changes in a step by friction, loads, supports and damping alone, without penetration. Each touch is an elastic
+/// impact of the contact nodes, which bounce off again: forces rattle.
+class LaursenLove final : public Kane {
+ public:
+  explicit LaursenLove(double step) : Kane(step, "laursen-love") {}
+
+  [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
+    std::vector<OperatorCoefficients> result = Kane::operators(problem);
+    result.push_back({1.0, 0.0, 0.0});
+    return result;
+  }
+  [[nodiscard]] std::span<const StepPart> other_parts() const override { return {&impulse_, acts_ ? 1U : 0U}; }
+
+  void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
+    Stage& stage = balance(problem, state, stages);
+    require_contact(problem, state, stage);
+    const StageSolution& solution = stages.solve(0);
+    find_impulses(problem, stage, solution, state, stages);
+    take(problem, stage, solution, state, increment);
+    if (acts_) state.velocity += kick_;
+  }
+
+ private:
+  void find_impulses(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
+                     const State& state, StageSolve& stages) {
+    const double h = step();
+    problem.gaps(state.displacement, state.time, gap_);
+    points_.clear();
+    for (Index i = 0; i < gap_.size(); ++i) {
+      if (solution.normal_reaction[i] > 0.0 && gap_[i] > stage.gap_offset_rounding[i]) points_.push_back(i);
+    }
+    acts_ = !points_.empty();
+    if (!acts_) return;
+    velocity_ = state.velocity + (2.0 / h) * solution.increment;  // V₁*
+    impulse_.forces.rows = stage.rows;
+    impulse_.obstacle_increment = equations().obstacle_velocity();
+    project_motion(*stage.rows, impulse_.obstacle_increment);
+    const ObstacleMotion& obstacle = impulse_.obstacle_increment;
+    motion_from_obstacles(*stage.rows, velocity_, obstacle, approach_);
+    const auto count = static_cast<Index>(points_.size());
+    Vector approach(count), lost(count);
+    for (Index k = 0; k < count; ++k) {
+      const Index i = points_[static_cast<std::size_t>(k)];
+      approach[k] = approach_[i];
+      lost[k] = solution.normal_reaction[i] * gap_[i];
+    }
+    stages.stage(1).rows = stage.rows;
+    const Vector p = restoring_impulses(response_.among(problem, *stage.rows, points_, stages), approach, lost);
+    Vector& force = impulse_.forces.normal_reaction;
+    force.setZero(gap_.size());
+    for (Index k = 0; k < count; ++k) force[points_[static_cast<std::size_t>(k)]] = p[k] / h;
+    kick(problem, stages);
+  }
+
+  /// The change of the velocity, and the work of the impulses on the mean of the velocities before and after.
+  void kick(const SemidiscreteProblem& problem, StageSolve& stages) {
+    const double h = step();
+    Stage& stage = stages.stage(1);
+    stage.right_hand_side.setZero(problem.dof_count());
+    stage.prescribed.setZero(problem.supports.size());
+    const StageSolution& solution = solve_with_forces(problem, impulse_.forces.normal_reaction, 1, stages);
+    kick_ = h * solution.increment;
+    impulse_.weight = 1.0;
+    impulse_.increment = h * (velocity_ + 0.5 * kick_);
+    impulse_.forces.support_reaction = solution.support_reaction;
+    impulse_.obstacle_increment.normal *= h;
+    impulse_.obstacle_increment.tangential *= h;
+    impulse_.obstacle_increment.in_space *= h;
+  }
+
+  ContactResponse response_{1};
+  std::vector<Index> points_;
+  Vector gap_, approach_, velocity_, kick_;
+  StepPart impulse_;
+  bool acts_ = false;
+};
+
+}  // namespace
+
+SchemeRegistration laursen_love_scheme() {
+  return {"laursen-love", [](double step, const Parameters&) { return std::make_unique<LaursenLove>(step); }};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "ricochet/base/keys.hpp"
+
+namespace ricochet {
+
+/// "restitution", of schemes in which every contact point has one.
+[[nodiscard]] inline Key restitution_key() {
+  return {.name = "restitution",
+          .type = KeyType::number,
+          .unit = "1",
+          .standard = "0",
+          .range = {.at_least = 0.0, .at_most = 1.0},
+          .doc = "Newton's coefficient of restitution of each contact point; an elastic body bounces without it."};
+}
+
+}  // namespace ricochet
