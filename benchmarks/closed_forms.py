@@ -77,6 +77,7 @@ def bar(case, quantity, area, axis):
         "summary.impacts.0.mean_force": impact.force,
         "summary.impacts.0.normal_impulse": impact.impulse,
         "summary.impacts.0.restitution": 1.0,
+        f"summary.impacts.0.velocity_after.{axis}": impact.speed,
         "history.total_energy[-1]": impact.energy,
         "max(history.total_energy)": impact.energy,
         f"min(history.free.displacement_{letter})": -impact.gap - impact.shortening,
@@ -91,7 +92,6 @@ def bar(case, quantity, area, axis):
         f"struck.displacement_{letter}": lambda: impact.displacement(0.0, time),
         f"free.displacement_{letter}": lambda: impact.displacement(impact.length, time),
         f"free.velocity_{letter}": lambda: impact.velocity(impact.length, time),
-        f"bar.velocity_average_{letter}": lambda: impact.speed if time > impact.end else None,
     }
     return moving[column]() if column in moving else None
 
