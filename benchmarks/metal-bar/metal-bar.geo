@@ -1,0 +1,43 @@
+// A quarter of a bar, 32.4 mm long, of radius 3.2 mm, 1 mm above the plane z = 0: twelve bricks in the section, forty along.
+// gmsh metal-bar.geo -3 -format msh41 -o metal-bar.msh        (779 nodes)
+DefineConstant[ along = 40, n = 2 ];
+length = 32.4e-3;
+// The polygon in place of the circle has its area: a quarter of the section is that of the circle of radius 3.2 mm.
+radius = 3.2e-3 * Sqrt(Pi / (4 * n * Sin(Pi / (4 * n))));
+gap = 1e-3;
+inner = 0.55 * radius;
+d = Sqrt(0.5);
+Point(1) = {0, 0, gap};
+Point(2) = {inner, 0, gap};
+Point(3) = {0.45 * radius, 0.45 * radius, gap};
+Point(4) = {0, inner, gap};
+Point(5) = {radius, 0, gap};
+Point(6) = {d * radius, d * radius, gap};
+Point(7) = {0, radius, gap};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Line(5) = {2, 5};
+Line(6) = {3, 6};
+Line(7) = {4, 7};
+Circle(8) = {5, 1, 6};
+Circle(9) = {6, 1, 7};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Curve Loop(2) = {5, 8, -6, -2};
+Plane Surface(2) = {2};
+Curve Loop(3) = {6, 9, -7, -3};
+Plane Surface(3) = {3};
+Transfinite Curve {1 : 9} = n + 1;
+Transfinite Surface {1, 2, 3};
+Recombine Surface {1, 2, 3};
+a() = Extrude {0, 0, length} { Surface{1}; Layers{along}; Recombine; };
+b() = Extrude {0, 0, length} { Surface{2}; Layers{along}; Recombine; };
+c() = Extrude {0, 0, length} { Surface{3}; Layers{along}; Recombine; };
+Physical Volume("bar") = {a(1), b(1), c(1)};
+Physical Surface("struck") = {1, 2, 3};
+Physical Surface("free") = {a(0), b(0), c(0)};
+Physical Surface("plane-y") = {a(2), b(2)};
+Physical Surface("plane-x") = {a(5), c(4)};
+Physical Surface("surface") = {b(3), c(3)};
