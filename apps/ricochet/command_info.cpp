@@ -78,8 +78,8 @@ void describe_case(const std::string& path) {
     fmt::print("  material \"{}\": density {:g}, lambda {:g}, mu {:g}\n", m.group, m.density, law->lambda(), law->mu());
   }
   print_contacts(describe_contacts(input));
-  fmt::print("  scheme {}, mass {}, {} of {:g} to {:g}\n", input.time.scheme, input.mass.type,
-             counted(step_count(input.time), "step"), input.time.step, input.time.end);
+  fmt::print("  scheme {}, mass {}, {} to {:g}\n", input.time.scheme, input.mass.type, steps_text(input.time),
+             input.time.end);
   if (require_mesh_file(input); must_be_meshed_first(mesh_file(input))) {
     fmt::print(
         "  groups, sizes and a suggested step are only known once {} is meshed: `ricochet validate {} --mesh` does "
@@ -122,8 +122,8 @@ void describe_result(const std::string& directory) {
   if (!s.message.empty()) fmt::print("  {}\n", indented(s.message));
   print_progress(directory, s);
   fmt::print("  scheme {}, mass {}, dimension {}, degree {}\n", s.scheme, s.mass_text(), s.dimension, s.degree);
-  fmt::print("  {}, {}, {}, {} of {:g}, {}\n", counted(s.nodes, "node"), counted(s.cells, "cell"),
-             counted(s.contact_points, "contact point"), counted(s.steps, "step"), s.step, counted(s.frames, "frame"));
+  fmt::print("  {}, {}, {}, {}, {}\n", counted(s.nodes, "node"), counted(s.cells, "cell"),
+             counted(s.contact_points, "contact point"), steps_text(s), counted(s.frames, "frame"));
   if (s.history_every > 1) fmt::print("  a row of the history every {} steps\n", s.history_every);
   print_contacts(s.contacts);
   if (std::isfinite(s.critical_step)) print_critical_step(s.step, s.critical_step);

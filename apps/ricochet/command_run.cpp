@@ -52,8 +52,8 @@ void print_expectations(const std::vector<ExpectationResult>& expectations) {
 void print_summary(const RunSummary& s, const std::string& directory) {
   const ColumnDigest energy = s.digest("total_energy");
   fmt::print("{}\n", s.title.empty() ? s.case_file : s.title);
-  fmt::print("  scheme {}, mass {}, {}, {}, {} of {:g}\n", s.scheme, s.mass_text(), counted(s.nodes, "node"),
-             counted(s.contact_points, "contact point"), counted(s.steps, "step"), s.step);
+  fmt::print("  scheme {}, mass {}, {}, {}, {}\n", s.scheme, s.mass_text(), counted(s.nodes, "node"),
+             counted(s.contact_points, "contact point"), steps_text(s));
   fmt::print("  energy {:.6g} at the start, {:.6g} at the end, largest {:.6g}\n", energy.first, energy.last,
              energy.maximum);
   fmt::print("  {}\n", energy_account_text(s));

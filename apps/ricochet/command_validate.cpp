@@ -114,7 +114,8 @@ int validate(const ValidateArguments& arguments) {
   if (starts) session.start();
   fmt::print("{}: valid: {}, {}, {}, {}, {}\n", case_file, counted(model.space.node_count(), "node"),
              counted(model.mesh.cell_count(), "cell"), counted(model.problem.contact.size(), "contact point"),
-             counted(model.problem.supports.size(), "supported dof"), counted(step_count(input.time), "step"));
+             counted(model.problem.supports.size(), "supported dof"),
+             input.time.adaptive ? steps_text(input.time) : counted(step_count(input.time), "step"));
   print_place(input, model);
   if (!starts) {
     fmt::print(

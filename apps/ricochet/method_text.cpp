@@ -68,4 +68,14 @@ void print_method(const RunSummary& summary) {
   fmt::print("  {}{}\n", energy_text(summary), reactions.empty() ? "" : "; reactions: " + reactions);
 }
 
+std::string steps_text(const RunSummary& summary) {
+  if (!summary.adaptive) return fmt::format("{} of {:g}", counted(summary.steps, "step"), summary.step);
+  const StepCounts& counts = summary.adaptive->counts;
+  std::string text = fmt::format("{} of {:.4g} to {:.4g} ({} refused", counted(summary.steps, "step"), counts.shortest,
+                                 counts.longest, counts.refused);
+  if (counts.unsolved > 0) text += fmt::format(", {} not solved", counts.unsolved);
+  if (counts.tolerated > 0) text += fmt::format(", {} above the tolerance", counts.tolerated);
+  return text + ")";
+}
+
 }  // namespace ricochet::program

@@ -14,4 +14,7 @@ void print_method(const RunSummary& summary);
 /// "mean, end weight 0 to 0.33"; empty where the scheme has no choice.
 [[nodiscard]] std::string reactions_text(const RunSummary& summary);
 
+/// "150 steps of 0.01", "71 steps of 0.001 to 0.016 (4 refused)".
+[[nodiscard]] std::string steps_text(const RunSummary& summary);
+
 }  // namespace ricochet::program

@@ -44,10 +44,31 @@ std::string energy_account_text(const RunSummary& summary) {
   return text;
 }
 
+namespace {
+
+void print_checkpoints(const std::string& directory, const RunSummary& summary) {
+  const std::vector<CheckpointFile> checkpoints = checkpoint_files(directory);
+  if (checkpoints.empty()) {
+    fmt::print("  no checkpoint yet\n");
+  } else {
+    fmt::print("  checkpoint of step {}: {}\n", checkpoints.back().step, checkpoints.back().path);
+  }
+  if (!is_running(directory, summary))
+    fmt::print("  `ricochet run` with --resume {}\n", checkpoints.empty() ? "starts it anew" : "goes on with it");
+  for (const std::string& file : failure_files(directory)) fmt::print("  of the step that failed: {}\n", file);
+}
+
+}  // namespace
+
 void print_progress(const std::string& directory, const RunSummary& summary) {
   if (summary.status == "done") return;
   // The summary is seconds old, and older than the history where the run was killed.
   const long step = std::max(summary.steps, last_history_step(directory + "/history.csv"));
+  if (summary.adaptive) {
+    fmt::print("  step {}, t = {:.6g} of {:.6g} ({:.3g} %)\n", summary.steps, summary.adaptive->time, summary.end_time,
+               100.0 * summary.adaptive->time / summary.end_time);
+    return print_checkpoints(directory, summary);
+  }
   const auto done = static_cast<double>(summary.steps), all = static_cast<double>(summary.all_steps);
   fmt::print("  step {} of {} ({:.3g} %), t = {:.6g}", step, summary.all_steps, 100.0 * static_cast<double>(step) / all,
              static_cast<double>(step) * summary.step);
@@ -59,15 +80,7 @@ void print_progress(const std::string& directory, const RunSummary& summary) {
       fmt::print(", {} left", duration_text(seconds / done * (all - static_cast<double>(step))));
   }
   fmt::print("\n");
-  const std::vector<CheckpointFile> checkpoints = checkpoint_files(directory);
-  if (checkpoints.empty()) {
-    fmt::print("  no checkpoint yet\n");
-  } else {
-    fmt::print("  checkpoint of step {}: {}\n", checkpoints.back().step, checkpoints.back().path);
-  }
-  if (!is_running(directory, summary))
-    fmt::print("  `ricochet run` with --resume {}\n", checkpoints.empty() ? "starts it anew" : "goes on with it");
-  for (const std::string& file : failure_files(directory)) fmt::print("  of the step that failed: {}\n", file);
+  print_checkpoints(directory, summary);
 }
 
 void describe_checkpoint(const std::string& path) {

@@ -70,9 +70,10 @@ bool resumes_to_the_same_bits(const std::string& text, const std::set<long>& at)
   const Snapshot end = snapshot_of(run->simulation());
   for (const auto& [step, snapshot] : snapshots) {
     const std::unique_ptr<Scheme> scheme = make_scheme(run->input().time);
-    Simulation resumed(run->problem(), *scheme, snapshot, step_solver_options(run->input()));
+    Simulation resumed(run->problem(), *scheme, snapshot, step_solver_options(run->input()),
+                       step_control_options(run->input().time));
     expect_same(snapshot, snapshot_of(resumed), "before a step");
-    while (resumed.state().step < run->steps()) resumed.advance();
+    while (resumed.state().step < run->state().step) resumed.advance();
     expect_same(end, snapshot_of(resumed), "from step " + std::to_string(step) + " of\n" + text);
     const Energies energies = resumed.account().energies(resumed.state());
     EXPECT_EQ(resumed.account().residual(energies), run->simulation().account().residual(energies));
@@ -140,6 +141,17 @@ TEST(Resume, CurvedObstacle) {
     text.replace(text.find(plane), plane.size(),
                  "type = \"sphere\"\ncentre = [0.1, 3.0]\nradius = 3.0\nside = \"inside\"\n");
     EXPECT_TRUE(resumes_to_the_same_bits(text, {0, 3, 40, 75, 149})) << scheme;
+  }
+}
+
+/// Lengths of steps, their operators and what was refused.
+TEST(Resume, AdaptiveSteps) {
+  for (const char* const scheme : {"reduced-kane", "generalized-alpha", "bathe", "laursen-love"}) {
+    const std::string mass = test_support::masses_of(scheme).back();
+    std::string text =
+        dragged_case(test_support::one_sided_block(), mass, test_support::time_of(scheme), "friction = 0.3\n");
+    text.replace(text.find("step = 0.01\n"), 12, "step = \"adaptive\"\nlargest = 0.1\ntolerance = 1e-3\n");
+    EXPECT_TRUE(resumes_to_the_same_bits(text, {0, 1, 7, 23, 61})) << scheme;
   }
 }
 

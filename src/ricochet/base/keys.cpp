@@ -33,7 +33,7 @@ std::string wanted(const Key& key) {
     case KeyType::choice:
       return one_of(key.choices, true);
     case KeyType::number:
-      return with_range("number", key.range);
+      return with_range("number", key.range) + (key.choices.empty() ? "" : ", or " + one_of(key.choices, true));
     case KeyType::integer:
       return key.choices.empty() ? with_range("integer", key.range) : one_of(key.choices, false);
     case KeyType::vector:

@@ -12,7 +12,7 @@ namespace ricochet {
 enum class KeyType {
   text,        ///< any text; not empty when required
   choice,      ///< one of `choices`
-  number,      ///< finite, within `range`
+  number,      ///< finite, within `range`, or one of `choices`
   integer,     ///< within `range`, or one of `choices`
   vector,      ///< 2 or 3 numbers
   formula,     ///< a number or an expression in `variables`

@@ -90,11 +90,13 @@ struct MassSection {
 struct TimeSection {
   std::string scheme;
   Parameters parameters;  ///< of the scheme
-  double step = 0.0;
+  double step = 0.0;      ///< the longest of adaptive ones
   double end = 0.0;
+  bool adaptive = false;
+  double tolerance = 0.0, smallest = 0.0;  ///< of adaptive steps
 };
 
-/// Number of steps to the end time; the last step ends at or after it.
+/// Number of steps to the end time; the last step ends at or after it. Of adaptive ones as if each were the longest.
 [[nodiscard]] long step_count(const TimeSection& time);
 
 /// One of: a point, a segment, a boundary, a group, a contact.

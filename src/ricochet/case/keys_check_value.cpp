@@ -149,6 +149,7 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
     case KeyType::choice:
       return check_choice(key, value, problems);
     case KeyType::number:
+      if (value.kind == Kind::text && is_choice(value.text, key.choices)) return;
       return check_number(key, value, problems);
     case KeyType::integer:
       return check_integer(key, value, problems);

@@ -35,9 +35,29 @@ Section time_section() {
            .type = KeyType::number,
            .unit = "time",
            .required = true,
+           .choices = {adaptive_steps},
            .range = positive,
-           .doc = "Length of a time step; \"semi-explicit\" refuses one above its critical step, which `ricochet "
-                  "info` shows."},
+           .doc = "Length of a time step; explicit schemes refuse one above their critical step, which `ricochet "
+                  "info` shows. \"adaptive\": the length follows the motion, within `tolerance`, `largest` and "
+                  "`smallest`."},
+          {.name = "tolerance",
+           .type = KeyType::number,
+           .unit = "1",
+           .standard = "1e-3",
+           .range = {.above = 0.0, .at_most = 0.1},
+           .doc = "Of adaptive steps: allowed error of a step, in the norm of the elastic energy and relative to the "
+                  "largest energy so far. A step with more is taken again with a shorter one."},
+          {.name = "largest",
+           .type = KeyType::number,
+           .unit = "time",
+           .range = positive,
+           .doc = "Of adaptive steps, and required there: the longest. All lengths are this times a power of 1/2."},
+          {.name = "smallest",
+           .type = KeyType::number,
+           .unit = "time",
+           .range = positive,
+           .doc = "Of adaptive steps: at most this long are those that are taken whatever their error; a run counts "
+                  "them. Default: a millionth of `largest`."},
           {.name = "end",
            .type = KeyType::number,
            .unit = "time",

@@ -23,4 +23,7 @@ namespace ricochet {
   return names;
 }
 
+/// The value of time.step that leaves the lengths of steps to the program.
+inline constexpr const char* adaptive_steps = "adaptive";
+
 }  // namespace ricochet

@@ -128,21 +128,50 @@ void check_distinct(const std::vector<SectionReader>& readers, const std::string
   }
 }
 
+/// The keys of adaptive steps belong to them alone.
+void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
+  time.adaptive = reader.is_usable("step") && reader.text("step") == adaptive_steps;
+  if (!time.adaptive) {
+    for (const char* const key : {"tolerance", "largest", "smallest"}) {
+      if (!reader.is_given(key) || !reader.is_usable("step")) continue;
+      if (reader.is_override("step") && !reader.is_override(key)) {
+        reader.add_info(key, fmt::format("\"{}\" is ignored: it is of adaptive steps", key));
+      } else {
+        reader.add_problem(key, fmt::format("\"{}\" is of adaptive steps; write step = \"adaptive\"", key));
+      }
+    }
+    return;
+  }
+  time.tolerance = reader.number("tolerance");
+  if (!reader.is_given("largest")) {
+    reader.add_problem("step",
+                       "adaptive steps need \"largest\", the longest of them: at most the time between two "
+                       "rows that you want to see");
+    return;
+  }
+  time.step = reader.number("largest");
+  time.smallest = reader.optional_number("smallest").value_or(std::ldexp(time.step, -20));
+  if (reader.is_usable("largest") && reader.is_usable("smallest") && time.smallest > time.step)
+    reader.add_problem("smallest", fmt::format("\"smallest\" is {}, above \"largest\", {}", time.smallest, time.step));
+}
+
 TimeSection read_time(const SectionReader& reader) {
   constexpr double most_steps = 1e9;
   TimeSection time;
   time.scheme = reader.text("scheme");
   time.parameters = reader.type_parameters(*find_section("time"));
-  time.step = reader.number("step");
+  read_adaptive_steps(reader, time);
+  if (!time.adaptive) time.step = reader.number("step");
   time.end = reader.number("end");
-  if (!reader.is_usable("step") || !reader.is_usable("end")) return time;
+  const char* const step = time.adaptive ? "largest" : "step";
+  if (!reader.is_usable(step) || !reader.is_usable("end") || time.step == 0.0) return time;
   if (time.end < time.step) {
     reader.add_problem("end",
                        fmt::format("\"end\" is {}, before the end of the first step of {}", time.end, time.step));
   } else if (time.end / time.step > most_steps) {
     reader.add_problem(
-        "step", fmt::format("a step of {} up to the end {} makes {:.3g} steps; at most {:.0e} are possible", time.step,
-                            time.end, time.end / time.step, most_steps));
+        step, fmt::format("a step of {} up to the end {} makes {:.3g} steps; at most {:.0e} are possible", time.step,
+                          time.end, time.end / time.step, most_steps));
   }
   return time;
 }

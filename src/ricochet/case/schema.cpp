@@ -32,8 +32,7 @@ Json integer_schema(const Key& key) {
   return {{"type", "integer"}, {"enum", values}};
 }
 
-Json formulas_schema(const Key& key) {
-  const Json schema = vector_schema({{"type", {"number", "string"}}});
+Json or_choices(const Json& schema, const Key& key) {
   if (key.choices.empty()) return schema;
   return {{"anyOf", Json::array({schema, Json{{"enum", key.choices}}})}};
 }
@@ -53,7 +52,7 @@ Json type_schema(const Key& key) {
     case KeyType::choice:
       return {{"type", "string"}, {"enum", key.choices}};
     case KeyType::number:
-      return number_schema("number", key.range);
+      return or_choices(number_schema("number", key.range), key);
     case KeyType::integer:
       return integer_schema(key);
     case KeyType::vector:
@@ -61,7 +60,7 @@ Json type_schema(const Key& key) {
     case KeyType::formula:
       return {{"type", {"number", "string"}}};
     case KeyType::formulas:
-      return formulas_schema(key);
+      return or_choices(vector_schema({{"type", {"number", "string"}}}), key);
     case KeyType::components:
     case KeyType::names:
       return {{"type", "array"}, {"items", {{"enum", key.choices}}}, {"minItems", 1}, {"uniqueItems", true}};

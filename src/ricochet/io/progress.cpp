@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace ricochet {
@@ -27,46 +28,49 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-Progress::Progress(long steps, bool quiet, long first_step)
+Progress::Progress(long steps, double end, bool quiet, long first_step, double first_time)
     : steps_(steps),
-      first_step_(first_step),
+      end_(end),
+      first_done_(done(first_step, first_time)),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0),
-      next_tenth_(first_step * 10 / steps + 1) {}
+      next_tenth_(static_cast<int>(first_done_ * 10.0) + 1) {}
 
 Progress::~Progress() {
   if (open_) std::fputc('\n', stderr);
 }
 
+double Progress::done(long step, double time) const {
+  if (steps_ > 0) return static_cast<double>(step) / static_cast<double>(steps_);
+  return std::min(1.0, time / end_);
+}
+
 void Progress::update(long step, double time) {
   if (quiet_) return;
+  const double now = timer_.seconds(), part = done(step, time);
   if (terminal_) {
-    const double now = timer_.seconds();
-    if (step < steps_ && now - last_drawn_ < 0.1) return;
-    last_drawn_ = now;
-    draw(step, time);
+    if (part < 1.0 && now - last_drawn_ < 0.1) return;
   } else {
-    const double now = timer_.seconds();
-    if (step * 10 < next_tenth_ * steps_ && now - last_drawn_ < longest_silence) return;
-    next_tenth_ = step * 10 / steps_ + 1;
-    last_drawn_ = now;
-    draw(step, time);
+    if (part * 10.0 < next_tenth_ && now - last_drawn_ < longest_silence) return;
+    next_tenth_ = static_cast<int>(part * 10.0) + 1;
   }
+  last_drawn_ = now;
+  draw(step, time);
 }
 
 void Progress::draw(long step, double time) {
-  const double done = static_cast<double>(step) / static_cast<double>(steps_);
+  const double part = done(step, time);
   const double elapsed = timer_.seconds();
-  const double left =
-      step > first_step_ ? elapsed / static_cast<double>(step - first_step_) * static_cast<double>(steps_ - step) : 0.0;
-  const std::string numbers = fmt::format("step {}/{}  t = {:.6g}  {} gone, {} left", step, steps_, time,
+  const double left = part > first_done_ ? elapsed / (part - first_done_) * (1.0 - part) : 0.0;
+  const std::string of_all = steps_ > 0 ? fmt::format("/{}", steps_) : "";
+  const std::string numbers = fmt::format("step {}{}  t = {:.6g}  {} gone, {} left", step, of_all, time,
                                           duration_text(elapsed), duration_text(left));
   if (!terminal_) {
-    show(fmt::format("{:3.0f} %  {}\n", 100.0 * done, numbers));
+    show(fmt::format("{:3.0f} %  {}\n", 100.0 * part, numbers));
     return;
   }
   constexpr int width = 30;
-  const int filled = static_cast<int>(done * width);
+  const int filled = static_cast<int>(part * width);
   show(fmt::format("\r[{:#<{}}{:.<{}}] {}\033[K", "", filled, "", width - filled, numbers));
   open_ = true;
 }

@@ -9,8 +9,8 @@ namespace ricochet {
 
 class Progress {
  public:
-  /// Of a run that begins (or goes on) after this step.
-  Progress(long steps, bool quiet, long first_step = 0);
+  /// Of a run that begins (or goes on) after this step and time. `steps`: 0 where nobody knows how many there will be.
+  Progress(long steps, double end, bool quiet, long first_step, double first_time);
   /// Ends the bar's line if one is open.
   ~Progress();
   Progress(const Progress&) = delete;
@@ -21,13 +21,16 @@ class Progress {
 
  private:
   void draw(long step, double time);
+  /// 0 to 1.
+  [[nodiscard]] double done(long step, double time) const;
 
   long steps_;
-  long first_step_;
+  double end_;
+  double first_done_;
   bool quiet_;
   bool terminal_;
   bool open_ = false;
-  long next_tenth_ = 1;
+  int next_tenth_ = 1;
   double last_drawn_ = 0.0;
   Timer timer_;
 };

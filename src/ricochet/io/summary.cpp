@@ -185,6 +185,7 @@ std::string to_json(const RunSummary& s) {
                {"solver_reason", s.solver_reason},
                {"factor_entries", s.factor_entries},
                {"time_step", s.step},
+               {"adaptive_steps", adaptive_steps_to_json(s)},
                {"end_time", s.end_time},
                {"critical_time_step", std::isfinite(s.critical_step) ? Json(s.critical_step) : Json()},
                {"critical_fraction", std::isfinite(s.critical_step) ? Json(s.step / s.critical_step) : Json()},

@@ -13,6 +13,7 @@
 #include "ricochet/simulation/peak_stress_result.hpp"
 #include "ricochet/simulation/penetration_report.hpp"
 #include "ricochet/simulation/probe.hpp"
+#include "ricochet/simulation/step_counts.hpp"
 
 /// @file summary.json: what ran, sizes, timings, extrema, warnings.
 namespace ricochet {
@@ -86,6 +87,13 @@ struct ActingReactions {
   long end_steps = 0;   ///< in which the end reactions had to, as no mean was found
 };
 
+/// Steps whose length follows the motion.
+struct AdaptiveSteps {
+  double tolerance = 0.0;
+  double time = 0.0;  ///< reached
+  StepCounts counts = {};
+};
+
 struct RunSummary {
   std::string status = "done";  ///< "running", "done", "failed" or "interrupted"
   std::string message;          ///< of the failure or the interruption
@@ -100,11 +108,12 @@ struct RunSummary {
   int degree = 1;
   Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
   std::size_t factor_entries = 0;
-  std::string solver = "direct";  ///< or "iterative"
-  std::string solver_reason;      ///< why that one
-  double step = 0.0, end_time = 0.0;
+  std::string solver = "direct";      ///< or "iterative"
+  std::string solver_reason;          ///< why that one
+  double step = 0.0, end_time = 0.0;  ///< of adaptive steps the longest possible
   double critical_step =
       std::numeric_limits<double>::infinity();  ///< above it the scheme is unstable; none if infinite
+  std::optional<AdaptiveSteps> adaptive = {};   ///< none where all steps are of one length, `step`
   long steps = 0;
   long all_steps = 0;                                ///< that were asked for
   std::vector<long> resumed_at = {};                 ///< steps after which the run was resumed

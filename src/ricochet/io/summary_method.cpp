@@ -40,7 +40,38 @@ Json reactions_to_json(const RunSummary& summary) {
           {"steps_without_mean", acting.end_steps}};
 }
 
+Json adaptive_steps_to_json(const RunSummary& summary) {
+  if (!summary.adaptive) return {};
+  const StepCounts& counts = summary.adaptive->counts;
+  return {{"tolerance", summary.adaptive->tolerance},
+          {"time", summary.adaptive->time},
+          {"shortest", counts.shortest},
+          {"longest", counts.longest},
+          {"refused", counts.refused},
+          {"unsolved", counts.unsolved},
+          {"above_tolerance", counts.tolerated},
+          {"largest_error", Json::number(counts.largest_error)}};
+}
+
+namespace {
+
+void read_adaptive_steps(const Json& json, RunSummary& summary) {
+  if (!json.contains("adaptive_steps") || !json.at("adaptive_steps").is_object()) return;
+  const Json& steps = json.at("adaptive_steps");
+  AdaptiveSteps read{.tolerance = steps.at("tolerance"), .time = steps.at("time")};
+  read.counts = {.refused = steps.at("refused"),
+                 .unsolved = steps.at("unsolved"),
+                 .tolerated = steps.at("above_tolerance"),
+                 .largest_error = steps.at("largest_error").to_number(),
+                 .shortest = steps.at("shortest"),
+                 .longest = steps.at("longest")};
+  summary.adaptive = read;
+}
+
+}  // namespace
+
 void read_method(const Json& json, RunSummary& summary) {
+  read_adaptive_steps(json, summary);
   if (json.contains("energy_budget") && json.at("energy_budget").is_object()) {
     const Json& budget = json.at("energy_budget");
     summary.method_energy =

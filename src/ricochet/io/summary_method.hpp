@@ -12,6 +12,8 @@ namespace ricochet {
 [[nodiscard]] Json energy_budget_to_json(const RunSummary& summary);
 /// Null where the scheme has no choice.
 [[nodiscard]] Json reactions_to_json(const RunSummary& summary);
+/// Null where all steps are of one length.
+[[nodiscard]] Json adaptive_steps_to_json(const RunSummary& summary);
 /// Reads those that the summary has. Throws Json::Exception.
 void read_method(const Json& json, RunSummary& summary);
 

@@ -239,6 +239,16 @@ std::unique_ptr<Scheme> make_scheme(const TimeSection& time) {
   return make_scheme(time.scheme, time.step, time.parameters);
 }
 
+std::optional<StepControlOptions> step_control_options(const TimeSection& time) {
+  if (!time.adaptive) return std::nullopt;
+  return StepControlOptions{time.end, time.step, time.smallest, time.tolerance};
+}
+
+std::string steps_text(const TimeSection& time) {
+  if (time.adaptive) return fmt::format("adaptive steps of at most {:g}", time.step);
+  return fmt::format("{} of {:g}", counted(step_count(time), "step"), time.step);
+}
+
 StepSolverOptions step_solver_options(const Case& input) {
   StepSolverOptions options;
   if (input.solver.method == "direct") options.method = SolverMethod::direct;

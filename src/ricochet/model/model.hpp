@@ -9,6 +9,7 @@
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/starting_state.hpp"
+#include "ricochet/simulation/step_control.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 /// @file A case together with its mesh: everything a run needs, built and checked.
@@ -37,6 +38,10 @@ struct Model {
 
 /// The scheme that [time] asks for.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const TimeSection& time);
+/// What it says of adaptive steps; none where all are of one length.
+[[nodiscard]] std::optional<StepControlOptions> step_control_options(const TimeSection& time);
+/// "1,500 steps of 0.0001", "adaptive steps of at most 0.01".
+[[nodiscard]] std::string steps_text(const TimeSection& time);
 /// What [solver] asks for.
 [[nodiscard]] StepSolverOptions step_solver_options(const Case& input);
 /// The scheme with its parameters: "newmark (beta 0.25, gamma 0.5)".

@@ -81,6 +81,14 @@ void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& mo
       limit.trouble, limit.crossings * median));
 }
 
+void check_adaptive_steps(const Case& input, const Scheme& scheme) {
+  if (!input.time.adaptive || scheme.changes_step()) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{}: scheme \"{}\" remembers the step before and cannot change its length; give time.step as "
+                          "a number, or use scheme \"reduced-kane\"",
+                          input.where("time.step").text(), input.time.scheme));
+}
+
 /// With degree 1 a body whose skin is nearly all of its nodes has little left to carry the inertia of the skin: the
 /// spin of a ball that friction turns was wrong by 19 % with 405 contact nodes of 858, by 2.5 % with 1,250 of 3,525.
 void warn_of_thin_inside(const Model& model, std::size_t contact_nodes) {
@@ -273,8 +281,9 @@ void assemble_operators(const Case& input, Model& model) {
   }
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
+  check_adaptive_steps(input, *scheme);
   warn_of_creep(input, *scheme, model.problem);
-  warn_of_long_steps(input, *scheme, model);
+  if (!input.time.adaptive) warn_of_long_steps(input, *scheme, model);
   warn_of_thin_inside(model, mass_input.contact_nodes.size());
   warn_of_jumping_supports(input, *scheme);
 }

@@ -100,6 +100,7 @@ Quantity quantity_of(const std::string& what, const RunData& run) {
 
 /// Energies and forces are those of the scheme's own instants.
 double instant_of(const std::string& column, const RunSummary& summary) {
+  if (summary.adaptive) return 0.0;  // fractions of steps of many lengths
   if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum"))
     return summary.energy_instant * summary.step;
   const bool is_force = column.starts_with("contact_force") || column.find(".reaction") != std::string::npos ||

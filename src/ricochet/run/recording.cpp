@@ -61,27 +61,45 @@ std::string sampled_name(long every) {
 
 }  // namespace
 
-FieldSchedule::FieldSchedule(const Case& input, long steps, Index dofs, const Snapshot* snapshot)
-    : step_size_(input.time.step) {
+FieldSchedule::FieldSchedule(const Case& input, long steps, Index dofs, const Snapshot* snapshot) {
+  if (snapshot != nullptr) {
+    every_ = snapshot->integer("fields.every");
+    const Vector& times = snapshot->reals("fields.interval", 2);
+    interval_ = times[0];
+    intervals_before_ = times[1];
+  }
   if (input.output.fields_interval) {
     interval_ = *input.output.fields_interval;
-  } else if (snapshot != nullptr) {
-    every_ = snapshot->integer("fields.every");
-  } else {
+  } else if (snapshot == nullptr) {
     const long frames = default_frames(steps, dofs);
-    every_ = input.output.fields_every.value_or((steps + frames - 1) / frames);
+    if (input.time.adaptive && !input.output.fields_every) {
+      interval_ = input.time.end / static_cast<double>(frames);
+    } else {
+      every_ = input.output.fields_every.value_or((steps + frames - 1) / frames);
+    }
   }
 }
 
-/// Multiples of the interval up to this step; one that a step meets to rounding counts.
-double FieldSchedule::intervals(long step) const {
-  return std::floor(static_cast<double>(step) * step_size_ / interval_ * (1.0 + 1e-12));
+void FieldSchedule::save(Snapshot& snapshot) const {
+  snapshot.save("fields.every", std::int64_t{every_});
+  snapshot.save("fields.interval", Vector(Eigen::Vector2d(interval_, intervals_before_)));
 }
 
-bool FieldSchedule::includes(long step) const {
-  if (step == 0) return any();
-  if (interval_ > 0.0) return interval_ <= step_size_ || intervals(step) > intervals(step - 1);
-  return every_ > 0 && step % every_ == 0;
+/// Multiples of the interval up to this time; one that a step meets to rounding counts.
+double FieldSchedule::intervals(double time) const {
+  return std::floor(time / interval_ * (1.0 + 1e-12));
+}
+
+bool FieldSchedule::includes(const State& state) {
+  bool result = every_ > 0 && state.step % every_ == 0;
+  if (interval_ > 0.0) {
+    const double now = intervals(state.time);
+    result = now > intervals_before_;
+    intervals_before_ = now;
+  }
+  if (state.step == 0) result = any();
+  if (result) last_ = state.step;
+  return result;
 }
 
 Recording::Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
@@ -122,7 +140,7 @@ void Recording::record(const State& state, EnergyAccount& account) {
     impacts_.enter_step(state, of_method);
     method_.enter_step(state, of_method);
   }
-  const bool is_frame = results_ && fields_.includes(state.step);
+  const bool is_frame = results_ && fields_.includes(state);
   peak_stress_.enter(state, is_frame);
   if (state.step % history_every_ == 0) write_row(state, account);
   const Timer watch_timer;
@@ -145,7 +163,7 @@ void Recording::record_end(const State& state, EnergyAccount& account) {
   for (Sampled& sampled : sampled_) {
     if (state.step % sampled.every != 0) sampled.file.write(sampled.recorder.row(state));
   }
-  if (results_ && !fields_.includes(state.step)) {
+  if (results_ && !fields_.is_last(state)) {
     peak_stress_.enter_frame(state);
     results_->write(state);
   }

@@ -23,16 +23,20 @@ class FieldSchedule {
   /// Where the case does not say how often, that depends on the number of steps. A run that goes on keeps what it began
   /// with, as its end may have been moved.
   FieldSchedule(const Case& input, long steps, Index dofs, const Snapshot* snapshot);
-  void save(Snapshot& snapshot) const { snapshot.save("fields.every", std::int64_t{every_}); }
+  void save(Snapshot& snapshot) const;
   [[nodiscard]] bool any() const { return every_ > 0 || interval_ > 0.0; }
-  [[nodiscard]] bool includes(long step) const;
+  /// Asked of every step, in order.
+  [[nodiscard]] bool includes(const State& state);
+  /// The last that was included.
+  [[nodiscard]] bool is_last(const State& state) const { return last_ == state.step; }
 
  private:
-  [[nodiscard]] double intervals(long step) const;
+  [[nodiscard]] double intervals(double time) const;
 
   long every_ = 0;
   double interval_ = 0.0;  ///< time, instead
-  double step_size_;
+  double intervals_before_ = 0.0;
+  long last_ = -1;  ///< step that was included
 };
 
 class Recording {

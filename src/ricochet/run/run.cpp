@@ -27,6 +27,9 @@ constexpr Index large_body = 20000;
 /// Fails early: a run of hours should not end because its last step cannot be written.
 void check_export(const Case& input, const RunOptions& options, long steps) {
   if (options.export_contact.empty()) return;
+  if (input.time.adaptive)
+    throw Error(ErrorKind::usage,
+                "--export-contact: not of adaptive steps, of which some are taken again; set time.step to a number");
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
     if (!(input.contacts[i].friction_bound > 0.0)) continue;
     throw Error(ErrorKind::invalid_input,
@@ -67,14 +70,15 @@ void Run::begin() {
   }
   begin_session();
   open_files();
-  progress_.emplace(steps_, options_.quiet, session_.state().step);
+  progress_.emplace(input_.time.adaptive ? 0 : steps_, input_.time.end, options_.quiet, session_.state().step,
+                    session_.state().time);
   since_checkpoint_.restart();
 }
 
 RunSummary Run::finish() {
   if (has_nothing_to_do_) return summary_;
   if (!has_ended_) {  // a program has taken the steps that it wanted
-    if (session_.state().step < steps_) {
+    if (!session_.at_end()) {
       interrupt("ended by the program");
     } else {
       end_steps();
@@ -96,10 +100,14 @@ bool Run::is_complete() {
   if (summary_.parameters.empty()) return false;
   knows_what_ran_ = true;
   require_same_case(input_, summary_.version, summary_.parameters, options_.output_directory);
-  if (steps_ < summary_.steps) refuse_earlier_end(summary_.steps);
+  if (input_.time.adaptive) {
+    if (input_.time.end < summary_.end_time) refuse_earlier_end(summary_.end_time);
+  } else if (steps_ < summary_.steps) {
+    refuse_earlier_end(static_cast<double>(summary_.steps) * input_.time.step);
+  }
   if (summary_.status != "done") return false;
   was_complete_ = true;
-  if (steps_ > summary_.all_steps) return false;
+  if (input_.time.adaptive ? input_.time.end > summary_.end_time : steps_ > summary_.all_steps) return false;
   log::info(fmt::format("{}: this run is complete, there is nothing to resume", options_.output_directory));
   if (!options_.export_contact.empty())
     log::warning("--export-contact: the run is complete, nothing more is exported; make it again with --force");
@@ -111,7 +119,10 @@ void Run::find_checkpoint() {
   snapshot_ = newest_checkpoint(options_.output_directory);
   if (snapshot_) {
     require_same_case(input_, *snapshot_, options_.output_directory);
-    if (const auto step = static_cast<long>(snapshot_->integer("state.step")); steps_ < step) refuse_earlier_end(step);
+    const double reached = snapshot_->real("state.time");
+    if (input_.time.adaptive ? input_.time.end < reached - input_.time.smallest
+                             : steps_ < static_cast<long>(snapshot_->integer("state.step")))
+      refuse_earlier_end(reached);
     require_same_files(options_.output_directory, *snapshot_);
     if (!options_.resume_load && snapshot_->has(Session::load_name)) {
       throw Error(
@@ -141,13 +152,12 @@ void Run::find_checkpoint() {
   }
 }
 
-void Run::refuse_earlier_end(long reached) const {
+void Run::refuse_earlier_end(double reached) const {
   throw Error(
       ErrorKind::invalid_input,
       fmt::format("{}: time.end = {:.9g} comes before t = {:.9g}, which the run in {} has reached; give a later "
                   "end, or start anew in another directory (-o) or over it (--force)",
-                  input_.where("time.end").text(), input_.time.end, static_cast<double>(reached) * input_.time.step,
-                  options_.output_directory));
+                  input_.where("time.end").text(), input_.time.end, reached, options_.output_directory));
 }
 
 void Run::begin_session() {
@@ -184,13 +194,13 @@ void Run::begin_session() {
     summary_.resumed_at.push_back(session_.simulation().state().step);
     summary_.checkpoint_step = session_.simulation().state().step;
     times_.load(*snapshot_, "run.times");
-    log::info(fmt::format("resumed after step {} of {}", session_.simulation().state().step, steps_));
+    log::info("resumed after " + step_in_words());
   } else {
     const std::lock_guard files(files_);
     replace_old_run(directory_, options_, summary_);
     reported_ = summary_;
   }
-  warn_of_end(input_.time);
+  if (!input_.time.adaptive) warn_of_end(input_.time);
 }
 
 /// An error here is told in the summary, as one of a step is.
@@ -242,7 +252,7 @@ void Run::begin_simulation() {
 bool Run::take_step() {
   if (has_nothing_to_do_ || has_ended_) return false;
   try {
-    if (session_.state().step < steps_ && advance()) return true;
+    if (!session_.at_end() && advance()) return true;
     end_steps();
   } catch (const Error& problem) {
     failure_ = problem;
@@ -263,7 +273,7 @@ bool Run::advance() {
   const Timer timer;
   step_ = simulation.state().step + 1;
   if (log::enabled(log::Level::debug))
-    log::debug(fmt::format("step {}, t = {:.9g}", step_, static_cast<double>(step_) * session_.scheme().step()));
+    log::debug(fmt::format("step {} from t = {:.9g}", step_, simulation.state().time));
   if (contact_export_) contact_export_->begin_step(step_);
   simulation.advance();
   step_seconds_ = timer.seconds();
@@ -275,19 +285,19 @@ bool Run::advance() {
   const bool checkpoint_is_due =
       (output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
       (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds);
-  if (simulation.state().step < steps_ && checkpoint_is_due) write_checkpoint();
+  if (!session_.at_end() && checkpoint_is_due) write_checkpoint();
   if (since_report_.seconds() >= report_interval) report_progress();
   return true;
 }
 
 /// What the last state leaves, where all steps were taken.
 void Run::end_steps() {
-  if (session_.state().step < steps_) return;
+  if (!session_.at_end()) return;
   const std::lock_guard files(files_);
   before_step_.reset();
   // Before what is written at the end only: from here the run can go on to a later end.
   const bool checkpoints = input_.output.checkpoint_every > 0 || input_.output.checkpoint_seconds > 0.0;
-  if (checkpoints && summary_.checkpoint_step != steps_) write_checkpoint();
+  if (checkpoints && summary_.checkpoint_step != session_.state().step) write_checkpoint();
   recording_->record_end(session_.state(), session_.simulation().account());
 }
 

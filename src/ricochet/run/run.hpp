@@ -41,13 +41,15 @@ class Run {
  private:
   [[nodiscard]] bool is_complete();
   void find_checkpoint();
-  [[noreturn]] void refuse_earlier_end(long reached) const;
+  [[noreturn]] void refuse_earlier_end(double reached) const;
   void begin_simulation();
   void begin_session();
   void open_files();
   void start_recording();
   bool advance();
   void end_steps();
+  /// "step 12 of 100", or of adaptive steps "step 12 (t = 0.5 of 2)".
+  [[nodiscard]] std::string step_in_words();
   void stop(int signal);
   void interrupt(const std::string& how);
   void end_early();

@@ -39,12 +39,18 @@ void Run::stop(int signal) {
   interrupt(fmt::format("stopped by SIG{}", sigabbrev_np(signal)));
 }
 
+std::string Run::step_in_words() {
+  const State& state = session_.simulation().state();
+  if (input_.time.adaptive)
+    return fmt::format("step {} (t = {:.6g} of {:.6g})", state.step, state.time, input_.time.end);
+  return fmt::format("step {} of {}", state.step, steps_);
+}
+
 void Run::interrupt(const std::string& how) {
   const std::lock_guard files(files_);
   write_checkpoint();
   summary_.status = "interrupted";
-  summary_.message = fmt::format("{} after step {} of {}; run --resume goes on from there", how,
-                                 session_.simulation().state().step, steps_);
+  summary_.message = fmt::format("{} after {}; run --resume goes on from there", how, step_in_words());
 }
 
 /// On another thread, while this run is in the middle of something that takes too long. What is on the disk is good
@@ -111,6 +117,12 @@ void Run::describe_progress(RunSummary& summary) const {
   recording_->describe(summary);
   summary.factor_entries = session_.simulation().factor_entries();
   summary.steps = session_.simulation().state().step;
+  if (const StepControl* const control = session_.simulation().control()) {
+    summary.adaptive = AdaptiveSteps{.tolerance = input_.time.tolerance, .time = control->time()};
+    summary.adaptive->counts = control->counts();
+    // As many as there will be: nobody knows before.
+    if (session_.at_end()) summary.all_steps = summary.steps;
+  }
   const RunTimes times = times_until_now();
   summary.timings = times.phases();
   summary.time_per_step = summary.steps > 0 ? times.steps / static_cast<double>(summary.steps) : 0.0;

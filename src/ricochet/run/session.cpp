@@ -45,7 +45,8 @@ void Session::start() {
   if (simulation_ != nullptr) return;
   const log::CollectWarnings collect(warnings_);
   Model& built = model();
-  simulation_ = std::make_unique<Simulation>(built.problem, scheme(), built.initial, step_solver_options(input_));
+  simulation_ = std::make_unique<Simulation>(built.problem, scheme(), built.initial, step_solver_options(input_),
+                                             step_control_options(input_.time));
 }
 
 void Session::resume(const Snapshot& snapshot) {
@@ -55,7 +56,8 @@ void Session::resume(const Snapshot& snapshot) {
   if (const std::string difference = compare_model(input_, model(), snapshot); !difference.empty())
     log::warning(difference);
   if (snapshot.has(load_name)) set_load(snapshot.reals(load_name));
-  simulation_ = std::make_unique<Simulation>(model().problem, scheme(), snapshot, step_solver_options(input_));
+  simulation_ = std::make_unique<Simulation>(model().problem, scheme(), snapshot, step_solver_options(input_),
+                                             step_control_options(input_.time));
 }
 
 void Session::save(Snapshot& snapshot) {
@@ -82,11 +84,16 @@ void Session::set_load(const Vector& force) {
   *load_ = force;
 }
 
+bool Session::at_end() {
+  const StepControl* const control = simulation().control();
+  return control != nullptr ? control->at_end() : state().step >= steps();
+}
+
 bool Session::step() {
   const log::CollectWarnings collect(warnings_);
   if (has_finished_) refuse_use("it has finished, and nothing would be written any more");
   if (run_ != nullptr) return run_->take_step();
-  if (state().step >= steps()) return false;
+  if (at_end()) return false;
   simulation().advance();
   return true;
 }

@@ -57,8 +57,9 @@ class Session {
   [[nodiscard]] Simulation& simulation();
   [[nodiscard]] const State& state() { return simulation().state(); }
   [[nodiscard]] double time() { return state().time; }
-  /// Of the run, and the number of steps until there.
+  /// Of the run, and the number of steps until there; of adaptive steps, if all were the longest.
   [[nodiscard]] double end() const { return input_.time.end; }
+  [[nodiscard]] bool at_end();
   [[nodiscard]] long steps() const { return step_count(input_.time); }
 
   /// A force per dof that acts from now on besides the loads of the case, until it is set again. It enters the energy

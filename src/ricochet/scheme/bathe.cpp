@@ -25,6 +25,7 @@ class Bathe final : public Scheme {
  public:
   using Scheme::Scheme;
 
+  [[nodiscard]] bool changes_step() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     const double h = step();
     return {{16.0 / (h * h), 1.0, (problem.has_singular_mass() ? 2.0 : 4.0) / h}, {9.0 / (h * h), 1.0, 3.0 / h}};
@@ -39,11 +40,11 @@ class Bathe final : public Scheme {
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();
     go_to_middle(problem, state, stages);
-    base_ = first_ / 3.0 + (h / 9.0) * (4.0 * velocity_ - state.velocity);
-    rate_ = (4.0 * velocity_ - state.velocity) / 3.0;  // V₁ at δ = 0
+    second_ = first_ / 3.0 + (h / 9.0) * (4.0 * velocity_ - state.velocity);  // at δ = 0
+    rate_ = (4.0 * velocity_ - state.velocity) / 3.0;                         // V₁ at δ = 0
     Stage& stage = stages.stage(1);
     middle_ = state.displacement + first_;
-    base_ += middle_;
+    base_ = middle_ + second_;
     equations_.balance(problem, state.time + h, base_, rate_, stage);
     const auto to_end = [&](Index dof, double end) { return end - base_[dof]; };
     equations_.prescribe(problem, state.time + h, to_end, stage);
@@ -52,8 +53,8 @@ class Bathe final : public Scheme {
     equations_.require_friction(problem, rate_, 3.0 / h, stage);
 
     const StageSolution& solution = stages.solve(1);
-    second_ = base_ - middle_ + solution.increment;  // U₁ − U_½
-    rate_ += (3.0 / h) * solution.increment;         // V₁
+    second_ += solution.increment;            // U₁ − U_½
+    rate_ += (3.0 / h) * solution.increment;  // V₁
     dissipate(problem, state);
     increment = 3.0 * second_ - first_;
     take_first_forces(problem, state, stages);

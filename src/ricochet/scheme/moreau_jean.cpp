@@ -20,11 +20,9 @@ namespace {
 class MoreauJean final : public Scheme {
  public:
   MoreauJean(double step, double theta, double restitution, bool slip_at_end)
-      : Scheme(step),
-        theta_(theta),
-        restitution_(restitution),
-        slip_factor_(1.0 / (slip_at_end ? theta * step : step)) {}
+      : Scheme(step), theta_(theta), restitution_(restitution), slip_at_end_(slip_at_end) {}
 
+  [[nodiscard]] bool changes_step() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{1.0 / (theta_ * h * h), theta_, 1.0 / h}};
@@ -57,7 +55,7 @@ class MoreauJean final : public Scheme {
     rate_ = (1.0 + restitution_) * state.velocity;
     require_no_approach(problem, place_, state.time + 0.5 * h, rate_, impact_, h, stage);
     stage.gap_factor = 1.0 / (theta_ * h);
-    equations_.require_friction(problem, state.velocity, slip_factor_, stage);
+    equations_.require_friction(problem, state.velocity, 1.0 / ((slip_at_end_ ? theta_ : 1.0) * h), stage);
     if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
 
     const StageSolution& solution = stages.solve(0);
@@ -78,7 +76,8 @@ class MoreauJean final : public Scheme {
     dissipation_ = (theta_ - 0.5) * (problem.mass.form(rate_) + increment.dot(place_));
   }
 
-  double theta_, restitution_, slip_factor_;
+  double theta_, restitution_;
+  bool slip_at_end_;
   double dissipation_ = 0.0;
   ObstacleMotion impact_;
   Vector place_, rate_;

@@ -20,11 +20,11 @@ namespace {
 /// of the two velocities would make the operator unsymmetric.
 class Newmark final : public Scheme {
  public:
-  Newmark(double step, double beta, double gamma)
-      : Scheme(step), beta_(beta), gamma_(gamma), alpha_(1.0 / (beta * step * step)) {}
+  Newmark(double step, double beta, double gamma) : Scheme(step), beta_(beta), gamma_(gamma) {}
 
+  [[nodiscard]] bool changes_step() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
-    return {{alpha_, 1.0, damping_factor(problem)}};
+    return {{alpha(), 1.0, damping_factor(problem)}};
   }
   [[nodiscard]] WorkRule work_rule() const override { return {1.0 - gamma_, gamma_}; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
@@ -58,7 +58,7 @@ class Newmark final : public Scheme {
 
     const StageSolution& solution = stages.solve(0);
     increment = predicted_ + solution.increment;
-    acceleration_ = alpha_ * solution.increment;
+    acceleration_ = alpha() * solution.increment;
     for (const Index dof : problem.massless_dofs) acceleration_[dof] = 0.0;
     dissipate(problem, state, increment);
     state.displacement += increment;
@@ -80,8 +80,9 @@ class Newmark final : public Scheme {
   }
 
  private:
+  [[nodiscard]] double alpha() const { return 1.0 / (beta_ * step() * step()); }
   [[nodiscard]] double damping_factor(const SemidiscreteProblem& problem) const {
-    return problem.has_singular_mass() ? 1.0 / step() : gamma_ * step() * alpha_;
+    return problem.has_singular_mass() ? 1.0 / step() : gamma_ * step() * alpha();
   }
 
   /// The velocity that damping acts on, at δ = 0.
@@ -103,7 +104,7 @@ class Newmark final : public Scheme {
         0.5 * step() * step() * (beta_ - 0.5 * gamma_) * (2.0 * gamma_ - 1.0) * problem.mass.form(difference_);
   }
 
-  double beta_, gamma_, alpha_;
+  double beta_, gamma_;
   double dissipation_ = 0.0;
   Vector base_, predicted_, acceleration_, velocity_, difference_, force_;
   StepEquations equations_;

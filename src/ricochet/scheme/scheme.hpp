@@ -41,6 +41,13 @@ class Scheme {
 
   /// h.
   [[nodiscard]] double step() const { return step_; }
+  /// Steps of different lengths may follow one another: what is remembered does not depend on the last one's.
+  [[nodiscard]] virtual bool changes_step() const { return false; }
+  /// The length of the steps from now on, after analyse(). Operators are others then.
+  void change_step(const SemidiscreteProblem& problem, double step) {
+    step_ = step;
+    step_changed(problem);
+  }
   /// The operators of the stages of a step, in order.
   [[nodiscard]] virtual std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const = 0;
   /// Instants of energies and forces in a row of the history, relative to its time, in steps; for docs and summary.
@@ -95,13 +102,17 @@ class Scheme {
   virtual void energy_state(const State& state, Vector& displacement, Vector& velocity) const;
   /// The internal force at that displacement, where the state has it: then the elastic energy needs no product with K.
   [[nodiscard]] virtual const Vector* internal_force(const State&) const { return nullptr; }
-  /// A velocity w such that M (V + w) is the momentum that impulses change, where M V is not: true, and w.
-  [[nodiscard]] virtual bool algorithmic_velocity(const State&, Vector&) const { return false; }
+  /// An acceleration a such that M (V + h a) is the momentum that impulses change, where M V is not: true, and a.
+  [[nodiscard]] virtual bool momentum_acceleration(const State&, Vector&) const { return false; }
   /// A closed-form term that the scheme conserves together with the energy.
   [[nodiscard]] virtual double algorithmic_energy(const SemidiscreteProblem&, const State&) const { return 0.0; }
   [[nodiscard]] virtual StepCorrections step_corrections(const SemidiscreteProblem&) const { return {}; }
   /// Forces of the last step that are not in the state.
   [[nodiscard]] virtual std::span<const StepPart> other_parts() const { return {}; }
+
+ protected:
+  /// For schemes with constants that depend on h.
+  virtual void step_changed(const SemidiscreteProblem&) {}
 
  private:
   double step_;

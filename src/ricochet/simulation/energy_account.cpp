@@ -87,6 +87,13 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   algorithmic_.reset();
 }
 
+void EnergyAccount::change_step(const State& state, const std::function<void()>& change) {
+  const double before = algorithmic(state);
+  change();
+  algorithmic_.reset();
+  works_.numerical_dissipation -= algorithmic(state) - before;
+}
+
 /// Rows of the history and what watches the method ask for the same.
 double EnergyAccount::algorithmic(const State& state) {
   if (!algorithmic_) algorithmic_ = scheme_.algorithmic_energy(problem_, state);

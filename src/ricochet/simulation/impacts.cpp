@@ -80,7 +80,6 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
       scheme_(scheme),
       rigid_(problem, std::move(body_of_node), static_cast<int>(separation.size())),
       separation_(std::move(separation)) {
-  for (double& time : separation_) time = std::max(time, 2.0 * scheme.step());
   find_places(obstacles);
   open_.assign(places_.size(), Interval{});
   for (std::size_t place = 0; place < places_.size(); ++place) open_[place].place = static_cast<double>(place);
@@ -168,6 +167,7 @@ void ImpactRecorder::enter_step(const State& state, double method_energy) {
   find_forces(state.forces, state.obstacle_increment, current_);
   find_other_forces();
   motion_ = nullptr;
+  if (state.step == 1) first_step_ = scheme_.step();
   const double instant = state.time + scheme_.acting_instant() * scheme_.step();
   for (std::size_t place = 0; place < places_.size(); ++place) enter_place(place, instant);
   std::swap(previous_, current_);
@@ -198,7 +198,8 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
   if (!touched) {
     // Only at the start does a force act before the first instant of the steps.
     const double time = acts_before ? 0.0 : std::max(0.0, instant - 0.5 * h);
-    if (interval.phase == apart && time - interval.end < separation_[static_cast<std::size_t>(places_[place].body)]) {
+    if (interval.phase == apart &&
+        time - interval.end < std::max(2.0 * h, separation_[static_cast<std::size_t>(places_[place].body)])) {
       interval.intervals += 1.0;
     } else {
       if (interval.phase == apart) file(interval);
@@ -231,7 +232,7 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
   }
   interval.end = instant + 0.5 * h;
   interval.contact_time += h;
-  interval.pressing += current.pressing;
+  interval.pressing += h * current.pressing;
   interval.travel += current.travel;
   add(interval.sliding, 1.0, current.sliding);
   take_largest(interval, current, instant);
@@ -263,7 +264,7 @@ void ImpactRecorder::begin(Interval& interval, double time, const Force& first, 
   interval.begin = interval.end = time;
   interval.from_start = time > 0.0 ? 0.0 : 1.0;
   // The first instant with a force can be the end of the first step.
-  const bool in_first_step = time < scheme_.step();
+  const bool in_first_step = time < first_step_;
   interval.from_inside = in_first_step && places_[static_cast<std::size_t>(place)].begins_inside ? 1.0 : 0.0;
   interval.intervals = 1.0;
   interval.first_place = place_of(first.leading);
@@ -304,9 +305,8 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
   result.all_contact_points = place.points;
   result.first_place.assign(interval.first_place.begin(), interval.first_place.begin() + problem_.dimension);
   if (interval.pressing > 0.0) {
-    const double duration = interval.pressing * scheme_.step();
-    result.obstacle_velocity = interval.travel / duration;
-    result.obstacle_sliding = vector_of(interval.sliding) / duration;
+    result.obstacle_velocity = interval.travel / interval.pressing;
+    result.obstacle_sliding = vector_of(interval.sliding) / interval.pressing;
   }
   result.mass = rigid_.bodies()[static_cast<std::size_t>(place.body)].mass;
   result.before = motion(interval.before);

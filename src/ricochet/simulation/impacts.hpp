@@ -57,7 +57,7 @@ class ImpactRecorder {
     double phase;  ///< no_contact, touching or apart: lost, but it may come back
     double begin, end, from_start, from_inside, intervals, contact_time;
     Three impulse, normal_impulse;
-    /// Σ r_N over instants, and Σ r_N times the obstacle's motion, along the normal and across it.
+    /// Σ h r_N over instants, and Σ r_N times the obstacle's motion, along the normal and across it.
     double pressing, travel;
     Three sliding;
     double largest, largest_time;
@@ -114,6 +114,7 @@ class ImpactRecorder {
   std::vector<Interval> open_;   ///< per place
   std::vector<Interval> filed_;  ///< that are over
   long left_out_ = 0;
+  double first_step_ = 0.0;                           ///< length
   double method_before_ = 0.0, method_energy_ = 0.0;  ///< at the beginning and the end of a step
   Vector velocity_before_;                            ///< at the beginning of a step
   Vector scratch_;

@@ -32,10 +32,10 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
   algorithmic_ = algorithmic(state);
 }
 
-/// Of the momentum that is not M V.
+/// Of the momentum that is not M V, over h.
 Resultant MomentumAccount::algorithmic(const State& state) {
-  if (!scheme_.algorithmic_velocity(state, velocity_)) return {};
-  problem_.mass.multiply(velocity_, momentum_);
+  if (!scheme_.momentum_acceleration(state, acceleration_)) return {};
+  problem_.mass.multiply(acceleration_, momentum_);
   return of_nodes(momentum_);
 }
 
@@ -99,8 +99,8 @@ void MomentumAccount::enter_step(const State& state) {
   for (const StepPart& part : scheme_.other_parts()) enter(resultant(part.forces), part.weight);
   previous_ = current;
   const Resultant now = algorithmic(state);
-  impulse_.force -= now.force - algorithmic_.force;
-  impulse_.moment -= now.moment - algorithmic_.moment;
+  impulse_.force -= scheme_.step() * (now.force - algorithmic_.force);
+  impulse_.moment -= scheme_.step() * (now.moment - algorithmic_.moment);
   algorithmic_ = now;
 }
 

@@ -49,8 +49,8 @@ class MomentumAccount {
   Resultant constant_load_;
   Points positions_;  ///< of the contact points: Σ_j c_ij X_j
   Sum previous_;
-  Resultant algorithmic_;  ///< of Scheme::algorithmic_velocity
-  Vector velocity_, momentum_;
+  Resultant algorithmic_;  ///< of M a, Scheme::momentum_acceleration
+  Vector acceleration_, momentum_;
   Resultant impulse_;
   double size_ = 0.0;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "ricochet/base/error.hpp"
 
@@ -18,55 +19,114 @@ bool is_finite(const SemidiscreteProblem& problem, StageDofs dofs, const Vector&
                      [&](Index dof) { return std::isfinite(increment[dof]); });
 }
 
+/// Of what a solver keeps.
+std::string level_name(int number) {
+  return "solver." + std::to_string(number);
+}
+
+void require_changing_steps(const Scheme& scheme) {
+  if (scheme.changes_step()) return;
+  throw Error(ErrorKind::invalid_input,
+              "this time scheme remembers the step before and cannot change its length: give time.step as a number, or "
+              "use scheme \"reduced-kane\"");
+}
+
 }  // namespace
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
-                       const StepSolverOptions& options)
-    : problem_(problem), scheme_(scheme) {
+                       const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
+    : problem_(problem), scheme_(scheme), options_(options) {
   if (!scheme_.takes_nonlinear_force()) require_linear(*problem_.internal_force, "this time scheme");
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
   scheme_.start(problem_, state_);
-  make_solver(options);
+  if (control) {
+    require_changing_steps(scheme_);
+    control_.emplace(problem_, *control);
+    control_->start(state_);
+    scheme_.change_step(problem_, control_->step());
+  }
+  current_ = &make_level(control_ ? control_->level() : 0, options_);
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
 }
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
-                       const StepSolverOptions& options)
-    : problem_(problem), scheme_(scheme) {
+                       const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
+    : problem_(problem), scheme_(scheme), options_(options) {
   state_ = load_state(problem_, snapshot, "state");
   scheme_.analyse(problem_);
-  // Whatever would be chosen for the steps that are left: another method has other bits.
-  StepSolverOptions kept = options;
-  kept.chosen = saved_methods(snapshot, "solver", scheme_.operators(problem_).size());
-  make_solver(kept);
-  solver_->load(snapshot, "solver");
+  int first = 0;
+  if (control) {
+    require_changing_steps(scheme_);
+    control_.emplace(problem_, *control);
+    control_->load(snapshot, "control");
+    first = static_cast<int>(snapshot.integer("level"));
+  }
+  for (const std::int64_t level : snapshot.integers("levels", 0, StepControl::most_levels)) {
+    const auto number = static_cast<int>(level);
+    if (control_) scheme_.change_step(problem_, control_->step_of(number));
+    const std::string name = level_name(number);
+    // Whatever would be chosen for the steps that are left: another method has other bits.
+    StepSolverOptions kept = options;
+    kept.chosen = saved_methods(snapshot, name, scheme_.operators(problem_).size());
+    make_level(number, kept).solver->load(snapshot, name);
+  }
+  if (!levels_.contains(first)) Snapshot::refuse("level", "is none of the lengths of steps");
+  if (control_) scheme_.change_step(problem_, control_->step_of(first));
+  current_ = &levels_.at(first);
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, snapshot, "account");
 }
 
 void Simulation::save(Snapshot& snapshot) const {
   ricochet::save(state_, snapshot, "state");
-  solver_->save(snapshot, "solver");
+  Snapshot::Integers numbers;
+  for (const auto& [number, level] : levels_) {
+    numbers.push_back(number);
+    level.solver->save(snapshot, level_name(number));
+    if (&level == current_) snapshot.save("level", std::int64_t{number});
+  }
+  snapshot.save("levels", std::move(numbers));
+  if (control_) control_->save(snapshot, "control");
   account_->save(snapshot, "account");
 }
 
-void Simulation::make_solver(const StepSolverOptions& options) {
+Simulation::Level& Simulation::make_level(int number, const StepSolverOptions& options) {
   const std::vector<OperatorCoefficients> operators = scheme_.operators(problem_);
-  solver_ = make_step_solver(problem_, operators, options);
-  stages_.resize(operators.size());
-  for (std::size_t number = 0; number < operators.size(); ++number) {
-    stages_[number].dofs = operators[number].dofs;
-    stages_[number].stage.rows = problem_.contact.rows;
+  Level& level = levels_[number];
+  level.solver = make_step_solver(problem_, operators, options);
+  level.solver->observe_contact(observer_);
+  level.stages.resize(operators.size());
+  for (std::size_t i = 0; i < operators.size(); ++i) {
+    level.stages[i].dofs = operators[i].dofs;
+    level.stages[i].stage.rows = problem_.contact.rows;
   }
+  return level;
+}
+
+void Simulation::observe_contact(const ContactObserver& observer) {
+  observer_ = observer;
+  for (auto& [number, level] : levels_) level.solver->observe_contact(observer);
+}
+
+std::size_t Simulation::factor_entries() const {
+  std::size_t sum = 0;
+  for (const auto& [number, level] : levels_) sum += level.solver->factor_entries();
+  return sum;
+}
+
+double Simulation::contact_seconds() const {
+  double sum = 0.0;
+  for (const auto& [number, level] : levels_) sum += level.solver->contact_seconds();
+  return sum;
 }
 
 Stage& Simulation::stage(std::size_t number) {
-  return stages_.at(number).stage;
+  return current_->stages.at(number).stage;
 }
 
 const StageSolution& Simulation::solve(std::size_t number) {
-  auto& [stage, solution, dofs] = stages_.at(number);
-  solver_->solve(number, stage, solution);
+  auto& [stage, solution, dofs] = current_->stages.at(number);
+  current_->solver->solve(number, stage, solution);
   if (problem_.ranks->any(!is_finite(problem_, dofs, solution.increment))) {
     throw Error(ErrorKind::not_converged,
                 "the displacement is no longer finite, so the motion has grown beyond all bounds; use a stable scheme "
@@ -76,11 +136,12 @@ const StageSolution& Simulation::solve(std::size_t number) {
   return solution;
 }
 
-void Simulation::advance() {
+/// One attempt. Leaves step and time as they were.
+void Simulation::take_step() {
   iterations_ = 0;
   // Rows that follow the motion go on from those of the state, whatever was solved in between.
   if (problem_.contact.follows_motion()) {
-    for (SolvedStage& each : stages_) each.stage.rows = state_.forces.rows;
+    for (SolvedStage& each : current_->stages) each.stage.rows = state_.forces.rows;
   }
   try {
     scheme_.advance(problem_, state_, *this, increment_);
@@ -93,8 +154,41 @@ void Simulation::advance() {
                                             problem_.contact.size(), problem.what(), advice));
   }
   state_.iterations = iterations_;
+}
+
+/// An operator that is needed for the first time is factorized.
+void Simulation::use_level(int number) {
+  if (scheme_.step() != control_->step_of(number))
+    account_->change_step(state_, [&] { scheme_.change_step(problem_, control_->step_of(number)); });
+  const auto found = levels_.find(number);
+  current_ = found != levels_.end() ? &found->second : &make_level(number, options_);
+}
+
+void Simulation::take_controlled_step() {
+  before_ = state_;
+  while (true) {
+    use_level(control_->level());
+    try {
+      take_step();
+    } catch (const Error& problem) {
+      if (problem.kind() != ErrorKind::not_converged || !control_->shorten()) throw;
+      continue;
+    }
+    const double energy =
+        0.5 * problem_.mass.form(state_.velocity) + problem_.internal_force->energy(state_.displacement);
+    if (control_->accept(before_, state_, energy)) return;
+    state_ = before_;
+  }
+}
+
+void Simulation::advance() {
+  if (control_) {
+    take_controlled_step();
+  } else {
+    take_step();
+  }
   state_.step += 1;
-  state_.time = static_cast<double>(state_.step) * scheme_.step();
+  state_.time = control_ ? control_->time() : static_cast<double>(state_.step) * scheme_.step();
   account_->enter_step(increment_, state_);
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/simulation/energy_account.hpp"
 #include "ricochet/simulation/starting_state.hpp"
+#include "ricochet/simulation/step_control.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 /// @file A problem, a scheme and a state, step by step.
@@ -13,14 +16,15 @@ namespace ricochet {
 
 class Simulation : private StageSolve {
  public:
-  /// Finds the starting state and factorizes the scheme's operators. Keeps references to both arguments.
+  /// Finds the starting state and factorizes the scheme's operators. Keeps references to both arguments. With `control`
+  /// the lengths of steps follow the motion; throws Error(invalid_input) where the scheme cannot change them.
   Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
-             const StepSolverOptions& options = {});
+             const StepSolverOptions& options = {}, const std::optional<StepControlOptions>& control = {});
 
   /// Goes on from what save() has put into a snapshot: steps give the same bits as if there had been no interruption.
   /// Throws Error(invalid_input) where it does not fit.
   Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
-             const StepSolverOptions& options = {});
+             const StepSolverOptions& options = {}, const std::optional<StepControlOptions>& control = {});
   void save(Snapshot& snapshot) const;
 
   /// One step. Throws Error(not_converged) with the step, its time and what to try; the state is then that before the
@@ -28,14 +32,17 @@ class Simulation : private StageSolve {
   void advance();
 
   /// Shows the contact problems of the next steps, and their solutions, to the observer; none if it is empty.
-  void observe_contact(const ContactObserver& observer) { solver_->observe_contact(observer); }
+  void observe_contact(const ContactObserver& observer);
 
   [[nodiscard]] const State& state() const { return state_; }
   [[nodiscard]] EnergyAccount& account() { return *account_; }
   [[nodiscard]] const Vector& increment() const { return increment_; }
-  [[nodiscard]] std::size_t factor_entries() const { return solver_->factor_entries(); }
-  [[nodiscard]] double contact_seconds() const { return solver_->contact_seconds(); }
-  [[nodiscard]] const std::vector<ChosenMethod>& methods() const { return solver_->methods(); }
+  /// Null where all steps are of one length.
+  [[nodiscard]] const StepControl* control() const { return control_ ? &*control_ : nullptr; }
+  /// Of all operators that were factorized.
+  [[nodiscard]] std::size_t factor_entries() const;
+  [[nodiscard]] double contact_seconds() const;
+  [[nodiscard]] const std::vector<ChosenMethod>& methods() const { return current_->solver->methods(); }
 
  private:
   /// A stage of the step with what it gave.
@@ -44,16 +51,28 @@ class Simulation : private StageSolve {
     StageSolution solution;
     StageDofs dofs = StageDofs::all;  ///< that it solves for
   };
-  void make_solver(const StepSolverOptions& options);
+  /// Steps of one length.
+  struct Level {
+    std::unique_ptr<StepSolver> solver;
+    std::vector<SolvedStage> stages;
+  };
+  Level& make_level(int level, const StepSolverOptions& options);
+  void use_level(int level);
+  void take_step();
+  void take_controlled_step();
   Stage& stage(std::size_t number) override;
   const StageSolution& solve(std::size_t number) override;
 
   const SemidiscreteProblem& problem_;
   Scheme& scheme_;
   State state_;
-  std::unique_ptr<StepSolver> solver_;
+  StepSolverOptions options_;
+  ContactObserver observer_;
+  std::map<int, Level> levels_;  ///< by the control's number; one, 0, without control
+  Level* current_ = nullptr;
+  std::optional<StepControl> control_;
+  State before_;  ///< an attempt, with control
   std::unique_ptr<EnergyAccount> account_;
-  std::vector<SolvedStage> stages_;
   int iterations_ = 0;  ///< of the contact solver in this step
   Vector increment_;
 };

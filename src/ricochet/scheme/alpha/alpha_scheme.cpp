@@ -75,9 +75,9 @@ double AlphaScheme::algorithmic_energy(const SemidiscreteProblem& problem, const
              : weights_.energy_factor * problem.mass.form(state.memory.at(algorithmic_acceleration));
 }
 
-bool AlphaScheme::algorithmic_velocity(const State& state, Vector& velocity) const {
+bool AlphaScheme::momentum_acceleration(const State& state, Vector& acceleration) const {
   if (weights_.force == 0.5) return false;
-  velocity = ((0.5 - weights_.force) * step()) * state.memory.at(algorithmic_acceleration);
+  acceleration = (0.5 - weights_.force) * state.memory.at(algorithmic_acceleration);
   return true;
 }
 

@@ -37,6 +37,7 @@ class AlphaScheme final : public Scheme {
  public:
   AlphaScheme(double step, const AlphaWeights& weights) : Scheme(step), weights_(weights) {}
 
+  [[nodiscard]] bool changes_step() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return {{weights_.alpha, 1.0, damping_factor(problem)}};
   }
@@ -48,9 +49,14 @@ class AlphaScheme final : public Scheme {
   void start(const SemidiscreteProblem& problem, State& state) override;
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override;
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override;
-  bool algorithmic_velocity(const State& state, Vector& velocity) const override;
+  bool momentum_acceleration(const State& state, Vector& acceleration) const override;
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
     return {.numerical_dissipation = dissipation_};
+  }
+
+ protected:
+  void step_changed(const SemidiscreteProblem&) override {
+    weights_ = AlphaWeights(step(), weights_.inertia, weights_.force);
   }
 
  private:

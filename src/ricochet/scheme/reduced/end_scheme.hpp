@@ -12,6 +12,7 @@ class EndScheme : public Scheme {
  public:
   EndScheme(const std::string& name, double step) : Scheme(step), layer_(name, step) {}
 
+  [[nodiscard]] bool changes_step() const override { return true; }
   void analyse(const SemidiscreteProblem& problem) override { layer_.analyse(problem); }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return layer_.operators(problem, mean_of(problem));
@@ -31,6 +32,7 @@ class EndScheme : public Scheme {
 
  protected:
   [[nodiscard]] const MasslessLayer& layer() const { return layer_; }
+  void step_changed(const SemidiscreteProblem& problem) override { layer_.change_step(problem, step()); }
 
  private:
   /// What acts over a step where there is a contact dof.

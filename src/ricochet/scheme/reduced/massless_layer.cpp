@@ -30,6 +30,11 @@ void MasslessLayer::analyse(const SemidiscreteProblem& problem) {
   find_damping(problem);
 }
 
+void MasslessLayer::change_step(const SemidiscreteProblem& problem, double step) {
+  step_ = step;
+  if (damps_ && !one_damping_) layer_rows_.analyse(problem, 1.0, 2.0 / step_);
+}
+
 void MasslessLayer::require_frictionless_planes(const SemidiscreteProblem& problem) const {
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorKind::invalid_input, fmt::format("scheme \"{}\" {}; use scheme \"reduced-kane\"", scheme_, what));

@@ -30,6 +30,7 @@ class MasslessLayer {
   /// For schemes whose balance of energy holds without friction, against planes, and without stiffness damping at
   /// contact nodes. After analyse(). Throws Error(invalid_input) that says what to use.
   void require_frictionless_planes(const SemidiscreteProblem& problem) const;
+  void change_step(const SemidiscreteProblem& problem, double step);
   [[nodiscard]] bool damps_contact_nodes() const { return damps_; }
   /// The layer's and the midpoint's; the midpoint's alone where there is no contact dof.
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem,

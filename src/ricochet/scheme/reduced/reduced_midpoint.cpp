@@ -16,6 +16,7 @@ class ReducedMidpoint final : public Scheme {
  public:
   explicit ReducedMidpoint(double step) : Scheme(step), layer_("reduced-midpoint", step) {}
 
+  [[nodiscard]] bool changes_step() const override { return true; }
   void analyse(const SemidiscreteProblem& problem) override {
     layer_.analyse(problem);
     layer_.require_frictionless_planes(problem);
@@ -48,6 +49,9 @@ class ReducedMidpoint final : public Scheme {
       corrections_.contact_work = -layer_.layer_work(problem, *stage.rows, result_, increment, stages).reactions;
   }
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override { return corrections_; }
+
+ protected:
+  void step_changed(const SemidiscreteProblem& problem) override { layer_.change_step(problem, step()); }
 
  private:
   /// The contact nodes at the end: K_cc δ = L₁ + Gᵀr₁ − (K u)_c, from where the step left them.

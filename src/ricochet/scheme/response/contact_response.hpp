@@ -23,6 +23,8 @@ class ContactResponse {
   /// W of these points, dense: points × points. Uses the stage; its vectors must be filled afterwards.
   const Matrix& among(const SemidiscreteProblem& problem, const ContactRows& rows, const std::vector<Index>& points,
                       StageSolve& stages);
+  /// The operator is another.
+  void forget() { columns_.clear(); }
   /// A column of W: all points.
   const Vector& column(const SemidiscreteProblem& problem, const ContactRows& rows, Index point, StageSolve& stages);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
@@ -16,7 +17,8 @@ Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector&
   const Vector diagonal = w.diagonal();
   Vector p = ((approach.array().square() + 2.0 * diagonal.array() * lost.array()).sqrt() - approach.array()) /
              diagonal.array();
-  const double scale = lost.lpNorm<Eigen::Infinity>();
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  double last = std::numeric_limits<double>::infinity();
   const auto residual = [&](const Vector& at) { return Vector(at.cwiseProduct(approach + 0.5 * (w * at)) - lost); };
   const auto energy = [&](const Vector& at) {
     return approach.dot(at) + 0.25 * at.dot(w * at) - lost.dot(Vector(at.array().log()));
@@ -24,7 +26,11 @@ Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector&
   constexpr int most_iterations = 100;
   for (int k = 0; k < most_iterations; ++k) {
     const Vector error = residual(p);
-    if (error.lpNorm<Eigen::Infinity>() <= 1e-14 * scale) return p;
+    // Of the terms that the residual is the sum of: where p is large, they cancel.
+    const Vector terms = p.cwiseProduct(approach.cwiseAbs() + 0.5 * (w.cwiseAbs() * p)) + lost;
+    const double worst = error.cwiseQuotient(terms).lpNorm<Eigen::Infinity>();
+    if (worst <= rounding || (worst <= 32.0 * rounding && worst >= last)) return p;
+    last = worst;
     // d error / d ln p, which is positive definite: diag(c) + ½ diag(p) W diag(p) where error = 0.
     Matrix tangent = 0.5 * p.asDiagonal() * w * p.asDiagonal();
     tangent.diagonal() += (error + lost).cwiseMax(lost);

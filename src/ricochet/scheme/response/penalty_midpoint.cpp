@@ -52,6 +52,9 @@ class PenaltyMidpoint final : public Kane {
   void analyse(const SemidiscreteProblem& problem) override;
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override;
 
+ protected:
+  void step_changed(const SemidiscreteProblem&) override { response_.forget(); }
+
  private:
   [[nodiscard]] double energy(const Vector& gap) const;
   void find_forces(const SemidiscreteProblem& problem, const ContactRows& rows, StageSolve& stages);
@@ -73,13 +76,15 @@ void PenaltyMidpoint::analyse(const SemidiscreteProblem& problem) {
                 "scheme \"penalty-midpoint\" takes neither friction nor curved obstacles; take friction out, or use "
                 "scheme \"reduced-kane\"");
   }
-  const SparseRowMatrix& rows = problem.contact.rows->gap_operator;
   const SparseMatrix& k = problem.internal_force->tangent();
   stiffness_.setZero(problem.contact.size());
   for (Index i = 0; i < stiffness_.size(); ++i) {
-    const Vector row = Vector(rows.row(i));
-    const double length = row.squaredNorm();
-    if (length > 0.0) stiffness_[i] = penalty_ * row.dot(k * row) / (length * length);
+    double own = 0.0, length = 0.0;
+    problem.contact.rows->visit_normal(i, [&](Index a, double at_a) {
+      length += at_a * at_a;
+      problem.contact.rows->visit_normal(i, [&](Index b, double at_b) { own += at_a * k.coeff(a, b) * at_b; });
+    });
+    if (length > 0.0) stiffness_[i] = penalty_ * own / (length * length);
   }
 }
 

@@ -1,0 +1,146 @@
+#include "ricochet/simulation/step_control.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr double order = 2.0;  ///< of the error of a step
+constexpr int first_level = 4;
+constexpr double aim = 0.5;                            ///< of the tolerance, for the next step
+constexpr double most_ticks = 9e15;                    ///< time is an exact number of them
+constexpr int least_patience = 2, most_patience = 64;  ///< steps
+
+}  // namespace
+
+StepControl::StepControl(const SemidiscreteProblem& problem, const StepControlOptions& options)
+    : problem_(problem), options_(options) {
+  const auto refuse = [](const std::string& what) { throw Error(ErrorKind::invalid_input, what); };
+  if (!(options.smallest > 0.0) || options.smallest > options.largest)
+    refuse(fmt::format("the smallest step, {:.6g}, must be positive and at most the largest, {:.6g}", options.smallest,
+                       options.largest));
+  deepest_ = static_cast<int>(std::ceil(std::log2(options.largest / options.smallest) - 1e-9));
+  if (deepest_ > most_levels)
+    refuse(fmt::format("the smallest step, {:.6g}, is more than 2^{} times shorter than the largest, {:.6g}",
+                       options.smallest, most_levels, options.largest));
+  const double ticks = std::ceil(options.end / step_of(deepest_) * (1.0 - 1e-12));
+  if (!(ticks <= most_ticks))
+    refuse(fmt::format("{:.3g} of the smallest step, {:.6g}, lead to the end, {:.6g}; at most {:.0e} are possible",
+                       ticks, options.smallest, options.end, most_ticks));
+  end_ticks_ = std::max(std::int64_t{1}, static_cast<std::int64_t>(ticks));
+}
+
+double StepControl::step_of(int level) const {
+  return std::ldexp(options_.largest, -level);
+}
+
+void StepControl::start(const State& state) {
+  ticks_ = 0;
+  level_ = wanted_ = last_level_ = std::min(deepest_, first_level);
+  acceleration_before_ = state.acceleration;
+  // The acceleration at t = 0, where that of a step is at its middle.
+  step_before_ = 0.0;
+  fit_to_end();
+}
+
+bool StepControl::accept(const State& before, const State& after, double energy) {
+  const double h = step();
+  acceleration_ = (after.velocity - before.velocity) / h;
+  change_ = acceleration_ - acceleration_before_;
+  largest_energy_ = std::max(largest_energy_, energy);
+  const double own = 0.5 * problem_.mass.form(change_);
+  error_ = own > 0.0 ? h * h / (6.0 * (h + step_before_)) * std::sqrt(own / largest_energy_) / options_.tolerance : 0.0;
+  const bool grown = level_ < last_level_;
+  if (!(error_ <= 1.0)) {
+    if (level_ < deepest_) {
+      ++counts_.refused;
+      const double halvings = std::isfinite(error_) ? std::ceil(std::log2(error_ / aim) / order) : 3.0;
+      level_ = wanted_ = std::min(deepest_, level_ + std::clamp(static_cast<int>(halvings), 1, 3));
+      // Growth that fails is tried again ever more rarely.
+      backoff_ = grown ? std::min(2 * backoff_, most_patience) : least_patience;
+      patience_ = backoff_;
+      return false;
+    }
+    ++counts_.tolerated;
+  }
+  counts_.largest_error = std::max(counts_.largest_error, error_);
+  counts_.shortest = counts_.shortest == 0.0 ? h : std::min(counts_.shortest, h);
+  counts_.longest = std::max(counts_.longest, h);
+  ticks_ += ticks_of(level_);
+  std::swap(acceleration_, acceleration_before_);
+  step_before_ = h;
+  ++steps_;
+  last_level_ = level_;
+  if (grown) {
+    backoff_ = least_patience;
+    patience_ = 0;
+  }
+  --patience_;
+  // Vibrations that no step of this size resolves have a smaller error with a longer one: it is worth a try now and
+  // then.
+  const bool may_grow = error_ <= aim ? patience_ < 0 : patience_ < -most_patience;
+  if (may_grow && level_ == wanted_ && wanted_ > 0) --wanted_;
+  level_ = wanted_;
+  fit_to_end();
+  return true;
+}
+
+bool StepControl::shorten() {
+  if (level_ == deepest_) return false;
+  ++counts_.unsolved;
+  level_ = ++wanted_;
+  patience_ = backoff_ = least_patience;
+  return true;
+}
+
+/// No step goes beyond the end.
+void StepControl::fit_to_end() {
+  while (level_ < deepest_ && ticks_ + ticks_of(level_) > end_ticks_) ++level_;
+}
+
+void StepControl::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".ticks", ticks_);
+  snapshot.save(name + ".levels", Snapshot::Integers{level_, wanted_, last_level_, deepest_});
+  snapshot.save(name + ".steps", Snapshot::Integers{steps_, patience_, backoff_});
+  snapshot.save(name + ".counts", Snapshot::Integers{counts_.refused, counts_.unsolved, counts_.tolerated});
+  Vector numbers(6);
+  numbers << largest_energy_, step_before_, error_, counts_.largest_error, counts_.shortest, counts_.longest;
+  snapshot.save(name + ".numbers", numbers);
+  snapshot.save(name + ".acceleration", acceleration_before_);
+}
+
+void StepControl::load(const Snapshot& snapshot, const std::string& name) {
+  ticks_ = snapshot.integer(name + ".ticks");
+  const Snapshot::Integers& levels = snapshot.integers(name + ".levels", 0, most_levels);
+  if (levels.size() != 4 || levels[3] != deepest_) Snapshot::refuse(name + ".levels", "are those of other steps");
+  level_ = static_cast<int>(levels[0]);
+  wanted_ = static_cast<int>(levels[1]);
+  last_level_ = static_cast<int>(levels[2]);
+  const Snapshot::Integers& steps = snapshot.integers(name + ".steps");
+  if (steps.size() != 3) Snapshot::refuse(name + ".steps", "are not three");
+  steps_ = steps[0];
+  patience_ = static_cast<int>(steps[1]);
+  backoff_ = static_cast<int>(steps[2]);
+  const Snapshot::Integers& counts = snapshot.integers(name + ".counts");
+  if (counts.size() != 3) Snapshot::refuse(name + ".counts", "are not three");
+  counts_.refused = counts[0];
+  counts_.unsolved = counts[1];
+  counts_.tolerated = counts[2];
+  const Vector& numbers = snapshot.reals(name + ".numbers", 6);
+  largest_energy_ = numbers[0];
+  step_before_ = numbers[1];
+  error_ = numbers[2];
+  counts_.largest_error = numbers[3];
+  counts_.shortest = numbers[4];
+  counts_.longest = numbers[5];
+  acceleration_before_ = snapshot.reals(name + ".acceleration", problem_.dof_count());
+}
+
+}  // namespace ricochet

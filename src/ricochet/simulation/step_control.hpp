@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/state.hpp"
+#include "ricochet/simulation/step_counts.hpp"
+
+/// @file Steps whose length follows the motion.
+namespace ricochet {
+
+struct StepControlOptions {
+  double end = 0.0;        ///< the last step ends here, or less than a smallest step after it
+  double largest = 0.0;    ///< length of a step
+  double smallest = 0.0;   ///< below this no step is refused
+  double tolerance = 0.0;  ///< relative error of a step, see StepControl
+};
+
+/// Lengths are H 2^-k, H the largest, with k up to where they are at most `smallest`: an operator that was factorized
+/// serves again. Time is a whole number of the smallest length, so that it has no drift however many steps are taken.
+///
+/// The error of a step is what schemes of second order leave out of a displacement, e = (h³/12) U⃛, through h and in
+/// the norm of the kinetic energy, relative to the largest energy so far,
+///   error² = ½(e/h)ᵀM(e/h) / max (kinetic + elastic),   U⃛ ≈ 2(ā − ā₋)/(h+h₋),   ā = (V₁−V₀)/h
+/// with the mean acceleration ā₋ of the step before (O. C. Zienkiewicz, Y. M. Xie, Earthquake Engng Struct. Dyn. 20
+/// (1991) 871–887, give e for Newmark's scheme). Of a vibration with the part ε² of the energy it is (hω)²ε/12 while
+/// steps resolve it, at most about ε/3, and less the less they resolve it; contact nodes without inertia have no part.
+///
+/// A step with a larger error than the tolerance is taken again with a shorter one; where contact begins or ends
+/// accelerations jump, so that steps become short there until the change is met. A step with at most half of the
+/// allowed error is followed by one twice as long; after refusals growth waits, and the longer the more often it has
+/// failed. A step that finds no solution is taken again with a shorter one, too.
+class StepControl {
+ public:
+  static constexpr int most_levels = 40;
+
+  /// Throws Error(invalid_input) where the lengths do not fit together.
+  StepControl(const SemidiscreteProblem& problem, const StepControlOptions& options);
+
+  /// Opens at the state at t = 0.
+  void start(const State& state);
+
+  [[nodiscard]] bool at_end() const { return ticks_ >= end_ticks_; }
+  [[nodiscard]] double time() const { return static_cast<double>(ticks_) * step_of(deepest_); }
+  /// Number k of the length of the next step, and the length itself.
+  [[nodiscard]] int level() const { return level_; }
+  [[nodiscard]] double step() const { return step_of(level_); }
+  [[nodiscard]] double step_of(int level) const;
+
+  /// Whether the step from `before` to `after` may stay; chooses the length of the next step, or of the next attempt.
+  /// `energy`: kinetic and elastic energy after it.
+  [[nodiscard]] bool accept(const State& before, const State& after, double energy);
+  /// The step could not be solved: a shorter one. False where there is none.
+  [[nodiscard]] bool shorten();
+
+  [[nodiscard]] const StepCounts& counts() const { return counts_; }
+  /// Of the last step that stayed, relative to the tolerance.
+  [[nodiscard]] double error() const { return error_; }
+
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
+ private:
+  [[nodiscard]] std::int64_t ticks_of(int level) const { return std::int64_t{1} << (deepest_ - level); }
+  void fit_to_end();
+
+  const SemidiscreteProblem& problem_;
+  StepControlOptions options_;
+  int deepest_ = 0;
+  std::int64_t ticks_ = 0, end_ticks_ = 0;
+  int level_ = 0;                   ///< of the next step
+  int wanted_ = 0;                  ///< the same, but for the end
+  int last_level_ = 0;              ///< of the last step that stayed
+  std::int64_t steps_ = 0;          ///< that stayed
+  int patience_ = 0, backoff_ = 2;  ///< steps before lengths may grow again, and after the last refusal
+  double largest_energy_ = 0.0, step_before_ = 0.0, error_ = 0.0;
+  Vector acceleration_, acceleration_before_, change_;
+  StepCounts counts_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/simulation/momentum_account.hpp"
+#include "ricochet/simulation/step_control.hpp"
+#include "support/case_run.hpp"
+#include "support/paths.hpp"
+#include "support/thrown_body.hpp"
+
+// Steps whose length follows the motion.
+
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+using test_support::dragged_case;
+using test_support::masses_of;
+using test_support::takes_friction;
+using test_support::thrown_bodies;
+using test_support::time_of;
+
+const std::vector<std::string> adaptive = {"time.step=adaptive", "time.largest=0.1", "time.tolerance=0.001"};
+
+TEST(AdaptiveSteps, TimeHasNoDriftInAMillionSteps) {
+  const CaseRun run(test_support::thrown_case(test_support::one_sided_block(), "consistent", time_of("midpoint")));
+  const double largest = 0.1;  // no binary fraction
+  StepControl control(run.problem(), {.end = 1e9, .largest = largest, .smallest = largest / 1024, .tolerance = 1e-3});
+  State still = run.state();
+  still.velocity.setZero();
+  control.start(still);
+  // Lengths change all the time: a jump of the velocity shortens steps, rest lets them grow.
+  State jumped = still;
+  long steps = 0;
+  double sum = 0.0, longest = 0.0, shortest = largest;
+  for (long attempt = 0; steps < 1'000'000; ++attempt) {
+    jumped.velocity.setConstant(attempt % 100 == 0 ? 1.0 : 0.0);
+    const double length = control.step();
+    if (!control.accept(still, jumped, 1.0)) continue;
+    ++steps;
+    sum += length;
+    longest = std::max(longest, length);
+    shortest = std::min(shortest, length);
+    // A whole number of the smallest lengths, to the last bit.
+    const double smallest = std::ldexp(largest, -10);
+    ASSERT_EQ(control.time(), std::round(control.time() / smallest) * smallest);
+  }
+  EXPECT_EQ(longest, largest);
+  EXPECT_LT(shortest, 0.3 * largest);
+  EXPECT_NEAR(control.time(), sum, 1e-9 * sum);
+}
+
+TEST(AdaptiveSteps, EndAtTheEnd) {
+  for (const double end : {1.5, 1.0001, 0.9}) {
+    CaseRun run(test_support::thrown_case(thrown_bodies()[0], "equivalent", time_of("reduced-kane")),
+                {adaptive[0], adaptive[1], adaptive[2], "time.smallest=1e-4", "time.end=" + std::to_string(end)});
+    run.run([] {});
+    EXPECT_GE(run.state().time, end * (1.0 - 1e-12));
+    EXPECT_LE(run.state().time, end + 1e-4);
+    EXPECT_TRUE(run.session().at_end());
+  }
+}
+
+/// The accounts of energy and momentum go on over changes of the step and steps that are taken again, with friction, a
+/// moving obstacle, loads that vary and damping.
+TEST(AdaptiveSteps, AccountsCloseUnderEveryScheme) {
+  int schemes = 0;
+  for (const std::string& scheme : scheme_names()) {
+    const std::string mass = masses_of(scheme)[0];
+    const std::string text =
+        dragged_case(thrown_bodies()[0], mass, time_of(scheme), takes_friction(scheme) ? "friction = 0.3\n" : "");
+    try {
+      CaseRun run(text, adaptive);
+      ++schemes;
+      MomentumAccount momentum(run.problem(), run.scheme(), run.state());
+      const auto impulse_of = [&](const State& state) {
+        Vector flow;
+        run.problem().mass.multiply(state.velocity, flow);
+        Eigen::Vector2d sum(0.0, 0.0);
+        for (Index i = 0; i < flow.size(); ++i) sum[i % 2] += flow[i];
+        return sum;
+      };
+      const Eigen::Vector2d start = impulse_of(run.state());
+      double largest = 0.0, worst = 0.0, drift = 0.0;
+      run.run(
+          [&] {
+            const Energies now = run.simulation().account().energies(run.state());
+            largest = std::max({largest, now.kinetic, now.elastic, std::abs(now.total())});
+            worst = std::max(worst, std::abs(run.simulation().account().residual(now)));
+            momentum.enter_step(run.state());
+            drift = std::max(drift, (impulse_of(run.state()) - start - momentum.impulse().force.head<2>()).norm());
+          },
+          false);
+      EXPECT_LT(worst, 1e-12 * largest) << scheme;
+      EXPECT_LT(drift, 1e-12 * momentum.size()) << scheme;
+      const StepCounts& counts = run.simulation().control()->counts();
+      EXPECT_GT(counts.refused, 0) << scheme;
+      EXPECT_GT(counts.longest, counts.shortest) << scheme;
+      EXPECT_EQ(counts.unsolved, 0) << scheme;
+    } catch (const Error& refusal) {
+      EXPECT_NE(std::string(refusal.what()).find("remembers the step before"), std::string::npos) << refusal.what();
+      EXPECT_NE(std::string(refusal.what()).find("time.step"), std::string::npos) << refusal.what();
+    }
+  }
+  EXPECT_GE(schemes, 14);
+}
+
+/// A rubber ball with some damping falls 5 mm, bounces and falls again: cases/ball.
+std::vector<std::string> ball(std::initializer_list<const char*> more) {
+  std::vector<std::string> result = {"material.0.damping.stiffness=2e-5"};
+  result.insert(result.end(), more.begin(), more.end());
+  return result;
+}
+
+struct Bounces {
+  std::vector<double> time, height;
+  long solves = 0;
+  double first_touch = -1.0, step_there = 0.0;
+};
+Bounces bounces(const std::vector<std::string>& changes) {
+  Session session(test_support::source_path("cases/ball/ball.toml"), changes);
+  session.start();
+  Bounces result;
+  const Index top = session.problem().dof_count() - 1;
+  double before = 0.0;
+  session.run([&] {
+    const State& state = session.state();
+    result.time.push_back(state.time);
+    result.height.push_back(state.displacement[top]);
+    if (result.first_touch < 0.0 && state.forces.normal_reaction.sum() > 0.0) {
+      result.first_touch = before;
+      result.step_there = state.time - before;
+    }
+    before = state.time;
+  });
+  const StepControl* const control = session.simulation().control();
+  result.solves = session.state().step + (control != nullptr ? control->counts().refused : 0);
+  return result;
+}
+
+/// Of the height over time, in the L² norm.
+double error(const Bounces& run, const Bounces& reference) {
+  const auto at = [](const Bounces& each, double time) {
+    const auto after =
+        static_cast<std::size_t>(std::lower_bound(each.time.begin(), each.time.end(), time) - each.time.begin());
+    if (after == 0 || after >= each.time.size()) return each.height[std::min(after, each.height.size() - 1)];
+    const double part = (time - each.time[after - 1]) / (each.time[after] - each.time[after - 1]);
+    return (1.0 - part) * each.height[after - 1] + part * each.height[after];
+  };
+  double sum = 0.0, size = 0.0;
+  for (double time = 0.01; time < 0.159; time += 1e-4) {
+    sum += std::pow(at(run, time) - at(reference, time), 2);
+    size += std::pow(at(reference, time), 2);
+  }
+  return std::sqrt(sum / size);
+}
+
+/// The error of fixed steps falls with their length; those that reach the adaptive run's error would be more than
+/// twice as many as its steps, refused ones included.
+TEST(AdaptiveSteps, ReachAGivenErrorWithHalfTheWorkOfFixedSteps) {
+  const Bounces reference = bounces(ball({"time.step=2e-5"}));
+  const Bounces adapted = bounces(ball({"time.step=adaptive", "time.largest=0.01", "time.tolerance=1e-3"}));
+  const double reached = error(adapted, reference);
+  EXPECT_LT(reached, 0.08);
+  double least = 1e300;  // steps that fixed ones need for this error, between two runs
+  double error_before = 0.0, steps_before = 0.0;
+  for (const char* const step : {"time.step=8e-4", "time.step=4e-4", "time.step=2e-4", "time.step=1e-4"}) {
+    const Bounces fixed = bounces(ball({step}));
+    const double own = error(fixed, reference);
+    const auto steps = static_cast<double>(fixed.solves);
+    if (own <= reached) {
+      least = steps;
+      if (error_before > reached)
+        least = steps_before *
+                std::pow(steps / steps_before, std::log(reached / error_before) / std::log(own / error_before));
+      break;
+    }
+    error_before = own;
+    steps_before = steps;
+  }
+  EXPECT_LT(2.0 * static_cast<double>(adapted.solves), least) << "error " << reached;
+  // The first touch is met: free fall of 5 mm takes √(2H/g).
+  EXPECT_NEAR(adapted.first_touch, std::sqrt(2.0 * 0.005 / 9.81), 1.5e-3);
+  EXPECT_LT(adapted.step_there, 2e-3);
+}
+
+}  // namespace
+}  // namespace ricochet
