@@ -43,10 +43,10 @@ Section time_section() {
           {.name = "tolerance",
            .type = KeyType::number,
            .unit = "1",
-           .standard = "1e-3",
            .range = {.above = 0.0, .at_most = 0.1},
-           .doc = "Of adaptive steps: allowed error of a step, in the norm of the elastic energy and relative to the "
-                  "largest energy so far. A step with more is taken again with a shorter one."},
+           .doc = "Of adaptive steps: allowed error of a step, in the norm of the kinetic energy and relative to the "
+                  "root of the largest energy so far. A step with more is taken again with a shorter one. Default: "
+                  "1e-3."},
           {.name = "largest",
            .type = KeyType::number,
            .unit = "time",

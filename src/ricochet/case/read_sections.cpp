@@ -142,7 +142,7 @@ void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
     }
     return;
   }
-  time.tolerance = reader.number("tolerance");
+  time.tolerance = reader.optional_number("tolerance").value_or(1e-3);
   if (!reader.is_given("largest")) {
     reader.add_problem("step",
                        "adaptive steps need \"largest\", the longest of them: at most the time between two "

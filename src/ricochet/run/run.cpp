@@ -273,7 +273,7 @@ bool Run::advance() {
   const Timer timer;
   step_ = simulation.state().step + 1;
   if (log::enabled(log::Level::debug))
-    log::debug(fmt::format("step {} from t = {:.9g}", step_, simulation.state().time));
+    log::debug(fmt::format("step {}, t = {:.9g}", step_, simulation.state().time + session_.scheme().step()));
   if (contact_export_) contact_export_->begin_step(step_);
   simulation.advance();
   step_seconds_ = timer.seconds();

@@ -119,7 +119,7 @@ TEST(MalformedCase, Values) {
        "10:8: \"beta\" is for the scheme \"newmark\" only; the scheme is \"midpoint\""},
       {9, "scheme = \"klr-conserving\"\npreset = \"trapezoidal\"",
        "10:10: \"preset\" is for the scheme \"newmark\" only; the scheme is \"klr-conserving\""},
-      {10, "step = 0", "10:8: \"step\" must be a positive number (unit: time); found the integer 0"},
+      {10, "step = 0", "10:8: \"step\" must be a positive number, or \"adaptive\" (unit: time); found the integer 0"},
       {10, "step = 2.0", "11:7: \"end\" is 1, before the end of the first step of 2"},
       {10, "step = 1e-10", "10:8: a step of 1e-10 up to the end 1 makes 1e+10 steps; at most 1e+09 are possible"},
       {11, "end = -1.0", "11:7: \"end\" must be a positive number (unit: time); found the number -1.0"},

@@ -75,10 +75,12 @@ TEST(Overrides, SayWhatIsWrongWithThem) {
       {"tme.step=1", "unknown section \"tme\"; did you mean [time]?"},
       {"material.0.damping.mas=1", "unknown key \"mas\" in material.damping; did you mean \"mass\"?"},
       {"obstacle.floor.normal.1=1", "\"normal\" is a vector of 2 or 3 numbers: it has no part \"1\""},
-      {"time.step=fast", "\"step\" must be a positive number (unit: time); found the text \"fast\""},
-      {"time.step=", "\"step\" must be a positive number (unit: time); found the text \"\""},
-      {"time.step=nan", "\"step\" must be a positive number (unit: time); found the number nan, which is not finite"},
-      {"time.step=1\nfoo=2", "\"step\" must be a positive number (unit: time); found the text \"1\nfoo=2\""},
+      {"time.step=fast", "\"step\" must be a positive number, or \"adaptive\" (unit: time); found the text \"fast\""},
+      {"time.step=", "\"step\" must be a positive number, or \"adaptive\" (unit: time); found the text \"\""},
+      {"time.step=nan",
+       "\"step\" must be a positive number, or \"adaptive\" (unit: time); found the number nan, which is not finite"},
+      {"time.step=1\nfoo=2",
+       "\"step\" must be a positive number, or \"adaptive\" (unit: time); found the text \"1\nfoo=2\""},
       {"contact.0.friction=-0.3", "\"friction\" must be a number of at least 0; found the number -0.3"},
       {"obstacle.wall.type=plane",
        "[obstacle.wall] has no \"point\": a vector of 2 or 3 numbers (unit: length). A point of "
@@ -94,7 +96,7 @@ TEST(Overrides, SayWhatIsWrongWithThem) {
 
 TEST(Overrides, ComeAfterTheProblemsOfTheFile) {
   EXPECT_EQ(problems_of(edited_case(10, "step = 0"), {"mesh.degree=3", "tim.end=3"}),
-            "10:8: \"step\" must be a positive number (unit: time); found the integer 0\n"
+            "10:8: \"step\" must be a positive number, or \"adaptive\" (unit: time); found the integer 0\n"
             "--set tim.end=3: unknown section \"tim\"; did you mean [time]?\n"
             "--set mesh.degree=3: \"degree\" must be 1 or 2; found the integer 3");
 }

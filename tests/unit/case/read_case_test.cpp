@@ -270,4 +270,23 @@ TEST(ReadCase, AnEmptyFileLacksTheRequiredSections) {
       "1:1: there is no section [time], which must have \"step\" and \"end\". The time scheme and its steps.");
 }
 
+TEST(ReadCase, AdaptiveSteps) {
+  const TimeSection time = read_text(edited_case(10, "step = \"adaptive\"\nlargest = 0.25")).time;
+  EXPECT_TRUE(time.adaptive);
+  EXPECT_EQ(time.step, 0.25);
+  EXPECT_EQ(time.tolerance, 1e-3);
+  EXPECT_EQ(time.smallest, 0.25 / 1048576);
+  const TimeSection fixed = read_text(edited_case(10, "step = \"adaptive\"\nlargest = 0.25"), {"time.step=0.5"}).time;
+  EXPECT_FALSE(fixed.adaptive);
+  EXPECT_EQ(fixed.step, 0.5);
+  EXPECT_EQ(problems_of(edited_case(10, "step = 0.1\nlargest = 0.25")),
+            "11:11: \"largest\" is of adaptive steps; write step = \"adaptive\"");
+  EXPECT_EQ(
+      problems_of(edited_case(10, "step = \"adaptive\"")),
+      "10:8: adaptive steps need \"largest\", the longest of them: at most the time between two rows that you want "
+      "to see");
+  EXPECT_EQ(problems_of(edited_case(10, "step = \"adaptive\"\nlargest = 0.25\nsmallest = 0.5")),
+            "12:12: \"smallest\" is 0.5, above \"largest\", 0.25");
+}
+
 }  // namespace ricochet::case_test

@@ -76,7 +76,9 @@ TEST(CaseSchema, CarriesBoundsChoicesAndUnits) {
   const Json properties = Json::parse(case_schema()).at("properties");
   const Json& time = properties.at("time").at("properties");
   EXPECT_EQ(time.at("scheme").at("enum"), Json(scheme_names()));
-  EXPECT_EQ(time.at("step").at("exclusiveMinimum"), 0);
+  EXPECT_EQ(time.at("end").at("exclusiveMinimum"), 0);
+  EXPECT_EQ(time.at("step").at("anyOf").at(0).at("exclusiveMinimum"), 0);
+  EXPECT_EQ(time.at("step").at("anyOf").at(1).at("enum"), Json{"adaptive"});
   EXPECT_NE(time.at("step").at("description").get<std::string>().find("Unit: time."), std::string::npos);
   EXPECT_EQ(properties.at("mesh").at("properties").at("degree").at("enum"), (Json{1, 2}));
   EXPECT_EQ(properties.at("mesh").at("properties").at("scale").at("default"), 1);
