@@ -52,15 +52,13 @@ class BarImpact:
         return self.force if self.begin < time < self.end else 0.0
 
 
-def row_of(quantity):
-    """The column and the row of history.COLUMN[i], or None."""
-    found = re.fullmatch(r"history\.(.+)\[(-?\d+)\]", quantity)
-    return (found[1], int(found[2])) if found else None
-
-
-def time_of_row(case, row):
-    step, end = case["time"]["step"], case["time"]["end"]
-    return row * step if row >= 0 else end
+def place_of(case, quantity):
+    """The column and the time of history.COLUMN(t=T), or of the first or the last row of it; else no column."""
+    found = re.fullmatch(r"history\.(.+)(?:\(t=(.+)\)|\[(0|-1)\])", quantity)
+    if not found:
+        return None, 0.0
+    column, time, row = found.groups()
+    return column, float(time) if time else 0.0 if row == "0" else case["time"]["end"]
 
 
 def bar(case, quantity, area, axis):
@@ -84,8 +82,7 @@ def bar(case, quantity, area, axis):
     }
     if quantity in fixed:
         return fixed[quantity]
-    column, row = row_of(quantity) or (None, 0)
-    time = time_of_row(case, row)
+    column, time = place_of(case, quantity)
     moving = {
         f"contact_force_{letter}": lambda: impact.force_at(time),
         "struck.pressure": lambda: impact.force_at(time) / area,
@@ -110,7 +107,7 @@ def wedge_force(friction, weight):
 def cgs_4(case, quantity):
     mass = case["material"][0]["density"] * WEDGE_AREA
     weight = -case["load"]["gravity"][1] * mass
-    column, row = row_of(quantity) or (None, 0)
+    column, time = place_of(case, quantity)
     found = re.fullmatch(r"(push|wedge)-(\d)\.(force_x|velocity_average_x)", column or "")
     if not found:
         return None
@@ -121,7 +118,7 @@ def cgs_4(case, quantity):
     # threshold.toml: (F - F*) rises from -0.001 F* at t = 0.01 to 0.001 F* at t = 0.03. Sliding starts where it is 0, at t = 0.02,
     # under (F - F*) (cos a - mu sin a) along the incline.
     cosine = 1.0 / math.sqrt(1.0 + SLOPE**2)
-    impulse = 0.001 * threshold * (0.5 * 0.01 + time_of_row(case, row) - 0.03)
+    impulse = 0.001 * threshold * (0.5 * 0.01 + time - 0.03)
     return impulse * (cosine - friction * SLOPE * cosine) / mass * cosine
 
 
@@ -138,8 +135,8 @@ def cattaneo_mindlin(case, quantity):
     def stick(force):
         return half_width * math.sqrt(1.0 - force / (friction * load))
 
-    column, row = row_of(quantity) or (None, 0)
-    force = push * min(time_of_row(case, row) / 200.0, 1.0)
+    column, time = place_of(case, quantity)
+    force = push * min(time / 200.0, 1.0)
     return {
         "contact.area": 2.0 * half_width,
         "middle.pressure": largest,
@@ -159,8 +156,8 @@ def greco(case, quantity):
 
 def rod(case, quantity):
     """E = rho = L = 1: u(0, t) has the period 3; height 0.1."""
-    column, row = row_of(quantity) or (None, 0)
-    time = time_of_row(case, row) % 3.0
+    column, time = place_of(case, quantity)
+    time %= 3.0
     return {
         "tip.displacement_x": max(0.5 - 0.5 * time, 0.0, 0.5 * (time - 2.0)),
         "tip.pressure": 0.5 if 1.0 < time < 2.0 else 0.0,
@@ -170,8 +167,7 @@ def rod(case, quantity):
 
 def bar_impact(case, quantity):
     impact = BarImpact(10.0, 0.5, 900.0, 1.0, 10.0, 5.0)
-    column, row = row_of(quantity) or (None, 0)
-    time = time_of_row(case, row)
+    column, time = place_of(case, quantity)
     return {
         "bottom.pressure": impact.force_at(time) / 0.5,
         "contact_force_y": impact.force_at(time),
@@ -184,8 +180,7 @@ def bar_impact(case, quantity):
 
 def bar_bounce(case, quantity):
     """Period 16/3; contact from 1 to 5/3, and its time reverse from 11/3 to 13/3."""
-    column, row = row_of(quantity) or (None, 0)
-    time = time_of_row(case, row)
+    column, time = place_of(case, quantity)
     if column == "bottom.pressure":
         since = (time - 1.0) % (16.0 / 3.0)
         return 300.0 + 300.0 * since if since < 2.0 / 3.0 else 300.0 + 300.0 * (10.0 / 3.0 - since)
@@ -203,8 +198,7 @@ def layer(case, quantity, friction):
     speed = 0.01
     a = friction * 0.01
     phases = math.ceil((speed / a - 1.0) / 2.0 - 1e-9)
-    column, row = row_of(quantity) or (None, 0)
-    time = time_of_row(case, row)
+    column, time = place_of(case, quantity)
     slip = sum(min(max(time - 2.0 * k, 0.0), 2.0) * (speed - (1 + 2 * k) * a) for k in range(phases))
     left = speed - 2.0 * phases * a
     sticks = time > 2.0 * phases
@@ -222,8 +216,7 @@ def incline(case, quantity, friction):
     mass = 20.0
     along, across = case["load"]["gravity"][0], -case["load"]["gravity"][1]
     force = min(friction * across, along)
-    column, row = row_of(quantity) or (None, 0)
-    time = time_of_row(case, row)
+    column, time = place_of(case, quantity)
     return {
         "contact_force_x": -mass * force,
         "momentum_x": mass * (along - force) * time,

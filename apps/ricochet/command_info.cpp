@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "comparison_text.hpp"
 #include "contact_text.hpp"
+#include "expectation_text.hpp"
 #include "method_text.hpp"
 #include "outcome_text.hpp"
 #include "penetration_text.hpp"
@@ -142,6 +143,7 @@ void describe_result(const std::string& directory) {
   print_probes(s);
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
              s.timings.empty() ? "" : duration_text(s.timings.back().second));
+  print_expectations(s.expectations);
   for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
 }
 

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "commands.hpp"
 #include "contact_text.hpp"
+#include "expectation_text.hpp"
 #include "method_text.hpp"
 #include "outcome_text.hpp"
 #include "penetration_text.hpp"
@@ -25,29 +24,6 @@ namespace ricochet::program {
 namespace {
 
 constexpr std::size_t most_impacts_shown = 5;
-
-/// How many hold; those that do not, and why some were left out.
-void print_expectations(const std::vector<ExpectationResult>& expectations) {
-  if (expectations.empty()) return;
-  const auto hold =
-      std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return e.checked && e.holds; });
-  const auto left_out =
-      std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return !e.checked; });
-  const auto checked = static_cast<long>(expectations.size()) - left_out;
-  const std::string others = fmt::format("{} not apply to this run (summary.json says why)",
-                                         left_out == 1 ? "1 does" : fmt::format("{} do", left_out));
-  if (checked == 0) {
-    fmt::print("  expectations: {}\n", others);
-  } else {
-    fmt::print("  {} of {}{}\n", hold, counted(checked, "expectation") + (checked == 1 ? " holds" : " hold"),
-               left_out > 0 ? "; " + others : "");
-  }
-  for (const ExpectationResult& e : expectations) {
-    if (!e.checked || e.holds) continue;
-    fmt::print("  DOES NOT HOLD: {} (wanted {}, found {:.9g}{})\n", e.quantity, e.wanted, e.value,
-               e.note.empty() ? "" : "; " + e.note);
-  }
-}
 
 void print_summary(const RunSummary& s, const std::string& directory) {
   const ColumnDigest energy = s.digest("total_energy");
@@ -125,8 +101,7 @@ int run(const RunArguments& given) {
   for (const ExpectationResult& e : summary.expectations) {
     if (e.checked && !e.holds) {
       throw Error(ErrorKind::expectation,
-                  fmt::format("{}: expected {} to be {}, found {:.9g}{}", e.location, e.quantity, e.wanted, e.value,
-                              e.note.empty() ? "" : " (" + e.note + ")"));
+                  fmt::format("{}: expected {} to be {}, {}", e.location, e.label(), e.wanted, found_text(e)));
     }
   }
   return 0;

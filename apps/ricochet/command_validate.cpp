@@ -106,7 +106,7 @@ int validate(const ValidateArguments& arguments) {
     return 0;
   }
   const Model& model = session.model();
-  check_expected_columns(input, model);
+  check_expected_quantities(input, model);
   session.scheme().analyse(model.problem);
   const double start_seconds = estimate(input, model.problem, session.scheme());
   // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.

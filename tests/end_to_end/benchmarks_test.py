@@ -6,7 +6,7 @@ import pathlib
 import sys
 import unittest
 
-from harness import History, TestCase, run
+from harness import OTHER_ROW, History, TestCase, run
 
 CASE = pathlib.Path(sys.argv.pop(1))
 
@@ -21,6 +21,8 @@ class BenchmarkTest(TestCase):
         self.assertGreater(len(summary["expectations"]), 4)
         for expectation in summary["expectations"]:
             self.assertTrue(expectation["holds"], expectation)
+            self.assertTrue(expectation["name"], expectation)
+            self.assertNotRegex(expectation["quantity"], OTHER_ROW)
         history = History(results / "history.csv")
         scale = history.largest_energy()
         for step, residual in zip(history["step"], history["energy_residual"]):

@@ -7,7 +7,7 @@ import sys
 import tomllib
 import unittest
 
-from harness import History, TestCase, run
+from harness import OTHER_ROW, History, TestCase, run
 
 CASE = pathlib.Path(sys.argv.pop(1))
 
@@ -54,6 +54,7 @@ class CaseTest(TestCase):
         self.check_warnings(summary)
         for expectation in summary["expectations"]:
             self.assertTrue(expectation["holds"], expectation)
+            self.assertNotRegex(expectation["quantity"], OTHER_ROW)
 
     def check_warnings(self, summary):
         """A case shows what is recommended: of its scheme and its step, of losses and of energy from nowhere nothing is to be

@@ -155,6 +155,30 @@ class CommandLine(TestCase):
             process = self.expect_status(4, run("validate", case, "--set", f"mesh.file={name}"))
             self.assertIn(f"nothere.{name[-3:]}; a relative path", process.stderr)
 
+    def test_expectations_are_named_and_told_in_numbers(self):
+        text = block_case() + ('[[expect]]\nname = "the energy"\nquantity = "history.total_energy(t=0)"\n'
+                               'over = "max(history.step)"\ntimes = 2.0\nvalue = 7.0\nrelative = 0.01\n'
+                               'published = "elsewhere: 6.9"\n')
+        case = self.write("named.toml", text)
+        process = self.expect_status(5, run("run", case, "-o", self.folder / "out", "--quiet"))
+        self.assertIn(": expected the energy to be 7 within 0.01 relative, found ", process.stderr)
+        for listed in (process.stdout, self.expect_status(0, run("info", self.folder / "out")).stdout):
+            self.assertIn("DOES NOT HOLD: the energy (wanted 7 within 0.01 relative, found ", listed)
+            self.assertIn("published: elsewhere: 6.9", listed)
+        found = json.loads((self.folder / "out" / "summary.json").read_text(encoding="utf-8"))["expectations"][0]
+        self.assertEqual((found["name"], found["published"]), ("the energy", "elsewhere: 6.9"))
+        self.assertEqual(found["quantity"], "2 * history.total_energy(t=0) / max(history.step)")
+        self.assertEqual((found["wanted_value"], found["tolerance"]), (7.0, 0.07))
+        self.assertNotIn("minimum", found)
+        history = History(self.folder / "out" / "history.csv")
+        self.assertAlmostEqual(found["value"], 2.0 * history["total_energy"][0] / history["step"][-1], delta=1e-15)
+        # A run changed by --set is not checked, and a time that it does not have is told before it begins.
+        process = self.expect_status(0, run("run", case, "-o", self.folder / "changed", "--quiet", "--set", "title=other"))
+        self.assertIn("1 does not apply to this run", process.stdout)
+        case.write_text(text.replace("t=0)", "t=1e9)"), encoding="utf-8")
+        process = self.expect_status(2, run("validate", case))
+        self.assertRegex(process.stderr, r"named\.toml:\d+:\d+: the time 1e\+09 lies outside the run, which goes from 0 to ")
+
     def test_streams(self):
         output = self.folder / "out"
         process = self.expect_status(0, run("run", self.case, "-o", output))

@@ -20,6 +20,9 @@ MESHES = SOURCE / "tests" / "data" / "meshes"
 TIME_LIMIT = float(os.environ.get("RICOCHET_TIME_LIMIT", "500"))
 DISC = SOURCE / "cases" / "disc" / "disc.toml"
 
+# In a quantity, a row that is neither the first nor the last: it is of another time as soon as the step is changed.
+OTHER_ROW = re.compile(r"\[(?!0\]|-1\])")
+
 # Each scheme with the mass that it is shown with.
 SCHEMES = {"midpoint": "consistent", "klr-conserving": "consistent", "newmark": "equivalent",
            "semi-explicit": "equivalent-lumped", "reduced-kane": "equivalent"}

@@ -51,7 +51,11 @@ class Warnings(TestCase):
             told = [line for line in told if "a body that slides without damping flutters" in line]
             self.assertEqual(len(told), 1 if flutters else 0, told)
             if flutters:
-                self.assertRegex(told[0], r"contact was made [0-9]+ times: .* damping = \{ stiffness = 8[0-9.]*e-06 \}")
+                self.assertRegex(told[0], r"contact was made [0-9]+ times: .* damping = \{ stiffness = 8[0-9.]*e-05 \}")
+
+    def test_which_reactions_act_is_told_once(self):
+        process = run("validate", SOURCE / "cases" / "bowl" / "bowl.toml", "--set", "time.reaction_weight=adaptive")
+        self.assertEqual(self.expect_status(0, process).stderr.count("the reactions at the end of each step act"), 1)
 
     def test_energy_that_long_steps_take(self):
         ball = SOURCE / "cases" / "ball" / "ball.toml"

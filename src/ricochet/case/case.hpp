@@ -138,11 +138,15 @@ struct SolverSection {
 };
 
 struct ExpectSection {
-  std::string quantity;
+  std::string name = {};  ///< the quantity in words; may be empty
+  std::string quantity = {};
+  std::string over = {};  ///< a quantity by which it is divided; may be empty
+  double times = 1.0;     ///< factor of the quantity
   double value = 0.0;
-  std::optional<double> relative, absolute;  ///< tolerances; at least one
-  std::optional<double> minimum, maximum;    ///< instead of value: bounds
-  std::map<std::string, std::string> when;   ///< key path → value as text: only checked in runs where they hold
+  std::optional<double> relative = {}, absolute = {};  ///< tolerances; at least one
+  std::optional<double> minimum = {}, maximum = {};    ///< instead of value: bounds
+  std::string published = {};                          ///< what others publish for it; may be empty
+  std::map<std::string, std::string> when = {};  ///< key path → value as text: only checked in runs where they hold
 };
 
 struct Case {

@@ -182,7 +182,10 @@ Section expect_section() {
           "A condition that must hold at the end of a run, which makes a case its own regression test: a value with a "
           "tolerance (relative, absolute or both: the larger one counts), or bounds.",
       .keys = {
+          {.name = "name", .doc = "The quantity in words, for lists of expectations."},
           {.name = "quantity", .required = true, .doc = "A number from the results; see Quantities."},
+          {.name = "over", .doc = "A quantity by which it is divided."},
+          {.name = "times", .type = KeyType::number, .unit = "1", .standard = "1", .doc = "Factor of the quantity."},
           {.name = "value", .type = KeyType::number, .unit = "of the quantity", .doc = "Expected value."},
           {.name = "relative",
            .type = KeyType::number,
@@ -202,6 +205,7 @@ Section expect_section() {
            .type = KeyType::number,
            .unit = "of the quantity",
            .doc = "Upper bound, instead of value."},
+          {.name = "published", .doc = "What others publish for it, such as other programs: a text."},
           {.name = "when",
            .type = KeyType::conditions,
            .doc =

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -19,18 +20,61 @@ namespace {
 constexpr std::string_view history_prefix = "history.";
 constexpr std::string_view summary_prefix = "summary.";
 
-const std::array<std::pair<std::string, Quantity::Kind>, 4> functions{
+const std::array<std::pair<std::string, Quantity::Kind>, 8> functions{
     {{"max", Quantity::Kind::maximum},
      {"min", Quantity::Kind::minimum},
      {"max_abs", Quantity::Kind::maximum_absolute},
-     {"total_variation", Quantity::Kind::total_variation}}};
+     {"total_variation", Quantity::Kind::total_variation},
+     {"mean", Quantity::Kind::mean},
+     {"integral", Quantity::Kind::integral},
+     {"first_time", Quantity::Kind::first_time},
+     {"last_time", Quantity::Kind::last_time}}};
+
+const std::array<QuantityForm, 12> forms{
+    {{"history.COLUMN[i]",
+      "the value in row i of history.csv, the initial state being row 0; −1 is the last row, −2 the one before. Other "
+      "rows are better named by their time: another step gives other rows"},
+     {"history.COLUMN(t=T)", "the value at the time T of the run, linear between the rows"},
+     {"max(history.COLUMN)", "the largest value of all rows"},
+     {"min(history.COLUMN)", "the smallest value of all rows"},
+     {"max_abs(history.COLUMN)", "the largest absolute value of all rows"},
+     {"total_variation(history.COLUMN)", "the sum of the absolute differences of consecutive rows"},
+     {"mean(history.COLUMN)", "the mean over time, the value being linear between the rows (trapezoidal rule)"},
+     {"integral(history.COLUMN)", "the integral over time, likewise"},
+     {"first_time(history.COLUMN > X)",
+      "the first time at which the value is above X, with `<` below it: of a row, or where the line between two rows "
+      "crosses X. Where that never is, the expectation does not hold"},
+     {"last_time(history.COLUMN > X)", "the last such time; that of the last row, if it is so then"},
+     {"FUNCTION(history.COLUMN, T0, T1)",
+      "each of these functions of the interval of time from T0 to T1 alone, `max(history.COLUMN, T0, T1)` or "
+      "`first_time(history.COLUMN > X, T0, T1)`: of the rows in it and of the values at its ends, which are linear "
+      "between rows"},
+     {"summary.PATH",
+      "a number of summary.json by its dotted path; entries of lists have numbers from 0: "
+      "`summary.impacts.0.velocity_after.2` is the third component of the velocity after the first impact"}}};
 
 [[noreturn]] void refuse(const std::string& text, const std::string& reason) {
-  throw Error(
-      ErrorKind::invalid_input,
-      fmt::format("\"{}\" is not a quantity: {}; write history.COLUMN[i], max(history.COLUMN), "
-                  "min(history.COLUMN), max_abs(history.COLUMN), total_variation(history.COLUMN) or summary.PATH",
-                  text, reason));
+  std::vector<std::string> names;
+  for (const QuantityForm& form : forms) names.push_back(form.form);
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("\"{}\" is not a quantity: {}; write {}", text, reason, join_names(names, " or ", false)));
+}
+
+std::string_view without_blanks(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(' ');
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
+}
+
+// The parts between commas.
+std::vector<std::string_view> between_commas(std::string_view text) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t comma = text.find(',');
+    parts.push_back(without_blanks(text.substr(0, comma)));
+    if (comma == std::string_view::npos) return parts;
+    text.remove_prefix(comma + 1);
+  }
 }
 
 // Plain names joined by single dots.
@@ -53,25 +97,81 @@ std::string dotted_name(const std::string& text, std::string_view prefix, std::s
   return std::string(name);
 }
 
-Quantity parse_function(const std::string& text, std::size_t opening) {
-  const std::string name = text.substr(0, opening);
+double read_number(const std::string& text, std::string_view what, std::string_view digits) {
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (problem != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+    refuse(text, fmt::format("the {} \"{}\" is not a number", what, digits));
+  return value;
+}
+
+Quantity::Kind function_kind(const std::string& text, const std::string& name) {
   std::vector<std::string> known;
   for (const auto& [function, kind] : functions) {
+    if (function == name) return kind;
     known.push_back(function);
-    if (function != name) continue;
-    if (text.back() != ')') refuse(text, "the closing parenthesis is missing");
-    const std::string body = text.substr(opening + 1, text.size() - opening - 2);
-    if (body.find('[') != std::string::npos) refuse(text, "a function takes the whole column, without [i]");
-    return {kind, dotted_name(text, history_prefix, body), 0};
   }
   const std::string near = nearest_name(name, known);
   refuse(text, fmt::format("unknown function \"{}\"{}", name,
                            near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near)));
 }
 
+TimeInterval read_interval(const std::string& text, const std::vector<std::string_view>& arguments) {
+  if (arguments.size() != 3) refuse(text, "an interval of time has two ends, T0 and T1, which stand after the column");
+  const TimeInterval interval{read_number(text, "time", arguments[1]), read_number(text, "time", arguments[2])};
+  if (interval.begin >= interval.end)
+    refuse(text, fmt::format("the interval from {} to {} does not end after it begins", arguments[1], arguments[2]));
+  return interval;
+}
+
+// COLUMN > X; takes the comparison off.
+Threshold read_threshold(const std::string& text, const std::string& function, std::string_view& condition) {
+  const std::size_t sign = condition.find_first_of("<>");
+  if (sign == std::string_view::npos)
+    refuse(text, fmt::format("{} compares the column with a number: {}(history.COLUMN > X)", function, function));
+  const bool above = condition[sign] == '>';
+  const std::string_view level = without_blanks(condition.substr(sign + 1));
+  if (level.starts_with('=')) refuse(text, fmt::format("{}= is written {}", condition[sign], condition[sign]));
+  condition = without_blanks(condition.substr(0, sign));
+  return {read_number(text, "level", level), above};
+}
+
+Quantity parse_function(const std::string& text, std::size_t opening) {
+  const std::string function = text.substr(0, opening);
+  Quantity quantity{.kind = function_kind(text, function)};
+  if (text.back() != ')') refuse(text, "the closing parenthesis is missing");
+  const std::string body = text.substr(opening + 1, text.size() - opening - 2);
+  if (body.find('[') != std::string::npos) refuse(text, "a function takes the whole column, without [i]");
+  if (body.find('(') != std::string::npos)
+    refuse(text, "a function takes a column, and no value at a time or function");
+  const std::vector<std::string_view> arguments = between_commas(body);
+  std::string_view column = arguments[0];
+  if (quantity.kind == Quantity::Kind::first_time || quantity.kind == Quantity::Kind::last_time) {
+    quantity.threshold = read_threshold(text, function, column);
+  } else if (column.find_first_of("<>") != std::string_view::npos) {
+    refuse(text, fmt::format("only first_time and last_time compare, {} does not", function));
+  }
+  quantity.name = dotted_name(text, history_prefix, column);
+  if (arguments.size() > 1) quantity.interval = read_interval(text, arguments);
+  return quantity;
+}
+
+Quantity parse_value_at_time(const std::string& text, std::size_t opening) {
+  if (text.back() != ')') refuse(text, "it does not end with )");
+  const std::string body = text.substr(opening + 1, text.size() - opening - 2);
+  const std::size_t equals = body.find('=');
+  if (equals == std::string::npos || without_blanks(std::string_view(body).substr(0, equals)) != "t")
+    refuse(text, "in the parentheses stands no time, as in (t=0.5)");
+  return {.kind = Quantity::Kind::value_at_time,
+          .name = dotted_name(text, history_prefix, text.substr(0, opening)),
+          .time = read_number(text, "time", without_blanks(std::string_view(body).substr(equals + 1)))};
+}
+
 Quantity parse_history_value(const std::string& text) {
-  const std::size_t opening = text.find('[');
-  if (opening == std::string::npos) refuse(text, "which row is not said: add [i], as in [-1] for the last one");
+  const std::size_t opening = text.find_first_of("[(");
+  if (opening == std::string::npos)
+    refuse(text, "which row is not said: add [i], as in [-1] for the last one, or the time, as in (t=0.5)");
+  if (text[opening] == '(') return parse_value_at_time(text, opening);
   if (text.back() != ']') refuse(text, "it does not end with ]");
   const std::string column = dotted_name(text, history_prefix, text.substr(0, opening));
   const std::string row_text = text.substr(opening + 1, text.size() - opening - 2);
@@ -80,17 +180,20 @@ Quantity parse_history_value(const std::string& text) {
   if (problem != std::errc() || end != row_text.data() + row_text.size()) {
     refuse(text, fmt::format("the row \"{}\" is not an integer", row_text));
   }
-  return {Quantity::Kind::history_value, column, row};
+  return {.kind = Quantity::Kind::history_value, .name = column, .row = row};
 }
 
 }  // namespace
 
+std::span<const QuantityForm> quantity_forms() {
+  return forms;
+}
+
 Quantity parse_quantity(const std::string& text) {
-  if (const std::size_t opening = text.find('('); opening != std::string::npos) return parse_function(text, opening);
-  if (text.starts_with(summary_prefix)) {
-    return {Quantity::Kind::summary_value, dotted_name(text, summary_prefix, text), 0};
-  }
   if (text.starts_with(history_prefix)) return parse_history_value(text);
+  if (text.starts_with(summary_prefix))
+    return {.kind = Quantity::Kind::summary_value, .name = dotted_name(text, summary_prefix, text)};
+  if (const std::size_t opening = text.find('('); opening != std::string::npos) return parse_function(text, opening);
   refuse(text, "it begins neither with history. nor with summary. nor with a function");
 }
 

@@ -240,22 +240,28 @@ void check_expectation(const SectionReader& reader) {
     reader.add_problem("minimum", fmt::format("\"minimum\" is {}, above \"maximum\", which is {}",
                                               reader.number("minimum"), reader.number("maximum")));
   }
-  if (!reader.is_usable("quantity")) return;
-  try {
-    static_cast<void>(parse_quantity(reader.text("quantity")));
-  } catch (const Error& problem) {
-    reader.add_problem("quantity", problem.what());
+  for (const std::string key : {"quantity", "over"}) {
+    if (!reader.is_given(key) || !reader.is_usable(key)) continue;
+    try {
+      static_cast<void>(parse_quantity(reader.text(key)));
+    } catch (const Error& problem) {
+      reader.add_problem(key, problem.what());
+    }
   }
 }
 
 ExpectSection read_expectation(const SectionReader& reader) {
   ExpectSection expectation;
+  expectation.name = reader.text("name");
   expectation.quantity = reader.text("quantity");
+  expectation.over = reader.text("over");
+  expectation.times = reader.number("times");
   expectation.value = reader.number("value");
   expectation.relative = reader.optional_number("relative");
   expectation.absolute = reader.optional_number("absolute");
   expectation.minimum = reader.optional_number("minimum");
   expectation.maximum = reader.optional_number("maximum");
+  expectation.published = reader.text("published");
   expectation.when = reader.conditions("when");
   check_expectation(reader);
   return expectation;

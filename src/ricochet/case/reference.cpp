@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ricochet/case/keys.hpp"
+#include "ricochet/case/quantity.hpp"
 #include "ricochet/case/read_case.hpp"
 
 namespace ricochet {
@@ -99,19 +100,34 @@ when = { "time.scheme" = "newmark" }
 
 )page";
 
-constexpr const char* quantities = R"page(## Quantities
+constexpr const char* before_quantities = R"page(## Quantities
 
 What `quantity` of `[[expect]]` can be:
 
 | form | meaning |
 |---|---|
-| `history.COLUMN[i]` | the value in row i of history.csv, the initial state being row 0; −1 is the last row, −2 the one before |
-| `max(history.COLUMN)`, `min(history.COLUMN)` | the largest, the smallest value of all rows |
-| `max_abs(history.COLUMN)` | the largest absolute value of all rows |
-| `total_variation(history.COLUMN)` | the sum of the absolute differences of consecutive rows |
-| `summary.PATH` | a number of summary.json by its dotted path |
+)page";
 
-`COLUMN` is a column of history.csv, such as `total_energy` or `lowest.displacement_y` for a probe named lowest.
+constexpr const char* after_quantities = R"page(
+`COLUMN` is a column of history.csv, such as `total_energy` or `lowest.displacement_y` for a probe named lowest. Times are those
+of the column `time`; one that lies outside the rows is an error, and one within a millionth of the distance of two rows of a row
+is that row. In a run whose history has a row every few steps only, values between them are those of the line between the rows.
+
+`over` and `times` make other numbers of it, such as a coefficient of friction or the load on a whole body of which a quarter is
+simulated: what is compared is the quantity times `times`, divided by the quantity `over`.
+
+```toml
+[[expect]]
+name = "force of friction over normal force, at 0.3 s"
+quantity = "history.contact_force_x(t=0.3)"
+over = "history.contact_force_y(t=0.3)"
+times = -1.0
+value = 0.2
+relative = 1.0e-6
+published = "Coulomb: 0.2"
+```
+
+`name` and `published` change nothing in a run: they stand in `summary.json`, and the name where expectations are listed.
 
 `when` restricts an expectation to the runs for which it was made: `when = { "time.scheme" = "midpoint", "mass.type" =
 "lumped" }` holds when every key path has that value, given in the file, by `--set` or by default. A key that has
@@ -189,7 +205,10 @@ std::string case_reference() {
                     section.doc, occurrence(section), alternatives_text(section));
     page += "| key | value | unit | default | meaning |\n|---|---|---|---|---|\n" + rows(section.keys, "") + "\n";
   }
-  return page + quantities;
+  page += before_quantities;
+  for (const QuantityForm& form : quantity_forms())
+    page += fmt::format("| `{}` | {} |\n", cell(form.form), cell(form.meaning));
+  return page + after_quantities;
 }
 
 }  // namespace ricochet

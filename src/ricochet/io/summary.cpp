@@ -17,6 +17,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/rotation_gauge.hpp"
 #include "ricochet/io/run_directory.hpp"
+#include "ricochet/io/summary_expectations.hpp"
 #include "ricochet/io/summary_method.hpp"
 #include "ricochet/io/summary_outcome.hpp"
 
@@ -68,20 +69,6 @@ Json checks_to_json(const RunSummary& summary) {
   Json result = Json::object();
   for (const CheckResult& check : summary.checks)
     result[check.name] = {{"limit", Json::number(check.limit)}, {"largest", Json::number(check.largest)}};
-  return result;
-}
-
-Json expectations_to_json(const RunSummary& summary) {
-  Json result = Json::array();
-  for (const ExpectationResult& e : summary.expectations) {
-    result.push_back({{"quantity", e.quantity},
-                      {"value", Json::number(e.value)},
-                      {"wanted", e.wanted},
-                      {"location", e.location},
-                      {"checked", e.checked},
-                      {"holds", e.holds},
-                      {"note", e.note}});
-  }
   return result;
 }
 
@@ -207,7 +194,7 @@ std::string to_json(const RunSummary& s) {
                {"extrema", extrema_to_json(s)},
                {"checks", checks_to_json(s)},
                {"warnings", s.warnings},
-               {"expectations", expectations_to_json(s)},
+               {"expectations", expectations_to_json(s.expectations)},
                {"parameters", s.parameters}};
   json.update(outcome_to_json(s));
   return json.dump(2) + "\n";
@@ -286,6 +273,7 @@ RunSummary read_summary(const std::string& path) {
     const Json checks = json.value("checks", Json::object());
     for (const auto& [name, check] : checks.items())
       s.checks.push_back({name, check.at("limit").to_number(), check.at("largest").to_number()});
+    s.expectations = read_expectations(json);
     read_method(json, s);
     read_outcome(json, path, s);
     for (const auto& contact : json.at("contacts")) {

@@ -20,13 +20,20 @@ namespace ricochet {
 
 /// Outcome of one [[expect]] entry.
 struct ExpectationResult {
-  std::string quantity;
-  double value = 0.0;    ///< found
-  std::string wanted;    ///< in words
-  std::string location;  ///< in the case file
-  bool checked = true;   ///< false: does not apply to this run, see `note`
+  std::string name = {};                                    ///< the quantity in words; may be empty
+  std::string quantity = {};                                ///< as the case has it, with its factor and its divisor
+  std::string published = {};                               ///< what others publish for it; may be empty
+  double value = 0.0;                                       ///< found; 0 where it was not checked, or could not be
+  std::string wanted = {};                                  ///< in words, and in numbers:
+  std::optional<double> wanted_value = {}, tolerance = {};  ///< absolute; both or none
+  std::optional<double> minimum = {}, maximum = {};
+  std::string location = {};  ///< in the case file
+  bool checked = true;        ///< false: does not apply to this run, see `note`
   bool holds = true;
-  std::string note;
+  std::string note = {};  ///< why it was not checked, or could not be
+
+  /// What lists call it.
+  [[nodiscard]] const std::string& label() const { return name.empty() ? quantity : name; }
 };
 
 /// An account that a run must keep.

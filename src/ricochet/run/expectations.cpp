@@ -4,68 +4,23 @@
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/base/text.hpp"
 #include "ricochet/case/problems.hpp"
 #include "ricochet/case/quantity.hpp"
-#include "ricochet/io/history_file.hpp"
 #include "ricochet/model/model.hpp"
+#include "ricochet/run/quantity_value.hpp"
 #include "ricochet/run/run_case.hpp"
 
 namespace ricochet {
 
 namespace {
 
-std::string no_column(const std::string& name, const std::vector<std::string>& names) {
-  const std::string near = nearest_name(name, names);
-  return fmt::format("history.csv has no column \"{}\"{}", name,
-                     near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
-}
-
-const std::vector<double>& column_of(const HistoryTable& history, const std::string& name) {
-  const auto found = history.columns.find(name);
-  if (found != history.columns.end() && !found->second.empty()) return found->second;
-  throw Error(ErrorKind::invalid_input, no_column(name, history.names));
-}
-
-double value_in_row(const std::vector<double>& column, const Quantity& quantity) {
-  const long rows = static_cast<long>(column.size());
-  const long row = quantity.row < 0 ? rows + quantity.row : quantity.row;
-  if (row < 0 || row >= rows) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("history.{}[{}]: history.csv has {}", quantity.name, quantity.row, counted(rows, "row")));
-  }
-  return column[static_cast<std::size_t>(row)];
-}
-
-double evaluate(const Quantity& quantity, const HistoryTable& history, const std::string& summary_json) {
-  if (quantity.kind == Quantity::Kind::summary_value) return summary_value(summary_json, quantity.name);
-  const std::vector<double>& column = column_of(history, quantity.name);
-  double result = 0.0;
-  switch (quantity.kind) {
-    case Quantity::Kind::history_value:
-      return value_in_row(column, quantity);
-    case Quantity::Kind::maximum:
-      return *std::max_element(column.begin(), column.end());
-    case Quantity::Kind::minimum:
-      return *std::min_element(column.begin(), column.end());
-    case Quantity::Kind::maximum_absolute:
-      for (const double value : column) result = std::max(result, std::abs(value));
-      return result;
-    case Quantity::Kind::total_variation:
-      for (std::size_t i = 1; i < column.size(); ++i) result += std::abs(column[i] - column[i - 1]);
-      return result;
-    case Quantity::Kind::summary_value:
-      break;
-  }
-  return result;
-}
-
 /// Why an expectation does not apply to this run, or "".
-std::string reason_not_to_check(const Case& input, const ExpectSection& expect) {
+std::string reason_not_to_check(const Case& input, const ExpectSection& expect, ExpectationScope scope) {
   for (const auto& [key, wanted] : expect.when) {
     const auto found = input.values.find(key);
     if (found == input.values.end() || found->second != wanted) return fmt::format("only for {} = {}", key, wanted);
   }
+  if (scope == ExpectationScope::any_settings) return "";
   for (const std::string& key : input.overridden) {
     if (!expect.when.contains(key) && !key.starts_with("output.fields"))
       return fmt::format("--set {} changed the case", key);
@@ -86,46 +41,97 @@ std::string wanted_in_words(const ExpectSection& expect) {
   return text;
 }
 
+/// With its factor and its divisor.
+std::string quantity_in_words(const ExpectSection& expect) {
+  return (expect.times == 1.0 ? "" : fmt::format("{:g} * ", expect.times)) + expect.quantity +
+         (expect.over.empty() ? "" : " / " + expect.over);
+}
+
+double tolerance_of(const ExpectSection& expect) {
+  return std::max(expect.absolute.value_or(0.0), expect.relative.value_or(0.0) * std::abs(expect.value));
+}
+
 bool holds(const ExpectSection& expect, double value) {
   if (!std::isfinite(value)) return false;
   if (expect.minimum || expect.maximum) {
     return (!expect.minimum || value >= *expect.minimum) && (!expect.maximum || value <= *expect.maximum);
   }
-  const double tolerance =
-      std::max(expect.absolute.value_or(0.0), expect.relative.value_or(0.0) * std::abs(expect.value));
-  return std::abs(value - expect.value) <= tolerance;
+  return std::abs(value - expect.value) <= tolerance_of(expect);
+}
+
+double found_value(const ExpectSection& expect, const HistoryTable& history, const std::string& summary_json) {
+  const double value = expect.times * value_of(parse_quantity(expect.quantity), history, summary_json);
+  if (expect.over.empty()) return value;
+  const double divisor = value_of(parse_quantity(expect.over), history, summary_json);
+  if (divisor == 0.0) throw Error(ErrorKind::invalid_input, fmt::format("{} is 0: nothing divides by it", expect.over));
+  return value / divisor;
+}
+
+ExpectationResult described(const ExpectSection& expect) {
+  ExpectationResult result{
+      .name = expect.name,
+      .quantity = quantity_in_words(expect),
+      .published = expect.published,
+      .wanted = wanted_in_words(expect),
+      .minimum = expect.minimum,
+      .maximum = expect.maximum,
+  };
+  if (!expect.minimum && !expect.maximum) {
+    result.wanted_value = expect.value;
+    result.tolerance = tolerance_of(expect);
+  }
+  return result;
+}
+
+/// What is wrong with a quantity in a run of this case, or "".
+std::string problem_of(const Quantity& quantity, const std::vector<std::string>& columns, double end) {
+  if (quantity.kind == Quantity::Kind::summary_value) return "";
+  if (std::find(columns.begin(), columns.end(), quantity.name) == columns.end())
+    return no_such_column(quantity.name, columns);
+  std::vector<double> times;
+  if (quantity.kind == Quantity::Kind::value_at_time) times = {quantity.time};
+  if (quantity.interval) times = {quantity.interval->begin, quantity.interval->end};
+  for (const double time : times) {
+    if (time < 0.0 || time > end * (1.0 + 1e-9))
+      return fmt::format("the time {:.9g} lies outside the run, which goes from 0 to {:.9g}", time, end);
+  }
+  return "";
 }
 
 }  // namespace
 
-void check_expected_columns(const Case& input, const Model& model) {
+void check_expected_quantities(const Case& input, const Model& model) {
   const std::vector<std::string> columns =
       names_of(HistoryRecorder::columns_of(model.problem.dimension, model.sensors));
+  const double end = static_cast<double>(step_count(input.time)) * input.time.step;
   Problems problems;
   for (std::size_t i = 0; i < input.expectations.size(); ++i) {
     const ExpectSection& expect = input.expectations[i];
-    const Quantity quantity = parse_quantity(expect.quantity);
-    if (quantity.kind == Quantity::Kind::summary_value || !reason_not_to_check(input, expect).empty()) continue;
-    if (std::find(columns.begin(), columns.end(), quantity.name) == columns.end())
-      problems.add(input.where(fmt::format("expect.{}.quantity", i)), no_column(quantity.name, columns));
+    if (!reason_not_to_check(input, expect, ExpectationScope::settings_of_the_case).empty()) continue;
+    const auto check = [&](const std::string& key, const std::string& text) {
+      const std::string problem = problem_of(parse_quantity(text), columns, end);
+      if (!problem.empty()) problems.add(input.where(fmt::format("expect.{}.{}", i, key)), problem);
+    };
+    check("quantity", expect.quantity);
+    if (!expect.over.empty()) check("over", expect.over);
   }
   problems.raise();
 }
 
 std::vector<ExpectationResult> check_expectations(const Case& input, const std::string& output_directory,
-                                                  const std::string& summary_json) {
+                                                  const std::string& summary_json, ExpectationScope scope) {
   std::vector<ExpectationResult> results;
   if (input.expectations.empty()) return results;
   const HistoryTable history = read_history(output_directory + "/history.csv");
   for (std::size_t i = 0; i < input.expectations.size(); ++i) {
     const ExpectSection& expect = input.expectations[i];
-    ExpectationResult result{
-        expect.quantity, 0.0, wanted_in_words(expect), input.where(fmt::format("expect.{}", i)).text(), true, true, ""};
-    result.note = reason_not_to_check(input, expect);
+    ExpectationResult result = described(expect);
+    result.location = input.where(fmt::format("expect.{}", i)).text();
+    result.note = reason_not_to_check(input, expect, scope);
     result.checked = result.note.empty();
     if (result.checked) {
       try {
-        result.value = evaluate(parse_quantity(expect.quantity), history, summary_json);
+        result.value = found_value(expect, history, summary_json);
         result.holds = holds(expect, result.value);
       } catch (const Error& problem) {
         result.holds = false;

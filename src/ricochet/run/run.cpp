@@ -166,7 +166,7 @@ void Run::begin_session() {
   BuildTimes build;
   session_.build(&build);
   times_.add_build(build);
-  check_expected_columns(input_, session_.model());
+  check_expected_quantities(input_, session_.model());
   if (session_.model().problem.dof_count() >= large_body) {
     log::info(fmt::format("{}, {}; preparing the steps", counted(session_.model().problem.dof_count(), "dof"),
                           counted(session_.model().problem.contact.size(), "contact point")));

@@ -45,11 +45,18 @@ inline constexpr const char* end_warning = "time.end = ";
 void warn_of_end(const TimeSection& time);
 
 /// Throws Error(invalid_input), at its place in the case, where an [[expect]] entry that applies is about a column that
-/// history.csv will not have.
-void check_expected_columns(const Case& input, const Model& model);
+/// history.csv will not have, or about a time outside the run.
+void check_expected_quantities(const Case& input, const Model& model);
+
+/// Which [[expect]] entries apply, of those whose `when` holds.
+enum class ExpectationScope {
+  settings_of_the_case,  ///< all, unless --set changed a key that their `when` does not name
+  any_settings           ///< all: what another method makes of the case is asked for
+};
 
 /// Evaluates the [[expect]] entries of a case on a finished run.
-[[nodiscard]] std::vector<ExpectationResult> check_expectations(const Case& input, const std::string& output_directory,
-                                                                const std::string& summary_json);
+[[nodiscard]] std::vector<ExpectationResult> check_expectations(
+    const Case& input, const std::string& output_directory, const std::string& summary_json,
+    ExpectationScope scope = ExpectationScope::settings_of_the_case);
 
 }  // namespace ricochet

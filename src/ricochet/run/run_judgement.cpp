@@ -85,8 +85,8 @@ void judge_sliding(const RunSummary& summary, const SemidiscreteProblem& problem
   log::warning(
       fmt::format("contact was made {} times: a body that slides without damping flutters, and contact forces and "
                   "stresses are those of its vibrations. If it is to slide, give its [[material]] damping = "
-                  "{{ stiffness = {:.2g} }}, a tenth of the time in which a wave crosses a cell",
-                  impacts, 0.1 * times[times.size() / 2]));
+                  "{{ stiffness = {:.2g} }}, the time in which a wave crosses a cell",
+                  impacts, times[times.size() / 2]));
 }
 
 void judge_strain(const RunSummary& summary, const Body& body) {

@@ -6,6 +6,10 @@
 namespace ricochet::case_test {
 
 TEST(MalformedCase, References) {
+  const std::string quantities =
+      "history.COLUMN[i], history.COLUMN(t=T), max(history.COLUMN), min(history.COLUMN), max_abs(history.COLUMN), "
+      "total_variation(history.COLUMN), mean(history.COLUMN), integral(history.COLUMN), first_time(history.COLUMN > "
+      "X), last_time(history.COLUMN > X), FUNCTION(history.COLUMN, T0, T1) or summary.PATH";
   const std::vector<MalformedCase> cases{
       // contact
       {0,
@@ -195,9 +199,12 @@ TEST(MalformedCase, References) {
        "found the text \"lumpd\"; did you mean \"lumped\"?\n15:43: \"time.step\" must be a positive number (unit: "
        "time); found the text \"a\""},
       {0, "[[expect]]\nquantity = \"history.time\"\nminimum = 3.0",
-       "13:12: \"history.time\" is not a quantity: which row is not said: add [i], as in [-1] for the last one; write "
-       "history.COLUMN[i], max(history.COLUMN), min(history.COLUMN), max_abs(history.COLUMN), "
-       "total_variation(history.COLUMN) or summary.PATH"},
+       "13:12: \"history.time\" is not a quantity: which row is not said: add [i], as in [-1] for the last one, or the "
+       "time, as in (t=0.5); write " +
+           quantities},
+      {0, "[[expect]]\nquantity = \"history.time[1]\"\nover = \"history.time()\"\nminimum = 3.0",
+       "14:8: \"history.time()\" is not a quantity: in the parentheses stands no time, as in (t=0.5); write " +
+           quantities},
   };
   for (const MalformedCase& malformed : cases) expect_problems(malformed);
 }

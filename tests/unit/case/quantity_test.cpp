@@ -6,36 +6,81 @@
 
 namespace ricochet::case_test {
 
+using Kind = Quantity::Kind;
+
 TEST(Quantity, IsTakenApart) {
   struct Expected {
     std::string text;
-    Quantity::Kind kind;
+    Kind kind;
     std::string name;
     long row;
   };
   const std::vector<Expected> all{
-      {"history.total_energy[-1]", Quantity::Kind::history_value, "total_energy", -1},
-      {"history.low-1.displacement_y[12]", Quantity::Kind::history_value, "low-1.displacement_y", 12},
-      {"max(history.time)", Quantity::Kind::maximum, "time", 0},
-      {"min(history.a.b)", Quantity::Kind::minimum, "a.b", 0},
-      {"max_abs(history.energy_residual)", Quantity::Kind::maximum_absolute, "energy_residual", 0},
-      {"total_variation(history.total_energy)", Quantity::Kind::total_variation, "total_energy", 0},
-      {"summary.extrema.max_penetration", Quantity::Kind::summary_value, "extrema.max_penetration", 0},
+      {"history.total_energy[-1]", Kind::history_value, "total_energy", -1},
+      {"history.low-1.displacement_y[12]", Kind::history_value, "low-1.displacement_y", 12},
+      {"max(history.time)", Kind::maximum, "time", 0},
+      {"min(history.a.b)", Kind::minimum, "a.b", 0},
+      {"min( history.a.b )", Kind::minimum, "a.b", 0},
+      {"max_abs(history.energy_residual)", Kind::maximum_absolute, "energy_residual", 0},
+      {"total_variation(history.total_energy)", Kind::total_variation, "total_energy", 0},
+      {"mean(history.contact_force_y)", Kind::mean, "contact_force_y", 0},
+      {"integral(history.contact_force_y)", Kind::integral, "contact_force_y", 0},
+      {"summary.extrema.max_penetration", Kind::summary_value, "extrema.max_penetration", 0},
+      {"summary.impacts.0.velocity_after.2", Kind::summary_value, "impacts.0.velocity_after.2", 0},
   };
   for (const Expected& expected : all) {
     const Quantity quantity = parse_quantity(expected.text);
     EXPECT_EQ(quantity.kind, expected.kind) << expected.text;
     EXPECT_EQ(quantity.name, expected.name) << expected.text;
     EXPECT_EQ(quantity.row, expected.row) << expected.text;
+    EXPECT_FALSE(quantity.interval.has_value()) << expected.text;
   }
 }
 
+TEST(Quantity, IsTheValueAtATime) {
+  for (const std::string text : {"history.low-1.gap(t=6.0e-5)", "history.low-1.gap( t = 6e-05 )"}) {
+    const Quantity quantity = parse_quantity(text);
+    EXPECT_EQ(quantity.kind, Kind::value_at_time) << text;
+    EXPECT_EQ(quantity.name, "low-1.gap") << text;
+    EXPECT_EQ(quantity.time, 6.0e-5) << text;
+  }
+}
+
+TEST(Quantity, IsOfAnInterval) {
+  for (const std::string function : {"max", "min", "max_abs", "total_variation", "mean", "integral"}) {
+    const Quantity quantity = parse_quantity(function + "(history.total_energy, 1e-3,2.5)");
+    EXPECT_EQ(quantity.name, "total_energy") << function;
+    ASSERT_TRUE(quantity.interval.has_value()) << function;
+    EXPECT_EQ(quantity.interval->begin, 1e-3) << function;
+    EXPECT_EQ(quantity.interval->end, 2.5) << function;
+    EXPECT_EQ(quantity.kind, parse_quantity(function + "(history.total_energy)").kind) << function;
+  }
+}
+
+TEST(Quantity, IsTheTimeOfAnEvent) {
+  const Quantity first = parse_quantity("first_time(history.contact_force_y > 0)");
+  EXPECT_EQ(first.kind, Kind::first_time);
+  EXPECT_EQ(first.name, "contact_force_y");
+  EXPECT_TRUE(first.threshold.above);
+  EXPECT_EQ(first.threshold.level, 0.0);
+  EXPECT_FALSE(first.interval.has_value());
+  const Quantity last = parse_quantity("last_time(history.a-b<-1.5e-3, 0, 0.25)");
+  EXPECT_EQ(last.kind, Kind::last_time);
+  EXPECT_EQ(last.name, "a-b");
+  EXPECT_FALSE(last.threshold.above);
+  EXPECT_EQ(last.threshold.level, -1.5e-3);
+  ASSERT_TRUE(last.interval.has_value());
+  EXPECT_EQ(last.interval->end, 0.25);
+}
+
 TEST(Quantity, SaysWhatIsWrong) {
+  const std::string no_beginning = "it begins neither with history. nor with summary. nor with a function";
   const std::vector<std::pair<std::string, std::string>> all{
-      {"", "it begins neither with history. nor with summary. nor with a function"},
-      {"energy", "it begins neither with history. nor with summary. nor with a function"},
+      {"", no_beginning},
+      {"energy", no_beginning},
+      {" history.time[0]", no_beginning},
       {"history.", "which row is not said"},
-      {"history.time", "which row is not said: add [i], as in [-1] for the last one"},
+      {"history.time", "which row is not said: add [i], as in [-1] for the last one, or the time, as in (t=0.5)"},
       {"history.[0]", "nothing stands after history."},
       {"history.time[", "it does not end with ]"},
       {"history.time[]", "the row \"\" is not an integer"},
@@ -45,15 +90,40 @@ TEST(Quantity, SaysWhatIsWrong) {
       {"history.a b[0]", "\"a b\" is not made of letters, digits, _ and - joined by dots"},
       {"history.a..b[0]", "\"a..b\" is not made of letters"},
       {"history.a.[0]", "\"a.\" is not made of letters"},
+      {"history.time(t=1", "it does not end with )"},
+      {"history.time(", "it does not end with )"},
+      {"history.time()", "in the parentheses stands no time, as in (t=0.5)"},
+      {"history.time(1)", "in the parentheses stands no time"},
+      {"history.time(s=1)", "in the parentheses stands no time"},
+      {"history.time(t=)", "the time \"\" is not a number"},
+      {"history.time(t=1 s)", "the time \"1 s\" is not a number"},
+      {"history.time(t=inf)", "the time \"inf\" is not a number"},
+      {"history.(t=1)", "nothing stands after history."},
       {"summary.", "nothing stands after summary."},
       {"summary.a[0]", "\"a[0]\" is not made of letters"},
+      {"summary.a(t=1)", "\"a(t=1)\" is not made of letters"},
       {"max(summary.steps)", "\"summary.steps\" does not begin with history."},
       {"max(history.time", "the closing parenthesis is missing"},
       {"max(", "the closing parenthesis is missing"},
       {"max()", "\"\" does not begin with history."},
       {"max(history.time[0])", "a function takes the whole column, without [i]"},
+      {"max(history.time(t=1))", "a function takes a column, and no value at a time or function"},
+      {"max(mean(history.time))", "a function takes a column, and no value at a time or function"},
       {"max_bas(history.time)", "unknown function \"max_bas\" (did you mean \"max_abs\"?)"},
       {"average(history.time)", "unknown function \"average\""},
+      {"mean(history.time, 1)", "an interval of time has two ends, T0 and T1, which stand after the column"},
+      {"mean(history.time, 1, 2, 3)", "an interval of time has two ends"},
+      {"mean(history.time, 1, )", "the time \"\" is not a number"},
+      {"mean(history.time, a, 2)", "the time \"a\" is not a number"},
+      {"mean(history.time, 2, 1)", "the interval from 2 to 1 does not end after it begins"},
+      {"mean(history.time, 2, 2)", "the interval from 2 to 2 does not end after it begins"},
+      {"mean(history.time > 1)", "only first_time and last_time compare, mean does not"},
+      {"first_time(history.time)", "first_time compares the column with a number: first_time(history.COLUMN > X)"},
+      {"first_time(history.time >)", "the level \"\" is not a number"},
+      {"first_time(history.time >= 1)", ">= is written >"},
+      {"first_time(history.time > nan)", "the level \"nan\" is not a number"},
+      {"first_time(1 < history.time)", "the level \"history.time\" is not a number"},
+      {"last_time(> 1)", "\"\" does not begin with history."},
   };
   for (const auto& [text, reason] : all) {
     try {
@@ -64,8 +134,28 @@ TEST(Quantity, SaysWhatIsWrong) {
       EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
       EXPECT_EQ(message.find("\"" + text + "\" is not a quantity: "), 0U) << message;
       EXPECT_NE(message.find(reason), std::string::npos) << message;
-      EXPECT_NE(message.find("; write history.COLUMN[i], max(history.COLUMN)"), std::string::npos) << message;
+      for (const QuantityForm& form : quantity_forms())
+        EXPECT_NE(message.find(form.form), std::string::npos) << message;
     }
+  }
+}
+
+/// With names and numbers in the place of what is in capitals.
+TEST(Quantity, HasTheFormsThatMessagesList) {
+  for (const QuantityForm& form : quantity_forms()) {
+    std::string text = form.form;
+    for (const auto& [name, value] : {std::pair{"COLUMN", "time"},
+                                      {"PATH", "steps"},
+                                      {"FUNCTION", "mean"},
+                                      {"[i]", "[3]"},
+                                      {"T0", "1"},
+                                      {"T1", "2"},
+                                      {"=T", "=1"},
+                                      {"X", "0"}}) {
+      if (const std::size_t at = text.find(name); at != std::string::npos)
+        text.replace(at, std::string(name).size(), value);
+    }
+    EXPECT_NO_THROW(static_cast<void>(parse_quantity(text))) << text;
   }
 }
 

@@ -76,7 +76,11 @@ relative = 1.0e-2
 absolute = 1
 when = { "time.scheme" = "midpoint", mesh.scale = 2.0 }
 [[expect]]
+name = "a part"
 quantity = "max_abs(history.energy_residual)"
+over = "max(history.total_energy, 0, 0.1)"
+times = 4
+published = "elsewhere: 0.5"
 minimum = -1
 maximum = 1
 )toml";
@@ -148,9 +152,15 @@ TEST(ReadCase, ReadsProbesAndExpectations) {
   EXPECT_EQ(read.expectations[0].relative, 0.01);
   EXPECT_EQ(read.expectations[0].absolute, 1.0);
   EXPECT_FALSE(read.expectations[0].minimum.has_value());
+  EXPECT_EQ(read.expectations[0].times, 1.0);
+  EXPECT_EQ(read.expectations[0].name + read.expectations[0].over + read.expectations[0].published, "");
   // Both spellings of a path, and 2.0 for what the file has as 2.
   const std::map<std::string, std::string> when{{"time.scheme", "midpoint"}, {"mesh.scale", "2"}};
   EXPECT_EQ(read.expectations[0].when, when);
+  EXPECT_EQ(read.expectations[1].name, "a part");
+  EXPECT_EQ(read.expectations[1].over, "max(history.total_energy, 0, 0.1)");
+  EXPECT_EQ(read.expectations[1].times, 4.0);
+  EXPECT_EQ(read.expectations[1].published, "elsewhere: 0.5");
   EXPECT_EQ(read.expectations[1].minimum, -1.0);
   EXPECT_EQ(read.expectations[1].maximum, 1.0);
   EXPECT_FALSE(read.expectations[1].relative.has_value());

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "ricochet/base/log.hpp"
 #include "ricochet/scheme/reduced/end_scheme.hpp"
 
@@ -22,6 +24,7 @@ class ReducedKane final : public EndScheme {
     EndScheme::analyse(problem);
     if (weight_ == "end" || problem.contact_dofs.empty() || has_mean(problem)) return;
     if (weight_ == "automatic" && problem.contact.has_friction()) return;
+    if (std::exchange(told_, true)) return;  // `validate` analyses first, and then starts a run
     log::info(fmt::format(
         "time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,
         problem.contact.follows_motion() ? "an obstacle is curved" : "there is stiffness damping at contact nodes"));
@@ -39,6 +42,7 @@ class ReducedKane final : public EndScheme {
   }
 
   std::string weight_;
+  bool told_ = false;
 };
 
 }  // namespace

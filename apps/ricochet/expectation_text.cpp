@@ -1,0 +1,38 @@
+#include "expectation_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/text.hpp"
+
+namespace ricochet::program {
+
+std::string found_text(const ExpectationResult& expectation) {
+  return expectation.note.empty() ? fmt::format("found {:.9g}", expectation.value)
+                                  : fmt::format("found nothing: {}", expectation.note);
+}
+
+void print_expectations(const std::vector<ExpectationResult>& expectations) {
+  if (expectations.empty()) return;
+  const auto hold =
+      std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return e.checked && e.holds; });
+  const auto left_out =
+      std::count_if(expectations.begin(), expectations.end(), [](const auto& e) { return !e.checked; });
+  const auto checked = static_cast<long>(expectations.size()) - left_out;
+  const std::string others = fmt::format("{} not apply to this run (summary.json says why)",
+                                         left_out == 1 ? "1 does" : fmt::format("{} do", left_out));
+  if (checked == 0) {
+    fmt::print("  expectations: {}\n", others);
+  } else {
+    fmt::print("  {} of {}{}\n", hold, counted(checked, "expectation") + (checked == 1 ? " holds" : " hold"),
+               left_out > 0 ? "; " + others : "");
+  }
+  for (const ExpectationResult& e : expectations) {
+    if (!e.checked || e.holds) continue;
+    fmt::print("  DOES NOT HOLD: {} (wanted {}, {})\n", e.label(), e.wanted, found_text(e));
+    if (!e.published.empty()) fmt::print("    published: {}\n", e.published);
+  }
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/base/json.hpp"
+#include "ricochet/io/summary.hpp"
+
+/// @file The outcome of the [[expect]] entries, as an entry of summary.json. Not part of the public interface.
+namespace ricochet {
+
+[[nodiscard]] Json expectations_to_json(const std::vector<ExpectationResult>& expectations);
+/// Of a whole summary. Throws Json::Exception.
+[[nodiscard]] std::vector<ExpectationResult> read_expectations(const Json& summary);
+
+}  // namespace ricochet

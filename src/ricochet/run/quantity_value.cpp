@@ -1,0 +1,179 @@
+#include "ricochet/run/quantity_value.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/io/summary.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Of the distance of two rows: times are written in decimals, and rows have sums of steps.
+constexpr double same_time = 1e-6;
+
+/// A column over time, linear between its points.
+struct Course {
+  std::vector<double> times, values;
+
+  [[nodiscard]] std::size_t size() const { return times.size(); }
+  void add(double time, double value) {
+    times.push_back(time);
+    values.push_back(value);
+  }
+};
+
+/// Between a point and the next one.
+struct Place {
+  std::size_t point = 0;
+  double fraction = 0.0;  ///< of the way; 0: at the point itself
+};
+
+const std::vector<double>& column_of(const HistoryTable& history, const std::string& name) {
+  const auto found = history.columns.find(name);
+  if (found == history.columns.end()) throw Error(ErrorKind::invalid_input, no_such_column(name, history.names));
+  if (found->second.empty())
+    throw Error(ErrorKind::invalid_input, fmt::format("history.{}: history.csv has no rows", name));
+  return found->second;
+}
+
+double value_in_row(const std::vector<double>& column, const Quantity& quantity) {
+  const long rows = static_cast<long>(column.size());
+  const long row = quantity.row < 0 ? rows + quantity.row : quantity.row;
+  if (row < 0 || row >= rows) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("history.{}[{}]: history.csv has {}", quantity.name, quantity.row, counted(rows, "row")));
+  }
+  return column[static_cast<std::size_t>(row)];
+}
+
+Place place_of(const Course& course, double time, const std::string& column) {
+  const std::vector<double>& times = course.times;
+  if (times.size() > 1) {
+    const auto later = std::upper_bound(times.begin() + 1, times.end() - 1, time);
+    const auto next = static_cast<std::size_t>(later - times.begin());
+    const double fraction = (time - times[next - 1]) / (times[next] - times[next - 1]);
+    if (std::abs(fraction) <= same_time) return {next - 1};
+    if (std::abs(fraction - 1.0) <= same_time) return {next};
+    if (fraction > 0.0 && fraction < 1.0) return {next - 1, fraction};
+  } else if (time == times.front()) {
+    return {};
+  }
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("history.{}: the time {:.9g} lies outside the rows of history.csv, which go from {:.9g} to "
+                          "{:.9g}",
+                          column, time, times.front(), times.back()));
+}
+
+double value_at(const Course& course, Place place) {
+  const double value = course.values[place.point];
+  return place.fraction == 0.0 ? value : value + place.fraction * (course.values[place.point + 1] - value);
+}
+
+Course part_of(const Course& whole, const TimeInterval& interval, const std::string& column) {
+  const Place begin = place_of(whole, interval.begin, column), end = place_of(whole, interval.end, column);
+  Course part;
+  part.add(interval.begin, value_at(whole, begin));
+  const std::size_t last = end.point + (end.fraction > 0.0 ? 1 : 0);
+  for (std::size_t i = begin.point + 1; i < last; ++i) part.add(whole.times[i], whole.values[i]);
+  part.add(interval.end, value_at(whole, end));
+  return part;
+}
+
+double integral(const Course& course) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < course.size(); ++i)
+    sum += 0.5 * (course.values[i] + course.values[i - 1]) * (course.times[i] - course.times[i - 1]);
+  return sum;
+}
+
+double mean(const Course& course) {
+  const double duration = course.times.back() - course.times.front();
+  return course.size() == 1 ? course.values.front() : integral(course) / duration;
+}
+
+double total_variation(const Course& course) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < course.size(); ++i) sum += std::abs(course.values[i] - course.values[i - 1]);
+  return sum;
+}
+
+double largest_absolute(const Course& course) {
+  double largest = 0.0;
+  for (const double value : course.values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+[[noreturn]] void throw_never(const Course& course, const Quantity& quantity) {
+  const auto [least, largest] = std::minmax_element(course.values.begin(), course.values.end());
+  const bool above = quantity.threshold.above;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("history.{} is never {} {:g}: its {} value from {:.9g} to {:.9g} is {:.9g}", quantity.name,
+                          above ? "above" : "below", quantity.threshold.level, above ? "largest" : "smallest",
+                          course.times.front(), course.times.back(), above ? *largest : *least));
+}
+
+/// The first or the last time beyond a threshold.
+double time_of_event(const Course& course, const Quantity& quantity) {
+  const auto [level, above] = quantity.threshold;
+  const bool first = quantity.kind == Quantity::Kind::first_time;
+  const std::size_t size = course.size();
+  const auto point = [&](std::size_t i) { return first ? i : size - 1 - i; };
+  for (std::size_t i = 0; i < size; ++i) {
+    const double time = course.times[point(i)], value = course.values[point(i)];
+    if (!(above ? value > level : value < level)) continue;
+    if (i == 0) return time;
+    const double time_before = course.times[point(i - 1)], value_before = course.values[point(i - 1)];
+    return time_before + (time - time_before) * (level - value_before) / (value - value_before);
+  }
+  throw_never(course, quantity);
+}
+
+double value_of_course(const Quantity& quantity, const Course& course) {
+  switch (quantity.kind) {
+    case Quantity::Kind::maximum:
+      return *std::max_element(course.values.begin(), course.values.end());
+    case Quantity::Kind::minimum:
+      return *std::min_element(course.values.begin(), course.values.end());
+    case Quantity::Kind::maximum_absolute:
+      return largest_absolute(course);
+    case Quantity::Kind::total_variation:
+      return total_variation(course);
+    case Quantity::Kind::mean:
+      return mean(course);
+    case Quantity::Kind::integral:
+      return integral(course);
+    case Quantity::Kind::first_time:
+    case Quantity::Kind::last_time:
+      return time_of_event(course, quantity);
+    case Quantity::Kind::value_at_time:
+      return value_at(course, place_of(course, quantity.time, quantity.name));
+    case Quantity::Kind::history_value:
+    case Quantity::Kind::summary_value:
+      break;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+std::string no_such_column(const std::string& name, const std::vector<std::string>& names) {
+  const std::string near = nearest_name(name, names);
+  return fmt::format("history.csv has no column \"{}\"{}", name,
+                     near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
+}
+
+double value_of(const Quantity& quantity, const HistoryTable& history, const std::string& summary_json) {
+  if (quantity.kind == Quantity::Kind::summary_value) return summary_value(summary_json, quantity.name);
+  const std::vector<double>& column = column_of(history, quantity.name);
+  if (quantity.kind == Quantity::Kind::history_value) return value_in_row(column, quantity);
+  const Course whole{column_of(history, "time"), column};
+  return value_of_course(quantity, quantity.interval ? part_of(whole, *quantity.interval, quantity.name) : whole);
+}
+
+}  // namespace ricochet
