@@ -23,6 +23,7 @@ ALONE = "#1b1f24"
 COLOURS = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6b4c9a", "#5b5b5b"]
 # More runs than colours: each time the colours come again the lines have another pattern.
 PATTERNS = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (7, 2, 1.5, 2, 1.5, 2)), (0, (12, 3)), (0, (3, 3)), (0, (1.5, 4))]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 
 # Settings that a user has for other figures change nothing.
 matplotlib.rcdefaults()
@@ -123,6 +124,59 @@ def draw_map(figure, axes, panel, is_first):
     bar.outline.set_linewidth(0.6)
 
 
+def draw_slopes(axes, panel):
+    """Guides of whole orders, below the lowest curve, from its finest point on."""
+    points = [point for curve in panel["curves"] for point in zip(curve["x"], curve["y"])]
+    left, right = min(x for x, _ in points), max(x for x, _ in points)
+    for order in panel["slopes"]:
+        # Through the points, and then moved below all of them.
+        factor = 0.5 * min(y / x ** order for x, y in points)
+        ends = [factor * left ** order, factor * right ** order]
+        axes.plot([left, right], ends, color="0.55", lw=0.8, ls=(0, (4, 3)), zorder=1)
+        axes.annotate(f"order {order}", (right, ends[1]), xytext=(3, 0), textcoords="offset points", fontsize=7,
+                      color="0.4", va="center", annotation_clip=False)
+
+
+def plain(value, _=None):
+    """1e-3 and 0.01 as people write them."""
+    return in_powers(value) if value else "0"
+
+
+def show_steps(axes, panel):
+    """On a logarithmic scale the values themselves are the ticks, as far as there is room for them."""
+    values = sorted({x for curve in panel["curves"] for x in curve["x"]})
+    if len(values) <= 6 and all(b / a > 1.3 for a, b in zip(values, values[1:])):
+        axes.set_xticks(values, [plain(x) for x in values])
+        axes.minorticks_off()
+    if values[-1] < 3 * values[0]:
+        axes.set_xlim(values[0] / 1.15, values[-1] * 1.15)
+
+
+def draw_lines(axes, panel):
+    several = len(panel["curves"]) > 1
+    for i, curve in enumerate(panel["curves"]):
+        axes.plot(curve["x"], curve["y"], color=COLOURS[i % len(COLOURS)] if several else ALONE, label=literal(curve["label"]),
+                  lw=1.1, ls=PATTERNS[i // len(COLOURS) % len(PATTERNS)], marker=MARKERS[i % len(MARKERS)], ms=4, zorder=2)
+    axes.set_xlabel(literal(panel["x_label"]))
+    axes.set_ylabel(literal(panel["y_label"]))
+    if panel["log_y"]:
+        axes.set_yscale("log")
+    else:
+        axes.yaxis.set_major_formatter(ScalarFormatter(useMathText=True))
+        axes.ticklabel_format(axis="y", scilimits=(-3, 4), useOffset=False)
+    if panel["categories"]:
+        axes.set_xticks(range(len(panel["categories"])), [literal(name) for name in panel["categories"]])
+        axes.margins(x=0.15)
+    elif panel["log_x"]:
+        axes.set_xscale("log")
+        if panel["slopes"] or not panel["log_y"]:
+            show_steps(axes, panel)
+    if panel["slopes"]:
+        draw_slopes(axes, panel)
+    if several or panel["curves"][0]["label"]:
+        axes.legend(frameon=False, handlelength=2.0 if len(panel["curves"]) <= len(COLOURS) else 3.5)
+
+
 def main(form, output):
     description = json.load(sys.stdin)
     panels = description["panels"]
@@ -137,6 +191,8 @@ def main(form, output):
             axes.set_axis_off()
         elif panels[i]["kind"] == "map":
             draw_map(figure, axes, panels[i], i % columns == 0 or panels[i - 1]["kind"] != "map")
+        elif panels[i]["kind"] == "lines":
+            draw_lines(axes, panels[i])
         else:
             draw_curves(axes, panels[i], len(panels[i]["curves"]) > 1)
             if "time" in description:

@@ -4,61 +4,16 @@
 #include <cmath>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/base/text.hpp"
 #include "ricochet/case/problems.hpp"
 #include "ricochet/case/quantity.hpp"
 #include "ricochet/io/history_file.hpp"
 #include "ricochet/model/model.hpp"
+#include "ricochet/run/quantity_value.hpp"
 #include "ricochet/run/run_case.hpp"
 
 namespace ricochet {
 
 namespace {
-
-std::string no_column(const std::string& name, const std::vector<std::string>& names) {
-  const std::string near = nearest_name(name, names);
-  return fmt::format("history.csv has no column \"{}\"{}", name,
-                     near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
-}
-
-const std::vector<double>& column_of(const HistoryTable& history, const std::string& name) {
-  const auto found = history.columns.find(name);
-  if (found != history.columns.end() && !found->second.empty()) return found->second;
-  throw Error(ErrorKind::invalid_input, no_column(name, history.names));
-}
-
-double value_in_row(const std::vector<double>& column, const Quantity& quantity) {
-  const long rows = static_cast<long>(column.size());
-  const long row = quantity.row < 0 ? rows + quantity.row : quantity.row;
-  if (row < 0 || row >= rows) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("history.{}[{}]: history.csv has {}", quantity.name, quantity.row, counted(rows, "row")));
-  }
-  return column[static_cast<std::size_t>(row)];
-}
-
-double evaluate(const Quantity& quantity, const HistoryTable& history, const std::string& summary_json) {
-  if (quantity.kind == Quantity::Kind::summary_value) return summary_value(summary_json, quantity.name);
-  const std::vector<double>& column = column_of(history, quantity.name);
-  double result = 0.0;
-  switch (quantity.kind) {
-    case Quantity::Kind::history_value:
-      return value_in_row(column, quantity);
-    case Quantity::Kind::maximum:
-      return *std::max_element(column.begin(), column.end());
-    case Quantity::Kind::minimum:
-      return *std::min_element(column.begin(), column.end());
-    case Quantity::Kind::maximum_absolute:
-      for (const double value : column) result = std::max(result, std::abs(value));
-      return result;
-    case Quantity::Kind::total_variation:
-      for (std::size_t i = 1; i < column.size(); ++i) result += std::abs(column[i] - column[i - 1]);
-      return result;
-    case Quantity::Kind::summary_value:
-      break;
-  }
-  return result;
-}
 
 /// Why an expectation does not apply to this run, or "".
 std::string reason_not_to_check(const Case& input, const ExpectSection& expect) {
@@ -107,7 +62,7 @@ void check_expected_columns(const Case& input, const Model& model) {
     const Quantity quantity = parse_quantity(expect.quantity);
     if (quantity.kind == Quantity::Kind::summary_value || !reason_not_to_check(input, expect).empty()) continue;
     if (std::find(columns.begin(), columns.end(), quantity.name) == columns.end())
-      problems.add(input.where(fmt::format("expect.{}.quantity", i)), no_column(quantity.name, columns));
+      problems.add(input.where(fmt::format("expect.{}.quantity", i)), no_column_message(quantity.name, columns));
   }
   problems.raise();
 }
