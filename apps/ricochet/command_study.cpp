@@ -77,6 +77,9 @@ int study(const StudyArguments& given) {
       conduct_study(arguments.output_directory, plan, questions_of(arguments, before.questions), options, signal);
   fmt::print("{}", to_aligned_text(results.table));
   for (const std::string& note : results.notes) fmt::print("  {}\n", note);
+  if (!results.warnings.empty())
+    fmt::print("  {}: study.md has them\n",
+               counted(results.warnings.size(), "warning of the runs", "warnings of the runs"));
   fmt::print("{} of {} done; {}/study.csv, study.md\n", results.done, counted(results.table.rows.size(), "run"),
              arguments.output_directory);
   if (signal == 0) return results.worst_status;

@@ -12,7 +12,7 @@ try:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    from matplotlib.ticker import FuncFormatter, MaxNLocator, ScalarFormatter
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator, ScalarFormatter
 except ImportError as problem:
     print(problem)
     sys.exit(3)
@@ -125,56 +125,77 @@ def draw_map(figure, axes, panel, is_first):
 
 
 def draw_slopes(axes, panel):
-    """Guides of whole orders, below the lowest curve, from its finest point on."""
+    """Guides of whole orders that begin in one place, below all curves."""
     points = [point for curve in panel["curves"] for point in zip(curve["x"], curve["y"])]
     left, right = min(x for x, _ in points), max(x for x, _ in points)
+    start = 0.5 * min(y * (left / x) ** order for x, y in points for order in panel["slopes"])
     for order in panel["slopes"]:
-        # Through the points, and then moved below all of them.
-        factor = 0.5 * min(y / x ** order for x, y in points)
-        ends = [factor * left ** order, factor * right ** order]
-        axes.plot([left, right], ends, color="0.55", lw=0.8, ls=(0, (4, 3)), zorder=1)
-        axes.annotate(f"order {order}", (right, ends[1]), xytext=(3, 0), textcoords="offset points", fontsize=7,
-                      color="0.4", va="center", annotation_clip=False)
+        end = start * (right / left) ** order
+        axes.plot([left, right], [start, end], color="0.55", lw=0.8, ls=(0, (4, 3)), zorder=1)
+        axes.annotate(f"order {order}", (right, end), xytext=(4, 0), textcoords="offset points", fontsize=7, color="0.4",
+                      va="center", annotation_clip=False)
 
 
-def plain(value, _=None):
-    """1e-3 and 0.01 as people write them."""
-    return in_powers(value) if value else "0"
-
-
-def show_steps(axes, panel):
+def name_steps(axes, panel):
     """On a logarithmic scale the values themselves are the ticks, as far as there is room for them."""
     values = sorted({x for curve in panel["curves"] for x in curve["x"]})
+    axes.xaxis.set_minor_locator(NullLocator())
     if len(values) <= 6 and all(b / a > 1.3 for a, b in zip(values, values[1:])):
-        axes.set_xticks(values, [plain(x) for x in values])
-        axes.minorticks_off()
+        axes.set_xticks(values, [in_powers(x) for x in values])
+    else:
+        name_decades(axes.xaxis)
     if values[-1] < 3 * values[0]:
         axes.set_xlim(values[0] / 1.15, values[-1] * 1.15)
 
 
+def name_decades(axis):
+    """Of less than two decades 1, 2 and 5 of each."""
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1.0,) if high > 100 * low else (1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: in_powers(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def folded(label):
+    """A long name on two lines."""
+    if len(label) < 28:
+        return literal(label)
+    middle = len(label) // 2
+    ends = [i + 1 for i, c in enumerate(label) if c in ". " and 0 < i < len(label) - 1]
+    at = min(ends, key=lambda i: abs(i - middle), default=len(label))
+    return literal(label[:at]) + "\n" + literal(label[at:])
+
+
 def draw_lines(axes, panel):
-    several = len(panel["curves"]) > 1
-    for i, curve in enumerate(panel["curves"]):
-        axes.plot(curve["x"], curve["y"], color=COLOURS[i % len(COLOURS)] if several else ALONE, label=literal(curve["label"]),
-                  lw=1.1, ls=PATTERNS[i // len(COLOURS) % len(PATTERNS)], marker=MARKERS[i % len(MARKERS)], ms=4, zorder=2)
+    curves = panel["curves"]
+    for i, curve in enumerate(curves):
+        # What has no order is not joined, and what has the same place stands side by side.
+        x = [x + 0.08 * (i - (len(curves) - 1) / 2) for x in curve["x"]] if panel["categories"] else curve["x"]
+        axes.plot(x, curve["y"], color=COLOURS[i % len(COLOURS)] if len(curves) > 1 else ALONE, label=literal(curve["label"]),
+                  lw=0 if panel["categories"] else 1.1, ls=PATTERNS[i // len(COLOURS) % len(PATTERNS)],
+                  marker=MARKERS[i % len(MARKERS)], ms=4, zorder=2)
     axes.set_xlabel(literal(panel["x_label"]))
-    axes.set_ylabel(literal(panel["y_label"]))
+    axes.set_ylabel(folded(panel["y_label"]))
     if panel["log_y"]:
         axes.set_yscale("log")
+        name_decades(axes.yaxis)
     else:
         axes.yaxis.set_major_formatter(ScalarFormatter(useMathText=True))
         axes.ticklabel_format(axis="y", scilimits=(-3, 4), useOffset=False)
     if panel["categories"]:
         axes.set_xticks(range(len(panel["categories"])), [literal(name) for name in panel["categories"]])
-        axes.margins(x=0.15)
+        axes.set_xlim(-0.5, len(panel["categories"]) - 0.5)
     elif panel["log_x"]:
         axes.set_xscale("log")
-        if panel["slopes"] or not panel["log_y"]:
-            show_steps(axes, panel)
+        name_steps(axes, panel) if panel["names_steps"] else name_decades(axes.xaxis)
+    else:
+        axes.xaxis.set_major_locator(MaxNLocator(5))
     if panel["slopes"]:
         draw_slopes(axes, panel)
-    if several or panel["curves"][0]["label"]:
-        axes.legend(frameon=False, handlelength=2.0 if len(panel["curves"]) <= len(COLOURS) else 3.5)
+    if len(curves) > 1 or curves[0]["label"]:
+        # Above: there is no room that is free for sure.
+        axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2,
+                    handlelength=2.0 if len(curves) <= len(COLOURS) else 3.5)
 
 
 def main(form, output):

@@ -72,15 +72,15 @@ std::vector<TableColumn> outcome_columns() {
           {"created_by_method", true, 3},
           {"max_penetration", true, 3},
           {"impacts", false},
-          {"restitution"},
-          {"largest_force"},
-          {"peak_von_mises"},
+          {"restitution", true, 4, 1},
+          {"largest_force", true, 4, 1},
+          {"peak_von_mises", true, 4, 1},
           {"peak_von_mises_time", false},
           {"peak_von_mises_x", false},
           {"peak_von_mises_y", false},
           {"peak_von_mises_z", false},
           {"warnings", false},
-          {"doubts"}};
+          {"doubts", true, 4, 1}};
 }
 
 std::vector<TableCell> outcome_cells(const std::string& run, const RunState& state) {

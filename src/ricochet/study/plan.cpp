@@ -15,6 +15,8 @@ namespace ricochet {
 
 namespace {
 
+/// The value of a key that a run leaves as the case has it.
+constexpr std::string_view left_out = "-";
 constexpr std::size_t most_runs = 10'000, longest_name = 80;
 
 [[noreturn]] void refuse_axis(const std::string& text, const std::string& reason) {
@@ -149,7 +151,9 @@ std::vector<PlannedRun> runs_of(const StudyPlan& plan) {
       run.values.insert(run.values.end(), values.begin(), values.end());
     }
     run.settings = plan.settings;
-    for (std::size_t k = 0; k < keys.size(); ++k) run.settings.push_back(keys[k] + "=" + run.values[k]);
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      if (run.values[k] != left_out) run.settings.push_back(keys[k] + "=" + run.values[k]);
+    }
     run.name = name_of(short_keys, run.values);
   }
   return runs;

@@ -27,8 +27,8 @@ struct PlannedRun {
 };
 
 /// From "key=v1,v2" or, of keys that change together, "key1,key2=v1/w1,v2/w2". Commas and slashes inside of brackets or
-/// quotes do not separate. Throws Error(usage) that says what is wrong: no value, one that is there twice, too many or
-/// too few keys, a key that no case has.
+/// quotes do not separate; - leaves a key as the case has it. Throws Error(usage) that says what is wrong: no value,
+/// one that is there twice, too many or too few keys, a key that no case has.
 [[nodiscard]] StudyAxis parse_axis(const std::string& text);
 
 /// Throws Error(usage) where nothing or one key varies twice, or varies and is set.

@@ -96,11 +96,14 @@ std::string line_label(const PlannedRun& run, const StudyPlan& plan, std::size_t
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// "error of tip.displacement", without what tells programs apart.
+/// "error of tip.displacement": for readers, without what tells programs where a number comes from.
 std::string axis_label(const std::string& column) {
   if (column.starts_with(error_prefix))
-    return fmt::format("error of {}", column.substr(std::string(error_prefix).size()));
+    return fmt::format("error of {}", axis_label(column.substr(std::string(error_prefix).size())));
   if (column == "processor_seconds") return "processor time, s";
+  for (const std::string prefix : {"summary.", "history."}) {
+    if (column.starts_with(prefix)) return column.substr(prefix.size());
+  }
   std::string label = column;
   if (label.find('.') == std::string::npos) std::replace(label.begin(), label.end(), '_', ' ');
   return label;
@@ -139,7 +142,7 @@ std::optional<double> last_order(const StudyLine& line) {
   return n < 2 ? std::nullopt : observed_order(line.y[n - 2], line.y[n - 1], line.x[n - 2], line.x[n - 1]);
 }
 
-/// Steps that span no more than a factor of three are seen well on a linear scale.
+/// What spans no more than a factor of eight is seen well on a linear scale.
 bool spans_much(const std::vector<StudyLine>& lines) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const StudyLine& line : lines) {
@@ -166,6 +169,8 @@ Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& tab
   Json json{{"kind", "lines"},        {"x_label", axis_label(panel.x)}, {"y_label", axis_label(panel.y)},
             {"log_y", panel.log_y},   {"categories", categories},       {"slopes", Json::array()},
             {"curves", Json::array()}};
+  const std::vector<std::string> keys = varied_keys(study.plan);
+  json["names_steps"] = std::count(keys.begin(), keys.end(), panel.x) > 0;
   json["log_x"] = panel.log_x || (categories.empty() && spans_much(lines));
   std::vector<int> slopes;
   for (const StudyLine& line : lines) {

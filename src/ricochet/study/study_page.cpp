@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "ricochet/base/text.hpp"
 #include "ricochet/version.hpp"
 
 namespace ricochet {
@@ -70,6 +71,10 @@ std::string make_study_page(const Study& study, const StudyResults& results, con
   for (const std::string& setting : study.plan.settings) plan.push_back(fmt::format("set: {}", setting));
   page += list_of(plan) + "<h2>Results</h2>\n<div class=\"wide\">\n" + to_html(results.table) + "</div>\n";
   if (!results.notes.empty()) page += list_of(results.notes);
+  if (!results.warnings.empty()) {
+    page += fmt::format("<details><summary>{} of the runs</summary>\n", counted(results.warnings.size(), "warning"));
+    page += list_of(results.warnings) + "</details>\n";
+  }
   if (!figure.empty()) page += "<h2>Figures</h2>\n" + inline_svg(figure) + "\n";
   page += "<h2>Runs</h2>\n";
   if (!runs_page.empty()) page += "<p>" + link(study, runs_page, folder, "Report of the runs") + "</p>\n";

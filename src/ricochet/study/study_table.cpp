@@ -38,6 +38,13 @@ std::vector<std::string> expected_quantities(const Study& study) {
   return quantities;
 }
 
+std::string reference_in_words(const std::string& reference) {
+  const std::string key = reference.substr(reference.find(':') + 1);
+  if (reference.starts_with("finest:")) return fmt::format("the run with the smallest {}", key);
+  if (reference.starts_with("last:")) return fmt::format("the run with the last {}", key);
+  return reference;
+}
+
 class StudyTableMaker {
  public:
   explicit StudyTableMaker(const Study& study) : study_(study), questions_(study.questions) {}
@@ -52,6 +59,7 @@ class StudyTableMaker {
   void add_quantities();
   void add_exact_errors();
   void add_history_errors();
+  [[nodiscard]] std::optional<std::size_t> run_before(std::size_t run, std::size_t axis) const;
   void add_orders();
   void add_messages();
   void note_messages();
@@ -90,6 +98,7 @@ void StudyTableMaker::fill_columns() {
 }
 
 void StudyTableMaker::add_outcomes() {
+  results_.table.key_columns = varied_keys(study_.plan).size();
   for (const std::string& key : varied_keys(study_.plan)) results_.table.columns.push_back({key});
   for (TableColumn& column : outcome_columns()) results_.table.columns.push_back(std::move(column));
   for (const StudyRun& run : study_.runs) {
@@ -137,7 +146,7 @@ void StudyTableMaker::add_quantities() {
     if (std::count(seen.begin(), seen.end(), quantity) > 0) return;
     seen.push_back(quantity);
     const std::string option = is_asked ? "--quantity" : "";
-    add_column({quantity, is_asked}, [=, this](std::size_t run) { return value_of(quantity, run, option); });
+    add_column({quantity, is_asked, 5, 1}, [=, this](std::size_t run) { return value_of(quantity, run, option); });
   };
   for (const std::string& quantity : questions_.quantities) add(quantity, true);
   for (const std::string& quantity : expected_quantities(study_)) add(quantity, false);
@@ -147,7 +156,7 @@ void StudyTableMaker::add_exact_errors() {
   for (const auto& asked : questions_.exact) {
     const std::string& quantity = asked.first;
     const double exact = asked.second;
-    add_column({error_prefix + quantity, true, 3}, [&quantity, exact, this](std::size_t run) -> TableCell {
+    add_column({error_prefix + quantity, true, 3, 2}, [&quantity, exact, this](std::size_t run) -> TableCell {
       const TableCell value = value_of(quantity, run, "--exact");
       if (std::holds_alternative<std::monostate>(value)) return {};
       const double error = std::abs(number_of(value) - exact);
@@ -197,7 +206,7 @@ std::vector<ComparedQuantity> StudyTableMaker::compared() {
 void StudyTableMaker::add_history_errors() {
   if (questions_.reference.empty()) return;
   for (const ComparedQuantity& quantity : compared()) {
-    add_column({error_prefix + quantity.name, true, 3}, [quantity, this](std::size_t run) -> TableCell {
+    add_column({error_prefix + quantity.name, true, 3, 2}, [quantity, this](std::size_t run) -> TableCell {
       const std::string own = study_.path(study_.runs[run]), directory = reference_of(run);
       if (own == directory || states_[run].word() != "done") return {};
       const RunHistory *history = history_of(own), *reference = history_of(directory);
@@ -208,10 +217,19 @@ void StudyTableMaker::add_history_errors() {
   }
   results_.notes.push_back(
       fmt::format("Errors of histories are those against {} in the L2 norm over time, relative to its norm.",
-                  questions_.reference));
+                  reference_in_words(questions_.reference)));
 }
 
-/// Each error of a run and that of the run before it along the order's key give one.
+/// The run before it along the order's key; nothing for the first.
+std::optional<std::size_t> StudyTableMaker::run_before(std::size_t run, std::size_t axis) const {
+  std::vector<std::size_t> at = study_.runs[run].planned.at;
+  if (at[axis]-- == 0) return std::nullopt;
+  const auto found = std::find_if(study_.runs.begin(), study_.runs.end(),
+                                  [&](const StudyRun& other) { return other.planned.at == at; });
+  return static_cast<std::size_t>(found - study_.runs.begin());
+}
+
+/// Behind each column of errors that of its orders.
 void StudyTableMaker::add_orders() {
   if (questions_.order_key.empty()) return;
   const KeyPlace place = find_varied(study_.plan, questions_.order_key, "--order");
@@ -219,24 +237,22 @@ void StudyTableMaker::add_orders() {
     const std::size_t at = study_.runs[run].planned.at[place.axis];
     return number_in(study_.plan.axes[place.axis].values[at][place.key]).value();
   };
-  const std::vector<std::string> names = results_.table.names();
+  ResultTable& table = results_.table;
   bool any = false;
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    if (!names[c].starts_with(error_prefix)) continue;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (!table.columns[c].name.starts_with(error_prefix)) continue;
     any = true;
-    const std::string name = std::string(order_prefix).append(names[c], std::string(error_prefix).size());
-    add_column({name, true, 3}, [this, place, step, c](std::size_t run) -> TableCell {
-      std::vector<std::size_t> at = study_.runs[run].planned.at;
-      if (at[place.axis]-- == 0) return {};
-      for (std::size_t before = 0; before < study_.runs.size(); ++before) {
-        if (study_.runs[before].planned.at != at) continue;
-        const double error_before = number_of(results_.table.rows[before][c]);
-        const auto order =
-            observed_order(error_before, number_of(results_.table.rows[run][c]), step(before), step(run));
-        return order ? TableCell(*order) : TableCell();
+    const std::string name = table.columns[c].name.substr(std::string(error_prefix).size());
+    const auto behind = static_cast<std::ptrdiff_t>(c + 1);
+    table.columns.insert(table.columns.begin() + behind, {fmt::format("{}{}", order_prefix, name), true, 3, 2});
+    for (std::size_t run = 0; run < table.rows.size(); ++run) {
+      std::optional<double> order;
+      if (const auto before = run_before(run, place.axis)) {
+        order =
+            observed_order(number_of(table.rows[*before][c]), number_of(table.rows[run][c]), step(*before), step(run));
       }
-      return {};
-    });
+      table.rows[run].insert(table.rows[run].begin() + behind, order ? TableCell(*order) : TableCell());
+    }
   }
   if (any) {
     results_.notes.push_back(
@@ -271,7 +287,7 @@ void StudyTableMaker::note_warnings() {
   for (std::size_t i = 0; i < study_.runs.size(); ++i) {
     if (!states_[i].summary) continue;
     for (const std::string& warning : states_[i].summary->warnings)
-      results_.notes.push_back(fmt::format("{} warns: {}", study_.runs[i].folder, warning));
+      results_.warnings.push_back(fmt::format("{}: {}", study_.runs[i].folder, warning));
   }
 }
 
@@ -306,6 +322,8 @@ void write_study_table(const Study& study, const StudyResults& results) {
   for (const std::string& setting : study.plan.settings) page += fmt::format("- set: {}\n", setting);
   page += "\n" + to_markdown(results.table) + "\n";
   for (const std::string& note : results.notes) page += "- " + note + "\n";
+  if (!results.warnings.empty()) page += "\nWarnings of the runs:\n\n";
+  for (const std::string& warning : results.warnings) page += "- " + warning + "\n";
   write_durably(study.path("study.md"), page);
 }
 

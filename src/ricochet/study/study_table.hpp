@@ -11,8 +11,8 @@ namespace ricochet {
 
 struct StudyResults {
   ResultTable table;
-  /// For readers, a sentence or a paragraph each: what the columns mean, what runs warned of, why some failed.
-  std::vector<std::string> notes;
+  /// For readers, a sentence each: what the columns mean, and why runs failed; and what runs warned of.
+  std::vector<std::string> notes, warnings;
   int done = 0;          ///< runs that came to their end
   int worst_status = 0;  /// of the runs that have one
 };

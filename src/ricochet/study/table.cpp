@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "ricochet/base/text.hpp"
 
@@ -30,12 +31,10 @@ struct ReadersTable {
   std::vector<bool> is_number;
 };
 
-ReadersTable readers_table(const ResultTable& table) {
+ReadersTable readers_table(const ResultTable& table, const std::vector<std::size_t>& columns) {
   ReadersTable result;
   result.lines.resize(table.rows.size() + 1);
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const auto is_empty = [c](const auto& row) { return text_of(row[c]).empty(); };
-    if (!table.columns[c].is_for_readers || std::all_of(table.rows.begin(), table.rows.end(), is_empty)) continue;
+  for (const std::size_t c : columns) {
     result.is_number.push_back(std::none_of(table.rows.begin(), table.rows.end(), [c](const auto& row) {
       const auto* text = std::get_if<std::string>(&row[c]);
       return text != nullptr && !text->empty() && !number_in(*text);
@@ -45,6 +44,23 @@ ReadersTable readers_table(const ResultTable& table) {
       result.lines[r + 1].push_back(rounded(table.rows[r][c], table.columns[c].digits));
   }
   return result;
+}
+
+/// Part by part, those of which there is something to say besides the keys.
+std::vector<ReadersTable> parts_of(const ResultTable& table) {
+  std::map<int, std::vector<std::size_t>> columns;
+  for (std::size_t c = table.key_columns; c < table.columns.size(); ++c) {
+    const auto is_empty = [c](const auto& row) { return text_of(row[c]).empty(); };
+    if (!table.columns[c].is_for_readers || std::all_of(table.rows.begin(), table.rows.end(), is_empty)) continue;
+    std::vector<std::size_t>& part = columns[table.columns[c].part];
+    if (part.empty()) {
+      for (std::size_t key = 0; key < table.key_columns; ++key) part.push_back(key);
+    }
+    part.push_back(c);
+  }
+  std::vector<ReadersTable> parts;
+  for (const auto& [part, shown] : columns) parts.push_back(readers_table(table, shown));
+  return parts;
 }
 
 /// Characters, not bytes, of UTF-8.
@@ -93,8 +109,9 @@ std::string to_csv(const ResultTable& table) {
   return csv;
 }
 
-std::string to_markdown(const ResultTable& table) {
-  const ReadersTable shown = readers_table(table);
+namespace {
+
+std::string part_to_markdown(const ReadersTable& shown) {
   std::string text;
   for (std::size_t r = 0; r < shown.lines.size(); ++r) {
     text += "|";
@@ -112,8 +129,7 @@ std::string to_markdown(const ResultTable& table) {
   return text;
 }
 
-std::string to_html(const ResultTable& table) {
-  const ReadersTable shown = readers_table(table);
+std::string part_to_html(const ReadersTable& shown) {
   std::string text = "<table>\n";
   for (std::size_t r = 0; r < shown.lines.size(); ++r) {
     text += "<tr>";
@@ -127,8 +143,7 @@ std::string to_html(const ResultTable& table) {
   return text + "</table>\n";
 }
 
-std::string to_aligned_text(const ResultTable& table) {
-  const ReadersTable shown = readers_table(table);
+std::string part_to_aligned_text(const ReadersTable& shown) {
   std::vector<std::size_t> widths(shown.is_number.size());
   for (const auto& line : shown.lines) {
     for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], width_of(line[c]));
@@ -145,6 +160,29 @@ std::string to_aligned_text(const ResultTable& table) {
     text += row + "\n";
   }
   return text;
+}
+
+std::string joined(const ResultTable& table, std::string (*write)(const ReadersTable&)) {
+  std::string text;
+  for (const ReadersTable& part : parts_of(table)) {
+    if (!text.empty()) text += "\n";
+    text += write(part);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_markdown(const ResultTable& table) {
+  return joined(table, part_to_markdown);
+}
+
+std::string to_html(const ResultTable& table) {
+  return joined(table, part_to_html);
+}
+
+std::string to_aligned_text(const ResultTable& table) {
+  return joined(table, part_to_aligned_text);
 }
 
 std::string escaped(const std::string& text) {

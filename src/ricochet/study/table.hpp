@@ -15,11 +15,13 @@ struct TableColumn {
   /// Also in the tables for readers, unless no row has anything there.
   bool is_for_readers = true;
   int digits = 4;  ///< of numbers for readers
+  int part = 0;    ///< of the tables for readers, which show wide tables in parts
 };
 
 struct ResultTable {
   std::vector<TableColumn> columns;
   std::vector<std::vector<TableCell>> rows;  ///< each as long as the columns
+  std::size_t key_columns = 0;               ///< so many at the beginning are repeated in each part
 
   /// The number of a column; that of columns where there is none.
   [[nodiscard]] std::size_t find(const std::string& name) const;
@@ -35,7 +37,7 @@ struct ResultTable {
 /// quoted.
 [[nodiscard]] std::string to_csv(const ResultTable& table);
 
-/// For readers: rounded, without columns that say nothing.
+/// For readers: rounded, without columns that say nothing, in parts.
 [[nodiscard]] std::string to_markdown(const ResultTable& table);
 [[nodiscard]] std::string to_html(const ResultTable& table);
 /// In columns of equal width, for a terminal.

@@ -77,6 +77,13 @@ TEST(StudyPlan, CombinesAllWithTheLastFastest) {
   EXPECT_EQ(runs[4].name, "scheme=midpoint_type=consistent_friction=0.5");
 }
 
+TEST(StudyPlan, LeavesAKeyAsTheCaseHasIt) {
+  const StudyPlan plan{"/case.toml", {}, {parse_axis("time.scheme,time.preset=newmark/trapezoidal,midpoint/-")}};
+  EXPECT_EQ(runs_of(plan)[0].settings, (Texts{"time.scheme=newmark", "time.preset=trapezoidal"}));
+  EXPECT_EQ(runs_of(plan)[1].settings, (Texts{"time.scheme=midpoint"}));
+  EXPECT_EQ(runs_of(plan)[1].values, (Texts{"midpoint", "-"}));
+}
+
 TEST(StudyPlan, NamesAreThoseOfDirectories) {
   const StudyPlan vectors{"/case.toml", {}, {parse_axis("initial.velocity=[0, -1],../../x y/$z")}};
   EXPECT_EQ(runs_of(vectors)[0].name, "velocity=_0__-1_");

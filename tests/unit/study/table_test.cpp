@@ -8,7 +8,8 @@ namespace ricochet {
 namespace {
 
 const ResultTable table{{{"time.step"}, {"v, m/s"}, {"empty"}, {"count", false}, {"text"}},
-                        {{"1e-3", 1.0 / 3.0, {}, 7L, "a \"b\""}, {"5e-4", -2e-30, {}, 12L, "µ|<c>"}}};
+                        {{"1e-3", 1.0 / 3.0, {}, 7L, "a \"b\""}, {"5e-4", -2e-30, {}, 12L, "µ|<c>"}},
+                        1};
 
 TEST(ResultTable, IsExactInCsv) {
   EXPECT_EQ(to_csv(table),
@@ -26,6 +27,14 @@ TEST(ResultTable, IsRoundedForReaders) {
             "     1e-3  0.3333  a \"b\"\n"
             "     5e-4  -2e-30  µ|<c>\n");
   EXPECT_NE(to_html(table).find("<td>µ|&lt;c&gt;</td>"), std::string::npos);
+}
+
+TEST(ResultTable, ShowsWideTablesInPartsThatBeginWithTheKeys) {
+  ResultTable wide = table;
+  wide.columns[4].part = 1;
+  EXPECT_EQ(to_aligned_text(wide),
+            "time.step  v, m/s\n     1e-3  0.3333\n     5e-4  -2e-30\n\n"
+            "time.step  text\n     1e-3  a \"b\"\n     5e-4  µ|<c>\n");
 }
 
 TEST(ResultTable, FindsColumnsAndNumbers) {
