@@ -56,7 +56,21 @@ StudyQuestions questions_of(const StudyArguments& arguments, StudyQuestions ques
   return questions;
 }
 
+void print_results(const std::string& directory, const StudyResults& results) {
+  fmt::print("{}", to_aligned_text(results.table));
+  for (const std::string& note : results.notes) fmt::print("  {}\n", note);
+  if (!results.warnings.empty())
+    fmt::print("  {}: study.md has them\n",
+               counted(results.warnings.size(), "warning of the runs", "warnings of the runs"));
+  fmt::print("{} of {} done; {}/study.csv, study.md\n", results.done, counted(results.table.rows.size(), "run"),
+             directory);
+}
+
 }  // namespace
+
+void describe_study(const std::string& directory) {
+  print_results(directory, make_study_table(read_study(directory)));
+}
 
 int study(const StudyArguments& given) {
   const StudyArguments arguments = with_directory(given);
@@ -75,13 +89,7 @@ int study(const StudyArguments& given) {
   int signal = 0;
   const StudyResults results =
       conduct_study(arguments.output_directory, plan, questions_of(arguments, before.questions), options, signal);
-  fmt::print("{}", to_aligned_text(results.table));
-  for (const std::string& note : results.notes) fmt::print("  {}\n", note);
-  if (!results.warnings.empty())
-    fmt::print("  {}: study.md has them\n",
-               counted(results.warnings.size(), "warning of the runs", "warnings of the runs"));
-  fmt::print("{} of {} done; {}/study.csv, study.md\n", results.done, counted(results.table.rows.size(), "run"),
-             arguments.output_directory);
+  print_results(arguments.output_directory, results);
   if (signal == 0) return results.worst_status;
   fmt::print("  stopped; `ricochet study --resume {}` goes on\n", arguments.output_directory);
   return 128 + signal;

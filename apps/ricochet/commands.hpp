@@ -64,6 +64,8 @@ int contact(const ContactArguments& arguments);
 int report(const ReportArguments& arguments);
 int plot(const PlotArguments& arguments);
 int study(const StudyArguments& arguments);
+/// The table of a study.
+void describe_study(const std::string& directory);
 /// A contact problem in a few lines.
 void describe_contact_problem(const std::string& path);
 

@@ -12,6 +12,7 @@ try:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.lines import Line2D
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator, ScalarFormatter
 except ImportError as problem:
     print(problem)
@@ -128,7 +129,8 @@ def draw_slopes(axes, panel):
     """Guides of whole orders that begin in one place, below all curves."""
     points = [point for curve in panel["curves"] for point in zip(curve["x"], curve["y"])]
     left, right = min(x for x, _ in points), max(x for x, _ in points)
-    start = 0.5 * min(y * (left / x) ** order for x, y in points for order in panel["slopes"])
+    right = left * (right / left) ** 0.5  # so that they leave the curves most of the panel
+    start = 0.5 * min(y * (left / min(x, right)) ** order for x, y in points if x <= 2.5 * right for order in panel["slopes"])
     for order in panel["slopes"]:
         end = start * (right / left) ** order
         axes.plot([left, right], [start, end], color="0.55", lw=0.8, ls=(0, (4, 3)), zorder=1)
@@ -140,8 +142,9 @@ def name_steps(axes, panel):
     """On a logarithmic scale the values themselves are the ticks, as far as there is room for them."""
     values = sorted({x for curve in panel["curves"] for x in curve["x"]})
     axes.xaxis.set_minor_locator(NullLocator())
-    if len(values) <= 6 and all(b / a > 1.3 for a, b in zip(values, values[1:])):
-        axes.set_xticks(values, [in_powers(x) for x in values])
+    if len(values) <= 8 and all(b / a > 1.3 for a, b in zip(values, values[1:])):
+        every = 1 if len(values) <= 4 else 2
+        axes.set_xticks(values, ["" if i % every else in_powers(x) for i, x in enumerate(values)])
     else:
         name_decades(axes.xaxis)
     if values[-1] < 3 * values[0]:
@@ -158,22 +161,30 @@ def name_decades(axis):
 
 def folded(label):
     """A long name on two lines."""
-    if len(label) < 28:
+    if len(label) < 26:
         return literal(label)
     middle = len(label) // 2
-    ends = [i + 1 for i, c in enumerate(label) if c in ". " and 0 < i < len(label) - 1]
-    at = min(ends, key=lambda i: abs(i - middle), default=len(label))
-    return literal(label[:at]) + "\n" + literal(label[at:])
+    at = label.index(" of ") + 4 if " of " in label else label.find(".", middle) + 1
+    return literal(label[:at].rstrip()) + "\n" + literal(label[at:])
 
 
-def draw_lines(axes, panel):
+def look(i, labels, panel):
+    return {"color": COLOURS[i % len(COLOURS)] if len(labels) > 1 else ALONE, "marker": MARKERS[i % len(MARKERS)], "ms": 4,
+            "lw": 0 if panel["categories"] else 1.1, "ls": PATTERNS[i // len(COLOURS) % len(PATTERNS)]}
+
+
+def labels_of(panels):
+    return list(dict.fromkeys(curve["label"] for panel in panels for curve in panel.get("curves", [])))
+
+
+def draw_lines(axes, panel, labels):
+    """`labels`: of the lines of all panels, whose places give colours and signs."""
     curves = panel["curves"]
-    for i, curve in enumerate(curves):
+    for curve in curves:
+        i = labels.index(curve["label"])
         # What has no order is not joined, and what has the same place stands side by side.
-        x = [x + 0.08 * (i - (len(curves) - 1) / 2) for x in curve["x"]] if panel["categories"] else curve["x"]
-        axes.plot(x, curve["y"], color=COLOURS[i % len(COLOURS)] if len(curves) > 1 else ALONE, label=literal(curve["label"]),
-                  lw=0 if panel["categories"] else 1.1, ls=PATTERNS[i // len(COLOURS) % len(PATTERNS)],
-                  marker=MARKERS[i % len(MARKERS)], ms=4, zorder=2)
+        x = [x + 0.08 * (i - (len(labels) - 1) / 2) for x in curve["x"]] if panel["categories"] else curve["x"]
+        axes.plot(x, curve["y"], zorder=2, **look(i, labels, panel))
     axes.set_xlabel(literal(panel["x_label"]))
     axes.set_ylabel(folded(panel["y_label"]))
     if panel["log_y"]:
@@ -192,10 +203,23 @@ def draw_lines(axes, panel):
         axes.xaxis.set_major_locator(MaxNLocator(5))
     if panel["slopes"]:
         draw_slopes(axes, panel)
-    if len(curves) > 1 or curves[0]["label"]:
-        # Above: there is no room that is free for sure.
-        axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2,
-                    handlelength=2.0 if len(curves) <= len(COLOURS) else 3.5)
+    axes.set_title(panel["note"], loc="right", fontsize=7, color="0.35")
+
+
+def add_common_legend(figure, panels, width, height):
+    """Above all panels: there is no room in them that is free for sure. The figure grows by it."""
+    labels = labels_of(panels)
+    if labels == [""]:
+        return
+    handles = [Line2D([], [], **look(i, labels, panels[0])) for i in range(len(labels))]
+    longest = max(map(len, labels))
+    columns = max(1, min(len(labels), int((width - 0.5) / (1.4 + 0.16 * longest))))
+    room = 0.45 * -(-len(labels) // columns) + 0.25
+    figure.set_size_inches(width * CENTIMETRE, (height + room) * CENTIMETRE)
+    top = height / (height + room)
+    figure.get_layout_engine().set(rect=(0, 0, 1, top))
+    figure.legend(handles, list(map(literal, labels)), loc="lower left", bbox_to_anchor=(0.01, top), ncol=columns, frameon=False,
+                  borderaxespad=0.0, handlelength=2.0 if len(labels) <= len(COLOURS) else 3.5)
 
 
 def main(form, output):
@@ -213,11 +237,13 @@ def main(form, output):
         elif panels[i]["kind"] == "map":
             draw_map(figure, axes, panels[i], i % columns == 0 or panels[i - 1]["kind"] != "map")
         elif panels[i]["kind"] == "lines":
-            draw_lines(axes, panels[i])
+            draw_lines(axes, panels[i], labels_of(panels))
         else:
             draw_curves(axes, panels[i], len(panels[i]["curves"]) > 1)
             if "time" in description:
                 axes.set_xlim(*description["time"])
+    if panels[0]["kind"] == "lines":
+        add_common_legend(figure, panels, width, height)
     if description["title"]:
         figure.suptitle(literal(description["title"]), fontsize=10)
     # What a file says about itself must not change from day to day.

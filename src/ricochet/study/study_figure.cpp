@@ -32,9 +32,16 @@ struct StudyPanel {
       fmt::format("--what {}: {}; of a study work-precision, order and COLUMN-against-KEY can be drawn", what, why));
 }
 
+bool has_numbers(const ResultTable& table, const std::string& column) {
+  const std::size_t c = table.find(column);
+  return c < table.columns.size() && std::any_of(table.rows.begin(), table.rows.end(),
+                                                 [c](const auto& row) { return std::isfinite(number_of(row[c])); });
+}
+
 std::vector<std::string> error_columns(const ResultTable& table) {
   std::vector<std::string> columns = table.names();
-  std::erase_if(columns, [](const std::string& name) { return !name.starts_with(error_prefix); });
+  std::erase_if(columns,
+                [&](const std::string& name) { return !name.starts_with(error_prefix) || !has_numbers(table, name); });
   return columns;
 }
 
@@ -83,15 +90,20 @@ std::vector<StudyPanel> panels_of(const std::string& what, const Study& study, c
   return panels;
 }
 
+/// A value of an axis as short as it can be told from the others: by the first key alone, if that does.
+std::string value_label(const StudyAxis& axis, std::size_t at) {
+  const auto same = [&](const auto& other) { return other.front() == axis.values[at].front(); };
+  if (std::count_if(axis.values.begin(), axis.values.end(), same) == 1) return axis.values[at].front();
+  return fmt::format("{}", fmt::join(axis.values[at], "/"));
+}
+
 /// How the runs of a line are told from the others: by the values of the other axes.
 std::string line_label(const PlannedRun& run, const StudyPlan& plan, std::size_t line_axis) {
   std::vector<std::string> parts;
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {
     if (a == line_axis) continue;
-    const std::vector<std::string>& values = plan.axes[a].values[run.at[a]];
-    const std::string& key = plan.axes[a].keys.front();
-    const std::string value = fmt::format("{}", fmt::join(values, "/"));
-    parts.push_back(number_in(values.front()) ? key.substr(key.rfind('.') + 1) + " " + value : value);
+    const std::string &key = plan.axes[a].keys.front(), value = value_label(plan.axes[a], run.at[a]);
+    parts.push_back(number_in(value) ? fmt::format("{} {}", key.substr(key.rfind('.') + 1), value) : value);
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -136,10 +148,34 @@ std::vector<StudyLine> lines_of(const StudyPanel& panel, const Study& study, con
   return lines;
 }
 
-/// That of the last two points.
-std::optional<double> last_order(const StudyLine& line) {
-  const std::size_t n = line.x.size();
-  return n < 2 ? std::nullopt : observed_order(line.y[n - 2], line.y[n - 1], line.x[n - 2], line.x[n - 1]);
+/// Between neighbours, from the first point on.
+std::vector<double> orders_of(const StudyLine& line) {
+  std::vector<double> orders;
+  for (std::size_t i = 1; i < line.x.size(); ++i) {
+    if (const auto order = observed_order(line.y[i - 1], line.y[i], line.x[i - 1], line.x[i])) orders.push_back(*order);
+  }
+  return orders;
+}
+
+/// The whole orders that are nearest to observed ones, for guides: two at most, and the order at the end of each line.
+void describe_orders(const std::vector<StudyLine>& lines, Json& panel) {
+  std::map<long, int> found;
+  std::vector<std::string> last;
+  for (const StudyLine& line : lines) {
+    const std::vector<double> orders = orders_of(line);
+    last.push_back(orders.empty() ? "-" : fmt::format("{:.2f}", orders.back()));
+    for (const double order : orders) {
+      if (order > 0.5 && order < 4.5) ++found[std::lround(order)];
+    }
+  }
+  std::vector<std::pair<int, long>> ranked;
+  for (const auto& [order, count] : found) ranked.emplace_back(-count, order);
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<long> slopes;
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, ranked.size()); ++i) slopes.push_back(ranked[i].second);
+  std::sort(slopes.begin(), slopes.end());
+  panel["slopes"] = Json(slopes);
+  panel["note"] = fmt::format("last order{}: {}", last.size() > 1 ? "s" : "", fmt::join(last, ", "));
 }
 
 /// What spans no more than a factor of eight is seen well on a linear scale.
@@ -172,18 +208,9 @@ Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& tab
   const std::vector<std::string> keys = varied_keys(study.plan);
   json["names_steps"] = std::count(keys.begin(), keys.end(), panel.x) > 0;
   json["log_x"] = panel.log_x || (categories.empty() && spans_much(lines));
-  std::vector<int> slopes;
-  for (const StudyLine& line : lines) {
-    std::string label = line.label;
-    if (const std::optional<double> order = panel.has_slopes ? last_order(line) : std::nullopt) {
-      label += fmt::format("{}order {:.2f}", label.empty() ? "" : ": ", *order);
-      const int slope = static_cast<int>(std::clamp(std::lround(*order), 1L, 4L));
-      if (std::count(slopes.begin(), slopes.end(), slope) == 0) slopes.push_back(slope);
-    }
-    json["curves"].push_back({{"label", label}, {"x", line.x}, {"y", line.y}});
-  }
-  std::sort(slopes.begin(), slopes.end());
-  json["slopes"] = Json(slopes);
+  for (const StudyLine& line : lines) json["curves"].push_back({{"label", line.label}, {"x", line.x}, {"y", line.y}});
+  json["note"] = "";
+  if (panel.has_slopes) describe_orders(lines, json);
   return json;
 }
 
@@ -200,15 +227,8 @@ std::string describe_study_figure(const Study& study, const ResultTable& table, 
 }
 
 std::vector<std::string> usual_figures(const Study& study, const ResultTable& table) {
-  const auto has_numbers = [&](const std::string& column) {
-    const std::size_t c = table.find(column);
-    const auto& rows = table.rows;
-    return c < table.columns.size() &&
-           std::any_of(rows.begin(), rows.end(), [c](const auto& row) { return std::isfinite(number_of(row[c])); });
-  };
   std::vector<std::string> figures;
   for (const std::string& error : error_columns(table)) {
-    if (!has_numbers(error)) continue;
     const std::string name = error.substr(std::string(error_prefix).size());
     if (!study.questions.order_key.empty()) figures.push_back("order:" + name);
     figures.push_back("work-precision:" + name);
@@ -217,7 +237,7 @@ std::vector<std::string> usual_figures(const Study& study, const ResultTable& ta
   const std::string key =
       study.questions.order_key.empty() ? varied_keys(study.plan).back() : study.questions.order_key;
   for (const char* column : {"restitution", "largest_force", "peak_von_mises"}) {
-    if (has_numbers(column)) figures.push_back(column + std::string(against) + key);
+    if (has_numbers(table, column)) figures.push_back(column + std::string(against) + key);
   }
   return figures;
 }
