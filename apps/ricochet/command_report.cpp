@@ -36,7 +36,7 @@ std::string viewer_file() {
 }
 
 /// Runs that the viewer compares well on one page.
-constexpr std::size_t most_runs_on_a_page = 8;
+constexpr std::size_t most_runs_on_a_page = 12;
 
 std::string svg_of(const std::string& description) {
   const TemporaryFolder workspace(fs::temp_directory_path(), "ricochet-study");

@@ -200,7 +200,7 @@ def draw_lines(axes, panel, labels):
         axes.set_xscale("log")
         name_steps(axes, panel) if panel["names_steps"] else name_decades(axes.xaxis)
     else:
-        axes.xaxis.set_major_locator(MaxNLocator(5))
+        axes.xaxis.set_major_locator(MaxNLocator(4))
     if panel["slopes"]:
         draw_slopes(axes, panel)
     axes.set_title(panel["note"], loc="right", fontsize=7, color="0.35")

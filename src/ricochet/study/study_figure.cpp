@@ -178,7 +178,7 @@ void describe_orders(const std::vector<StudyLine>& lines, Json& panel) {
   panel["note"] = fmt::format("last order{}: {}", last.size() > 1 ? "s" : "", fmt::join(last, ", "));
 }
 
-/// What spans no more than a factor of eight is seen well on a linear scale.
+/// What spans no more than a factor of five is seen well on a linear scale.
 bool spans_much(const std::vector<StudyLine>& lines) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const StudyLine& line : lines) {
@@ -187,7 +187,7 @@ bool spans_much(const std::vector<StudyLine>& lines) {
       most = std::max(most, x);
     }
   }
-  return least > 0.0 && most > 8.0 * least;
+  return least > 0.0 && most > 5.0 * least;
 }
 
 Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& table, const std::string& what) {

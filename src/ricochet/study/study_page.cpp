@@ -18,8 +18,9 @@ constexpr std::string_view page_style = R"(
 body { font: 15px/1.5 "DejaVu Sans", system-ui, sans-serif; color: #1b1f24; max-width: 78rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.4rem; } h2 { font-size: 1.1rem; margin-top: 2rem; }
 .wide { overflow-x: auto; } svg { max-width: 100%; height: auto; }
-table { border-collapse: collapse; font-size: 0.85rem; }
-th, td { padding: 0.2rem 0.7rem; border-bottom: 1px solid #d8dbdf; text-align: left; white-space: nowrap; }
+table { border-collapse: collapse; font-size: 0.85rem; margin-bottom: 1.5rem; }
+th, td { padding: 0.2rem 0.7rem; border-bottom: 1px solid #d8dbdf; text-align: left; }
+th, .number { white-space: nowrap; }
 .number { text-align: right; font-variant-numeric: tabular-nums; }
 )";
 

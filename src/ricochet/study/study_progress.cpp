@@ -64,11 +64,12 @@ void StudyProgress::draw() {
   double done = static_cast<double>(ended_);
   for (const std::string& directory : running_) done += part_done(directory);
   const double here = done - static_cast<double>(ended_before_);
-  const double left = here > 0.0 ? last_drawn_ / here * (static_cast<double>(runs_) - done) : 0.0;
+  const double left = last_drawn_ / here * (static_cast<double>(runs_) - done);
   constexpr int width = 30;
   const int filled = static_cast<int>(width * done / static_cast<double>(runs_));
-  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}/{} runs, {} going on  {} gone, {} left\033[K", "", filled, "",
-             width - filled, ended_, runs_, running_.size(), duration_text(last_drawn_), duration_text(left));
+  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}/{} runs, {} going on  {} gone{}\033[K", "", filled, "", width - filled,
+             ended_, runs_, running_.size(), duration_text(last_drawn_),
+             here > 0.0 ? fmt::format(", {} left", duration_text(left)) : "");
   std::fflush(stderr);
   open_ = true;
 }
