@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import pathlib
 import signal
 import subprocess
 import unittest
@@ -15,7 +16,7 @@ ROD = SOURCE / "cases" / "rod" / "rod.toml"
 FREE = {"initial.displacement": '["1e-3*cos(1.5707963267948966*x)", "0"]', "obstacle.stop.point": "[-10, 0]",
         "mass.type": "consistent", "time.end": 2}
 # Steps that take long enough to be interrupted.
-SLOW = {"time.end": 6, "output.fields_every": 0, "output.checkpoint_every": 500}
+SLOW = {"time.end": 4, "output.fields_every": 0, "output.checkpoint_every": 500}
 
 
 def table(directory, without=("processor_seconds",)):
@@ -142,38 +143,46 @@ class Study(TestCase):
         self.assertEqual(first["message"], "summary.steps is not ≤ 400")
         self.assertEqual((first["summary.steps"], second["summary.steps"]), ("500", "1000"))
 
-    def test_killed_and_resumed(self):
-        vary = ("--vary", "time.step=0.002,0.001,0.0005,0.00025")
-        self.study("whole", *vary, values=SLOW)
-        expected = table(self.output)
-        process = self.start("killed", *vary, values=SLOW)
-        third = self.output / "runs" / "003-step=0.0005"
-        wait_for(lambda: list(third.glob("*.ckpt")))
-        process.kill()
-        process.communicate()
-        summaries = [path for path in (self.output / "runs").glob("*/summary.json")
-                     if json.loads(path.read_text())["status"] == "running"]
-        self.assertTrue(summaries, "nothing was interrupted")
-        self.assertFalse((self.output / "study.csv").exists())
-        # The first says how to go on.
-        self.assertIn("--resume", self.study("killed", *vary, values=SLOW, status=4).stderr)
-        self.expect_status(0, run("study", "--resume", self.output, "--quiet"))
-        self.assertEqual(table(self.output), expected)
-        self.assertNotEqual(json.loads(summaries[0].read_text())["resumed_at"], [])
-
-    def test_stopped_by_a_signal_and_resumed(self):
+    def test_interrupted_and_resumed(self):
+        """By kill -9 and by a signal that it can answer; the tables are those of a study that was left in peace."""
         vary = ("--vary", "time.step=0.002,0.0005,0.00025")
         self.study("whole", *vary, values=SLOW)
         expected = table(self.output)
-        process = self.start("stopped", *vary, values=SLOW)
-        wait_for(lambda: list((self.output / "runs" / "002-step=0.0005").glob("*.ckpt")))
-        os.kill(process.pid, signal.SIGTERM)
-        text, errors = process.communicate()
-        self.assertEqual(process.returncode, 143, errors)
-        self.assertIn(f"`ricochet study --resume {self.output}` goes on", text)
-        self.assertIn("interrupted", [row["status"] for row in table(self.output)])
+        for number, name in ((signal.SIGKILL, "killed"), (signal.SIGTERM, "stopped")):
+            process = self.start(name, *vary, values=SLOW)
+            wait_for(lambda: list((self.output / "runs" / "002-step=0.0005").glob("*.ckpt")))
+            process.send_signal(number)
+            text, errors = process.communicate()
+            interrupted = [path for path in (self.output / "runs").glob("*/summary.json")
+                           if json.loads(path.read_text())["status"] in ("running", "interrupted")]
+            self.assertTrue(interrupted, "the study was too fast for this test")
+            if number == signal.SIGTERM:
+                self.assertEqual(process.returncode, 143, errors)
+                self.assertIn(f"`ricochet study --resume {self.output}` goes on", text)
+                self.assertIn("interrupted", [row["status"] for row in table(self.output)])
+            else:
+                self.assertFalse((self.output / "study.csv").exists())
+                # Begun anew it is refused, and the message says how to go on.
+                self.assertIn("--resume", self.study(name, *vary, values=SLOW, status=4).stderr)
+            self.expect_status(0, run("study", "--resume", self.output, "--quiet"))
+            self.assertEqual(table(self.output), expected)
+            self.assertNotEqual(json.loads(interrupted[0].read_text())["resumed_at"], [])
+
+    def test_a_run_whose_process_is_killed(self):
+        vary = ("--vary", "time.step=0.00025,0.002")
+        process = self.start("one", *vary, values=SLOW)
+        first = self.output / "runs" / "001-step=0.00025"
+        wait_for(lambda: list(first.glob("*.ckpt")))
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        os.kill(next(int(child) for child in children
+                     if first.name in pathlib.Path(f"/proc/{child}/cmdline").read_text()), signal.SIGKILL)
+        process.communicate()
+        self.assertEqual(process.returncode, 128 + signal.SIGKILL)
+        rows = table(self.output)
+        self.assertEqual([(row["status"], row["exit_status"]) for row in rows], [("failed", "137"), ("done", "0")])
+        self.assertEqual(rows[0]["message"], "its process was killed by signal 9")
         self.expect_status(0, run("study", "--resume", self.output, "--quiet"))
-        self.assertEqual(table(self.output), expected)
+        self.assertEqual([row["status"] for row in table(self.output)], ["done", "done"])
 
     def test_a_plan_may_grow_but_not_change(self):
         self.study("grows", "--vary", "time.step=0.004,0.001")

@@ -13,7 +13,7 @@ struct RunState {
   std::optional<RunSummary> summary;  ///< none: there is none, or it cannot be read
   std::string summary_json;
   bool has_checkpoint = false;
-  std::optional<int> exit_status;  ///< that its process has left, where it was not 0; −1: it was killed
+  std::optional<int> exit_status;  ///< that its process has left, where it was not 0; 128 + N: signal N killed it
   std::string message;             ///< with that status, one line
 
   /// The status that the study gives it: 0, 5 where an expectation does not hold, or that of its process. Nothing where

@@ -1,6 +1,7 @@
 #include "ricochet/study/study.hpp"
 
 #include <fmt/format.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -129,6 +130,12 @@ StudyRunner::StudyRunner(const Study& study, const StudyOptions& options) : stud
 }
 
 int StudyRunner::run() {
+  if (pending_.empty()) return 0;
+  // Until there are new ones: what the old tables say will not be so any more.
+  for (const char* file : {"study.csv", "study.md"}) {
+    std::error_code ignored;
+    std::filesystem::remove(study_.path(file), ignored);
+  }
   PoolWork work;
   work.make = [this](std::size_t i) { return start(i); };
   work.ended = [this](std::size_t i, const ChildOutcome& outcome) { end(i, outcome); };
@@ -161,10 +168,11 @@ ChildProcess StudyRunner::start(std::size_t i) {
 
 void StudyRunner::end(std::size_t i, const ChildOutcome& outcome) {
   const std::string directory = study_.path(run_at(i));
-  const int status = outcome.exit_status();
+  // As a shell has it, where something from outside has killed the process.
+  const int status = WIFSIGNALED(outcome.status) ? 128 + WTERMSIG(outcome.status) : outcome.exit_status();
   std::string message = last_error(read_file(directory + "/" + messages_file), directory);
   if (message.empty()) message = fmt::format("its process {}", outcome.description());
-  const bool was_stopped = status > 128 || (options_.stop_signal && options_.stop_signal() != 0 && status < 0);
+  const bool was_stopped = status >= 128 && options_.stop_signal && options_.stop_signal() != 0;
   if (!was_stopped) record_outcome(directory, status, message);
   progress_->end(directory, was_stopped ? "interrupted" : status == 0 ? "done" : message);
 }

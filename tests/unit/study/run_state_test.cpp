@@ -31,7 +31,7 @@ TEST(RunState, DecidesWhatIsStillToBeDone) {
   EXPECT_EQ(next_action(state("failed", 3)), NextAction::nothing) << "its step fails again";
   EXPECT_EQ(next_action(state("running", 3)), NextAction::resume) << "out of memory";
   EXPECT_EQ(next_action(state("failed", 4)), NextAction::resume) << "the disk was full";
-  EXPECT_EQ(next_action(state("running", -1)), NextAction::resume) << "its process was killed";
+  EXPECT_EQ(next_action(state("running", 137)), NextAction::resume) << "its process was killed";
   EXPECT_EQ(next_action(state("", 4)), NextAction::start);
 }
 
