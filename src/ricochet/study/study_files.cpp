@@ -12,6 +12,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/quantity.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/run_directory.hpp"
 
 namespace ricochet {
 
@@ -96,9 +97,8 @@ std::string checked_reference(const std::string& reference, const StudyPlan& pla
       throw Error(ErrorKind::usage, fmt::format("{}: the values of {} are not numbers, or only one", option, key));
     return reference;
   }
-  std::error_code ignored;
-  if (reference.empty() || std::filesystem::is_directory(reference, ignored))
-    return reference.empty() ? "" : std::filesystem::absolute(reference).lexically_normal().string();
+  if (reference.empty()) return "";
+  if (holds_run(reference)) return std::filesystem::absolute(reference).lexically_normal().string();
   throw Error(ErrorKind::usage, fmt::format("--reference {}: is neither the directory of a run nor last:KEY nor "
                                             "finest:KEY of a key that varies",
                                             reference));

@@ -196,7 +196,13 @@ std::vector<ComparedQuantity> StudyTableMaker::compared() {
     if (reference == nullptr) continue;
     if (questions_.compare.empty()) return usual_compared(reference->table);
     std::vector<ComparedQuantity> result;
-    for (const std::string& name : questions_.compare) result.push_back(find_compared(name, reference->table));
+    for (const std::string& name : questions_.compare) {
+      try {
+        result.push_back(find_compared(name, reference->table));
+      } catch (const Error& problem) {  // the rest of the table is there all the same
+        log::warning(problem.what());
+      }
+    }
     return result;
   }
   log::warning(fmt::format("--reference {}: no run that could be one has a history yet", questions_.reference));
@@ -210,7 +216,11 @@ void StudyTableMaker::add_history_errors() {
       const std::string own = study_.path(study_.runs[run]), directory = reference_of(run);
       if (own == directory || states_[run].word() != "done") return {};
       const RunHistory *history = history_of(own), *reference = history_of(directory);
-      if (history == nullptr || reference == nullptr || reference->summary.status != "done") return {};
+      if (reference == nullptr || reference->summary.status != "done") {
+        problems_["--reference " + directory] = "this run is not done, and there are no errors against it";
+        return {};
+      }
+      if (history == nullptr) return {};
       const std::optional<double> error = relative_error(quantity, *history, *reference);
       return error ? TableCell(*error) : TableCell();
     });
