@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "processor_timer.hpp"
+#include "ricochet/base/timer.hpp"
 #include "ricochet/fclib/fclib_file.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 

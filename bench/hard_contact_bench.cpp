@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "processor_timer.hpp"
+#include "ricochet/base/timer.hpp"
 #include "support/hard_contact_problems.hpp"
 
 namespace {

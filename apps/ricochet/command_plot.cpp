@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 
 #include "commands.hpp"
-#include "installed_files.hpp"
+#include "drawing.hpp"
 #include "reading_runs.hpp"
-#include "ricochet/base/child_process.hpp"
 #include "ricochet/base/error.hpp"
-#include "ricochet/base/python.hpp"
-#include "ricochet/base/temporary_folder.hpp"
-#include "ricochet/io/durable_file.hpp"
 #include "ricochet/report/figure.hpp"
+#include "ricochet/study/study_figure.hpp"
+#include "ricochet/study/study_table.hpp"
 
 namespace ricochet::program {
 
@@ -70,40 +67,19 @@ FigureOptions options_of(const PlotArguments& arguments) {
   return options;
 }
 
-void draw(const std::string& description, const std::string& format, const std::string& output) {
-  const std::string script = installed_file("figure.py");
-  if (script.empty()) {
-    throw Error(ErrorKind::file_access,
-                "share/ricochet/figure.py, which draws figures, is missing beside the program: "
-                "install Ricochet again");
-  }
-  const TemporaryFolder workspace(fs::temp_directory_path(), "ricochet-plot");
-  ChildProcess child;
-  child.arguments = {python_program(), "-B", script, format, workspace.file("figure")};
-  child.variables = {"MPLCONFIGDIR=" + workspace.file("matplotlib")};  // the user's own settings change nothing
-  child.input = workspace.file("description.json");
-  child.output = workspace.file("messages");
-  std::ofstream(child.input) << description;
-  const ChildOutcome outcome = run_child(child);
-  if (outcome.is_absent())
-    throw Error(ErrorKind::file_access,
-                "figures are drawn by Python, which is not here: apt-get install python3-matplotlib");
-  if (outcome.exit_status() == 3) {
-    throw Error(ErrorKind::file_access,
-                fmt::format("figures are drawn by Python's matplotlib, which is not here ({}): apt-get install "
-                            "python3-matplotlib",
-                            python_program()));
-  }
-  if (!outcome.succeeded()) {
-    throw Error(ErrorKind::file_access, fmt::format("the figure could not be drawn: {} {}:\n{}", python_program(),
-                                                    outcome.description(), read_file(workspace.file("messages"))));
-  }
-  // Under a temporary name first: what was there stays until all of the new file is.
-  const std::string part = output + ".part";
-  std::error_code problem;
-  fs::copy_file(workspace.file("figure"), part, fs::copy_options::overwrite_existing, problem);
-  if (!problem) fs::rename(part, output, problem);
-  if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be written: {}", output, problem.message()));
+}  // namespace
+
+namespace {
+
+/// Of one study; a figure shows one.
+std::string describe_study(const PlotArguments& arguments, const FigureOptions& options) {
+  if (arguments.directories.size() > 1)
+    throw Error(ErrorKind::usage, "plot: a figure of a study shows this study alone: name no other directory");
+  if (options.time || !options.labels.empty())
+    throw Error(ErrorKind::usage, "plot: --time and --label are for figures of runs, and this is a study");
+  const Study study = read_study(arguments.directories.front());
+  return describe_study_figure(study, make_study_table(study).table,
+                               {options.what, options.title, options.logarithmic, options.width, options.height});
 }
 
 }  // namespace
@@ -111,11 +87,16 @@ void draw(const std::string& description, const std::string& format, const std::
 int plot(const PlotArguments& arguments) {
   const std::string format = format_of(arguments.output);
   const FigureOptions options = options_of(arguments);
+  if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study)) {
+    draw_figure(describe_study(arguments, options), format, arguments.output);
+    fmt::print("{}\n", arguments.output);
+    return 0;
+  }
   const bool needs_fields = std::count(options.what.begin(), options.what.end(), "pressure-map") > 0;
   std::string description;
   read_with_patience(arguments.directories,
                      [&] { description = describe_figure(read_runs(arguments.directories, needs_fields), options); });
-  draw(description, format, arguments.output);
+  draw_figure(description, format, arguments.output);
   fmt::print("{}\n", arguments.output);
   return 0;
 }

@@ -46,6 +46,16 @@ struct PlotArguments {
   bool logarithmic = false;
 };
 
+struct StudyArguments {
+  std::string case_file, output_directory;
+  std::vector<std::string> vary, overrides;
+  std::vector<std::string> quantities, exact, compare;
+  std::string reference, order;
+  int jobs = 0;  ///< 0: as many as the cores bear
+  int threads = 1;
+  bool resume = false, force = false, quiet = false;
+};
+
 int run(const RunArguments& arguments);
 int validate(const ValidateArguments& arguments);
 int info(const std::vector<std::string>& paths);
@@ -53,6 +63,9 @@ int schema(bool markdown);
 int contact(const ContactArguments& arguments);
 int report(const ReportArguments& arguments);
 int plot(const PlotArguments& arguments);
+int study(const StudyArguments& arguments);
+/// The table of a study.
+void describe_study(const std::string& directory);
 /// A contact problem in a few lines.
 void describe_contact_problem(const std::string& path);
 

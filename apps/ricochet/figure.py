@@ -12,7 +12,8 @@ try:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    from matplotlib.ticker import FuncFormatter, MaxNLocator, ScalarFormatter
+    from matplotlib.lines import Line2D
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator, ScalarFormatter
 except ImportError as problem:
     print(problem)
     sys.exit(3)
@@ -23,6 +24,7 @@ ALONE = "#1b1f24"
 COLOURS = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6b4c9a", "#5b5b5b"]
 # More runs than colours: each time the colours come again the lines have another pattern.
 PATTERNS = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (7, 2, 1.5, 2, 1.5, 2)), (0, (12, 3)), (0, (3, 3)), (0, (1.5, 4))]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 
 # Settings that a user has for other figures change nothing.
 matplotlib.rcdefaults()
@@ -123,6 +125,103 @@ def draw_map(figure, axes, panel, is_first):
     bar.outline.set_linewidth(0.6)
 
 
+def draw_slopes(axes, panel):
+    """Guides of whole orders that begin in one place, below all curves."""
+    points = [point for curve in panel["curves"] for point in zip(curve["x"], curve["y"])]
+    left, right = min(x for x, _ in points), max(x for x, _ in points)
+    right = left * (right / left) ** 0.5  # so that they leave the curves most of the panel
+    start = 0.5 * min(y * (left / min(x, right)) ** order for x, y in points if x <= 2.5 * right for order in panel["slopes"])
+    for order in panel["slopes"]:
+        end = start * (right / left) ** order
+        axes.plot([left, right], [start, end], color="0.55", lw=0.8, ls=(0, (4, 3)), zorder=1)
+        axes.annotate(f"order {order}", (right, end), xytext=(4, 0), textcoords="offset points", fontsize=7, color="0.4",
+                      va="center", annotation_clip=False)
+
+
+def name_steps(axes, panel):
+    """On a logarithmic scale the values themselves are the ticks, as far as there is room for them."""
+    values = sorted({x for curve in panel["curves"] for x in curve["x"]})
+    axes.xaxis.set_minor_locator(NullLocator())
+    if len(values) <= 8 and all(b / a > 1.3 for a, b in zip(values, values[1:])):
+        every = 1 if len(values) <= 4 else 2
+        axes.set_xticks(values, ["" if i % every else in_powers(x) for i, x in enumerate(values)])
+    else:
+        name_decades(axes.xaxis)
+    if values[-1] < 3 * values[0]:
+        axes.set_xlim(values[0] / 1.15, values[-1] * 1.15)
+
+
+def name_decades(axis):
+    """Of less than two decades 1, 2 and 5 of each."""
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1.0,) if high > 100 * low else (1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: in_powers(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def folded(label):
+    """A long name on two lines."""
+    if len(label) < 26:
+        return literal(label)
+    middle = len(label) // 2
+    at = label.index(" of ") + 4 if " of " in label else label.find(".", middle) + 1
+    return literal(label[:at].rstrip()) + "\n" + literal(label[at:])
+
+
+def look(i, labels, panel):
+    return {"color": COLOURS[i % len(COLOURS)] if len(labels) > 1 else ALONE, "marker": MARKERS[i % len(MARKERS)], "ms": 4,
+            "lw": 0 if panel["categories"] else 1.1, "ls": PATTERNS[i // len(COLOURS) % len(PATTERNS)]}
+
+
+def labels_of(panels):
+    return list(dict.fromkeys(curve["label"] for panel in panels for curve in panel.get("curves", [])))
+
+
+def draw_lines(axes, panel, labels):
+    """`labels`: of the lines of all panels, whose places give colours and signs."""
+    curves = panel["curves"]
+    for curve in curves:
+        i = labels.index(curve["label"])
+        # What has no order is not joined, and what has the same place stands side by side.
+        x = [x + 0.08 * (i - (len(labels) - 1) / 2) for x in curve["x"]] if panel["categories"] else curve["x"]
+        axes.plot(x, curve["y"], zorder=2, **look(i, labels, panel))
+    axes.set_xlabel(literal(panel["x_label"]))
+    axes.set_ylabel(folded(panel["y_label"]))
+    if panel["log_y"]:
+        axes.set_yscale("log")
+        name_decades(axes.yaxis)
+    else:
+        axes.yaxis.set_major_formatter(ScalarFormatter(useMathText=True))
+        axes.ticklabel_format(axis="y", scilimits=(-3, 4), useOffset=False)
+    if panel["categories"]:
+        axes.set_xticks(range(len(panel["categories"])), [literal(name) for name in panel["categories"]])
+        axes.set_xlim(-0.5, len(panel["categories"]) - 0.5)
+    elif panel["log_x"]:
+        axes.set_xscale("log")
+        name_steps(axes, panel) if panel["names_steps"] else name_decades(axes.xaxis)
+    else:
+        axes.xaxis.set_major_locator(MaxNLocator(4))
+    if panel["slopes"]:
+        draw_slopes(axes, panel)
+    axes.set_title(panel["note"], loc="right", fontsize=7, color="0.35")
+
+
+def add_common_legend(figure, panels, width, height):
+    """Above all panels: there is no room in them that is free for sure. The figure grows by it."""
+    labels = labels_of(panels)
+    if labels == [""]:
+        return
+    handles = [Line2D([], [], **look(i, labels, panels[0])) for i in range(len(labels))]
+    longest = max(map(len, labels))
+    columns = max(1, min(len(labels), int((width - 0.5) / (1.4 + 0.16 * longest))))
+    room = 0.45 * -(-len(labels) // columns) + 0.25
+    figure.set_size_inches(width * CENTIMETRE, (height + room) * CENTIMETRE)
+    top = height / (height + room)
+    figure.get_layout_engine().set(rect=(0, 0, 1, top))
+    figure.legend(handles, list(map(literal, labels)), loc="lower left", bbox_to_anchor=(0.01, top), ncol=columns, frameon=False,
+                  borderaxespad=0.0, handlelength=2.0 if len(labels) <= len(COLOURS) else 3.5)
+
+
 def main(form, output):
     description = json.load(sys.stdin)
     panels = description["panels"]
@@ -137,10 +236,14 @@ def main(form, output):
             axes.set_axis_off()
         elif panels[i]["kind"] == "map":
             draw_map(figure, axes, panels[i], i % columns == 0 or panels[i - 1]["kind"] != "map")
+        elif panels[i]["kind"] == "lines":
+            draw_lines(axes, panels[i], labels_of(panels))
         else:
             draw_curves(axes, panels[i], len(panels[i]["curves"]) > 1)
             if "time" in description:
                 axes.set_xlim(*description["time"])
+    if panels[0]["kind"] == "lines":
+        add_common_legend(figure, panels, width, height)
     if description["title"]:
         figure.suptitle(literal(description["title"]), fontsize=10)
     # What a file says about itself must not change from day to day.

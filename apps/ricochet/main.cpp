@@ -32,15 +32,70 @@ struct Arguments {
   program::ContactArguments contact;
   program::ReportArguments report;
   program::PlotArguments plot;
+  program::StudyArguments study;
   std::vector<std::string> info_paths;
   bool markdown = false;
   std::string log_level = "info";
   int threads = 1;
 };
 
-void add_common(CLI::App& command, Arguments& arguments) {
-  command.add_option("--log-level", arguments.log_level, "trace, debug, info, warning, error or off")
-      ->type_name("LEVEL");
+void add_common(CLI::App& command, std::string& log_level) {
+  command.add_option("--log-level", log_level, "trace, debug, info, warning, error or off")->type_name("LEVEL");
+}
+
+void add_study_questions(CLI::App& study, program::StudyArguments& arguments) {
+  study
+      .add_option("--quantity", arguments.quantities,
+                  "a column of the table, in the language of [[expect]]: history.COLUMN[-1], max(history.COLUMN), "
+                  "summary.PATH; may be repeated")
+      ->type_name("QUANTITY")
+      ->allow_extra_args(false);
+  study.add_option("--exact", arguments.exact, "the value that a quantity should have: a column of its error")
+      ->type_name("QUANTITY=VALUE")
+      ->allow_extra_args(false);
+  study
+      .add_option("--reference", arguments.reference,
+                  "the run that histories are compared with: a directory of a run, last:KEY or finest:KEY")
+      ->type_name("RUN");
+  study
+      .add_option("--compare", arguments.compare,
+                  "a column of history.csv, or a vector without its _x, to be compared with that of the reference")
+      ->type_name("COLUMN")
+      ->allow_extra_args(false);
+  study.add_option("--order", arguments.order, "the key whose values observed orders are of")->type_name("KEY");
+}
+
+void add_study(CLI::App& app, program::StudyArguments& arguments, std::string& log_level) {
+  CLI::App* study = app.add_subcommand("study", "Run a case with many values of its keys, and tabulate what comes out");
+  study->add_option("case", arguments.case_file, "case file; with --resume also the directory of a study")
+      ->type_name("CASE.toml");
+  study
+      ->add_option("--vary", arguments.vary,
+                   "a key of the case and its values; keys that change together: KEY1,KEY2=V1/W1,V2/W2; repeated, all "
+                   "combinations")
+      ->type_name("KEY=V1,V2,...")
+      ->allow_extra_args(false);
+  study->add_option("--set", arguments.overrides, "override an entry of the case in all runs")
+      ->type_name("key.path=value")
+      ->allow_extra_args(false);
+  study->add_option("-o,--output", arguments.output_directory, "directory of the study")->type_name("DIR");
+  study->add_option("--jobs", arguments.jobs, "runs at a time (default: the cores that there are for them)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  study->add_option("--threads", arguments.threads, "threads of each run (default: 1)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  add_study_questions(*study, arguments);
+  study->add_flag("--quiet", arguments.quiet, "no progress");
+  study->add_flag("--force", arguments.force, "start anew over a study that is in the directory");
+  study
+      ->add_flag("--resume", arguments.resume,
+                 "go on with the study that is in the directory, also with more values than it had")
+      ->excludes("--force");
+  study->footer(
+      "Exit status: 0 all runs are done; 128 + N stopped by signal N, --resume goes on; else that of the run "
+      "that went worst, as of `ricochet run`.");
+  add_common(*study, log_level);
 }
 
 int dispatch(int argc, char** argv) {
@@ -77,7 +132,7 @@ int dispatch(int argc, char** argv) {
                   "directory of these files (default: contact in the output directory)")
       ->type_name("DIR")
       ->needs("--export-contact");
-  add_common(*run, arguments);
+  add_common(*run, arguments.log_level);
 
   CLI::App* validate = app.add_subcommand("validate", "Check everything that can be checked without running");
   validate->add_option("case", arguments.validate.case_file, "case file")->required()->type_name("CASE.toml");
@@ -87,7 +142,7 @@ int dispatch(int argc, char** argv) {
   validate->add_flag("--mesh", arguments.validate.mesh,
                      "mesh a .geo or CAD file by the gmsh program, as a run does (which runs shell commands that a "
                      ".geo or .opt file contains)");
-  add_common(*validate, arguments);
+  add_common(*validate, arguments.log_level);
 
   CLI::App* info = app.add_subcommand(
       "info",
@@ -96,7 +151,7 @@ int dispatch(int argc, char** argv) {
   info->add_option("path", arguments.info_paths, "mesh, case file, FCLib file, checkpoint or output directory")
       ->required()
       ->type_name("FILE_OR_DIR");
-  add_common(*info, arguments);
+  add_common(*info, arguments.log_level);
 
   CLI::App* contact = app.add_subcommand("contact", "Solve a contact problem from an FCLib file");
   contact->add_option("problem", arguments.contact.problem, "FCLib file of a local problem")->type_name("PROBLEM.hdf5");
@@ -113,7 +168,7 @@ int dispatch(int argc, char** argv) {
   contact->footer(
       "Exit status: 0 solved; 1 wrong use of the command line; 2 the file is malformed; 3 not solved: the best that\n"
       "was found is reported with its residual; 4 cannot read or write a file.");
-  add_common(*contact, arguments);
+  add_common(*contact, arguments.log_level);
 
   CLI::App* report = app.add_subcommand("report", "Show one run or several in a page for the browser, one HTML file");
   report->add_option("directories", arguments.report.directories, "output directories of runs")
@@ -128,7 +183,7 @@ int dispatch(int argc, char** argv) {
                    "megabytes that the file has at most; runs that take more are thinned (default: 20)")
       ->type_name("MB")
       ->check(CLI::Range(1.0, 2000.0));
-  add_common(*report, arguments);
+  add_common(*report, arguments.log_level);
 
   CLI::App* plot = app.add_subcommand("plot", "Draw a figure for a paper (by Python's matplotlib)");
   plot->add_option("directories", arguments.plot.directories, "output directories of runs")
@@ -150,7 +205,9 @@ int dispatch(int argc, char** argv) {
   plot->add_option("--time", arguments.plot.time, "the part of the time to be shown")->type_name("A:B");
   plot->add_option("--size", arguments.plot.size, "width and height in cm")->type_name("WxH");
   plot->add_flag("--log", arguments.plot.logarithmic, "a logarithmic scale");
-  add_common(*plot, arguments);
+  add_common(*plot, arguments.log_level);
+
+  add_study(app, arguments.study, arguments.log_level);
 
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
   schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
@@ -171,12 +228,14 @@ int dispatch(int argc, char** argv) {
   if (arguments.run.quiet && log::enabled(log::Level::info) && !log::enabled(log::Level::debug))
     log::set_level(log::Level::warning);
   set_thread_count(arguments.threads);
-  if (!schema->parsed() && !plot->parsed() && !report->parsed()) reserve_blas_memory(arguments.threads);
+  if (run->parsed() || validate->parsed() || info->parsed() || contact->parsed())
+    reserve_blas_memory(arguments.threads);
   if (run->parsed()) return program::run(arguments.run);
   if (validate->parsed()) return program::validate(arguments.validate);
   if (info->parsed()) return program::info(arguments.info_paths);
   if (contact->parsed()) return program::contact(arguments.contact);
   if (plot->parsed()) return program::plot(arguments.plot);
+  if (app.got_subcommand("study")) return program::study(arguments.study);
   if (report->parsed()) return program::report(arguments.report);
   return program::schema(arguments.markdown);
 }

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "processor_timer.hpp"
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/base/timer.hpp"
 #include "ricochet/linear_algebra/sparse_cholesky.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 

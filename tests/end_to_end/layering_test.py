@@ -8,7 +8,7 @@ import unittest
 from harness import SOURCE
 
 LAYERS = ["base", "linear_algebra", "hdf5", "mesh", "fem", "contact", "mass", "problem", "scheme", "solver", "fclib",
-          "simulation", "io", "case", "model", "run", "report"]
+          "simulation", "io", "case", "model", "run", "study", "report"]
 # The library ricochet_contact: solvers of the contact problem and its files, without finite elements or time.
 CONTACT_LIBRARY = ("base", "linear_algebra", "hdf5", "solver/contact", "fclib")
 # linear_algebra is a tool of the layers from mass on: meshes, elements and contact do without it.

@@ -12,8 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
-
-#include "ricochet/base/interruption.hpp"
+#include <utility>
 
 extern char** environ;
 
@@ -40,23 +39,6 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
   result.push_back(nullptr);
   return result;
 }
-
-/// Tells this process why its child could not become the other program: memory that both see.
-class SharedErrno {
- public:
-  SharedErrno() : number_(mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {}
-  ~SharedErrno() {
-    if (exists()) munmap(number_, sizeof(int));
-  }
-  SharedErrno(const SharedErrno&) = delete;
-  SharedErrno& operator=(const SharedErrno&) = delete;
-
-  [[nodiscard]] bool exists() const { return number_ != MAP_FAILED; }
-  [[nodiscard]] int& value() const { return *static_cast<int*>(number_); }
-
- private:
-  void* number_;
-};
 
 bool redirect(const char* path, int flags, int stream) {
   const int file = open(path, flags, 0600);
@@ -86,13 +68,16 @@ bool redirect(const char* path, int flags, int stream) {
   _exit(127);
 }
 
-/// Until it has ended; its number stays its own until it is asked how.
-bool wait_for_end(pid_t process) {
-  siginfo_t ignored;
-  while (waitid(P_PID, static_cast<id_t>(process), &ignored, WEXITED | WNOWAIT) != 0) {
-    if (errno != EINTR) return false;
+/// Whether it has ended, with WNOHANG by now; its number stays its own until it is asked how. Throws nothing: where
+/// nobody knows, `problem` is errno.
+bool look_for_end(pid_t process, int options, int& problem) {
+  siginfo_t found{};
+  while (waitid(P_PID, static_cast<id_t>(process), &found, WEXITED | WNOWAIT | options) != 0) {
+    if (errno == EINTR) continue;
+    problem = errno;
+    return true;
   }
-  return true;
+  return found.si_pid != 0;
 }
 
 }  // namespace
@@ -115,35 +100,79 @@ std::string ChildOutcome::description() const {
   return fmt::format("ended with status {}", WEXITSTATUS(status));
 }
 
-ChildOutcome run_child(ChildProcess child) {
+/// Tells this process why its child could not become the other program: memory that both see.
+class RunningChild::SharedErrno {
+ public:
+  SharedErrno() : number_(mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {}
+  ~SharedErrno() {
+    if (exists()) munmap(number_, sizeof(int));
+  }
+  SharedErrno(const SharedErrno&) = delete;
+  SharedErrno& operator=(const SharedErrno&) = delete;
+
+  [[nodiscard]] bool exists() const { return number_ != MAP_FAILED; }
+  [[nodiscard]] int& value() const { return *static_cast<int*>(number_); }
+
+ private:
+  void* number_;
+};
+
+RunningChild::RunningChild(ChildProcess child) : error_(std::make_unique<SharedErrno>()) {
   std::vector<std::string> variables = environment(child.variables);
   const std::vector<char*> arguments = pointers(child.arguments), all_variables = pointers(variables);
-  ChildOutcome outcome;
-  const SharedErrno error;
-  if (!error.exists()) {
-    outcome.spawn_error = errno;
-    return outcome;
+  if (!error_->exists()) {
+    outcome_.spawn_error = errno;
+    return;
   }
-  pid_t process = -1;
-  {
-    const auto start = [&] {
-      const pid_t parent = getpid();
-      process = _Fork();  // without what libraries do at a fork: they are not called in the child
-      if (process == 0) become(child, parent, arguments.data(), all_variables.data(), error.value());
-      if (process < 0) outcome.spawn_error = errno;
-      if (process > 0) setpgid(process, process);  // whoever is first
-    };
-    const AtInterruption kill_child(start, [&process] {
-      if (process > 0 && kill(-process, SIGKILL) == 0) wait_for_end(process);
-    });
-    if (process < 0) return outcome;
-    if (!wait_for_end(process)) outcome.spawn_error = errno;
+  const auto start = [&] {
+    const pid_t parent = getpid();
+    process_ = _Fork();  // without what libraries do at a fork: they are not called in the child
+    if (process_ == 0) become(child, parent, arguments.data(), all_variables.data(), error_->value());
+    if (process_ < 0) outcome_.spawn_error = errno;
+    if (process_ > 0) setpgid(process_, process_);  // whoever is first
+  };
+  kill_when_interrupted_.emplace(start, [this] {
+    int ignored = 0;
+    if (process_ > 0 && kill(-process_, SIGKILL) == 0) look_for_end(process_, 0, ignored);
+  });
+  if (process_ < 0) kill_when_interrupted_.reset();
+}
+
+RunningChild::~RunningChild() {
+  send(SIGKILL);
+  wait();
+}
+
+bool RunningChild::has_ended() {
+  if (process_ < 0) return true;
+  if (!look_for_end(process_, WNOHANG, outcome_.spawn_error)) return false;
+  collect();
+  return true;
+}
+
+void RunningChild::wait() {
+  if (process_ < 0) return;
+  look_for_end(process_, 0, outcome_.spawn_error);
+  collect();
+}
+
+void RunningChild::send(int signal) {
+  if (process_ > 0) kill(-process_, signal);
+}
+
+void RunningChild::collect() {
+  kill_when_interrupted_.reset();  // before its number may become another's
+  while (outcome_.spawn_error == 0 && waitpid(process_, &outcome_.status, 0) < 0) {
+    if (errno != EINTR) outcome_.spawn_error = errno;
   }
-  while (outcome.spawn_error == 0 && waitpid(process, &outcome.status, 0) < 0) {
-    if (errno != EINTR) outcome.spawn_error = errno;
-  }
-  if (outcome.spawn_error == 0) outcome.spawn_error = error.value();
-  return outcome;
+  if (outcome_.spawn_error == 0) outcome_.spawn_error = error_->value();
+  process_ = -1;
+}
+
+ChildOutcome run_child(ChildProcess child) {
+  RunningChild running(std::move(child));
+  running.wait();
+  return running.outcome();
 }
 
 }  // namespace ricochet

@@ -1,7 +1,13 @@
 #pragma once
 
+#include <sys/types.h>
+
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "ricochet/base/interruption.hpp"
 
 /// @file Running another program. Its arguments go to it as they are: no shell is involved.
 namespace ricochet {
@@ -24,6 +30,36 @@ struct ChildOutcome {
   [[nodiscard]] int exit_status() const;
   /// "ended with status 1", "was killed by signal 9", "cannot be run: …".
   [[nodiscard]] std::string description() const;
+};
+
+/// A child that runs beside this process. It ends with the thread that has made it, however that ends.
+class RunningChild {
+ public:
+  /// Starts it. Where it cannot be started it has ended, and its outcome says why.
+  explicit RunningChild(ChildProcess child);
+  /// Kills it, with all that it has started, unless it has ended.
+  ~RunningChild();
+  RunningChild(const RunningChild&) = delete;
+  RunningChild& operator=(const RunningChild&) = delete;
+
+  /// Looks, and does not wait.
+  [[nodiscard]] bool has_ended();
+  /// Waits until it has ended.
+  void wait();
+  /// To it and all that it has started; nothing happens where it has ended.
+  void send(int signal);
+  /// Of one that has ended.
+  [[nodiscard]] const ChildOutcome& outcome() const { return outcome_; }
+
+ private:
+  class SharedErrno;
+  /// Takes note of how it has ended.
+  void collect();
+
+  pid_t process_ = -1;
+  ChildOutcome outcome_;
+  std::unique_ptr<SharedErrno> error_;
+  std::optional<AtInterruption> kill_when_interrupted_;
 };
 
 /// Waits until it has ended.

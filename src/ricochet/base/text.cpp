@@ -1,6 +1,7 @@
 #include "ricochet/base/text.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <numeric>
 
 namespace ricochet {
@@ -48,6 +49,14 @@ std::optional<std::string_view> between(std::string_view text, std::string_view 
 bool is_digits(std::string_view text, std::size_t least, std::size_t most) {
   const bool digits = text.find_first_not_of("0123456789") == std::string_view::npos;
   return digits && text.size() >= least && text.size() <= most;
+}
+
+std::optional<double> number_in(std::string_view text) {
+  double value = 0.0;
+  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto [end, problem] = std::from_chars(begin, text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
 }
 
 std::string join_names(std::span<const std::string> names, std::string_view last_separator, bool quoted) {

@@ -19,6 +19,9 @@ std::optional<std::string_view> between(std::string_view text, std::string_view 
 /// Decimal digits alone, at least so many and at most so many.
 bool is_digits(std::string_view text, std::size_t least, std::size_t most = std::string_view::npos);
 
+/// The number that a text is, with nothing around it but a sign.
+std::optional<double> number_in(std::string_view text);
+
 /// "a", "a or b", "a, b or c"; with quotes around each when `quoted`.
 std::string join_names(std::span<const std::string> names, std::string_view last_separator = " and ",
                        bool quoted = true);

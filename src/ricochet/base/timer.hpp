@@ -1,8 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <ctime>
 
-/// @file Wall-clock time.
+/// @file Wall-clock time, and the time of processors.
 namespace ricochet {
 
 class Timer {
@@ -18,6 +19,21 @@ class Timer {
  private:
   using clock = std::chrono::steady_clock;
   clock::time_point start_ = clock::now();
+};
+
+/// Of all cores on which this process has worked, user and system.
+class ProcessorTimer {
+ public:
+  /// Seconds since construction.
+  [[nodiscard]] double seconds() const { return now() - start_; }
+
+ private:
+  [[nodiscard]] static double now() {
+    struct timespec time {};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+  double start_ = now();
 };
 
 }  // namespace ricochet

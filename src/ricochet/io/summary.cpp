@@ -106,6 +106,15 @@ double instant_from(const std::string& text, const std::string& path) {
 
 }  // namespace
 
+double RunSummary::delay_of(const std::string& column) const {
+  if (adaptive) return 0.0;  // fractions of steps of many lengths
+  if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum"))
+    return energy_instant * step;
+  const bool is_force = column.starts_with("contact_force") || column.find(".reaction") != std::string::npos ||
+                        column.find(".pressure") != std::string::npos;
+  return is_force ? force_instant * step : 0.0;
+}
+
 double RunSummary::energy_scale() const {
   return largest_size(*this, std::array{"total_energy", "kinetic_energy", "elastic_energy"});
 }
@@ -186,6 +195,7 @@ std::string to_json(const RunSummary& s) {
                {"frames", s.frames},
                {"timings_seconds", timings},
                {"seconds_per_step", s.time_per_step},
+               {"processor_seconds", s.processor_seconds},
                {"energy_scale", Json::number(s.energy_scale())},
                {"energy_budget", energy_budget_to_json(s)},
                {"reactions", reactions_to_json(s)},
@@ -268,6 +278,7 @@ RunSummary read_summary(const std::string& path) {
     s.energy_instant = instant_from(json.at("instants").at("energy"), path);
     s.force_instant = instant_from(json.at("instants").at("force"), path);
     s.time_per_step = json.at("seconds_per_step");
+    s.processor_seconds = json.value("processor_seconds", 0.0);
     s.warnings = json.at("warnings").get<std::vector<std::string>>();
     for (const auto& [phase, seconds] : json.at("timings_seconds").items()) s.timings.emplace_back(phase, seconds);
     const Json checks = json.value("checks", Json::object());

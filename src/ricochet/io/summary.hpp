@@ -133,6 +133,7 @@ struct RunSummary {
   std::vector<std::vector<double>> probe_positions;
   std::vector<std::pair<std::string, double>> timings;  ///< seconds by phase
   double time_per_step = 0.0;                           ///< seconds
+  double processor_seconds = 0.0;                       ///< of all threads; 0: results of a version that did not tell
   std::vector<std::string> columns;
   std::vector<ColumnDigest> digests;  ///< per column, over the rows written
   std::vector<CheckResult> checks = {};
@@ -152,6 +153,9 @@ struct RunSummary {
   [[nodiscard]] std::string mass_text() const;
   /// Digest of a column; zeros when there is no such column.
   [[nodiscard]] ColumnDigest digest(const std::string& column) const;
+  /// How much later than its row's time a value of this column is: energies and forces are those of the scheme's own
+  /// instants.
+  [[nodiscard]] double delay_of(const std::string& column) const;
   /// Largest |total_energy| + |algorithmic_energy| bound, the scale of the energy account: max of |first|, |min|, |max|
   /// of total energy and of kinetic and elastic energy.
   [[nodiscard]] double energy_scale() const;

@@ -98,21 +98,11 @@ Quantity quantity_of(const std::string& what, const RunData& run) {
   return {column, in_words(column), false};
 }
 
-/// Energies and forces are those of the scheme's own instants.
-double instant_of(const std::string& column, const RunSummary& summary) {
-  if (summary.adaptive) return 0.0;  // fractions of steps of many lengths
-  if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum"))
-    return summary.energy_instant * summary.step;
-  const bool is_force = column.starts_with("contact_force") || column.find(".reaction") != std::string::npos ||
-                        column.find(".pressure") != std::string::npos;
-  return is_force ? summary.force_instant * summary.step : 0.0;
-}
-
 Curve curve_of(const RunData& run, std::size_t number, const std::string& label, const std::string& column,
                const FigureOptions& options) {
   Curve curve{label, number, {}, {}, {}};
   const std::vector<double>&times = run.times_of(column), &values = run.column(column);
-  const double shift = instant_of(column, run.summary);
+  const double shift = run.summary.delay_of(column);
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double time = times[i] + shift;
     if (options.time && (time < options.time->first || time > options.time->second)) continue;

@@ -125,6 +125,7 @@ void Run::describe_progress(RunSummary& summary) const {
   }
   const RunTimes times = times_until_now();
   summary.timings = times.phases();
+  summary.processor_seconds = times.processor();
   summary.time_per_step = summary.steps > 0 ? times.steps / static_cast<double>(summary.steps) : 0.0;
   summary.warnings = session_.warnings();
 }

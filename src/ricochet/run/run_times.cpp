@@ -34,6 +34,7 @@ std::vector<std::pair<std::string, double>> RunTimes::phases() const {
 
 void RunTimes::save(Snapshot& snapshot, const std::string& name) const {
   for (const auto& [phase, seconds] : phases()) snapshot.save(name + "." + phase, seconds);
+  snapshot.save(name + ".processor", processor());
 }
 
 void RunTimes::load(const Snapshot& snapshot, const std::string& name) {
@@ -50,6 +51,8 @@ void RunTimes::load(const Snapshot& snapshot, const std::string& name) {
   add("penetration_watch", watch);
   add("checkpoints", checkpoints);
   add("total", earlier_total_);
+  // Checkpoints of a version that did not measure it: of one thread it is the time on the wall.
+  add(snapshot.has(name + ".processor") ? "processor" : "total", earlier_processor_);
 }
 
 }  // namespace ricochet

@@ -24,13 +24,16 @@ struct RunTimes {
   void add_start(double seconds, const std::vector<ChosenMethod>& methods);
   /// By name, in the order of a run, with "total".
   [[nodiscard]] std::vector<std::pair<std::string, double>> phases() const;
+  /// Of processors: what of it was spent on steps that an interruption has lost is not in it.
+  [[nodiscard]] double processor() const { return earlier_processor_ + processor_.seconds(); }
   void save(Snapshot& snapshot, const std::string& name) const;
   /// Adds those of earlier sessions.
   void load(const Snapshot& snapshot, const std::string& name);
 
  private:
-  double earlier_total_ = 0.0;
+  double earlier_total_ = 0.0, earlier_processor_ = 0.0;
   Timer session_;
+  ProcessorTimer processor_;
 };
 
 }  // namespace ricochet

@@ -27,12 +27,26 @@ class SummaryTest : public testing::Test {
 TEST_F(SummaryTest, ReadsHowStepsWereSolvedAndWritten) {
   RunSummary summary;
   summary.history_every = 7;
+  summary.processor_seconds = 1.5;
   summary.solver = "iterative";
   summary.solver_reason = "the case asks for it";
   const RunSummary back = read_back(summary);
   EXPECT_EQ(back.history_every, summary.history_every);
+  EXPECT_EQ(back.processor_seconds, summary.processor_seconds);
   EXPECT_EQ(back.solver, summary.solver);
   EXPECT_EQ(back.solver_reason, summary.solver_reason);
+}
+
+TEST_F(SummaryTest, KnowsTheInstantsOfColumns) {
+  RunSummary summary;
+  summary.step = 0.1;
+  summary.energy_instant = 0.5;
+  summary.force_instant = -0.25;
+  EXPECT_EQ(summary.delay_of("total_energy"), 0.05);
+  EXPECT_EQ(summary.delay_of("momentum_x"), 0.05);
+  EXPECT_EQ(summary.delay_of("contact_force_y"), -0.025);
+  EXPECT_EQ(summary.delay_of("tip.pressure"), -0.025);
+  EXPECT_EQ(summary.delay_of("tip.displacement_x"), 0.0);
 }
 
 /// A run that overflows between two rows of the history is stopped at the next row; what was found until then may be

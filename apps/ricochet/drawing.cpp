@@ -1,0 +1,55 @@
+#include "drawing.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "installed_files.hpp"
+#include "ricochet/base/child_process.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/python.hpp"
+#include "ricochet/base/temporary_folder.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet::program {
+
+namespace fs = std::filesystem;
+
+void draw_figure(const std::string& description, const std::string& format, const std::string& output) {
+  const std::string script = installed_file("figure.py");
+  if (script.empty()) {
+    throw Error(ErrorKind::file_access,
+                "share/ricochet/figure.py, which draws figures, is missing beside the program: "
+                "install Ricochet again");
+  }
+  const TemporaryFolder workspace(fs::temp_directory_path(), "ricochet-plot");
+  ChildProcess child;
+  child.arguments = {python_program(), "-B", script, format, workspace.file("figure")};
+  child.variables = {"MPLCONFIGDIR=" + workspace.file("matplotlib")};  // the user's own settings change nothing
+  child.input = workspace.file("description.json");
+  child.output = workspace.file("messages");
+  std::ofstream(child.input) << description;
+  const ChildOutcome outcome = run_child(child);
+  if (outcome.is_absent())
+    throw Error(ErrorKind::file_access,
+                "figures are drawn by Python, which is not here: apt-get install python3-matplotlib");
+  if (outcome.exit_status() == 3) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("figures are drawn by Python's matplotlib, which is not here ({}): apt-get install "
+                            "python3-matplotlib",
+                            python_program()));
+  }
+  if (!outcome.succeeded()) {
+    throw Error(ErrorKind::file_access, fmt::format("the figure could not be drawn: {} {}:\n{}", python_program(),
+                                                    outcome.description(), read_file(workspace.file("messages"))));
+  }
+  // Under a temporary name first: what was there stays until all of the new file is.
+  const std::string part = output + ".part";
+  std::error_code problem;
+  fs::copy_file(workspace.file("figure"), part, fs::copy_options::overwrite_existing, problem);
+  if (!problem) fs::rename(part, output, problem);
+  if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be written: {}", output, problem.message()));
+}
+
+}  // namespace ricochet::program

@@ -1,0 +1,104 @@
+#include "ricochet/study/run_state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/json.hpp"
+#include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr int refused_status = static_cast<int>(ErrorKind::invalid_input),
+              failed_status = static_cast<int>(ErrorKind::not_converged),
+              unexpected_status = static_cast<int>(ErrorKind::expectation);
+
+std::string outcome_file(const std::string& directory) {
+  return (std::filesystem::path(directory) / "outcome.json").string();
+}
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+}  // namespace
+
+std::optional<int> RunState::final_status() const {
+  if (summary && summary->status == "done") {
+    const auto& all = summary->expectations;
+    const bool hold = std::all_of(all.begin(), all.end(), [](const auto& e) { return !e.checked || e.holds; });
+    return hold ? 0 : unexpected_status;
+  }
+  return exit_status;
+}
+
+std::string RunState::word() const {
+  const std::optional<int> status = final_status();
+  if (status == 0 || status == unexpected_status) return "done";
+  if (status) return status == refused_status ? "refused" : "failed";
+  return summary || has_checkpoint ? "interrupted" : "not run";
+}
+
+NextAction next_action(const RunState& state) {
+  if (state.summary && state.summary->status == "done") return NextAction::nothing;
+  if (state.exit_status == refused_status) return NextAction::nothing;
+  // Status 3 without a summary that knows of it: out of memory, which may be otherwise next time.
+  const bool knows = state.summary && state.summary->status == "failed";
+  if (state.exit_status == failed_status && knows) return NextAction::nothing;
+  return state.summary || state.has_checkpoint ? NextAction::resume : NextAction::start;
+}
+
+RunState read_run_state(const std::string& directory) {
+  RunState state;
+  const std::string summary_path = (std::filesystem::path(directory) / "summary.json").string();
+  std::error_code ignored;
+  if (std::filesystem::exists(summary_path, ignored)) {
+    try {
+      RunSummary summary = read_summary(summary_path);
+      state.summary_json = read_file(summary_path);
+      state.summary = std::move(summary);
+    } catch (const Error&) {  // it is not waited for until it is on the disk: checkpoints are
+    }
+  }
+  state.has_checkpoint = std::filesystem::is_directory(directory, ignored) && !checkpoint_files(directory).empty();
+  if (!std::filesystem::exists(outcome_file(directory), ignored)) return state;
+  try {
+    const Json json = Json::parse(read_file(outcome_file(directory)));
+    state.exit_status = json.at("exit_status").get<int>();
+    state.message = json.at("message").get<std::string>();
+  } catch (const Json::Exception&) {  // then it is not known, and the run is tried again
+  }
+  return state;
+}
+
+void record_outcome(const std::string& directory, int exit_status, const std::string& message) {
+  std::error_code ignored;
+  std::filesystem::remove(outcome_file(directory), ignored);
+  if (exit_status == 0) return;
+  write_durably(outcome_file(directory), Json{{"exit_status", exit_status}, {"message", message}}.dump(2) + "\n");
+}
+
+std::string last_error(const std::string& messages, const std::string& run_name) {
+  const std::string begin = "ricochet: ";
+  std::size_t at = messages.starts_with(begin) ? 0 : std::string::npos;
+  if (const std::size_t later = messages.rfind("\n" + begin); later != std::string::npos) at = later + 1;
+  if (at == std::string::npos) return "";
+  std::string text = first_line(messages.substr(at + begin.size()));
+  if (text.starts_with(run_name + ": ")) text.erase(0, run_name.size() + 2);
+  return text;
+}
+
+int worse_status(int a, int b) {
+  const auto rank = [](int status) {
+    constexpr int order[] = {0, unexpected_status, refused_status, failed_status, 4, 1};
+    return std::find(std::begin(order), std::end(order), status) - std::begin(order);
+  };
+  return rank(b) > rank(a) ? b : a;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,245 @@
+#include "ricochet/study/study_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/json.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/study/history_errors.hpp"
+#include "ricochet/study/study_table.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr std::string_view against = "-against-";
+
+/// What a panel shows: columns of the table, and the axis of the plan along which its lines go.
+struct StudyPanel {
+  std::string x, y;
+  std::size_t axis = 0;
+  bool log_x = false, log_y = false, has_slopes = false;
+};
+
+[[noreturn]] void refuse_figure(const std::string& what, const std::string& why) {
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("--what {}: {}; of a study work-precision, order and COLUMN-against-KEY can be drawn", what, why));
+}
+
+bool has_numbers(const ResultTable& table, const std::string& column) {
+  const std::size_t c = table.find(column);
+  return c < table.columns.size() && std::any_of(table.rows.begin(), table.rows.end(),
+                                                 [c](const auto& row) { return std::isfinite(number_of(row[c])); });
+}
+
+std::vector<std::string> error_columns(const ResultTable& table) {
+  std::vector<std::string> columns = table.names();
+  std::erase_if(columns,
+                [&](const std::string& name) { return !name.starts_with(error_prefix) || !has_numbers(table, name); });
+  return columns;
+}
+
+void require_column(const std::string& what, const std::string& column, const ResultTable& table) {
+  const std::vector<std::string> names = table.names();
+  if (std::count(names.begin(), names.end(), column) > 0) return;
+  const std::string near = nearest_name(column, names);
+  refuse_figure(what, fmt::format("study.csv has no column \"{}\"{}", column,
+                                  near.empty() ? "" : fmt::format(" (is \"{}\" meant?)", near)));
+}
+
+/// The axis of a key; of any other column that along which orders are, else the last.
+std::size_t axis_of(const std::string& column, const Study& study) {
+  for (const std::string& key : {column, study.questions.order_key}) {
+    const std::vector<std::string> keys = varied_keys(study.plan);
+    if (std::count(keys.begin(), keys.end(), key) > 0) return find_varied(study.plan, key, "--what").axis;
+  }
+  return study.plan.axes.size() - 1;
+}
+
+std::vector<StudyPanel> panels_of(const std::string& what, const Study& study, const ResultTable& table,
+                                  bool logarithmic) {
+  if (const std::size_t at = what.find(against); at != std::string::npos) {
+    StudyPanel panel{what.substr(at + against.size()), what.substr(0, at)};
+    require_column(what, panel.x, table);
+    require_column(what, panel.y, table);
+    panel.axis = axis_of(panel.x, study);
+    panel.log_y = logarithmic;
+    return {panel};
+  }
+  const std::size_t colon = what.find(':');
+  const std::string kind = what.substr(0, colon);
+  if (kind != "work-precision" && kind != "order") refuse_figure(what, "is not known");
+  std::vector<std::string> errors = error_columns(table);
+  if (colon != std::string::npos) errors = {error_prefix + what.substr(colon + 1)};
+  if (errors.empty())
+    refuse_figure(what, "the table has no errors: run the study with --exact or --reference, or again with --resume");
+  const bool of_order = kind == "order";
+  if (of_order && study.questions.order_key.empty()) refuse_figure(what, "no key varies with numbers");
+  std::vector<StudyPanel> panels;
+  for (const std::string& error : errors) {
+    require_column(what, error, table);
+    const std::string x = of_order ? study.questions.order_key : "processor_seconds";
+    panels.push_back({x, error, axis_of(x, study), true, true, of_order});
+  }
+  return panels;
+}
+
+/// A value of an axis as short as it can be told from the others: by the first key alone, if that does.
+std::string value_label(const StudyAxis& axis, std::size_t at) {
+  const auto same = [&](const auto& other) { return other.front() == axis.values[at].front(); };
+  if (std::count_if(axis.values.begin(), axis.values.end(), same) == 1) return axis.values[at].front();
+  return fmt::format("{}", fmt::join(axis.values[at], "/"));
+}
+
+/// How the runs of a line are told from the others: by the values of the other axes.
+std::string line_label(const PlannedRun& run, const StudyPlan& plan, std::size_t line_axis) {
+  std::vector<std::string> parts;
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    if (a == line_axis) continue;
+    const std::string &key = plan.axes[a].keys.front(), value = value_label(plan.axes[a], run.at[a]);
+    parts.push_back(number_in(value) ? fmt::format("{} {}", key.substr(key.rfind('.') + 1), value) : value);
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// "error of tip.displacement": for readers, without what tells programs where a number comes from.
+std::string axis_label(const std::string& column) {
+  if (column.starts_with(error_prefix))
+    return fmt::format("error of {}", axis_label(column.substr(std::string(error_prefix).size())));
+  if (column == "processor_seconds") return "processor time, s";
+  for (const std::string prefix : {"summary.", "history."}) {
+    if (column.starts_with(prefix)) return column.substr(prefix.size());
+  }
+  std::string label = column;
+  if (label.find('.') == std::string::npos) std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
+/// Points of lines, by label, in the order of the table.
+struct StudyLine {
+  std::string label;
+  std::vector<double> x, y;
+};
+
+std::vector<StudyLine> lines_of(const StudyPanel& panel, const Study& study, const ResultTable& table,
+                                const std::vector<std::string>& categories) {
+  const std::size_t x_column = table.find(panel.x), y_column = table.find(panel.y);
+  std::vector<StudyLine> lines;
+  for (std::size_t i = 0; i < study.runs.size(); ++i) {
+    const std::string text = text_of(table.rows[i][x_column]);
+    const auto place = std::find(categories.begin(), categories.end(), text) - categories.begin();
+    const double x = categories.empty() ? number_of(table.rows[i][x_column]) : static_cast<double>(place);
+    const double y = number_of(table.rows[i][y_column]);
+    const bool is_shown =
+        std::isfinite(x) && std::isfinite(y) && !(panel.log_x && x <= 0.0) && !(panel.log_y && y <= 0.0);
+    if (!is_shown) continue;
+    const std::string label = line_label(study.runs[i].planned, study.plan, panel.axis);
+    auto line = std::find_if(lines.begin(), lines.end(), [&](const StudyLine& other) { return other.label == label; });
+    if (line == lines.end()) line = lines.insert(line, {label, {}, {}});
+    line->x.push_back(x);
+    line->y.push_back(y);
+  }
+  return lines;
+}
+
+/// Between neighbours, from the first point on.
+std::vector<double> orders_of(const StudyLine& line) {
+  std::vector<double> orders;
+  for (std::size_t i = 1; i < line.x.size(); ++i) {
+    if (const auto order = observed_order(line.y[i - 1], line.y[i], line.x[i - 1], line.x[i])) orders.push_back(*order);
+  }
+  return orders;
+}
+
+/// The whole orders that are nearest to observed ones, for guides: two at most, and the order at the end of each line.
+void describe_orders(const std::vector<StudyLine>& lines, Json& panel) {
+  std::map<long, int> found;
+  std::vector<std::string> last;
+  for (const StudyLine& line : lines) {
+    const std::vector<double> orders = orders_of(line);
+    last.push_back(orders.empty() ? "-" : fmt::format("{:.2f}", orders.back()));
+    for (const double order : orders) {
+      if (order > 0.5 && order < 4.5) ++found[std::lround(order)];
+    }
+  }
+  std::vector<std::pair<int, long>> ranked;
+  for (const auto& [order, count] : found) ranked.emplace_back(-count, order);
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<long> slopes;
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, ranked.size()); ++i) slopes.push_back(ranked[i].second);
+  std::sort(slopes.begin(), slopes.end());
+  panel["slopes"] = Json(slopes);
+  panel["note"] = fmt::format("last order{}: {}", last.size() > 1 ? "s" : "", fmt::join(last, ", "));
+}
+
+/// What spans no more than a factor of five is seen well on a linear scale.
+bool spans_much(const std::vector<StudyLine>& lines) {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const StudyLine& line : lines) {
+    for (const double x : line.x) {
+      least = std::min(least, x);
+      most = std::max(most, x);
+    }
+  }
+  return least > 0.0 && most > 5.0 * least;
+}
+
+Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& table, const std::string& what) {
+  std::vector<std::string> categories;
+  const std::size_t x_column = table.find(panel.x);
+  bool all_numbers = true;
+  for (const auto& row : table.rows) {
+    const std::string text = text_of(row[x_column]);
+    all_numbers = all_numbers && (text.empty() || number_in(text));
+    if (std::count(categories.begin(), categories.end(), text) == 0) categories.push_back(text);
+  }
+  if (all_numbers) categories.clear();
+  const std::vector<StudyLine> lines = lines_of(panel, study, table, categories);
+  if (lines.empty()) refuse_figure(what, fmt::format("no run has numbers under {} and {}", panel.x, panel.y));
+  Json json{{"kind", "lines"},        {"x_label", axis_label(panel.x)}, {"y_label", axis_label(panel.y)},
+            {"log_y", panel.log_y},   {"categories", categories},       {"slopes", Json::array()},
+            {"curves", Json::array()}};
+  const std::vector<std::string> keys = varied_keys(study.plan);
+  json["names_steps"] = std::count(keys.begin(), keys.end(), panel.x) > 0;
+  json["log_x"] = panel.log_x || (categories.empty() && spans_much(lines));
+  for (const StudyLine& line : lines) json["curves"].push_back({{"label", line.label}, {"x", line.x}, {"y", line.y}});
+  json["note"] = "";
+  if (panel.has_slopes) describe_orders(lines, json);
+  return json;
+}
+
+}  // namespace
+
+std::string describe_study_figure(const Study& study, const ResultTable& table, const StudyFigureOptions& options) {
+  Json figure{{"title", options.title}, {"width", options.width}, {"height", options.height}};
+  figure["panels"] = Json::array();
+  for (const std::string& what : options.what) {
+    for (const StudyPanel& panel : panels_of(what, study, table, options.logarithmic))
+      figure["panels"].push_back(describe_panel(panel, study, table, what));
+  }
+  return figure.dump();
+}
+
+std::vector<std::string> usual_figures(const Study& study, const ResultTable& table) {
+  std::vector<std::string> figures;
+  for (const std::string& error : error_columns(table)) {
+    const std::string name = error.substr(std::string(error_prefix).size());
+    if (!study.questions.order_key.empty()) figures.push_back("order:" + name);
+    figures.push_back("work-precision:" + name);
+  }
+  if (!figures.empty()) return figures;
+  const std::string key =
+      study.questions.order_key.empty() ? varied_keys(study.plan).back() : study.questions.order_key;
+  for (const char* column : {"restitution", "largest_force", "peak_von_mises"}) {
+    if (has_numbers(table, column)) figures.push_back(column + std::string(against) + key);
+  }
+  return figures;
+}
+
+}  // namespace ricochet

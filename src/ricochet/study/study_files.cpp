@@ -1,0 +1,217 @@
+#include "ricochet/study/study_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/json.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/case/quantity.hpp"
+#include "ricochet/io/durable_file.hpp"
+#include "ricochet/io/run_directory.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr int study_format = 1;
+using Texts = std::vector<std::string>;
+
+Json axes_to_json(const StudyPlan& plan) {
+  Json axes = Json::array();
+  for (const StudyAxis& axis : plan.axes) {
+    Json values = Json::array();
+    for (const Texts& entry : axis.values) values.push_back(Json(entry));
+    axes.push_back({{"keys", axis.keys}, {"values", values}});
+  }
+  return axes;
+}
+
+Json questions_to_json(const StudyQuestions& questions) {
+  Json exact = Json::array();
+  for (const auto& [quantity, value] : questions.exact) exact.push_back({{"quantity", quantity}, {"value", value}});
+  return {{"quantities", questions.quantities},
+          {"exact", exact},
+          {"reference", questions.reference},
+          {"compare", questions.compare},
+          {"order", questions.order_key}};
+}
+
+StudyPlan plan_from(const Json& json) {
+  StudyPlan plan{json.at("case"), json.at("settings").get<Texts>(), {}};
+  for (const Json& axis : json.at("axes")) {
+    StudyAxis& made = plan.axes.emplace_back();
+    made.keys = axis.at("keys").get<Texts>();
+    for (const Json& entry : axis.at("values")) made.values.push_back(entry.get<Texts>());
+  }
+  return plan;
+}
+
+StudyQuestions questions_from(const Json& json) {
+  StudyQuestions questions{
+      json.at("quantities").get<Texts>(), {}, json.at("reference"), json.at("compare").get<Texts>(), json.at("order")};
+  for (const Json& entry : json.at("exact")) questions.exact.emplace_back(entry.at("quantity"), entry.at("value"));
+  return questions;
+}
+
+std::set<std::string> as_set(const Texts& settings) {
+  return {settings.begin(), settings.end()};
+}
+
+std::string numbered(std::size_t number, const std::string& name) {
+  return fmt::format("{:03}-{}", number, name);
+}
+
+/// The key that "last", "finest" or an order is about, where nobody says it.
+std::string only_numeric_key(const StudyPlan& plan, const std::string& option, bool must_be_one) {
+  Texts numeric;
+  for (const std::string& key : varied_keys(plan)) {
+    if (is_numeric(plan, find_varied(plan, key, option))) numeric.push_back(key);
+  }
+  if (numeric.size() == 1) return numeric.front();
+  if (!must_be_one) {
+    const bool has_step = std::count(numeric.begin(), numeric.end(), "time.step") > 0;
+    return has_step ? "time.step" : numeric.empty() ? "" : numeric.front();
+  }
+  throw Error(ErrorKind::usage, fmt::format("{}: {} with numbers; name the key, as in {}:{}", option,
+                                            numeric.empty() ? "no key varies" : "several keys vary", option,
+                                            numeric.empty() ? plan.axes.front().keys.front() : numeric.front()));
+}
+
+std::string checked_reference(const std::string& reference, const StudyPlan& plan) {
+  for (const std::string kind : {"last", "finest"}) {
+    const std::string option = "--reference " + kind;
+    if (reference == kind) {
+      const bool only_one = varied_keys(plan).size() == 1;
+      const std::string key = only_one ? plan.axes[0].keys[0] : only_numeric_key(plan, option, true);
+      return checked_reference(kind + ":" + key, plan);
+    }
+    if (!reference.starts_with(kind + ":")) continue;
+    const std::string key = reference.substr(kind.size() + 1);
+    const KeyPlace place = find_varied(plan, key, option);
+    if (kind == "finest" && !is_numeric(plan, place))
+      throw Error(ErrorKind::usage, fmt::format("{}: the values of {} are not numbers, or only one", option, key));
+    return reference;
+  }
+  if (reference.empty()) return "";
+  if (holds_run(reference)) return std::filesystem::absolute(reference).lexically_normal().string();
+  throw Error(ErrorKind::usage, fmt::format("--reference {}: is neither the directory of a run nor last:KEY nor "
+                                            "finest:KEY of a key that varies",
+                                            reference));
+}
+
+}  // namespace
+
+std::string Study::path(const std::string& file) const {
+  return (std::filesystem::path(directory) / file).string();
+}
+
+std::string Study::path(const StudyRun& run) const {
+  return (std::filesystem::path(directory) / "runs" / run.folder).string();
+}
+
+bool holds_study(const std::string& directory) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::path(directory) / "study.json", ignored);
+}
+
+Study read_study(const std::string& directory) {
+  Study study;
+  study.directory = directory;
+  const std::string path = study.path("study.json");
+  if (!holds_study(directory))
+    throw Error(ErrorKind::file_access, fmt::format("{}: there is no study: study.json is missing", directory));
+  try {
+    const Json json = Json::parse(read_file(path));
+    if (const int format = json.at("ricochet_study"); format != study_format)
+      throw Error(ErrorKind::invalid_input, fmt::format("{}: is of another version of Ricochet", path));
+    study.plan = plan_from(json);
+    study.questions = questions_from(json.at("questions"));
+    study.runs = number_runs(study.plan);
+    const Json& folders = json.at("runs");
+    if (folders.size() != study.runs.size()) throw Json::Exception("runs are missing");
+    for (std::size_t i = 0; i < study.runs.size(); ++i) study.runs[i].folder = folders.at(i).get<std::string>();
+  } catch (const Json::Exception& problem) {
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: not a study: {}", path, problem.what()));
+  }
+  return study;
+}
+
+void write_study(const Study& study) {
+  Texts folders;
+  for (const StudyRun& run : study.runs) folders.push_back(run.folder);
+  const Json json{{"ricochet_study", study_format},
+                  {"case", study.plan.case_path},
+                  {"settings", study.plan.settings},
+                  {"axes", axes_to_json(study.plan)},
+                  {"questions", questions_to_json(study.questions)},
+                  {"runs", folders}};
+  write_durably(study.path("study.json"), json.dump(2) + "\n");
+}
+
+std::vector<StudyRun> number_runs(const StudyPlan& plan) {
+  std::vector<StudyRun> runs;
+  for (PlannedRun& planned : runs_of(plan)) {
+    const std::string folder = numbered(runs.size() + 1, planned.name);
+    runs.push_back({std::move(planned), folder});
+  }
+  return runs;
+}
+
+std::vector<StudyRun> take_over_runs(const StudyPlan& plan, const Study& before) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: holds another study: {}; choose another directory with -o, or start anew over it "
+                            "with --force",
+                            before.directory, why));
+  };
+  if (plan.case_path != before.plan.case_path) refuse(fmt::format("its case is {}", before.plan.case_path));
+  std::vector<StudyRun> left = before.runs, runs;
+  std::size_t next = left.size();
+  for (PlannedRun& planned : runs_of(plan)) {
+    const auto same = std::find_if(left.begin(), left.end(), [&](const StudyRun& run) {
+      return as_set(run.planned.settings) == as_set(planned.settings);
+    });
+    const std::string folder = same != left.end() ? same->folder : numbered(++next, planned.name);
+    runs.push_back({std::move(planned), folder});
+    if (same != left.end()) left.erase(same);
+  }
+  if (!left.empty()) {
+    refuse(fmt::format("this plan has no run with {}, which is there as {}",
+                       fmt::join(left.front().planned.settings, ", "), left.front().folder));
+  }
+  return runs;
+}
+
+StudyQuestions checked_questions(StudyQuestions questions, const StudyPlan& plan) {
+  for (const std::string& quantity : questions.quantities) static_cast<void>(parse_quantity(quantity));
+  for (const auto& [quantity, value] : questions.exact) static_cast<void>(parse_quantity(quantity));
+  questions.reference = checked_reference(questions.reference, plan);
+  if (questions.order_key.empty()) {
+    const std::string& reference = questions.reference;
+    const std::string key = reference.substr(reference.find(':') + 1);
+    const bool follows = reference.starts_with("finest:") ||
+                         (reference.starts_with("last:") && is_numeric(plan, find_varied(plan, key, "--reference")));
+    questions.order_key = follows ? key : only_numeric_key(plan, "--order", false);
+  } else if (!is_numeric(plan, find_varied(plan, questions.order_key, "--order"))) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--order {}: its values are not numbers, or only one", questions.order_key));
+  }
+  if (!questions.compare.empty() && questions.reference.empty())
+    throw Error(ErrorKind::usage, "--compare: says which columns are compared with a run: name it with --reference");
+  return questions;
+}
+
+std::pair<std::string, double> parse_exact(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  const std::optional<double> value = equals == std::string::npos ? std::nullopt : number_in(text.substr(equals + 1));
+  if (!value)
+    throw Error(ErrorKind::usage, fmt::format("--exact {}: write --exact QUANTITY=VALUE, VALUE a number", text));
+  return {text.substr(0, equals), *value};
+}
+
+}  // namespace ricochet

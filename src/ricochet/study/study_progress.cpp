@@ -1,0 +1,77 @@
+#include "ricochet/study/study_progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/progress.hpp"
+#include "ricochet/io/summary.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Seconds between two looks at the summaries of runs, which they write every two seconds.
+constexpr double redraw_interval = 0.5;
+
+/// The part of its steps that a run has taken, by its summary.
+double part_done(const std::string& directory) {
+  try {
+    const RunSummary summary = read_summary(directory + "/summary.json");
+    return summary.all_steps > 0 ? static_cast<double>(summary.steps) / static_cast<double>(summary.all_steps) : 0.0;
+  } catch (const Error&) {  // it has none yet
+    return 0.0;
+  }
+}
+
+}  // namespace
+
+StudyProgress::StudyProgress(std::size_t runs, std::size_t ended_before, bool quiet)
+    : runs_(runs),
+      ended_before_(ended_before),
+      ended_(ended_before),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0) {}
+
+StudyProgress::~StudyProgress() {
+  if (open_) std::fputc('\n', stderr);
+}
+
+void StudyProgress::begin(const std::string& directory) {
+  running_.push_back(directory);
+}
+
+void StudyProgress::end(const std::string& directory, const std::string& words) {
+  std::erase(running_, directory);
+  ++ended_;
+  if (quiet_) return;
+  if (terminal_) {
+    draw();
+  } else {
+    fmt::print(stderr, "{}/{}  {}: {}\n", ended_, runs_, directory, words);
+  }
+}
+
+void StudyProgress::watch() {
+  if (!quiet_ && terminal_ && timer_.seconds() - last_drawn_ >= redraw_interval) draw();
+}
+
+void StudyProgress::draw() {
+  last_drawn_ = timer_.seconds();
+  double done = static_cast<double>(ended_);
+  for (const std::string& directory : running_) done += part_done(directory);
+  const double here = done - static_cast<double>(ended_before_);
+  const double left = last_drawn_ / here * (static_cast<double>(runs_) - done);
+  constexpr int width = 30;
+  const int filled = static_cast<int>(width * done / static_cast<double>(runs_));
+  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}/{} runs, {} going on  {} gone{}\033[K", "", filled, "", width - filled,
+             ended_, runs_, running_.size(), duration_text(last_drawn_),
+             here > 0.0 ? fmt::format(", {} left", duration_text(left)) : "");
+  std::fflush(stderr);
+  open_ = true;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,340 @@
+#include "ricochet/study/study_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/io/durable_file.hpp"
+#include "ricochet/run/quantity_value.hpp"
+#include "ricochet/study/history_errors.hpp"
+#include "ricochet/study/outcome_columns.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Quantities of the case's [[expect]] entries, each once. What they want does not matter here.
+std::vector<std::string> expected_quantities(const Study& study) {
+  std::vector<std::string> quantities;
+  for (const StudyRun& run : study.runs) {
+    try {
+      for (const ExpectSection& expect : read_case(study.plan.case_path, run.planned.settings).expectations) {
+        if (std::count(quantities.begin(), quantities.end(), expect.quantity) == 0)
+          quantities.push_back(expect.quantity);
+      }
+      break;
+    } catch (const Error&) {  // a run that was refused: its row says so
+    }
+  }
+  return quantities;
+}
+
+std::string reference_in_words(const std::string& reference) {
+  const std::string key = reference.substr(reference.find(':') + 1);
+  if (reference.starts_with("finest:")) return fmt::format("the run with the smallest {}", key);
+  if (reference.starts_with("last:")) return fmt::format("the run with the last {}", key);
+  return reference;
+}
+
+class StudyTableMaker {
+ public:
+  explicit StudyTableMaker(const Study& study) : study_(study), questions_(study.questions) {}
+  StudyResults make();
+
+ private:
+  using Cells = std::vector<TableCell>;
+  using CellOf = std::function<TableCell(std::size_t run)>;
+  void add_column(TableColumn column, CellOf cell);
+  void fill_columns();
+  void add_outcomes();
+  void add_quantities();
+  void add_exact_errors();
+  void add_history_errors();
+  [[nodiscard]] std::optional<std::size_t> run_before(std::size_t run, std::size_t axis) const;
+  void add_orders();
+  void add_messages();
+  void note_messages();
+  void note_warnings();
+  [[nodiscard]] TableCell value_of(const std::string& quantity, std::size_t run, const std::string& option);
+  [[nodiscard]] const RunHistory* history_of(const std::string& directory);
+  [[nodiscard]] std::string reference_of(std::size_t run) const;
+  [[nodiscard]] std::vector<ComparedQuantity> compared();
+
+  const Study& study_;
+  const StudyQuestions& questions_;
+  std::vector<RunState> states_;
+  std::map<std::string, RunHistory> histories_;  ///< read and still needed
+  std::vector<CellOf> new_columns_;
+  std::map<std::string, std::string> problems_;  ///< what the runs do not have, by the option that asks for it
+  StudyResults results_;
+};
+
+/// To be filled by the next fill_columns().
+void StudyTableMaker::add_column(TableColumn column, CellOf cell) {
+  results_.table.columns.push_back(std::move(column));
+  new_columns_.push_back(std::move(cell));
+}
+
+/// Run by run, so that no more histories are in memory than that of one run and those of the references.
+void StudyTableMaker::fill_columns() {
+  std::set<std::string> references;
+  for (std::size_t i = 0; i < study_.runs.size(); ++i) references.insert(reference_of(i));
+  for (std::size_t i = 0; i < study_.runs.size(); ++i) {
+    for (const CellOf& cell : new_columns_) results_.table.rows[i].push_back(cell(i));
+    if (const std::string own = study_.path(study_.runs[i]); !references.contains(own)) histories_.erase(own);
+  }
+  new_columns_.clear();
+  for (const auto& [option, problem] : problems_) log::warning(fmt::format("{}: {}", option, problem));
+  problems_.clear();
+}
+
+void StudyTableMaker::add_outcomes() {
+  results_.table.key_columns = varied_keys(study_.plan).size();
+  for (const std::string& key : varied_keys(study_.plan)) results_.table.columns.push_back({key});
+  for (TableColumn& column : outcome_columns()) results_.table.columns.push_back(std::move(column));
+  for (const StudyRun& run : study_.runs) {
+    states_.push_back(read_run_state(study_.path(run)));
+    Cells& row = results_.table.rows.emplace_back();
+    for (const std::string& value : run.planned.values) row.emplace_back(value);
+    for (TableCell& cell : outcome_cells(run.folder, states_.back())) row.push_back(std::move(cell));
+    const std::optional<int> status = states_.back().final_status();
+    results_.done += states_.back().word() == "done";
+    results_.worst_status = worse_status(results_.worst_status, status.value_or(0));
+  }
+}
+
+/// nullptr: the run has none that can be read.
+const RunHistory* StudyTableMaker::history_of(const std::string& directory) {
+  const auto known = histories_.find(directory);
+  if (known != histories_.end()) return &known->second;
+  const std::string path = (std::filesystem::path(directory) / "history.csv").string();
+  try {
+    RunHistory history{read_summary_of_run(directory), {}};
+    history.table = read_history(path, history.summary.status != "done");
+    return &histories_.emplace(directory, std::move(history)).first->second;
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
+
+/// Where somebody has asked for it by an option, runs that do not have it are told.
+TableCell StudyTableMaker::value_of(const std::string& quantity, std::size_t run, const std::string& option) {
+  if (states_[run].word() != "done") return {};
+  const RunHistory* history = history_of(study_.path(study_.runs[run]));
+  if (history == nullptr) return {};
+  try {
+    return ricochet::value_of(parse_quantity(quantity), history->table, states_[run].summary_json);
+  } catch (const Error& problem) {
+    if (!option.empty()) problems_[option + " " + quantity] = problem.what();
+    return {};
+  }
+}
+
+/// Of the case's expectations for programs only: there are often many.
+void StudyTableMaker::add_quantities() {
+  std::vector<std::string> seen;
+  const auto add = [&](const std::string& quantity, bool is_asked) {
+    if (std::count(seen.begin(), seen.end(), quantity) > 0) return;
+    seen.push_back(quantity);
+    const std::string option = is_asked ? "--quantity" : "";
+    add_column({quantity, is_asked, 5, 1}, [=, this](std::size_t run) { return value_of(quantity, run, option); });
+  };
+  for (const std::string& quantity : questions_.quantities) add(quantity, true);
+  for (const std::string& quantity : expected_quantities(study_)) add(quantity, false);
+}
+
+void StudyTableMaker::add_exact_errors() {
+  for (const auto& asked : questions_.exact) {
+    const std::string& quantity = asked.first;
+    const double exact = asked.second;
+    add_column({error_prefix + quantity, true, 3, 2}, [&quantity, exact, this](std::size_t run) -> TableCell {
+      const TableCell value = value_of(quantity, run, "--exact");
+      if (std::holds_alternative<std::monostate>(value)) return {};
+      const double error = std::abs(number_of(value) - exact);
+      return exact != 0.0 ? error / std::abs(exact) : error;
+    });
+    results_.notes.push_back(fmt::format("{}{} is {} {:.9g}.", error_prefix, quantity,
+                                         exact != 0.0 ? "the error relative to the exact value" : "the distance from",
+                                         exact));
+  }
+}
+
+/// The directory of the run that a run is compared with.
+std::string StudyTableMaker::reference_of(std::size_t run) const {
+  const std::size_t colon = questions_.reference.find(':');
+  const std::string kind = questions_.reference.substr(0, colon);
+  if (colon == std::string::npos || (kind != "last" && kind != "finest")) return questions_.reference;
+  const KeyPlace place = find_varied(study_.plan, questions_.reference.substr(colon + 1), "--reference");
+  const auto& values = study_.plan.axes[place.axis].values;
+  std::size_t chosen = values.size() - 1;
+  if (kind == "finest") {
+    const auto finest = std::min_element(values.begin(), values.end(), [&](const auto& a, const auto& b) {
+      return number_in(a[place.key]) < number_in(b[place.key]);
+    });
+    chosen = static_cast<std::size_t>(finest - values.begin());
+  }
+  std::vector<std::size_t> at = study_.runs[run].planned.at;
+  at[place.axis] = chosen;
+  const auto found = std::find_if(study_.runs.begin(), study_.runs.end(),
+                                  [&](const StudyRun& other) { return other.planned.at == at; });
+  return study_.path(*found);
+}
+
+/// By the first reference that there is.
+std::vector<ComparedQuantity> StudyTableMaker::compared() {
+  for (std::size_t i = 0; i < study_.runs.size(); ++i) {
+    const RunHistory* reference = history_of(reference_of(i));
+    if (reference == nullptr) continue;
+    if (questions_.compare.empty()) return usual_compared(reference->table);
+    std::vector<ComparedQuantity> result;
+    for (const std::string& name : questions_.compare) {
+      try {
+        result.push_back(find_compared(name, reference->table));
+      } catch (const Error& problem) {  // the rest of the table is there all the same
+        log::warning(problem.what());
+      }
+    }
+    return result;
+  }
+  log::warning(fmt::format("--reference {}: no run that could be one has a history yet", questions_.reference));
+  return {};
+}
+
+void StudyTableMaker::add_history_errors() {
+  if (questions_.reference.empty()) return;
+  for (const ComparedQuantity& quantity : compared()) {
+    add_column({error_prefix + quantity.name, true, 3, 2}, [quantity, this](std::size_t run) -> TableCell {
+      const std::string own = study_.path(study_.runs[run]), directory = reference_of(run);
+      if (own == directory || states_[run].word() != "done") return {};
+      const RunHistory *history = history_of(own), *reference = history_of(directory);
+      if (reference == nullptr || reference->summary.status != "done") {
+        problems_["--reference " + directory] = "this run is not done, and there are no errors against it";
+        return {};
+      }
+      if (history == nullptr) return {};
+      const std::optional<double> error = relative_error(quantity, *history, *reference);
+      return error ? TableCell(*error) : TableCell();
+    });
+  }
+  results_.notes.push_back(
+      fmt::format("Errors of histories are those against {} in the L2 norm over time, relative to its norm.",
+                  reference_in_words(questions_.reference)));
+}
+
+/// The run before it along the order's key; nothing for the first.
+std::optional<std::size_t> StudyTableMaker::run_before(std::size_t run, std::size_t axis) const {
+  std::vector<std::size_t> at = study_.runs[run].planned.at;
+  if (at[axis]-- == 0) return std::nullopt;
+  const auto found = std::find_if(study_.runs.begin(), study_.runs.end(),
+                                  [&](const StudyRun& other) { return other.planned.at == at; });
+  return static_cast<std::size_t>(found - study_.runs.begin());
+}
+
+/// Behind each column of errors that of its orders.
+void StudyTableMaker::add_orders() {
+  if (questions_.order_key.empty()) return;
+  const KeyPlace place = find_varied(study_.plan, questions_.order_key, "--order");
+  const auto step = [this, place](std::size_t run) {
+    const std::size_t at = study_.runs[run].planned.at[place.axis];
+    return number_in(study_.plan.axes[place.axis].values[at][place.key]).value();
+  };
+  ResultTable& table = results_.table;
+  bool any = false;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (!table.columns[c].name.starts_with(error_prefix)) continue;
+    any = true;
+    const std::string name = table.columns[c].name.substr(std::string(error_prefix).size());
+    const auto behind = static_cast<std::ptrdiff_t>(c + 1);
+    table.columns.insert(table.columns.begin() + behind, {fmt::format("{}{}", order_prefix, name), true, 3, 2});
+    for (std::size_t run = 0; run < table.rows.size(); ++run) {
+      std::optional<double> order;
+      if (const auto before = run_before(run, place.axis)) {
+        order =
+            observed_order(number_of(table.rows[*before][c]), number_of(table.rows[run][c]), step(*before), step(run));
+      }
+      table.rows[run].insert(table.rows[run].begin() + behind, order ? TableCell(*order) : TableCell());
+    }
+  }
+  if (any) {
+    results_.notes.push_back(
+        fmt::format("Orders are those between a value of {} and the one before it.", questions_.order_key));
+  }
+}
+
+void StudyTableMaker::add_messages() {
+  add_column({"message", false}, [this](std::size_t run) -> TableCell {
+    const RunState& state = states_[run];
+    const std::optional<int> status = state.final_status();
+    if (status == 0) return {};
+    if (status == static_cast<int>(ErrorKind::expectation)) {
+      std::vector<std::string> broken;
+      for (const ExpectationResult& e : state.summary->expectations) {
+        if (e.checked && !e.holds) broken.push_back(fmt::format("{} is not {}", e.quantity, e.wanted));
+      }
+      return fmt::format("{}", fmt::join(broken, "; "));
+    }
+    return state.message;
+  });
+}
+
+void StudyTableMaker::note_messages() {
+  for (std::size_t i = 0; i < study_.runs.size(); ++i) {
+    const std::string message = text_of(results_.table.rows[i].back());
+    if (!message.empty()) results_.notes.push_back(fmt::format("{}: {}", study_.runs[i].folder, message));
+  }
+}
+
+void StudyTableMaker::note_warnings() {
+  for (std::size_t i = 0; i < study_.runs.size(); ++i) {
+    if (!states_[i].summary) continue;
+    for (const std::string& warning : states_[i].summary->warnings)
+      results_.warnings.push_back(fmt::format("{}: {}", study_.runs[i].folder, warning));
+  }
+}
+
+StudyResults StudyTableMaker::make() {
+  add_outcomes();
+  add_quantities();
+  add_exact_errors();
+  add_history_errors();
+  fill_columns();
+  add_orders();
+  add_messages();
+  fill_columns();
+  note_messages();
+  note_warnings();
+  return std::move(results_);
+}
+
+}  // namespace
+
+StudyResults make_study_table(const Study& study) {
+  return StudyTableMaker(study).make();
+}
+
+void write_study_table(const Study& study, const StudyResults& results) {
+  write_durably(study.path("study.csv"), to_csv(results.table));
+  std::string page = fmt::format("# Study of {}\n\n", std::filesystem::path(study.plan.case_path).filename().string());
+  for (const StudyAxis& axis : study.plan.axes) {
+    std::vector<std::string> values;
+    for (const auto& entry : axis.values) values.push_back(fmt::format("{}", fmt::join(entry, "/")));
+    page += fmt::format("- {} = {}\n", fmt::join(axis.keys, ","), fmt::join(values, ", "));
+  }
+  for (const std::string& setting : study.plan.settings) page += fmt::format("- set: {}\n", setting);
+  page += "\n" + to_markdown(results.table) + "\n";
+  for (const std::string& note : results.notes) page += "- " + note + "\n";
+  if (!results.warnings.empty()) page += "\nWarnings of the runs:\n\n";
+  for (const std::string& warning : results.warnings) page += "- " + warning + "\n";
+  write_durably(study.path("study.md"), page);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,84 @@
+#include "ricochet/study/run_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "ricochet/base/temporary_folder.hpp"
+
+namespace ricochet {
+namespace {
+
+RunState state(const std::string& summary_status, std::optional<int> exit_status = {}, bool has_checkpoint = false) {
+  RunState result;
+  if (!summary_status.empty()) {
+    result.summary.emplace();
+    result.summary->status = summary_status;
+  }
+  result.exit_status = exit_status;
+  result.has_checkpoint = has_checkpoint;
+  return result;
+}
+
+TEST(RunState, DecidesWhatIsStillToBeDone) {
+  EXPECT_EQ(next_action(state("")), NextAction::start);
+  EXPECT_EQ(next_action(state("running")), NextAction::resume) << "it was killed";
+  EXPECT_EQ(next_action(state("interrupted")), NextAction::resume);
+  EXPECT_EQ(next_action(state("", {}, true)), NextAction::resume) << "its summary is lost, its checkpoint is not";
+  EXPECT_EQ(next_action(state("done")), NextAction::nothing);
+  EXPECT_EQ(next_action(state("", 2)), NextAction::nothing) << "its case is refused again";
+  EXPECT_EQ(next_action(state("failed", 3)), NextAction::nothing) << "its step fails again";
+  EXPECT_EQ(next_action(state("running", 3)), NextAction::resume) << "out of memory";
+  EXPECT_EQ(next_action(state("failed", 4)), NextAction::resume) << "the disk was full";
+  EXPECT_EQ(next_action(state("running", 137)), NextAction::resume) << "its process was killed";
+  EXPECT_EQ(next_action(state("", 4)), NextAction::start);
+}
+
+TEST(RunState, SaysWhatHasBecomeOfIt) {
+  EXPECT_EQ(state("").word(), "not run");
+  EXPECT_EQ(state("running").word(), "interrupted");
+  EXPECT_EQ(state("done").word(), "done");
+  EXPECT_EQ(state("", 2).word(), "refused");
+  EXPECT_EQ(state("failed", 3).word(), "failed");
+  RunState unexpected = state("done");
+  unexpected.summary->expectations.push_back({"a", 0.0, "", "", true, false, ""});
+  EXPECT_EQ(unexpected.final_status(), 5);
+  EXPECT_EQ(unexpected.word(), "done");
+  unexpected.summary->expectations.front().checked = false;
+  EXPECT_EQ(unexpected.final_status(), 0);
+}
+
+TEST(RunState, IsReadFromItsDirectory) {
+  const TemporaryFolder folder(std::filesystem::temp_directory_path(), "ricochet-test");
+  const std::string directory = folder.path().string();
+  EXPECT_EQ(read_run_state(directory + "/nowhere").word(), "not run");
+  record_outcome(directory, 2, "case.toml:3:1: no");
+  EXPECT_EQ(read_run_state(directory).exit_status, 2);
+  EXPECT_EQ(read_run_state(directory).message, "case.toml:3:1: no");
+  record_outcome(directory, 0, "");
+  EXPECT_FALSE(read_run_state(directory).exit_status.has_value());
+  RunSummary summary;
+  summary.expectations.push_back({"q", 0.0, "≤ 1", "", true, false, ""});
+  write_summary(folder.file("summary.json"), summary);
+  EXPECT_EQ(read_run_state(directory).final_status(), 5);
+  std::ofstream(folder.file("summary.json")) << "{";
+  EXPECT_FALSE(read_run_state(directory).summary.has_value());
+}
+
+TEST(LastError, IsTheFirstLineOfTheLastThatWasSaid) {
+  EXPECT_EQ(last_error("warning: a\nricochet: runs/1: one\nand more\nricochet: runs/1: two\nfiles\n", "runs/1"), "two");
+  EXPECT_EQ(last_error("ricochet: case.toml:1:1: three", "runs/1"), "case.toml:1:1: three");
+  EXPECT_EQ(last_error("nothing of it\n", "runs/1"), "");
+}
+
+TEST(WorseStatus, RanksWhatAUserShouldHearFirst) {
+  const int ranks[] = {0, 5, 2, 3, 4, 1, 70};
+  for (std::size_t i = 0; i + 1 < std::size(ranks); ++i) {
+    EXPECT_EQ(worse_status(ranks[i], ranks[i + 1]), ranks[i + 1]);
+    EXPECT_EQ(worse_status(ranks[i + 1], ranks[i]), ranks[i + 1]);
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
