@@ -59,7 +59,8 @@ std::string dragged_case(const ThrownBody& body, const std::string& mass, const 
   const bool flat = body.dimension == 2;
   std::string text =
       thrown_case(body, mass, time, contact, flat ? "velocity = [0.2, 0.0]\n" : "velocity = [0.2, 0.1, 0.0]\n");
-  text.replace(text.find("mu = 20.0\n"), 10, "mu = 20.0\ndamping = { mass = 0.05 }\n");
+  if (time.find("\"nonsmooth-generalized-alpha\"") == std::string::npos)
+    text.replace(text.find("mu = 20.0\n"), 10, "mu = 20.0\ndamping = { mass = 0.05 }\n");
   return text + "[[traction]]\ngroup = \"contact\"\nvalue = " +
          (flat ? "[\"0.1*sin(9*t)\", \"x\"]\n" : "[\"0.1*sin(9*t)\", \"0\", \"y\"]\n");
 }
@@ -75,9 +76,11 @@ std::vector<std::string> masses_of(const std::string& scheme) {
       {"taylor-flanagan", {"lumped"}},
   };
   if (const auto found = known.find(scheme); found != known.end()) return found->second;
-  static const std::set<std::string> with_inertia = {
-      "midpoint",        "klr-conserving", "contact-stabilized", "kane", "laursen-chawla", "moreau-jean",
-      "paoli-schatzman", "laursen-love",   "penalty-midpoint"};
+  static const std::set<std::string> with_inertia = {"midpoint",           "klr-conserving",
+                                                     "contact-stabilized", "kane",
+                                                     "laursen-chawla",     "moreau-jean",
+                                                     "paoli-schatzman",    "laursen-love",
+                                                     "penalty-midpoint",   "nonsmooth-generalized-alpha"};
   if (with_inertia.contains(scheme)) return {"consistent", "lumped"};
   std::vector<std::string> result = mass_names();
   if (scheme.starts_with("reduced-") || scheme == "mean-reaction")
@@ -86,11 +89,17 @@ std::vector<std::string> masses_of(const std::string& scheme) {
 }
 
 bool takes_friction(const std::string& scheme) {
-  return scheme != "mean-reaction" && scheme != "reduced-midpoint" && scheme != "penalty-midpoint";
+  return scheme != "mean-reaction" && scheme != "reduced-midpoint" && scheme != "penalty-midpoint" &&
+         scheme != "nonsmooth-generalized-alpha";
+}
+
+bool takes_damping(const std::string& scheme) {
+  return scheme != "nonsmooth-generalized-alpha";
 }
 
 bool takes_stiffness_damping(const std::string& scheme) {
-  return scheme != "mean-reaction" && scheme != "reduced-midpoint" && scheme != "semi-explicit";
+  return takes_damping(scheme) && scheme != "mean-reaction" && scheme != "reduced-midpoint" &&
+         scheme != "semi-explicit";
 }
 
 bool Discretization::is_possible() const {

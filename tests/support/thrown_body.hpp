@@ -37,6 +37,7 @@ std::vector<std::string> masses_of(const std::string& scheme);
 
 /// Those that do not refuse it.
 bool takes_friction(const std::string& scheme);
+bool takes_damping(const std::string& scheme);
 /// Also at contact nodes.
 bool takes_stiffness_damping(const std::string& scheme);
 

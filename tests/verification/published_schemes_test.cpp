@@ -153,6 +153,39 @@ TEST(PublishedScheme, AlphaSchemesDissipateInClosedForm) {
   }
 }
 
+/// Neither penetration nor drift, and Λ·G(V₀+V₁)/2 − (½−α_f)(ΔUᵀKΔU + ΔUᵀMΔA) − … − (Q−½hW)ᵀMA*, with Q and W from the
+/// state's own formulas.
+TEST(PublishedScheme, NonsmoothGeneralizedAlphaDissipatesInClosedForm) {
+  for (const auto& [rho, e] : {std::pair{0.8, 0.0}, {0.8, 0.5}, {1.0, 0.0}, {0.0, 1.0}}) {
+    const double force = rho / (rho + 1.0), inertia = (2.0 * rho - 1.0) / (rho + 1.0);
+    const double gamma = 0.5 + force - inertia, beta = 0.25 * (0.5 + gamma) * (0.5 + gamma);
+    const auto check = [=](CaseRun& run, const std::string& name) {
+      const double h = run.scheme().step(), factor = 0.5 * h * h * (beta - 0.5 * gamma);
+      const SparseMatrix m = run.problem().mass.whole();
+      const SparseMatrix& k = run.problem().internal_force->tangent();
+      Vector before = run.state().memory.at("algorithmic_acceleration");
+      double deepest = 0.0;
+      expect_identity(run, name, [&](const StepEnd& a, const StepEnd& b) {
+        deepest = std::max(deepest, -b.gap.minCoeff());
+        const Vector now = run.state().memory.at("algorithmic_acceleration");
+        const Vector du = b.displacement - a.displacement, da = now - before, mda = m * da;
+        const Vector mean = (1.0 - gamma) * before + gamma * now;
+        const Vector q = du - h * a.velocity - h * h * ((0.5 - beta) * before + beta * now);
+        const Vector w = b.velocity - a.velocity - h * mean;
+        Vector approach;
+        run.problem().contact.rows->normal_motion(0.5 * (a.velocity + b.velocity), approach);
+        const double algorithmic = factor * (now.dot(m * now) - before.dot(m * before));
+        before = now;
+        return h * b.normal.dot(approach) - (0.5 - force) * (du.dot(k * du) + du.dot(mda)) -
+               factor * (2.0 * gamma - 1.0) * da.dot(mda) - (q - 0.5 * h * w).dot(m * mean) - algorithmic;
+      });
+      EXPECT_LT(deepest, 1e-12) << name;
+    };
+    each_run("nonsmooth-generalized-alpha",
+             "spectral_radius = " + std::to_string(rho) + "\nrestitution = " + std::to_string(e) + "\n", check);
+  }
+}
+
 /// E₁ − E₀ = ⅔(F₀+F_½)·Δ₁ + ⅓F₁·hV₁ − ½⟨a−b, a+b/3⟩ with a = (Δ₂, V₁−V_½) and b = (Δ₁, V_½−V₀) in the norm of K and M:
 /// another form than the account's.
 TEST(PublishedScheme, BatheDissipatesInClosedForm) {

@@ -30,7 +30,7 @@ function sizes(runs: Run[]): HTMLElement {
     ["scheme", ({ summary }) => summary.scheme],
     ["mass", ({ summary }) => summary.mass],
     ["reactions that act over a step", ({ summary }) => reactionsWords(summary) || "–"],
-    ["time step", ({ summary }) => number(summary.time_step, 6)],
+    ["time step", ({ summary }) => summary.adaptive_steps ? `${number(summary.adaptive_steps.shortest, 4)} to ${number(summary.adaptive_steps.longest, 4)}, ${count(summary.adaptive_steps.refused)} refused` : number(summary.time_step, 6)],
     ["steps", ({ summary }) => count(summary.steps) + (summary.steps < summary.steps_asked_for ? ` of ${count(summary.steps_asked_for)}` : "")],
     ["dimension, degree", ({ summary }) => `${summary.dimension}, ${summary.degree}`],
     ["nodes", ({ summary }) => count(summary.nodes)],

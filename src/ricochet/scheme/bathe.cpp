@@ -10,17 +10,11 @@ namespace {
 
 /// The composite scheme of K.-J. Bathe and M. M. I. Baig (Comput. Struct. 83 (2005) 2513–2524; K.-J. Bathe, Comput.
 /// Struct. 85 (2007) 437–445): the trapezoidal rule to the middle of the step, then backward differences of three
-/// points, with contact at both,
-///   1. M A_½ + C V_½ + K U_½ = L_½ + F_½,   V_½ = V₀ + (h/4)(A₀+A_½),   U_½ = U₀ + (h/4)(V₀+V_½);
-///   2. M A₁ + C V₁ + K U₁ = L₁ + F₁,   V₁ = (U₀−4U_½+3U₁)/h,   A₁ = (V₀−4V_½+3V₁)/h;
-/// F = Gᵀ r_N − B_Tᵀ r_T with Signorini's conditions at each of the two, and friction on the slip rates
-/// B_T (U_½−U₀)/(h/2) and B_T V₁. Bases Ũ = U₀ + (h/2)V₀ + (h²/16)A₀ and (4U_½−U₀)/3 + (h/9)(4V_½−V₀), so that
-/// A_½ = (16/h²) δ and A₁ = (9/h²) δ.
-///
-/// With Δ₁ = U_½−U₀, Δ₂ = U₁−U_½ and hV₁ = 3Δ₂−Δ₁, J changes in a step by ⅓(F₀+F_½)ᵀ(3Δ₁/2+hV₁/4) + ⅓F₁ᵀhV₁, F the
-/// forces outside J, less
-///   ½|Δ₂|²_K + ½|V₁−V_½|²_M − ⅓Δ₁ᵀ(KU₁−L) + (h/12)V₁ᵀ(KU₀+KU_½−2L),
-/// which has no sign; momentum by ⅓h(F₀+F_½+F₁). On massless dofs the velocity of the middle is 2Δ₁/h.
+/// points, with contact at both. With Δ₁ = U_½−U₀, Δ₂ = U₁−U_½, F the forces outside J,
+///   M A + C V + K U = L + F at ½ and 1,   V₁ = (3Δ₂−Δ₁)/h,   A₁ = (V₀−4V_½+3V₁)/h,   slip rates B_T 2Δ₁/h and B_T V₁.
+/// Bases U₀ + (h/2)V₀ + (h²/16)A₀ and U_½ + Δ₁/3 + (h/9)(4V_½−V₀), so that A_½ = (16/h²) δ, A₁ = (9/h²) δ. J changes by
+/// ⅓(F₀+F_½)ᵀ(3Δ₁/2+hV₁/4) + ⅓F₁ᵀhV₁, less ½|Δ₂|²_K + ½|V₁−V_½|²_M − ⅓Δ₁ᵀ(KU₁−L) + (h/12)V₁ᵀ(KU₀+KU_½−2L), which has no
+/// sign; momentum by ⅓h(F₀+F_½+F₁). On massless dofs the velocity of the middle is 2Δ₁/h.
 class Bathe final : public Scheme {
  public:
   using Scheme::Scheme;
@@ -28,7 +22,7 @@ class Bathe final : public Scheme {
   [[nodiscard]] bool changes_step() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     const double h = step();
-    return {{16.0 / (h * h), 1.0, (problem.has_singular_mass() ? 2.0 : 4.0) / h}, {9.0 / (h * h), 1.0, 3.0 / h}};
+    return {{16.0 / (h * h), 1.0, damping_factor(problem)}, {9.0 / (h * h), 1.0, 3.0 / h}};
   }
   [[nodiscard]] WorkRule work_rule() const override { return {0.0, 1.0 / 3.0}; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
@@ -42,12 +36,12 @@ class Bathe final : public Scheme {
     go_to_middle(problem, state, stages);
     second_ = first_ / 3.0 + (h / 9.0) * (4.0 * velocity_ - state.velocity);  // at δ = 0
     rate_ = (4.0 * velocity_ - state.velocity) / 3.0;                         // V₁ at δ = 0
-    Stage& stage = stages.stage(1);
     middle_ = state.displacement + first_;
     base_ = middle_ + second_;
+    Stage& stage = stages.stage(1);
     equations_.balance(problem, state.time + h, base_, rate_, stage);
-    const auto to_end = [&](Index dof, double end) { return end - base_[dof]; };
-    equations_.prescribe(problem, state.time + h, to_end, stage);
+    const auto to_place = [&](Index dof, double place) { return place - base_[dof]; };
+    equations_.prescribe(problem, state.time + h, to_place, stage);
     require_no_penetration(problem, base_, state.time + h, stage);
     if (problem.has_moving_obstacles()) equations_.observe_obstacles(problem, state.time + h, base_);
     equations_.require_friction(problem, rate_, 3.0 / h, stage);
@@ -69,45 +63,44 @@ class Bathe final : public Scheme {
   }
 
  private:
+  /// Of the middle. Damping acts on mean velocities where there are massless dofs, as under newmark.
+  [[nodiscard]] double damping_factor(const SemidiscreteProblem& problem) const {
+    return (problem.has_singular_mass() ? 2.0 : 4.0) / step();
+  }
+
   /// Δ₁ and V_½.
   void go_to_middle(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
     const double h = step(), time = state.time + 0.5 * h;
     first_ = (0.5 * h) * state.velocity + (h * h / 16.0) * state.acceleration;
     velocity_ = state.velocity + (0.25 * h) * state.acceleration;
-    for (const Index dof : problem.massless_dofs) velocity_[dof] = first_[dof] / (0.5 * h);
+    damped_ = velocity_;
+    if (problem.has_singular_mass()) damped_ = first_ / (0.5 * h);
     base_ = state.displacement + first_;
     Stage& stage = stages.stage(0);
-    middle_equations_.balance(problem, time, base_, damped_velocity(problem), stage);
-    const auto to_middle = [&](Index dof, double middle) { return middle - base_[dof]; };
-    middle_equations_.prescribe(problem, time, to_middle, stage);
+    middle_equations_.balance(problem, time, base_, damped_, stage);
+    const auto to_place = [&](Index dof, double place) { return place - base_[dof]; };
+    middle_equations_.prescribe(problem, time, to_place, stage);
     require_no_penetration(problem, base_, time, stage);
     middle_equations_.require_friction_over_step(problem, state, first_, 0.5 * h, stage);
     middle_solution_ = &stages.solve(0);
     first_ += middle_solution_->increment;
     velocity_ += (4.0 / h) * middle_solution_->increment;
+    damped_ += damping_factor(problem) * middle_solution_->increment;
     for (const Index dof : problem.massless_dofs) velocity_[dof] = first_[dof] / (0.5 * h);
-  }
-
-  /// Damping acts on mean velocities where there are massless dofs, as under newmark.
-  const Vector& damped_velocity(const SemidiscreteProblem& problem) {
-    if (!problem.has_singular_mass()) return velocity_;
-    mean_velocity_ = first_ / (0.5 * step());
-    return mean_velocity_;
   }
 
   void dissipate(const SemidiscreteProblem& problem, const State& state) {
     const Vector& load = problem.loads.constant();
-    const InternalForce& internal = *problem.internal_force;  // linear: K times its argument
-    internal.evaluate(second_, force_);
-    dissipation_ = 0.5 * second_.dot(force_);
+    const auto product = [&](const Vector& x, const Vector& y) {  // yᵀ K x: linear
+      problem.internal_force->evaluate(x, force_);
+      return y.dot(force_);
+    };
     change_ = rate_ - velocity_;
-    dissipation_ += 0.5 * problem.mass.form(change_);
+    dissipation_ = 0.5 * (product(second_, second_) + problem.mass.form(change_));
     change_ = middle_ + second_;
-    internal.evaluate(change_, force_);
-    dissipation_ -= (first_.dot(force_) - first_.dot(load)) / 3.0;
+    dissipation_ -= (product(change_, first_) - first_.dot(load)) / 3.0;
     change_ = state.displacement + middle_;
-    internal.evaluate(change_, force_);
-    dissipation_ += step() / 12.0 * (rate_.dot(force_) - 2.0 * rate_.dot(load));
+    dissipation_ += step() / 12.0 * (product(change_, rate_) - 2.0 * rate_.dot(load));
   }
 
   /// Those of the start and the middle, before the state has those of the end.
@@ -116,14 +109,13 @@ class Bathe final : public Scheme {
     start.forces = state.forces;
     start.weight = middle.weight = 1.0 / 3.0;
     start.increment = middle.increment = 1.5 * first_ + (0.25 * step()) * rate_;
-    middle_equations_.take_part(problem, stages.stage(0), *middle_solution_, step(), damped_velocity(problem), 1.0,
-                                middle);
+    middle_equations_.take_part(problem, stages.stage(0), *middle_solution_, step(), damped_, 1.0, middle);
     start.obstacle_increment = middle.obstacle_increment;
   }
 
   double dissipation_ = 0.0;
   std::array<StepPart, 2> parts_;
-  Vector first_, second_, velocity_, mean_velocity_, rate_, base_, middle_, force_, change_;
+  Vector first_, second_, velocity_, damped_, rate_, base_, middle_, force_, change_;
   StepEquations equations_, middle_equations_;
   const StageSolution* middle_solution_ = nullptr;
 };

@@ -87,11 +87,8 @@ class Newmark final : public Scheme {
 
   /// The velocity that damping acts on, at δ = 0.
   void find_damping_velocity(const SemidiscreteProblem& problem, const State& state) {
-    if (problem.has_singular_mass()) {
-      velocity_ = predicted_ / step();
-    } else {
-      velocity_ = state.velocity + (step() * (1.0 - gamma_)) * state.acceleration;
-    }
+    velocity_ = state.velocity + (step() * (1.0 - gamma_)) * state.acceleration;
+    if (problem.has_singular_mass()) velocity_ = predicted_ / step();
   }
 
   void dissipate(const SemidiscreteProblem& problem, const State& state, const Vector& increment) {

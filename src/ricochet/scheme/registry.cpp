@@ -25,7 +25,8 @@ namespace ricochet {
   scheme(cd_lagrange_scheme)        \
   scheme(taylor_flanagan_scheme)    \
   scheme(laursen_love_scheme)       \
-  scheme(penalty_midpoint_scheme)
+  scheme(penalty_midpoint_scheme)   \
+  scheme(nonsmooth_generalized_alpha_scheme)
 // clang-format on
 
 RICOCHET_DEFINE_REGISTRY(scheme_registry, SchemeConstructor, "scheme", RICOCHET_SCHEMES)

@@ -42,7 +42,7 @@ TEST(RunState, SaysWhatHasBecomeOfIt) {
   EXPECT_EQ(state("", 2).word(), "refused");
   EXPECT_EQ(state("failed", 3).word(), "failed");
   RunState unexpected = state("done");
-  unexpected.summary->expectations.push_back({"a", 0.0, "", "", true, false, ""});
+  unexpected.summary->expectations.push_back({.quantity = "a", .holds = false});
   EXPECT_EQ(unexpected.final_status(), 5);
   EXPECT_EQ(unexpected.word(), "done");
   unexpected.summary->expectations.front().checked = false;
@@ -59,7 +59,7 @@ TEST(RunState, IsReadFromItsDirectory) {
   record_outcome(directory, 0, "");
   EXPECT_FALSE(read_run_state(directory).exit_status.has_value());
   RunSummary summary;
-  summary.expectations.push_back({"q", 0.0, "≤ 1", "", true, false, ""});
+  summary.expectations.push_back({.quantity = "q", .wanted = "≤ 1", .holds = false});
   write_summary(folder.file("summary.json"), summary);
   EXPECT_EQ(read_run_state(directory).final_status(), 5);
   std::ofstream(folder.file("summary.json")) << "{";

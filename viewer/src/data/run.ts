@@ -134,6 +134,7 @@ export class Run {
   }
 
   private shiftOf(column: string): number {
+    if (this.summary.adaptive_steps) return 0; // parts of steps of many lengths
     const energy = /_energy$|^load_potential$|^momentum_|^angular_momentum_/.test(column);
     const force = /(^|\.)(contact_force|reaction|pressure)/.test(column);
     const instant = energy ? this.summary.instants.energy : force ? this.summary.instants.force : "";

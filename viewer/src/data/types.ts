@@ -201,6 +201,8 @@ export interface Summary {
   solver: string;
   factor_entries: number;
   time_step: number;
+  /** Null where all steps are of one length. */
+  adaptive_steps?: { shortest: number; longest: number; refused: number } | null;
   end_time: number;
   steps: number;
   steps_asked_for: number;

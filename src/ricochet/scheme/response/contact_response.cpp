@@ -15,6 +15,20 @@ const StageSolution& solve_with_forces(const SemidiscreteProblem& problem, const
   return stages.solve(number);
 }
 
+Vector point_stiffness(const SemidiscreteProblem& problem) {
+  const SparseMatrix& k = problem.internal_force->tangent();
+  Vector result = Vector::Zero(problem.contact.size());
+  for (Index i = 0; i < result.size(); ++i) {
+    double own = 0.0, length = 0.0;
+    problem.contact.rows->visit_normal(i, [&](Index a, double at_a) {
+      length += at_a * at_a;
+      problem.contact.rows->visit_normal(i, [&](Index b, double at_b) { own += at_a * k.coeff(a, b) * at_b; });
+    });
+    if (length > 0.0) result[i] = own / (length * length);
+  }
+  return result;
+}
+
 const Vector& ContactResponse::column(const SemidiscreteProblem& problem, const ContactRows& rows, Index point,
                                       StageSolve& stages) {
   Vector& column = columns_[static_cast<std::size_t>(point)];

@@ -14,6 +14,9 @@ namespace ricochet {
 const StageSolution& solve_with_forces(const SemidiscreteProblem& problem, const Vector& normal, std::size_t number,
                                        StageSolve& stages);
 
+/// The body's own stiffness at each contact point, n·Kn/|n|⁴ with its row n of G.
+[[nodiscard]] Vector point_stiffness(const SemidiscreteProblem& problem);
+
 /// W = G A⁻¹ Gᵀ with δ = 0 on supported dofs, columns as they are asked for: one solve each, kept as long as their row
 /// does not change. For a few hundred points.
 class ContactResponse {

@@ -1,0 +1,74 @@
+#include "ricochet/scheme/alpha/nonsmooth_stages.hpp"
+
+#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/response/contact_response.hpp"
+
+namespace ricochet {
+
+/// M δ = Gᵀ normal: a jump of positions or velocities.
+const StageSolution& NonsmoothStages::push(const SemidiscreteProblem& problem, const Vector& normal,
+                                           StageSolve& stages) {
+  Stage& stage = stages.stage(velocity_stage);
+  stage.right_hand_side.setZero(problem.dof_count());
+  stage.prescribed.setZero(problem.supports.size());
+  return solve_with_forces(problem, normal, velocity_stage, stages);
+}
+
+void NonsmoothStages::take_start(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
+  smooth = state.acceleration;
+  algorithmic = state.memory.at(algorithmic_acceleration);
+  support = state.memory.at(smooth_support_reaction);
+  if (state.step > 0 || !(state.forces.normal_reaction.sum() > 0.0)) return;
+  stages.stage(velocity_stage).rows = state.forces.rows;
+  const StageSolution& pressed = push(problem, state.forces.normal_reaction, stages);
+  smooth -= pressed.increment;
+  algorithmic = smooth;
+  support -= pressed.support_reaction;
+}
+
+void NonsmoothStages::position(const SemidiscreteProblem& problem, const State& state, double step,
+                               const AlphaWeights& weights, StageSolve& stages) {
+  const double h = step, end = state.time + h;
+  shift_ = (weights.inertia * algorithmic - weights.force * smooth) / ((1.0 - weights.force) * weights.alpha);
+  motion = h * state.velocity + (h * h * (0.5 - weights.beta)) * algorithmic - shift_;
+  base_ = state.displacement + motion;
+  Stage& stage = stages.stage(position_stage);
+  equations_.balance(problem, end, base_, stage);
+  const auto to_end = [&](Index dof, double place) { return place - base_[dof]; };
+  equations_.prescribe(problem, end, to_end, stage);
+  require_no_penetration(problem, base_, end, stage);
+  stage.slip_offset.resize(0);
+  const StageSolution& solution = stages.solve(position_stage);
+  motion += solution.increment;
+  normal_ = solution.normal_reaction / weights.alpha;  // ν
+  stages.stage(velocity_stage).rows = stage.rows;
+  const StageSolution& pushed = push(problem, normal_, stages);
+  jump = pushed.increment;
+  smooth = weights.alpha * (solution.increment - jump);
+  after = (solution.increment - shift_ - jump) / (weights.beta * h * h);
+  support = solution.support_reaction - weights.alpha * pushed.support_reaction;
+}
+
+const StageSolution& NonsmoothStages::impulses(const SemidiscreteProblem& problem, const State& state, double step,
+                                               const AlphaWeights& weights, StageSolve& stages) {
+  const double end = state.time + step;
+  mean = (1.0 - weights.gamma) * algorithmic + weights.gamma * after;
+  velocity = state.velocity + step * mean;
+  base_ = state.displacement + motion;
+  equations_.observe_obstacles(problem, end, base_);
+  impact_ = equations_.obstacle_velocity();
+  impact_.normal *= 1.0 + restitution_;
+  impact_.in_space *= 1.0 + restitution_;
+  approach_ = velocity + restitution_ * state.velocity;
+  Stage& stage = stages.stage(velocity_stage);
+  stage.right_hand_side.setZero(problem.dof_count());
+  stage.prescribed.setZero(problem.supports.size());
+  require_no_approach(problem, base_, end, approach_, impact_, step, stage);
+  stage.gap_factor = 1.0;
+  for (Index i = 0; i < normal_.size(); ++i) {
+    if (normal_[i] > 0.0) stage.eligible[static_cast<std::size_t>(i)] = 1;
+  }
+  return stages.solve(velocity_stage);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,47 @@
+#include "ricochet/scheme/response/restoring_impulses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/dense_decompositions.hpp"
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector& lost) {
+  const Vector diagonal = w.diagonal();
+  Vector p = ((approach.array().square() + 2.0 * diagonal.array() * lost.array()).sqrt() - approach.array()) /
+             diagonal.array();
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  double last = std::numeric_limits<double>::infinity();
+  const auto residual = [&](const Vector& at) { return Vector(at.cwiseProduct(approach + 0.5 * (w * at)) - lost); };
+  const auto energy = [&](const Vector& at) {
+    return approach.dot(at) + 0.25 * at.dot(w * at) - lost.dot(Vector(at.array().log()));
+  };
+  constexpr int most_iterations = 100;
+  for (int k = 0; k < most_iterations; ++k) {
+    const Vector error = residual(p);
+    // Of the terms that the residual is the sum of: where p is large, they cancel.
+    const Vector terms = p.cwiseProduct(approach.cwiseAbs() + 0.5 * (w.cwiseAbs() * p)) + lost;
+    const double worst = error.cwiseQuotient(terms).lpNorm<Eigen::Infinity>();
+    if (worst <= rounding || (worst <= 32.0 * rounding && worst >= last)) return p;
+    last = worst;
+    // d error / d ln p, which is positive definite: diag(c) + ½ diag(p) W diag(p) where error = 0.
+    Matrix tangent = 0.5 * p.asDiagonal() * w * p.asDiagonal();
+    tangent.diagonal() += (error + lost).cwiseMax(lost);
+    Vector change = -SmallCholesky(tangent).solve(error);
+    change *= std::min(1.0, 3.0 / change.lpNorm<Eigen::Infinity>());
+    const double before = energy(p);
+    Vector next = p.cwiseProduct(Vector(change.array().exp()));
+    for (int halving = 0; halving < 30 && energy(next) > before; ++halving) {
+      change *= 0.5;
+      next = p.cwiseProduct(Vector(change.array().exp()));
+    }
+    if (next == p) return p;  // to rounding
+    p = next;
+  }
+  throw Error(ErrorKind::not_converged, "the impulses that give back the energy of contact were not found");
+}
+
+}  // namespace ricochet
