@@ -57,14 +57,16 @@ def siconos(problem, body, theta, restitution, slip, tolerance=1e-14):
     model = sk.NonSmoothDynamicalSystem(0.0, h * (problem.steps + 1))
     model.insertDynamicalSystem(system)
     nodes, interactions = body.nodes(problem.group), []
+    # Its slip rate is that at the end plus e_T times that at the start: with this e_T, 1/theta times the one at theta.
+    tangential = (1.0 - theta) / theta if slip == "theta" else 0.0
     tangent = np.array([problem.normal[1], -problem.normal[0]])
     for node in nodes:
         rows = np.zeros((2, body.dofs))
         rows[:, 2 * node:2 * node + 2] = problem.normal, tangent
         gap = (body.points[node] - problem.point) @ problem.normal
         if problem.friction > 0.0:
-            law = sk.FremondImpactFrictionNSL if slip == "theta" else sk.NewtonImpactFrictionNSL
-            law, relation = law(restitution, 0.0, problem.friction, 2), sk.LagrangianLinearTIR(rows[:, free], np.array([gap, 0.0]))
+            law = sk.NewtonImpactFrictionNSL(restitution, tangential, problem.friction, 2)
+            relation = sk.LagrangianLinearTIR(rows[:, free], np.array([gap, 0.0]))
         else:
             law, relation = sk.NewtonImpactNSL(restitution), sk.LagrangianLinearTIR(rows[:1, free], np.array([gap]))
         interactions.append(sk.Interaction(law, relation))
