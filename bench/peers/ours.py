@@ -17,7 +17,7 @@ def run(case, directory, settings, fields=True):
     """A run of the case with `settings` (key: value) that writes the fields of every step, or none."""
     settings = {"output.fields_every": 1 if fields else 0, **settings}
     if fields:
-        settings["output.fields"] = '["displacement", "velocity", "contact_pressure", "friction_traction"]'
+        settings["output.fields"] = '["displacement", "velocity", "acceleration", "contact_pressure", "friction_traction"]'
     command = [str(PROGRAM), "run", str(case), "-o", str(directory), "--force", "--quiet", "--threads", "1"]
     for key, value in settings.items():
         command += ["--set", f"{key}={value}"]
@@ -41,3 +41,10 @@ class Steps:
             self.friction = np.zeros_like(self.displacement)
             if "friction_traction" in frames[0]:
                 self.friction = np.array([frame["friction_traction"][:][nodes, :2] for frame in frames]) * lengths[:, None]
+
+
+def states(directory):
+    """Displacement, velocity and acceleration of all dofs at every step."""
+    with h5py.File(pathlib.Path(directory) / "results.h5") as file:
+        frames = [file["frames"][name] for name in sorted(file["frames"])]
+        return [tuple(frame[name][:, :2].ravel() for name in ("displacement", "velocity", "acceleration")) for frame in frames]

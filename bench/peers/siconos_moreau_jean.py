@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Moreau and Jean's scheme in Siconos and in Ricochet, step by step, on a mass and a stiffness that are assembled here.
 
-  siconos_moreau_jean.py [--only TEXT] [--tolerance 1e-8] [--keep DIRECTORY]
+  siconos_moreau_jean.py [--only TEXT] [--steps N] [--tolerance 1e-8] [--keep DIRECTORY]
 
-Prints a table; returns 0 when all rows agree. docs/peers.md explains it. RICOCHET=PROGRAM names a program elsewhere.
+Prints a table (in half an hour: Siconos takes 0.1 s a step); returns 0 when all rows agree. docs/peers.md explains it. RICOCHET=PROGRAM names a program elsewhere.
 """
 
 import argparse
@@ -51,28 +51,40 @@ DISC = Problem("oblique/oblique.toml", "lower", "foundation", [0.28 * 0.02002, 0
 def siconos(problem, body, theta, restitution, slip, tolerance=1e-14):
     """Displacements, velocities and impulses (normal; along the tangent) of the contact nodes after every step."""
     free, h = body.free_dofs(), problem.step
+    nodes, interactions = body.nodes(problem.group), []
+    # Siconos 4.4.0 ends with an assertion where e_T > 0 in two dimensions. In three it does not: each contact node then has a
+    # third component, with a mass of its own and nothing that moves it.
+    space = slip == "theta" and problem.friction > 0.0
+    beside = len(nodes) if space else 0
     mass, stiffness = (matrix[free][:, free].toarray() for matrix in (body.mass, body.stiffness))
-    system = sk.LagrangianLinearTIDS(np.zeros(len(free)), body.field(problem.velocity)[free], mass, stiffness, 0.0 * mass)
-    system.setFExtPtr((body.mass @ body.field(problem.gravity))[free])
+    mass, stiffness = np.pad(mass, (0, beside)), np.pad(stiffness, (0, beside))
+    for k in range(len(free), len(mass)):
+        mass[k, k] = body.mass.diagonal().mean()
+    rest = np.zeros(beside)
+    system = sk.LagrangianLinearTIDS(np.zeros(len(mass)), np.append(body.field(problem.velocity)[free], rest), mass, stiffness,
+                                     0.0 * mass)
+    system.setFExtPtr(np.append((body.mass @ body.field(problem.gravity))[free], rest))
     model = sk.NonSmoothDynamicalSystem(0.0, h * (problem.steps + 1))
     model.insertDynamicalSystem(system)
-    nodes, interactions = body.nodes(problem.group), []
     # Its slip rate is that at the end plus e_T times that at the start: with this e_T, 1/theta times the one at theta.
     tangential = (1.0 - theta) / theta if slip == "theta" else 0.0
     tangent = np.array([problem.normal[1], -problem.normal[0]])
-    for node in nodes:
+    for k, node in enumerate(nodes):
         rows = np.zeros((2, body.dofs))
         rows[:, 2 * node:2 * node + 2] = problem.normal, tangent
+        rows = np.pad(rows[:, free], ((0, 1 if space else 0), (0, beside)))
+        if space:
+            rows[2, len(free) + k] = 1.0
         gap = (body.points[node] - problem.point) @ problem.normal
         if problem.friction > 0.0:
-            law = sk.NewtonImpactFrictionNSL(restitution, tangential, problem.friction, 2)
-            relation = sk.LagrangianLinearTIR(rows[:, free], np.array([gap, 0.0]))
+            law = sk.NewtonImpactFrictionNSL(restitution, tangential, problem.friction, len(rows))
+            relation = sk.LagrangianLinearTIR(rows, np.append(gap, np.zeros(len(rows) - 1)))
         else:
-            law, relation = sk.NewtonImpactNSL(restitution), sk.LagrangianLinearTIR(rows[:1, free], np.array([gap]))
+            law, relation = sk.NewtonImpactNSL(restitution), sk.LagrangianLinearTIR(rows[:1], np.array([gap]))
         interactions.append(sk.Interaction(law, relation))
         model.link(interactions[-1], system)
     if problem.friction > 0.0:
-        contact = sk.FrictionContact(2, sn.SICONOS_FRICTION_2D_NSGS)
+        contact = sk.FrictionContact(3, sn.SICONOS_FRICTION_3D_NSGS) if space else sk.FrictionContact(2, sn.SICONOS_FRICTION_2D_NSGS)
         options = contact.numericsSolverOptions()
         options.dparam[0], options.iparam[0] = tolerance, 100000
     else:
@@ -86,7 +98,7 @@ def siconos(problem, body, theta, restitution, slip, tolerance=1e-14):
         simulation.computeOneStep()
         motion.append(np.where(zero, 0.0, np.asarray(system.q())[columns]))
         velocity.append(np.where(zero, 0.0, np.asarray(system.velocity())[columns]))
-        impulse.append([np.array(each.lambda_(1)) for each in interactions])
+        impulse.append([np.array(each.lambda_(1))[:2] for each in interactions])
         simulation.nextStep()
     return np.array(motion), np.array(velocity), np.array(impulse)
 
@@ -116,12 +128,15 @@ def events(impulse, velocity, friction):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--only", default="", help="rows whose name contains this text")
+    parser.add_argument("--steps", type=int, help="not more than these")
     parser.add_argument("--tolerance", type=float, default=1e-8)
     parser.add_argument("--keep", type=pathlib.Path, help="where runs and arrays are left")
     arguments = parser.parse_args()
     rows = [(name, problem, mass, theta, restitution, "end") for name, problem in (("bar", BAR), ("disc", DISC))
             for mass in ("consistent", "lumped") for restitution in (0.0, 0.5) for theta in (0.5, 0.75)]
     rows += [("disc", DISC, mass, theta, 0.5, "theta") for mass, theta in (("consistent", 0.5), ("lumped", 0.75))]
+    for problem in (BAR, DISC):
+        problem.steps = min(problem.steps, arguments.steps or problem.steps)
     sn.numerics_set_verbose(0)
     print("                                                                            largest difference of all steps"
           " / largest value")
