@@ -27,25 +27,30 @@ from body import Body
 class Problem:
     """A case of Ricochet with some of its keys changed; what is not here is as in the file."""
 
-    def __init__(self, case, group, obstacle, point, normal, velocity, gravity, friction, step, steps):
+    def __init__(self, case, group, obstacle, point, normal, velocity, gravity, friction, step, steps,
+                 damping=(0.0, 0.0)):
         self.case, self.group, self.obstacle = ours.ROOT / "cases" / case, group, obstacle
         self.point, self.normal = np.array(point), np.array(normal)
         self.velocity, self.gravity = velocity, gravity
-        self.friction, self.step, self.steps = friction, step, steps
+        self.friction, self.step, self.steps, self.damping = friction, step, steps, damping  # C = damping[0] M + damping[1] K
 
     def settings(self):
         result = {f"obstacle.{self.obstacle}.point": list(self.point), f"obstacle.{self.obstacle}.normal": list(self.normal),
                   "initial.velocity": self.velocity, "time.step": repr(self.step), "time.end": repr(self.step * self.steps)}
         if self.friction > 0.0:
             result["contact.0.friction"] = self.friction
+        for name, factor in zip(("mass", "stiffness"), self.damping):
+            if factor > 0.0:
+                result[f"material.0.damping.{name}"] = repr(factor)
         return result
 
 
 # The bar of cases/bar falls 0.01 at the speed 2 and bounces: contact for 2/3, flight for 0.4, contact again.
 BAR = Problem("bar/bounce.toml", "bottom", "floor", [0.0, 4.99], [0.0, 1.0], [0.0, -2.0], [0.0, -10.0], 0.0, 0.002, 1000)
 # The disc of cases/oblique, 0.02 mm above a plane that leans by 16 degrees: it slips, sticks, slips back and leaves.
-DISC = Problem("oblique/oblique.toml", "lower", "foundation", [0.28 * 0.02002, 0.0205 - 0.96 * 0.02002], [-0.28, 0.96],
-               [0.1, -0.1], [0.0, 0.0], 0.3, 2e-5, 700)
+THROWN = ("oblique/oblique.toml", "lower", "foundation", [0.28 * 0.02002, 0.0205 - 0.96 * 0.02002], [-0.28, 0.96],
+          [0.1, -0.1], [0.0, 0.0], 0.3, 2e-5, 700)
+DISC, DAMPED = Problem(*THROWN), Problem(*THROWN, damping=(10.0, 1e-5))
 
 
 def siconos(problem, body, theta, restitution, slip, tolerance=1e-14):
@@ -62,7 +67,7 @@ def siconos(problem, body, theta, restitution, slip, tolerance=1e-14):
         mass[k, k] = body.mass.diagonal().mean()
     rest = np.zeros(beside)
     system = sk.LagrangianLinearTIDS(np.zeros(len(mass)), np.append(body.field(problem.velocity)[free], rest), mass, stiffness,
-                                     0.0 * mass)
+                                     problem.damping[0] * mass + problem.damping[1] * stiffness)
     system.setFExtPtr(np.append((body.mass @ body.field(problem.gravity))[free], rest))
     model = sk.NonSmoothDynamicalSystem(0.0, h * (problem.steps + 1))
     model.insertDynamicalSystem(system)
@@ -135,12 +140,13 @@ def main():
     rows = [(name, problem, mass, theta, restitution, "end") for name, problem in (("bar", BAR), ("disc", DISC))
             for mass in ("consistent", "lumped") for restitution in (0.0, 0.5) for theta in (0.5, 0.75)]
     rows += [("disc", DISC, mass, theta, 0.5, "theta") for mass, theta in (("consistent", 0.5), ("lumped", 0.75))]
-    for problem in (BAR, DISC):
+    rows += [("disc, damped", DAMPED, "lumped", 0.75, 0.0, "end")]
+    for problem in (BAR, DISC, DAMPED):
         problem.steps = min(problem.steps, arguments.steps or problem.steps)
     sn.numerics_set_verbose(0)
-    print("                                                                            largest difference of all steps"
+    print("                                                                                    largest difference of all steps"
           " / largest value")
-    print(f"{'case':40s} steps touch leave  slip stick  displacement     velocity      impulse    from step")
+    print(f"{'case':48s} steps touch leave  slip stick  displacement     velocity      impulse    from step")
     agree = True
     for name, problem, mass, theta, restitution, slip in rows:
         label = f"{name} {mass} e={restitution} theta={theta} slip={slip}"
@@ -163,7 +169,7 @@ def main():
             if len(beyond):
                 first = min(first or problem.steps, beyond[0] + 1)
         agree = agree and first is None
-        print(f"{label:40s} {problem.steps:5d} {events(theirs[2], theirs[1], problem.friction)} "
+        print(f"{label:48s} {problem.steps:5d} {events(theirs[2], theirs[1], problem.friction)} "
               + " ".join(f"{each:12.1e}" for each in differences) + f" {first or '-':>12}   ({time.time() - begin:.0f} s)", flush=True)
     sys.exit(0 if agree else 1)
 
