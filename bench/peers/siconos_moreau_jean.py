@@ -45,7 +45,7 @@ class Problem:
         return result
 
 
-# The bar of cases/bar falls 0.01 at the speed 2 and bounces: contact for 2/3, flight for 0.4, contact again.
+# The bar of cases/bar falls 0.01 at the speed 2 and bounces: contact in the steps 3 to 569, flight, contact from 713 on.
 BAR = Problem("bar/bounce.toml", "bottom", "floor", [0.0, 4.99], [0.0, 1.0], [0.0, -2.0], [0.0, -10.0], 0.0, 0.002, 1000)
 # The disc of cases/oblique, 0.02 mm above a plane that leans by 16 degrees: it slips, sticks, slips back and leaves.
 THROWN = ("oblique/oblique.toml", "lower", "foundation", [0.28 * 0.02002, 0.0205 - 0.96 * 0.02002], [-0.28, 0.96],
