@@ -69,7 +69,7 @@ class Study(TestCase):
             self.assertGreater(float(row["processor_seconds"]), 0)
             self.assertIn("warning", row["doubts"])  # strains of 30 %
             # A column for each quantity of the case's [[expect]] entries, too.
-            self.assertEqual(float(row["history.bottom.pressure[350]"]), history["bottom.pressure"][350])
+            self.assertEqual(float(row["history.bottom.pressure(t=0.7)"]), history["bottom.pressure"][350])
         alone = self.simulate(BAR, "alone", {"time.end": 1.8, "initial.velocity": "[0,-5]"})
         self.assertEqual((alone / "history.csv").read_bytes(),
                          (self.output / "runs" / rows[1]["run"] / "history.csv").read_bytes())
