@@ -196,7 +196,8 @@ TEST(MalformedCase, References) {
        "\"equivalent-cellwise\", \"equivalent-compact\", "
        "\"equivalent-nearest\" or "
        "\"equivalent-lumped\"; "
-       "found the text \"lumpd\"; did you mean \"lumped\"?\n15:43: \"time.step\" must be a positive number, or \"adaptive\" (unit: "
+       "found the text \"lumpd\"; did you mean \"lumped\"?\n15:43: \"time.step\" must be a positive number, or "
+       "\"adaptive\" (unit: "
        "time); found the text \"a\""},
       {0, "[[expect]]\nquantity = \"history.time\"\nminimum = 3.0",
        "13:12: \"history.time\" is not a quantity: which row is not said: add [i], as in [-1] for the last one, or the "

@@ -73,7 +73,7 @@ class AlphaScheme final : public Scheme {
 };
 
 /// Key of State::memory: A, which is not the acceleration that the forces give.
-inline constexpr const char* algorithmic_acceleration = "algorithmic_acceleration";
+inline const std::string algorithmic_acceleration = "algorithmic_acceleration";
 
 /// "spectral_radius", of vibrations that are fast against the step; `least`: the smallest there is.
 [[nodiscard]] Key spectral_radius_key(double least);

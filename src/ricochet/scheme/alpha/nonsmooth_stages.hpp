@@ -43,6 +43,6 @@ class NonsmoothStages {
 };
 
 /// Key of State::memory: `support` of the last step.
-inline constexpr const char* smooth_support_reaction = "smooth_support_reaction";
+inline const std::string smooth_support_reaction = "smooth_support_reaction";
 
 }  // namespace ricochet

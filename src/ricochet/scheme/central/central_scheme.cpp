@@ -62,9 +62,8 @@ void CentralScheme::energy_state(const State& state, Vector& displacement, Vecto
 double CentralScheme::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {
   if (stiffness_ == 0.25) return 0.0;
   const Vector& ahead = state.memory.at(increment_ahead);
-  Vector force;
-  problem.internal_force->evaluate(ahead, force);  // linear: K (Uⁿ⁺¹−Uⁿ)
-  return 0.5 * (stiffness_ - 0.25) * ahead.dot(force);
+  problem.internal_force->evaluate(ahead, force_);  // linear: K (Uⁿ⁺¹−Uⁿ)
+  return 0.5 * (stiffness_ - 0.25) * ahead.dot(force_);
 }
 
 }  // namespace ricochet

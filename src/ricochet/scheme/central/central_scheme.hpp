@@ -53,6 +53,7 @@ class CentralScheme : public Scheme {
   std::string without_inertia_;
   double critical_step_ = std::numeric_limits<double>::infinity();
   Vector now_, velocity_, supported_;
+  mutable Vector force_;  ///< work space
   StepEquations equations_;
 };
 

@@ -25,9 +25,8 @@ class PenaltyMidpoint final : public Kane {
   [[nodiscard]] double force_instant() const override { return -0.5; }
   /// Σψ.
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
-    Vector gap;
-    problem.gaps(state.displacement, state.time, gap);
-    return penalty_energy(stiffness_, gap);
+    problem.gaps(state.displacement, state.time, looked_at_);
+    return penalty_energy(stiffness_, looked_at_);
   }
   /// What the forces take from the body the penalty stores.
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
@@ -51,8 +50,8 @@ class PenaltyMidpoint final : public Kane {
     if (problem.has_moving_obstacles()) equations().observe_obstacles(problem, state.time + 0.5 * step(), base());
     // Without forces, then with them.
     const StageSolution* solution = &solve_with_forces(problem, normal_, 0, stages);
-    gap_ = base() + solution->increment;
-    problem.gaps(gap_, end, free_);
+    place_ = base() + solution->increment;
+    problem.gaps(place_, end, free_);
     find_forces(problem, *stage.rows, stages);
     if (!points_.empty()) {
       balance(problem, state, stages);
@@ -97,9 +96,10 @@ class PenaltyMidpoint final : public Kane {
   ContactResponse response_{0};
   Vector stiffness_;            ///< k, per contact point
   Vector before_, free_, gap_;  ///< g₀, g₁ without forces, g₁
-  Vector normal_;               ///< r
+  Vector normal_, place_;       ///< r, U₁
   std::vector<Index> points_;   ///< that may press, ascending
   StageSolution solution_;
+  mutable Vector looked_at_;  ///< work space
 };
 
 }  // namespace
