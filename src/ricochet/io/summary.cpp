@@ -106,6 +106,12 @@ double instant_from(const std::string& text, const std::string& path) {
 
 }  // namespace
 
+double RunSummary::part_done() const {
+  if (status == "done") return 1.0;
+  if (adaptive) return end_time > 0.0 ? std::clamp(adaptive->time / end_time, 0.0, 1.0) : 0.0;
+  return all_steps > 0 ? std::clamp(static_cast<double>(steps) / static_cast<double>(all_steps), 0.0, 1.0) : 0.0;
+}
+
 double RunSummary::delay_of(const std::string& column) const {
   if (adaptive) return 0.0;  // fractions of steps of many lengths
   if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum"))

@@ -153,6 +153,10 @@ struct RunSummary {
   [[nodiscard]] std::string mass_text() const;
   /// Digest of a column; zeros when there is no such column.
   [[nodiscard]] ColumnDigest digest(const std::string& column) const;
+  /// That the run has reached.
+  [[nodiscard]] double time() const { return adaptive ? adaptive->time : static_cast<double>(steps) * step; }
+  /// Of the run, 0 to 1.
+  [[nodiscard]] double part_done() const;
   /// How much later than its row's time a value of this column is: energies and forces are those of the scheme's own
   /// instants.
   [[nodiscard]] double delay_of(const std::string& column) const;

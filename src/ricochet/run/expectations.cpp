@@ -103,7 +103,8 @@ std::string problem_of(const Quantity& quantity, const std::vector<std::string>&
 void check_expected_quantities(const Case& input, const Model& model) {
   const std::vector<std::string> columns =
       names_of(HistoryRecorder::columns_of(model.problem.dimension, model.sensors));
-  const double end = static_cast<double>(step_count(input.time)) * input.time.step;
+  const double end =
+      input.time.adaptive ? input.time.end : static_cast<double>(step_count(input.time)) * input.time.step;
   Problems problems;
   for (std::size_t i = 0; i < input.expectations.size(); ++i) {
     const ExpectSection& expect = input.expectations[i];

@@ -50,7 +50,7 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   });
   summary.solver = iterative != methods.end() ? "iterative" : "direct";
   if (!methods.empty()) summary.solver_reason = (iterative != methods.end() ? *iterative : methods.front()).reason;
-  summary.step = scheme.step();
+  summary.step = input.time.step;
   summary.end_time = input.time.end;
   summary.critical_step = scheme.critical_step();
   summary.energy_instant = scheme.energy_instant();

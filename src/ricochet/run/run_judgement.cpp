@@ -47,6 +47,13 @@ void judge_energy(const RunSummary& summary, const Scheme& scheme, const Semidis
   const double rotation = summary.digest("max_rotation").maximum;
   // What a body does in free flight after its impacts does not change what they came to.
   const bool rotates = rotation > large_rotation && !summary.small_strain_holds_in_impacts();
+  if (summary.adaptive && summary.adaptive->counts.tolerated > 0) {
+    const StepCounts& counts = summary.adaptive->counts;
+    log::warning(
+        fmt::format("{} of {} have an error above time.tolerance, up to {:.2g} times it: make time.smallest "
+                    "shorter, or the tolerance larger",
+                    counts.tolerated, counted(summary.steps, "step"), counts.largest_error));
+  }
   judge_loss(summary, problem, state);
   if (!(contact_creates || friction_creates || rotates) || is_rounding_of_energy(scale, problem, state)) return;
   if (contact_creates) {

@@ -28,6 +28,7 @@ class MoreauJean final : public Scheme {
     return {{1.0 / (theta_ * h * h), theta_, 1.0 / h}};
   }
   [[nodiscard]] double force_instant() const override { return theta_ - 1.0; }
+  [[nodiscard]] double acting_instant() const override { return -0.5; }
   /// V₁ = V₀ + (ΔU/h − V₀)/θ.
   [[nodiscard]] JumpResponse jump_response() const override {
     return theta_ > 0.5 ? JumpResponse::fades : JumpResponse::alternates;

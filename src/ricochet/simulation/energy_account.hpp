@@ -41,9 +41,6 @@ class EnergyAccount {
 
   /// Enters a step: its displacement increment and the forces at its end (in the state).
   void enter_step(const Vector& increment, const State& state);
-  /// The scheme's next step has another length, and with it the state another algorithmic energy: the difference is
-  /// numerical dissipation.
-  void change_step(const State& state);
   /// Calls `change`, which gives the scheme's next step another length and with it the state another algorithmic
   /// energy: the difference is numerical dissipation.
   void change_step(const State& state, const std::function<void()>& change);

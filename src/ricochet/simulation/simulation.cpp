@@ -62,7 +62,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     control_->load(snapshot, "control");
     first = static_cast<int>(snapshot.integer("level"));
   }
-  for (const std::int64_t level : snapshot.integers("levels", 0, StepControl::most_levels)) {
+  for (const std::int64_t level : snapshot.integers("levels", 0, control_ ? control_->deepest() : 0)) {
     const auto number = static_cast<int>(level);
     if (control_) scheme_.change_step(problem_, control_->step_of(number));
     const std::string name = level_name(number);

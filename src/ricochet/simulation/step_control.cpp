@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "ricochet/base/error.hpp"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double order = 2.0;  ///< of the error of a step
 constexpr int first_level = 4;
+constexpr double most_growth = 4.0;                    ///< of the largest energy in a step, as the measure of its error
 constexpr double aim = 0.5;                            ///< of the tolerance, for the next step
 constexpr double most_ticks = 9e15;                    ///< time is an exact number of them
 constexpr int least_patience = 2, most_patience = 64;  ///< steps
@@ -43,7 +45,7 @@ double StepControl::step_of(int level) const {
 
 void StepControl::start(const State& state) {
   ticks_ = 0;
-  level_ = wanted_ = last_level_ = std::min(deepest_, first_level);
+  level_ = wanted_ = last_level_ = finest_ = std::min(deepest_, first_level);
   acceleration_before_ = state.acceleration;
   // The acceleration at t = 0, where that of a step is at its middle.
   step_before_ = 0.0;
@@ -54,15 +56,19 @@ bool StepControl::accept(const State& before, const State& after, double energy)
   const double h = step();
   acceleration_ = (after.velocity - before.velocity) / h;
   change_ = acceleration_ - acceleration_before_;
-  largest_energy_ = std::max(largest_energy_, energy);
+  // An attempt that blows up must not be judged by its own energy.
+  const double scale =
+      largest_energy_ > 0.0 ? std::clamp(energy, largest_energy_, most_growth * largest_energy_) : energy;
   const double own = 0.5 * problem_.mass.form(change_);
-  error_ = own > 0.0 ? h * h / (6.0 * (h + step_before_)) * std::sqrt(own / largest_energy_) / options_.tolerance : 0.0;
+  error_ = own != 0.0 ? h * h / (6.0 * (h + step_before_)) * std::sqrt(own / scale) / options_.tolerance : 0.0;
+  if (!std::isfinite(energy) || !std::isfinite(error_)) error_ = std::numeric_limits<double>::infinity();
   const bool grown = level_ < last_level_;
   if (!(error_ <= 1.0)) {
     if (level_ < deepest_) {
       ++counts_.refused;
       const double halvings = std::isfinite(error_) ? std::ceil(std::log2(error_ / aim) / order) : 3.0;
       level_ = wanted_ = std::min(deepest_, level_ + std::clamp(static_cast<int>(halvings), 1, 3));
+      finest_ = std::max(finest_, wanted_);
       // Growth that fails is tried again ever more rarely.
       backoff_ = grown ? std::min(2 * backoff_, most_patience) : least_patience;
       patience_ = backoff_;
@@ -70,19 +76,19 @@ bool StepControl::accept(const State& before, const State& after, double energy)
     }
     ++counts_.tolerated;
   }
+  largest_energy_ = scale;
   counts_.largest_error = std::max(counts_.largest_error, error_);
   counts_.shortest = counts_.shortest == 0.0 ? h : std::min(counts_.shortest, h);
   counts_.longest = std::max(counts_.longest, h);
   ticks_ += ticks_of(level_);
   std::swap(acceleration_, acceleration_before_);
   step_before_ = h;
-  ++steps_;
   last_level_ = level_;
   if (grown) {
     backoff_ = least_patience;
     patience_ = 0;
   }
-  --patience_;
+  patience_ = std::max(patience_ - 1, -most_patience - 1);
   // Vibrations that no step of this size resolves have a smaller error with a longer one: it is worth a try now and
   // then.
   const bool may_grow = error_ <= aim ? patience_ < 0 : patience_ < -most_patience;
@@ -95,20 +101,21 @@ bool StepControl::accept(const State& before, const State& after, double energy)
 bool StepControl::shorten() {
   if (level_ == deepest_) return false;
   ++counts_.unsolved;
-  level_ = ++wanted_;
+  wanted_ = ++level_;
+  finest_ = std::max(finest_, wanted_);
   patience_ = backoff_ = least_patience;
   return true;
 }
 
-/// No step goes beyond the end.
+/// Near the end lengths that are there already are taken; of steps of the shortest of them the last may pass the end.
 void StepControl::fit_to_end() {
-  while (level_ < deepest_ && ticks_ + ticks_of(level_) > end_ticks_) ++level_;
+  while (level_ < finest_ && ticks_ + ticks_of(level_) > end_ticks_) ++level_;
 }
 
 void StepControl::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".ticks", ticks_);
   snapshot.save(name + ".levels", Snapshot::Integers{level_, wanted_, last_level_, deepest_});
-  snapshot.save(name + ".steps", Snapshot::Integers{steps_, patience_, backoff_});
+  snapshot.save(name + ".steps", Snapshot::Integers{finest_, patience_, backoff_});
   snapshot.save(name + ".counts", Snapshot::Integers{counts_.refused, counts_.unsolved, counts_.tolerated});
   Vector numbers(6);
   numbers << largest_energy_, step_before_, error_, counts_.largest_error, counts_.shortest, counts_.longest;
@@ -117,15 +124,17 @@ void StepControl::save(Snapshot& snapshot, const std::string& name) const {
 }
 
 void StepControl::load(const Snapshot& snapshot, const std::string& name) {
-  ticks_ = snapshot.integer(name + ".ticks");
-  const Snapshot::Integers& levels = snapshot.integers(name + ".levels", 0, most_levels);
+  ticks_ = snapshot.integers(name + ".ticks", 0, std::int64_t{1} << 60).at(0);
+  const Snapshot::Integers& levels = snapshot.integers(name + ".levels", 0, deepest_);
   if (levels.size() != 4 || levels[3] != deepest_) Snapshot::refuse(name + ".levels", "are those of other steps");
   level_ = static_cast<int>(levels[0]);
   wanted_ = static_cast<int>(levels[1]);
   last_level_ = static_cast<int>(levels[2]);
-  const Snapshot::Integers& steps = snapshot.integers(name + ".steps");
-  if (steps.size() != 3) Snapshot::refuse(name + ".steps", "are not three");
-  steps_ = steps[0];
+  const Snapshot::Integers& steps =
+      snapshot.integers(name + ".steps", std::numeric_limits<int>::min() / 2, most_levels * most_patience);
+  if (steps.size() != 3 || steps[0] < 0 || steps[0] > deepest_ || steps[2] < 0)
+    Snapshot::refuse(name + ".steps", "are none of these steps");
+  finest_ = static_cast<int>(steps[0]);
   patience_ = static_cast<int>(steps[1]);
   backoff_ = static_cast<int>(steps[2]);
   const Snapshot::Integers& counts = snapshot.integers(name + ".counts");
@@ -134,6 +143,7 @@ void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   counts_.unsolved = counts[1];
   counts_.tolerated = counts[2];
   const Vector& numbers = snapshot.reals(name + ".numbers", 6);
+  if (!(numbers.array() >= 0.0).all()) Snapshot::refuse(name + ".numbers", "are not all positive");
   largest_energy_ = numbers[0];
   step_before_ = numbers[1];
   error_ = numbers[2];

@@ -10,7 +10,7 @@
 namespace ricochet {
 
 struct StepControlOptions {
-  double end = 0.0;        ///< the last step ends here, or less than a smallest step after it
+  double end = 0.0;        ///< the last step ends here, or after it by less than the shortest of them
   double largest = 0.0;    ///< length of a step
   double smallest = 0.0;   ///< below this no step is refused
   double tolerance = 0.0;  ///< relative error of a step, see StepControl
@@ -46,6 +46,7 @@ class StepControl {
   [[nodiscard]] int level() const { return level_; }
   [[nodiscard]] double step() const { return step_of(level_); }
   [[nodiscard]] double step_of(int level) const;
+  [[nodiscard]] int deepest() const { return deepest_; }
 
   /// Whether the step from `before` to `after` may stay; chooses the length of the next step, or of the next attempt.
   /// `energy`: kinetic and elastic energy after it.
@@ -54,8 +55,6 @@ class StepControl {
   [[nodiscard]] bool shorten();
 
   [[nodiscard]] const StepCounts& counts() const { return counts_; }
-  /// Of the last step that stayed, relative to the tolerance.
-  [[nodiscard]] double error() const { return error_; }
 
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
@@ -71,7 +70,7 @@ class StepControl {
   int level_ = 0;                   ///< of the next step
   int wanted_ = 0;                  ///< the same, but for the end
   int last_level_ = 0;              ///< of the last step that stayed
-  std::int64_t steps_ = 0;          ///< that stayed
+  int finest_ = 0;                  ///< of the shortest length that errors have asked for
   int patience_ = 0, backoff_ = 2;  ///< steps before lengths may grow again, and after the last refusal
   double largest_energy_ = 0.0, step_before_ = 0.0, error_ = 0.0;
   Vector acceleration_, acceleration_before_, change_;

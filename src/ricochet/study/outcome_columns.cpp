@@ -92,9 +92,8 @@ std::vector<TableCell> outcome_cells(const std::string& run, const RunState& sta
   }
   const RunSummary& s = *state.summary;
   const auto first = first_with_restitution(s.impacts), most = hardest(s.impacts);
-  cells.insert(cells.end(), {s.steps, static_cast<double>(s.steps) * s.step, s.processor_seconds, s.loss_by_method(),
-                             s.creation_by_method(), s.deepest_penetration(),
-                             static_cast<long>(s.impacts.size()) + s.impacts_left_out,
+  cells.insert(cells.end(), {s.steps, s.time(), s.processor_seconds, s.loss_by_method(), s.creation_by_method(),
+                             s.deepest_penetration(), static_cast<long>(s.impacts.size()) + s.impacts_left_out,
                              first != s.impacts.end() ? TableCell(*first->restitution()) : TableCell(),
                              most != s.impacts.end() ? TableCell(most->largest_force) : TableCell()});
   for (TableCell& cell : peak_cells(s)) cells.push_back(std::move(cell));

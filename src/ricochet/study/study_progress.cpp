@@ -20,8 +20,7 @@ constexpr double redraw_interval = 0.5;
 /// The part of its steps that a run has taken, by its summary.
 double part_done(const std::string& directory) {
   try {
-    const RunSummary summary = read_summary(directory + "/summary.json");
-    return summary.all_steps > 0 ? static_cast<double>(summary.steps) / static_cast<double>(summary.all_steps) : 0.0;
+    return read_summary(directory + "/summary.json").part_done();
   } catch (const Error&) {  // it has none yet
     return 0.0;
   }
