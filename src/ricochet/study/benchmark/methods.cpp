@@ -19,6 +19,8 @@ namespace {
 
 /// Of the step that is stable.
 constexpr double part_of_critical_step = 0.9;
+/// Of a run. More would take minutes, and tell no more.
+constexpr long most_steps = 50'000;
 
 void require_known(const std::string& noun, const std::string& name, const std::vector<std::string>& known) {
   if (std::count(known.begin(), known.end(), name) > 0) return;
@@ -115,7 +117,10 @@ std::vector<std::string> MethodChooser::settings_with(const std::string& scheme_
   const std::optional<double> limit = scheme->stability_limit(problem);
   if (limit && part_of_critical_step * *limit < input.time.step) {
     settings.push_back(fmt::format("time.step={:.6g}", part_of_critical_step * *limit));
-    scheme = make_scheme(read_case(case_path_, settings).time);
+    const TimeSection shortened = read_case(case_path_, settings).time;
+    if (step_count(shortened) > most_steps)
+      throw Error(ErrorKind::invalid_input, "left out: with a stable step it would take more than 50,000 steps");
+    scheme = make_scheme(shortened);
   }
   scheme->analyse(problem);
   return settings;

@@ -34,8 +34,9 @@ struct MethodChoice {
 
 /// Finds by trial what methods become with one case. The mass is that of the case where the scheme takes it, else the
 /// first of equivalent, consistent, lumped and equivalent-lumped that it takes; where the scheme has a limit of
-/// stability the step is at most nine tenths of that; where it needs a preset, it gets the first one. Histories have
-/// a row for every step, and no fields are written. Nothing else is changed.
+/// stability the step is at most nine tenths of that, and cases that then take more than 50,000 steps are refused;
+/// where it needs a preset, it gets the first one. Histories have a row for every step, and no fields are written.
+/// Nothing else is changed.
 class MethodChooser {
  public:
   explicit MethodChooser(std::string case_path);

@@ -83,9 +83,8 @@ std::string MatrixMaker::cell_of(std::size_t run) {
   const BenchmarkOutcome& outcome = results_.outcomes[run];
   if (is_done(outcome)) return done_text(outcome);
   if (outcome.state.word() != "refused") return outcome.word();
-  const std::string reason = plan_.runs[run].scheme + ": " + outcome.message;
-  auto found = std::find(matrix_.reasons.begin(), matrix_.reasons.end(), reason);
-  if (found == matrix_.reasons.end()) found = matrix_.reasons.insert(found, reason);
+  auto found = std::find(matrix_.reasons.begin(), matrix_.reasons.end(), outcome.message);
+  if (found == matrix_.reasons.end()) found = matrix_.reasons.insert(found, outcome.message);
   return fmt::format("refused ({})", found - matrix_.reasons.begin() + 1);
 }
 
