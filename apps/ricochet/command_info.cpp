@@ -24,6 +24,7 @@
 #include "ricochet/model/model.hpp"
 #include "ricochet/run/run_case.hpp"
 #include "ricochet/run/run_description.hpp"
+#include "ricochet/study/benchmark/benchmark_files.hpp"
 #include "ricochet/study/study_files.hpp"
 
 namespace ricochet::program {
@@ -155,7 +156,8 @@ bool is_result(const std::string& path) {
 }  // namespace
 
 int info(const std::vector<std::string>& paths) {
-  const bool any_study = std::any_of(paths.begin(), paths.end(), holds_study);
+  const bool any_study =
+      std::any_of(paths.begin(), paths.end(), holds_study) || std::any_of(paths.begin(), paths.end(), holds_benchmarks);
   if (paths.size() > 1 && !any_study && std::all_of(paths.begin(), paths.end(), is_result)) {
     print_comparison(paths);
     return 0;
@@ -164,6 +166,8 @@ int info(const std::vector<std::string>& paths) {
     if (!fs::exists(path)) throw Error(ErrorKind::file_access, fmt::format("{}: no such file or directory", path));
     if (holds_study(path)) {
       describe_study(path);
+    } else if (holds_benchmarks(path)) {
+      describe_benchmarks(path);
     } else if (is_result(path)) {
       describe_result(path);
     } else if (fs::path(path).extension() == ".toml") {

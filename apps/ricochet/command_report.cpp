@@ -14,6 +14,7 @@
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/report/page.hpp"
 #include "ricochet/report/run_data.hpp"
+#include "ricochet/study/benchmark/benchmark_page.hpp"
 #include "ricochet/study/study_figure.hpp"
 #include "ricochet/study/study_page.hpp"
 #include "ricochet/study/study_table.hpp"
@@ -84,11 +85,29 @@ int report_study(const ReportArguments& arguments) {
   return 0;
 }
 
+int report_benchmarks(const ReportArguments& arguments) {
+  if (arguments.directories.size() > 1)
+    throw Error(ErrorKind::usage, "report: the page of benchmarks shows these alone: name no other directory");
+  const BenchmarkPlan plan = read_benchmark_plan(arguments.directories.front());
+  const std::string output = arguments.output.empty() ? plan.path("report.html") : arguments.output;
+  if (fs::exists(output) && !is_benchmark_page(output)) {
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format("{}: is there and is no page of benchmarks: name another file with -o, or move it away", output));
+  }
+  const std::string folder = fs::absolute(output).parent_path().string();
+  write_durably(output, make_benchmark_page(plan, read_benchmark_results(plan), folder));
+  fmt::print("{}: open it in a browser\n", output);
+  return 0;
+}
+
 }  // namespace
 
 int report(const ReportArguments& arguments) {
   if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study))
     return report_study(arguments);
+  if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_benchmarks))
+    return report_benchmarks(arguments);
   ReportOptions options;
   options.viewer = viewer_file();
   options.most_bytes = static_cast<std::size_t>(arguments.most_megabytes * 1e6);

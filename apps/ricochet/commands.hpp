@@ -56,6 +56,15 @@ struct StudyArguments {
   bool resume = false, force = false, quiet = false;
 };
 
+struct BenchmarkArguments {
+  std::vector<std::string> names;
+  std::string output_directory = "out/benchmark";
+  std::string scheme;  ///< "all" or a list; empty: that of each case
+  std::string folder;  ///< with benchmarks.toml; empty: that of the program
+  int jobs = 0;        ///< 0: as many as there are cores
+  bool list = false, resume = false, force = false, quiet = false;
+};
+
 int run(const RunArguments& arguments);
 int validate(const ValidateArguments& arguments);
 int info(const std::vector<std::string>& paths);
@@ -64,6 +73,9 @@ int contact(const ContactArguments& arguments);
 int report(const ReportArguments& arguments);
 int plot(const PlotArguments& arguments);
 int study(const StudyArguments& arguments);
+int benchmark(const BenchmarkArguments& arguments);
+/// The table of benchmarks that were run.
+void describe_benchmarks(const std::string& directory);
 /// The table of a study.
 void describe_study(const std::string& directory);
 /// A contact problem in a few lines.

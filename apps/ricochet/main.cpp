@@ -33,6 +33,7 @@ struct Arguments {
   program::ReportArguments report;
   program::PlotArguments plot;
   program::StudyArguments study;
+  program::BenchmarkArguments benchmark;
   std::vector<std::string> info_paths;
   bool markdown = false;
   std::string log_level = "info";
@@ -96,6 +97,34 @@ void add_study(CLI::App& app, program::StudyArguments& arguments, std::string& l
       "Exit status: 0 all runs are done; 128 + N stopped by signal N, --resume goes on; else that of the run "
       "that went worst, as of `ricochet run`.");
   add_common(*study, log_level);
+}
+
+void add_benchmark(CLI::App& app, program::BenchmarkArguments& arguments, std::string& log_level) {
+  CLI::App* benchmark =
+      app.add_subcommand("benchmark", "Run cases with reference values, and tabulate what is found against them");
+  benchmark->add_option("names", arguments.names, "benchmarks (default: all)")->type_name("NAME");
+  benchmark->add_option("-o,--output", arguments.output_directory, "directory of the tables and runs")
+      ->type_name("DIR")
+      ->capture_default_str();
+  benchmark
+      ->add_option("--scheme", arguments.scheme,
+                   "a scorecard of these schemes, or of all: SCHEME or SCHEME/MASS, separated by commas (default: what "
+                   "each case has)")
+      ->type_name("SCHEME,...|all");
+  benchmark->add_option("--jobs", arguments.jobs, "runs at a time (default: the cores that there are for them)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  benchmark->add_option("--folder", arguments.folder, "a folder with a benchmarks.toml (default: that of the program)")
+      ->type_name("DIR");
+  benchmark->add_flag("--list", arguments.list, "list the benchmarks and do nothing else");
+  benchmark->add_flag("--quiet", arguments.quiet, "no progress");
+  benchmark->add_flag("--force", arguments.force, "start anew over benchmarks that are in the directory");
+  benchmark->add_flag("--resume", arguments.resume, "keep the runs in the directory that are done")
+      ->excludes("--force");
+  benchmark->footer(
+      "Exit status: 0 all expected values hold; 5 some do not; 128 + N stopped by signal N; else that of the run that "
+      "went worst, as of `ricochet run`. What another scheme than that of the case refuses does not count.");
+  add_common(*benchmark, log_level);
 }
 
 int dispatch(int argc, char** argv) {
@@ -208,6 +237,7 @@ int dispatch(int argc, char** argv) {
   add_common(*plot, arguments.log_level);
 
   add_study(app, arguments.study, arguments.log_level);
+  add_benchmark(app, arguments.benchmark, arguments.log_level);
 
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
   schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
@@ -236,6 +266,7 @@ int dispatch(int argc, char** argv) {
   if (contact->parsed()) return program::contact(arguments.contact);
   if (plot->parsed()) return program::plot(arguments.plot);
   if (app.got_subcommand("study")) return program::study(arguments.study);
+  if (app.got_subcommand("benchmark")) return program::benchmark(arguments.benchmark);
   if (report->parsed()) return program::report(arguments.report);
   return program::schema(arguments.markdown);
 }

@@ -105,4 +105,16 @@ CollectWarnings::~CollectWarnings() {
   collected_warnings() = before_;
 }
 
+Silence::Silence() {
+  for (const auto& [text, level] : level_names) {
+    if (!enabled(level)) continue;
+    before_ = level;
+    break;
+  }
+  set_level(Level::off);
+}
+Silence::~Silence() {
+  set_level(before_);
+}
+
 }  // namespace ricochet::log

@@ -32,4 +32,16 @@ class CollectWarnings {
   std::vector<std::string>* before_;
 };
 
+/// While it lives, nothing is said; warnings are collected all the same.
+class Silence {
+ public:
+  Silence();
+  ~Silence();
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  Level before_ = Level::off;
+};
+
 }  // namespace ricochet::log

@@ -144,4 +144,18 @@ std::vector<ExpectationResult> check_expectations(const Case& input, const std::
   return results;
 }
 
+std::vector<ExpectationResult> unmet_expectations(const Case& input, const std::string& why, ExpectationScope scope) {
+  std::vector<ExpectationResult> results;
+  for (std::size_t i = 0; i < input.expectations.size(); ++i) {
+    ExpectationResult result = described(input.expectations[i]);
+    result.location = input.where(fmt::format("expect.{}", i)).text();
+    result.note = reason_not_to_check(input, input.expectations[i], scope);
+    result.checked = result.note.empty();
+    result.holds = !result.checked;
+    if (result.checked) result.note = why;
+    results.push_back(result);
+  }
+  return results;
+}
+
 }  // namespace ricochet

@@ -58,5 +58,8 @@ enum class ExpectationScope {
 [[nodiscard]] std::vector<ExpectationResult> check_expectations(
     const Case& input, const std::string& output_directory, const std::string& summary_json,
     ExpectationScope scope = ExpectationScope::settings_of_the_case);
+/// Those of a run that came to no end: none that applies holds, and `why` is their note.
+[[nodiscard]] std::vector<ExpectationResult> unmet_expectations(const Case& input, const std::string& why,
+                                                                ExpectationScope scope);
 
 }  // namespace ricochet

@@ -1,0 +1,177 @@
+#include "ricochet/study/benchmark/benchmark.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/io/run_directory.hpp"
+#include "ricochet/mass/mass.hpp"
+#include "ricochet/run/run_identity.hpp"
+#include "ricochet/study/run_state.hpp"
+#include "ricochet/study/study_files.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// A name for a directory.
+std::string folder_name(const std::string& benchmark, const std::string& method) {
+  std::string name = benchmark + (method.empty() ? "" : "-" + method);
+  std::replace(name.begin(), name.end(), '/', '-');
+  return name;
+}
+
+/// With this method and what became of it, benchmark by benchmark.
+struct MethodRow {
+  AskedMethod method;
+  std::vector<MethodChoice> chosen;
+
+  [[nodiscard]] bool is_always_refused() const {
+    return std::all_of(chosen.begin(), chosen.end(), [](const MethodChoice& c) { return c.is_refused(); });
+  }
+  /// The mass that it takes most often, or "".
+  [[nodiscard]] std::string usual_mass() const;
+};
+
+std::string MethodRow::usual_mass() const {
+  std::map<std::string, int> counts;
+  for (const MethodChoice& c : chosen) counts[c.mass] += c.is_refused() ? 0 : 1;
+  std::string usual;
+  for (const auto& [mass, count] : counts) {
+    if (count > 0 && (usual.empty() || count > counts[usual])) usual = mass;
+  }
+  return usual;
+}
+
+/// Of all reasons against a case that of the mass that the scheme takes elsewhere; of one that it never takes, any.
+std::string reason_of(const MethodChoice& chosen, const std::string& usual_mass) {
+  const auto usual = chosen.refusals.find(usual_mass);
+  return usual != chosen.refusals.end() ? usual->second : chosen.refusals.begin()->second;
+}
+
+bool lacks_contact_inertia(const std::string& mass) {
+  return !mass.empty() && make_mass(mass)->removes_contact_inertia();
+}
+
+/// A row with the mass "consistent" behind each that asks for no mass and got one without inertia on contact nodes;
+/// left out where it is never taken.
+void add_consistent_rows(std::vector<MethodRow>& rows, std::vector<std::unique_ptr<MethodChooser>>& choosers) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i].method.mass.empty() || !lacks_contact_inertia(rows[i].usual_mass())) continue;
+    MethodRow row{{rows[i].method.scheme, "consistent"}, {}};
+    for (const auto& chooser : choosers) row.chosen.push_back(chooser->choose(row.method));
+    if (!row.is_always_refused()) rows.insert(rows.begin() + static_cast<std::ptrdiff_t>(i + 1), std::move(row));
+  }
+}
+
+void refuse_what_is_there(const std::string& directory, const BenchmarkOptions& options) {
+  if (holds_run(directory) || holds_study(directory)) {
+    throw Error(ErrorKind::file_access,
+                fmt::format("{}: holds a {}; choose another directory for the benchmarks with -o", directory,
+                            holds_study(directory) ? "study" : "run"));
+  }
+  if (!holds_benchmarks(directory) || options.resume || options.force) return;
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: holds benchmarks already; keep the runs that are done with --resume, choose another "
+                          "directory with -o, or start anew over it with --force",
+                          directory));
+}
+
+/// What is there and cannot be kept: the runs of other plans, and of cases that have changed since.
+void remove_old_runs(const BenchmarkPlan& plan, const BenchmarkOptions& options) {
+  if (!holds_benchmarks(plan.directory)) return;
+  const auto is_kept = [&](const BenchmarkRun& old) {
+    if (!options.resume || std::find(plan.runs.begin(), plan.runs.end(), old) == plan.runs.end()) return false;
+    const RunState state = read_run_state(plan.path(old));
+    if (!state.summary || state.summary->parameters.empty()) return false;
+    try {
+      require_same_case(read_case(old.benchmark.case_path, old.settings), state.summary->version,
+                        state.summary->parameters, plan.path(old));
+    } catch (const Error&) {
+      return false;
+    }
+    return true;
+  };
+  for (const BenchmarkRun& old : read_benchmark_plan(plan.directory).runs) {
+    if (is_kept(old)) continue;
+    std::error_code problem;
+    std::filesystem::remove_all(plan.path(old), problem);
+    if (problem)
+      throw Error(ErrorKind::file_access, fmt::format("{}: cannot be removed: {}", plan.path(old), problem.message()));
+  }
+}
+
+int run_benchmarks(const BenchmarkPlan& plan, const RunPoolOptions& options) {
+  std::vector<PooledRun> runs;
+  for (const BenchmarkRun& run : plan.runs) {
+    if (run.refusal.empty()) runs.push_back({run.benchmark.case_path, run.settings, plan.path(run)});
+  }
+  return run_pool(runs, options, [&] {
+    for (const char* file : {"benchmark.csv", "benchmark.md", "scorecard.csv", "scorecard.md"}) {
+      std::error_code ignored;
+      std::filesystem::remove(plan.path(file), ignored);
+    }
+  });
+}
+
+}  // namespace
+
+BenchmarkPlan plan_benchmarks(const std::vector<Benchmark>& benchmarks, const std::string& directory) {
+  BenchmarkPlan plan{directory, false, {}};
+  for (const Benchmark& benchmark : benchmarks) {
+    BenchmarkRun& run = plan.runs.emplace_back();
+    run.benchmark = benchmark;
+    run.folder = benchmark.name;
+    try {
+      const Case input = read_case(benchmark.case_path);
+      run.scheme = input.time.scheme;
+      run.mass = input.mass.type;
+    } catch (const Error& problem) {
+      run.refusal = problem.what();
+    }
+  }
+  return plan;
+}
+
+BenchmarkPlan plan_scorecard(const std::vector<Benchmark>& benchmarks, const std::vector<AskedMethod>& methods,
+                             bool also_consistent, const std::string& directory) {
+  std::vector<MethodRow> rows;
+  for (const AskedMethod& method : methods) rows.push_back({method, {}});
+  std::vector<std::unique_ptr<MethodChooser>> choosers;
+  for (const Benchmark& benchmark : benchmarks) {
+    choosers.push_back(std::make_unique<MethodChooser>(benchmark.case_path));
+    for (MethodRow& row : rows) row.chosen.push_back(choosers.back()->choose(row.method));
+  }
+  if (also_consistent) add_consistent_rows(rows, choosers);
+  BenchmarkPlan plan{directory, true, {}};
+  for (const MethodRow& row : rows) {
+    for (std::size_t b = 0; b < benchmarks.size(); ++b) {
+      BenchmarkRun& run = plan.runs.emplace_back();
+      run.benchmark = benchmarks[b];
+      run.method = row.method.text();
+      run.scheme = row.method.scheme;
+      run.mass = row.chosen[b].mass;
+      run.is_own_method = run.scheme == choosers[b]->scheme_of_case();
+      run.settings = row.chosen[b].settings;
+      run.folder = folder_name(benchmarks[b].name, run.method);
+      if (row.chosen[b].is_refused()) run.refusal = reason_of(row.chosen[b], row.usual_mass());
+    }
+  }
+  return plan;
+}
+
+BenchmarkResults conduct_benchmarks(const BenchmarkPlan& plan, const BenchmarkOptions& options, int& signal) {
+  refuse_what_is_there(plan.directory, options);
+  const RunDirectory lock(plan.directory);
+  remove_old_runs(plan, options);
+  write_benchmark_plan(plan);
+  signal = run_benchmarks(plan, options.pool);
+  BenchmarkResults results = read_benchmark_results(plan);
+  write_benchmark_tables(plan, results);
+  return results;
+}
+
+}  // namespace ricochet

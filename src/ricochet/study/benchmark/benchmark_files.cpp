@@ -1,0 +1,85 @@
+#include "ricochet/study/benchmark/benchmark_files.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/json.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr int benchmark_format = 1;
+
+Json run_to_json(const BenchmarkRun& run) {
+  return {{"name", run.benchmark.name},
+          {"case", run.benchmark.case_path},
+          {"group", run.benchmark.group},
+          {"description", run.benchmark.description},
+          {"method", run.method},
+          {"scheme", run.scheme},
+          {"mass", run.mass},
+          {"own_method", run.is_own_method},
+          {"settings", run.settings},
+          {"folder", run.folder},
+          {"refusal", run.refusal}};
+}
+
+BenchmarkRun run_from(const Json& json) {
+  return {{json.at("name"), json.at("case"), json.at("group"), json.at("description")},
+          json.at("method"),
+          json.at("scheme"),
+          json.at("mass"),
+          json.at("own_method").get<bool>(),
+          json.at("settings").get<std::vector<std::string>>(),
+          json.at("folder"),
+          json.at("refusal")};
+}
+
+}  // namespace
+
+bool BenchmarkRun::operator==(const BenchmarkRun& other) const {
+  return run_to_json(*this).dump() == run_to_json(other).dump();
+}
+
+std::string BenchmarkPlan::path(const std::string& file) const {
+  return (std::filesystem::path(directory) / file).string();
+}
+
+std::string BenchmarkPlan::path(const BenchmarkRun& run) const {
+  return (std::filesystem::path(directory) / "runs" / run.folder).string();
+}
+
+bool holds_benchmarks(const std::string& directory) {
+  std::error_code ignored;
+  return std::filesystem::exists(std::filesystem::path(directory) / "benchmark.json", ignored);
+}
+
+BenchmarkPlan read_benchmark_plan(const std::string& directory) {
+  BenchmarkPlan plan{directory, false, {}};
+  const std::string path = plan.path("benchmark.json");
+  if (!holds_benchmarks(directory))
+    throw Error(ErrorKind::file_access, fmt::format("{}: holds no benchmarks: benchmark.json is missing", directory));
+  try {
+    const Json json = Json::parse(read_file(path));
+    if (const int format = json.at("ricochet_benchmark"); format != benchmark_format)
+      throw Error(ErrorKind::invalid_input, fmt::format("{}: is of another version of Ricochet", path));
+    plan.is_scorecard = json.at("scorecard");
+    for (const Json& run : json.at("runs")) plan.runs.push_back(run_from(run));
+  } catch (const Json::Exception& problem) {
+    throw Error(ErrorKind::invalid_input, fmt::format("{}: not of benchmarks: {}", path, problem.what()));
+  }
+  return plan;
+}
+
+void write_benchmark_plan(const BenchmarkPlan& plan) {
+  Json runs = Json::array();
+  for (const BenchmarkRun& run : plan.runs) runs.push_back(run_to_json(run));
+  const Json json{{"ricochet_benchmark", benchmark_format}, {"scorecard", plan.is_scorecard}, {"runs", runs}};
+  write_durably(plan.path("benchmark.json"), json.dump(2) + "\n");
+}
+
+}  // namespace ricochet

@@ -1,0 +1,180 @@
+#include "ricochet/study/benchmark/benchmark_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/case/read_case.hpp"
+#include "ricochet/io/durable_file.hpp"
+#include "ricochet/run/run_case.hpp"
+#include "ricochet/study/benchmark/methods.hpp"
+#include "ricochet/study/benchmark/scorecard.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr int not_held = static_cast<int>(ErrorKind::expectation), refused = static_cast<int>(ErrorKind::invalid_input);
+
+/// What the case expects of this run, as far as its case can be read.
+std::vector<ExpectationResult> expectations_of(const BenchmarkRun& run, const std::string& directory,
+                                               const BenchmarkOutcome& outcome) {
+  const log::Silence silence;  // the run has said what there is to say
+  std::vector<ExpectationResult> all;
+  try {
+    const Case input = read_case(run.benchmark.case_path, run.settings);
+    all = outcome.state.word() == "done"
+              ? check_expectations(input, directory, outcome.state.summary_json, ExpectationScope::any_settings)
+              : unmet_expectations(input, outcome.message, ExpectationScope::any_settings);
+  } catch (const Error&) {
+    return {};
+  }
+  std::erase_if(all, [](const ExpectationResult& e) { return !e.checked; });
+  return all;
+}
+
+int status_of(const BenchmarkRun& run, const BenchmarkOutcome& outcome) {
+  if (outcome.state.word() == "done") return outcome.holds() == outcome.applies() ? 0 : not_held;
+  const int status = outcome.state.exit_status.value_or(0);
+  return status == refused && !run.is_own_method ? 0 : status;
+}
+
+/// "≥ 1 and ≤ 2".
+std::string bounds_text(const ExpectationResult& e) {
+  std::string text;
+  if (e.minimum) text = fmt::format("≥ {}", *e.minimum);
+  if (e.maximum) text += fmt::format("{}≤ {}", text.empty() ? "" : " and ", *e.maximum);
+  return text;
+}
+
+TableCell reference_cell(const ExpectationResult& e) {
+  return e.wanted_value ? TableCell(*e.wanted_value) : TableCell(bounds_text(e));
+}
+
+double error_of(const ExpectationResult& e) {
+  if (e.wanted_value) return e.value - *e.wanted_value;
+  if (e.minimum && e.value < *e.minimum) return e.value - *e.minimum;
+  if (e.maximum && e.value > *e.maximum) return e.value - *e.maximum;
+  return 0.0;
+}
+
+std::vector<TableCell> cells_of(const BenchmarkRun& run, const ExpectationResult& e) {
+  const bool has_value = e.note.empty();
+  return {run.benchmark.name,
+          e.label(),
+          reference_cell(e),
+          has_value ? TableCell(e.value) : TableCell(),
+          has_value ? TableCell(error_of(e)) : TableCell(),
+          e.tolerance ? TableCell(*e.tolerance) : TableCell(),
+          e.published,
+          run.scheme,
+          run.mass,
+          e.holds ? "yes" : "no"};
+}
+
+std::string title_of(const BenchmarkPlan& plan, const BenchmarkRun& run) {
+  return run.benchmark.name + (plan.is_scorecard ? ", " + run.method : "");
+}
+
+}  // namespace
+
+std::size_t BenchmarkOutcome::holds() const {
+  return static_cast<std::size_t>(
+      std::count_if(expectations.begin(), expectations.end(), [](const ExpectationResult& e) { return e.holds; }));
+}
+
+std::string BenchmarkOutcome::word() const {
+  const std::string word = state.word();
+  if (word != "failed" || !state.summary) return word;
+  const RunSummary& s = *state.summary;
+  return fmt::format("failed at t = {:.3g}", s.adaptive ? s.adaptive->time : static_cast<double>(s.steps) * s.step);
+}
+
+BenchmarkResults read_benchmark_results(const BenchmarkPlan& plan) {
+  BenchmarkResults results;
+  for (const BenchmarkRun& run : plan.runs) {
+    BenchmarkOutcome& outcome = results.outcomes.emplace_back();
+    if (run.refusal.empty()) {
+      outcome.state = read_run_state(plan.path(run));
+      outcome.message = outcome.state.word() == "done" ? "" : short_reason(outcome.state.message);
+    } else {
+      outcome.state.exit_status = refused;
+      outcome.message = run.refusal;
+    }
+    if (!outcome.message.empty() || outcome.state.word() == "done")
+      outcome.expectations = expectations_of(run, plan.path(run), outcome);
+    results.worst_status = worse_status(results.worst_status, status_of(run, outcome));
+  }
+  return results;
+}
+
+ResultTable benchmark_table(const BenchmarkPlan& plan, const BenchmarkResults& results) {
+  ResultTable table{{{"case"},
+                     {"quantity"},
+                     {"reference", true, 6},
+                     {"value", true, 6},
+                     {"error", true, 2},
+                     {"tolerance", true, 2},
+                     {"published"},
+                     {"scheme"},
+                     {"mass"},
+                     {"holds"}},
+                    {},
+                    2};
+  for (std::size_t i = 0; i < plan.runs.size(); ++i) {
+    // What a method does not take it does not get wrong.
+    if (results.outcomes[i].state.word() == "refused" && !plan.runs[i].is_own_method) continue;
+    for (const ExpectationResult& e : results.outcomes[i].expectations) table.rows.push_back(cells_of(plan.runs[i], e));
+  }
+  return table;
+}
+
+ResultTable benchmark_table_for_readers(const BenchmarkPlan& plan, const BenchmarkResults& results,
+                                        bool with_published) {
+  ResultTable table = benchmark_table(plan, results);
+  const std::size_t holds = table.find("holds");
+  for (auto& row : table.rows) row[holds] = std::get<std::string>(row[holds]) == "yes" ? "" : "DOES NOT HOLD";
+  table.columns[holds].name = " ";
+  table.columns[table.find("published")].is_for_readers = with_published;
+  for (const char* name : {"scheme", "mass"}) table.columns[table.find(name)].is_for_readers = plan.is_scorecard;
+  return table;
+}
+
+std::vector<std::string> benchmark_notes(const BenchmarkPlan& plan, const BenchmarkResults& results) {
+  std::size_t holds = 0, applies = 0;
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < plan.runs.size(); ++i) {
+    const BenchmarkOutcome& outcome = results.outcomes[i];
+    const bool is_refused = outcome.state.word() == "refused";
+    if (is_refused && !plan.runs[i].is_own_method) continue;
+    holds += outcome.holds();
+    applies += outcome.applies();
+    if (outcome.state.word() == "done") continue;
+    const std::string why = outcome.message.empty() ? "" : ": " + outcome.message;
+    notes.push_back(fmt::format("{}: {}{}", title_of(plan, plan.runs[i]), outcome.word(), why));
+  }
+  notes.push_back(fmt::format("{} of {} hold.", holds, counted(applies, "expected value")));
+  return notes;
+}
+
+void write_benchmark_tables(const BenchmarkPlan& plan, const BenchmarkResults& results) {
+  write_durably(plan.path("benchmark.csv"), to_csv(benchmark_table(plan, results)));
+  std::string page = "# Benchmarks\n\n" + to_markdown(benchmark_table_for_readers(plan, results, true)) + "\n";
+  for (const std::string& note : benchmark_notes(plan, results)) page += "- " + note + "\n";
+  std::vector<std::string> told;
+  page += "\nThe benchmarks:\n\n";
+  for (const BenchmarkRun& run : plan.runs) {
+    if (std::count(told.begin(), told.end(), run.benchmark.name) > 0) continue;
+    told.push_back(run.benchmark.name);
+    page += fmt::format("- `{}`: {}\n", run.benchmark.name, run.benchmark.description);
+  }
+  write_durably(plan.path("benchmark.md"), page);
+  if (!plan.is_scorecard) return;
+  write_durably(plan.path("scorecard.csv"), to_csv(scorecard_table(plan, results)));
+  write_durably(plan.path("scorecard.md"), "# Scorecard\n\n" + scorecard_in_markdown(plan, results));
+}
+
+}  // namespace ricochet

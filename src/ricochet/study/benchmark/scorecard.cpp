@@ -1,0 +1,195 @@
+#include "ricochet/study/benchmark/scorecard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/text.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Percent of the largest energy; less is nothing.
+constexpr double shown_percent = 0.05;
+
+/// Two digits, and no more than there are before the point.
+std::string percent_text(double percent) {
+  if (percent < shown_percent) return "0";
+  return percent < 9.95 ? fmt::format("{:.1f}", percent) : fmt::format("{:.0f}", percent);
+}
+
+bool is_done(const BenchmarkOutcome& outcome) {
+  return outcome.state.word() == "done";
+}
+
+/// "14/15 +0.1 −3 %": what it has created and lost, where that is worth showing.
+std::string done_text(const BenchmarkOutcome& outcome) {
+  std::string text = fmt::format("{}/{}", outcome.holds(), outcome.applies());
+  const double created = 100.0 * outcome.state.summary->creation_by_method();
+  const double lost = 100.0 * outcome.state.summary->loss_by_method();
+  if (created >= shown_percent) text += " +" + percent_text(created);
+  if (lost >= shown_percent) text += " −" + percent_text(lost);
+  return text + (created >= shown_percent || lost >= shown_percent ? " %" : "");
+}
+
+class MatrixMaker {
+ public:
+  MatrixMaker(const BenchmarkPlan& plan, const BenchmarkResults& results);
+  ScorecardMatrix make();
+
+ private:
+  /// Numbers of the runs of a method.
+  [[nodiscard]] std::vector<std::size_t> runs_of(const std::string& method) const;
+  [[nodiscard]] std::string masses_of(const std::string& method) const;
+  [[nodiscard]] std::string cell_of(std::size_t run);
+  void add_totals(const std::string& method);
+  void add_part(const std::string& group);
+
+  const BenchmarkPlan& plan_;
+  const BenchmarkResults& results_;
+  std::vector<std::string> methods_, groups_;
+  ScorecardMatrix matrix_;
+};
+
+MatrixMaker::MatrixMaker(const BenchmarkPlan& plan, const BenchmarkResults& results) : plan_(plan), results_(results) {
+  const auto add = [](std::vector<std::string>& list, const std::string& entry) {
+    if (std::count(list.begin(), list.end(), entry) == 0) list.push_back(entry);
+  };
+  for (const BenchmarkRun& run : plan.runs) {
+    add(methods_, run.method);
+    add(groups_, run.benchmark.group);
+  }
+}
+
+std::vector<std::size_t> MatrixMaker::runs_of(const std::string& method) const {
+  std::vector<std::size_t> runs;
+  for (std::size_t i = 0; i < plan_.runs.size(); ++i) {
+    if (plan_.runs[i].method == method) runs.push_back(i);
+  }
+  return runs;
+}
+
+std::string MatrixMaker::masses_of(const std::string& method) const {
+  std::vector<std::string> masses;
+  for (const std::size_t i : runs_of(method)) {
+    const std::string& mass = plan_.runs[i].mass;
+    if (!mass.empty() && std::count(masses.begin(), masses.end(), mass) == 0) masses.push_back(mass);
+  }
+  return masses.empty() ? "none" : join_names(masses, " or ", false);
+}
+
+std::string MatrixMaker::cell_of(std::size_t run) {
+  const BenchmarkOutcome& outcome = results_.outcomes[run];
+  if (is_done(outcome)) return done_text(outcome);
+  if (outcome.state.word() != "refused") return outcome.word();
+  auto found = std::find(matrix_.reasons.begin(), matrix_.reasons.end(), outcome.message);
+  if (found == matrix_.reasons.end()) found = matrix_.reasons.insert(found, outcome.message);
+  return fmt::format("refused ({})", found - matrix_.reasons.begin() + 1);
+}
+
+void MatrixMaker::add_totals(const std::string& method) {
+  long all_right = 0, run = 0, refused = 0, failed = 0;
+  std::size_t holds = 0, applies = 0;
+  double created = 0.0, lost = 0.0;
+  for (const std::size_t i : runs_of(method)) {
+    const BenchmarkOutcome& outcome = results_.outcomes[i];
+    if (outcome.state.word() == "refused") {
+      ++refused;
+      continue;
+    }
+    ++run;
+    failed += outcome.state.word() == "failed";
+    holds += outcome.holds();
+    applies += outcome.applies();
+    all_right += is_done(outcome) && outcome.holds() == outcome.applies();
+    if (!is_done(outcome)) continue;
+    created = std::max(created, 100.0 * outcome.state.summary->creation_by_method());
+    lost = std::max(lost, 100.0 * outcome.state.summary->loss_by_method());
+  }
+  matrix_.totals.rows.push_back({plan_.runs[runs_of(method).front()].scheme, masses_of(method), run, all_right, failed,
+                                 refused, run > 0 ? TableCell(fmt::format("{}/{}", holds, applies)) : TableCell(),
+                                 run > 0 ? TableCell(percent_text(created) + " %") : TableCell(),
+                                 run > 0 ? TableCell(percent_text(lost) + " %") : TableCell()});
+}
+
+void MatrixMaker::add_part(const std::string& group) {
+  ScorecardPart& part = matrix_.parts.emplace_back();
+  part.title = group;
+  part.table.columns = {{"scheme"}, {"mass"}};
+  part.table.key_columns = 2;
+  for (const std::string& method : methods_) {
+    std::vector<TableCell>& row = part.table.rows.emplace_back();
+    row = {plan_.runs[runs_of(method).front()].scheme, masses_of(method)};
+    for (const std::size_t i : runs_of(method)) {
+      const Benchmark& benchmark = plan_.runs[i].benchmark;
+      if (benchmark.group != group) continue;
+      if (part.table.rows.size() == 1) part.table.columns.push_back({benchmark.name});
+      row.emplace_back(cell_of(i));
+    }
+  }
+}
+
+ScorecardMatrix MatrixMaker::make() {
+  matrix_.totals.columns = {{"scheme"},  {"mass"},   {"benchmarks"},   {"all right"}, {"failed"},
+                            {"refused"}, {"values"}, {"most created"}, {"most lost"}};
+  matrix_.totals.key_columns = 2;
+  for (const std::string& method : methods_) add_totals(method);
+  for (const std::string& group : groups_) add_part(group);
+  return std::move(matrix_);
+}
+
+std::string in_words(const ScorecardMatrix& matrix, const char* heading, const char* item,
+                     std::string (*write)(const ResultTable&)) {
+  std::string text = write(matrix.totals) + "\n";
+  for (const ScorecardPart& part : matrix.parts) {
+    if (!part.title.empty()) text += fmt::format("{}{}\n\n", heading, part.title);
+    text += write(part.table) + "\n";
+  }
+  if (!matrix.reasons.empty()) text += "Refused:\n\n";
+  for (std::size_t i = 0; i < matrix.reasons.size(); ++i)
+    text += fmt::format("{}{}. {}\n", item, i + 1, matrix.reasons[i]);
+  return text;
+}
+
+}  // namespace
+
+ResultTable scorecard_table(const BenchmarkPlan& plan, const BenchmarkResults& results) {
+  ResultTable table;
+  for (const char* name : {"scheme", "mass", "benchmark", "holds", "applies", "created_percent", "lost_percent",
+                           "status", "processor_seconds", "steps", "time_step", "message"})
+    table.columns.push_back({name});
+  for (std::size_t i = 0; i < plan.runs.size(); ++i) {
+    const BenchmarkRun& run = plan.runs[i];
+    const BenchmarkOutcome& outcome = results.outcomes[i];
+    std::vector<TableCell>& row = table.rows.emplace_back();
+    row = {run.scheme, run.mass, run.benchmark.name};
+    if (outcome.state.word() == "refused") {
+      row.resize(5);
+    } else {
+      row.insert(row.end(), {static_cast<long>(outcome.holds()), static_cast<long>(outcome.applies())});
+    }
+    if (const auto& s = outcome.state.summary; s) {
+      row.insert(row.end(), {100.0 * s->creation_by_method(), 100.0 * s->loss_by_method(), outcome.word(),
+                             s->processor_seconds, s->steps, s->step});
+    } else {
+      row.insert(row.end(), {TableCell(), TableCell(), outcome.word(), TableCell(), TableCell(), TableCell()});
+    }
+    row.emplace_back(outcome.message);
+  }
+  return table;
+}
+
+ScorecardMatrix scorecard_matrix(const BenchmarkPlan& plan, const BenchmarkResults& results) {
+  return MatrixMaker(plan, results).make();
+}
+
+std::string scorecard_in_markdown(const BenchmarkPlan& plan, const BenchmarkResults& results) {
+  return in_words(scorecard_matrix(plan, results), "### ", "", to_markdown);
+}
+
+std::string scorecard_in_aligned_text(const BenchmarkPlan& plan, const BenchmarkResults& results) {
+  return in_words(scorecard_matrix(plan, results), "", "  ", to_aligned_text);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,112 @@
+#include "ricochet/study/run_pool.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "ricochet/base/child_processes.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/io/durable_file.hpp"
+#include "ricochet/study/run_state.hpp"
+#include "ricochet/study/study_progress.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Where a run leaves what it says.
+constexpr const char* messages_file = "messages.txt";
+
+/// Runs that are still to be run, and what is known of them on the way.
+class RunPool {
+ public:
+  RunPool(const std::vector<PooledRun>& runs, const RunPoolOptions& options);
+  [[nodiscard]] bool empty() const { return pending_.empty(); }
+  /// The signal that has stopped it, or 0.
+  int run();
+
+ private:
+  [[nodiscard]] ChildProcess start(std::size_t i);
+  void end(std::size_t i, const ChildOutcome& outcome);
+  [[nodiscard]] const PooledRun& run_at(std::size_t i) const { return runs_[pending_[i]]; }
+
+  const std::vector<PooledRun>& runs_;
+  const RunPoolOptions& options_;
+  std::vector<std::size_t> pending_;
+  std::vector<NextAction> actions_;
+  std::optional<StudyProgress> progress_;
+};
+
+RunPool::RunPool(const std::vector<PooledRun>& runs, const RunPoolOptions& options) : runs_(runs), options_(options) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const RunState state = read_run_state(runs[i].directory);
+    const NextAction action = next_action(state);
+    kept += action == NextAction::nothing && state.word() != "done";
+    if (action == NextAction::nothing) continue;
+    pending_.push_back(i);
+    actions_.push_back(action);
+  }
+  if (kept > 0) {
+    log::info(fmt::format("{} refused or failed and would again: its directory says why; remove it to try again",
+                          counted(kept, "run")));
+  }
+  progress_.emplace(runs.size(), runs.size() - pending_.size(), options.quiet);
+}
+
+int RunPool::run() {
+  PoolWork work;
+  work.make = [this](std::size_t i) { return start(i); };
+  work.ended = [this](std::size_t i, const ChildOutcome& outcome) { end(i, outcome); };
+  work.watch = [this] { progress_->watch(); };
+  work.stop_signal = options_.stop_signal;
+  const int signal = run_children(pending_.size(), options_.jobs, work);
+  progress_.reset();
+  return signal;
+}
+
+ChildProcess RunPool::start(std::size_t i) {
+  const std::string& directory = run_at(i).directory;
+  std::error_code problem;
+  std::filesystem::create_directories(directory, problem);
+  if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be made: {}", directory, problem.message()));
+  record_outcome(directory, 0, "");
+  ChildProcess child;
+  child.arguments = {"/proc/self/exe", "run", run_at(i).case_path, "-o", directory};
+  for (const std::string& setting : run_at(i).settings) {
+    child.arguments.emplace_back("--set");
+    child.arguments.push_back(setting);
+  }
+  child.arguments.insert(child.arguments.end(), {"--threads", std::to_string(options_.threads), "--quiet"});
+  // What is left of a run that has no checkpoint is written over.
+  child.arguments.emplace_back(actions_[i] == NextAction::resume ? "--resume" : "--force");
+  child.output = directory + "/" + messages_file;
+  progress_->begin(directory);
+  return child;
+}
+
+void RunPool::end(std::size_t i, const ChildOutcome& outcome) {
+  const std::string& directory = run_at(i).directory;
+  // As a shell has it, where something from outside has killed the process.
+  const int status = WIFSIGNALED(outcome.status) ? 128 + WTERMSIG(outcome.status) : outcome.exit_status();
+  std::string message = last_error(read_file(directory + "/" + messages_file), directory);
+  if (message.empty()) message = fmt::format("its process {}", outcome.description());
+  const bool was_stopped = status >= 128 && options_.stop_signal && options_.stop_signal() != 0;
+  if (!was_stopped) record_outcome(directory, status, message);
+  progress_->end(directory, was_stopped ? "interrupted" : status == 0 ? "done" : message);
+}
+
+}  // namespace
+
+int run_pool(const std::vector<PooledRun>& runs, const RunPoolOptions& options, const std::function<void()>& before) {
+  RunPool pool(runs, options);
+  if (pool.empty()) return 0;
+  before();
+  return pool.run();
+}
+
+}  // namespace ricochet

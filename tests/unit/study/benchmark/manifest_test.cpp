@@ -1,0 +1,81 @@
+#include "ricochet/study/benchmark/manifest.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/temporary_folder.hpp"
+#include "support/paths.hpp"
+
+namespace ricochet {
+namespace {
+
+using test_support::source_path;
+
+class BenchmarkManifest : public ::testing::Test {
+ protected:
+  /// What is wrong with a manifest of this text, beside a file a.toml.
+  std::string problem_of(const std::string& text) {
+    std::ofstream(folder_.file("a.toml")) << "";
+    std::ofstream(folder_.file("benchmarks.toml")) << text;
+    try {
+      benchmarks_ = read_benchmarks(folder_.file("benchmarks.toml"));
+    } catch (const Error& problem) {
+      EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+      return problem.what();
+    }
+    return "";
+  }
+
+  TemporaryFolder folder_{std::filesystem::temp_directory_path(), "ricochet-test"};
+  std::vector<Benchmark> benchmarks_;
+};
+
+TEST_F(BenchmarkManifest, NamesCasesRelativeToItself) {
+  EXPECT_EQ(problem_of("[[benchmark]]\nname = \"a\"\ncase = \"sub/../a.toml\"\ngroup = \"bars\"\n"
+                       "description = \"A bar\"\n"),
+            "");
+  ASSERT_EQ(benchmarks_.size(), 1u);
+  EXPECT_EQ(benchmarks_[0].name, "a");
+  EXPECT_EQ(benchmarks_[0].case_path, folder_.file("a.toml"));
+  EXPECT_EQ(benchmarks_[0].group, "bars");
+  EXPECT_EQ(benchmarks_[0].description, "A bar");
+}
+
+TEST_F(BenchmarkManifest, TellsAllThatIsWrong) {
+  const std::string problem = problem_of(
+      "[[benchmark]]\nname = \"a\"\ncase = \"b.toml\"\n[[benchmark]]\nname = \"a\"\nfile = \"a.toml\"\n"
+      "[[benchmark]]\nname = \"a/b\"\ncase = 3\ndescripton = \"c\"\n[benchmarks]\n");
+  for (const char* part : {"benchmarks.toml:3:", "there is no file", "two benchmarks \"a\"", "unknown key \"file\"",
+                           "needs a \"case\"", "letters, digits", "must be a text, not the number 3",
+                           "is \"description\" meant?", "unknown key \"benchmarks\""})
+    EXPECT_NE(problem.find(part), std::string::npos) << part << " in\n" << problem;
+  EXPECT_NE(problem_of("").find("lists no benchmark"), std::string::npos);
+}
+
+TEST_F(BenchmarkManifest, ChoosesByNameInItsOwnOrder) {
+  const std::vector<Benchmark> all{{"rod", "", "", ""}, {"bar", "", "", ""}, {"layer", "", "", ""}};
+  EXPECT_EQ(choose_benchmarks(all, {}).size(), 3u);
+  const std::vector<Benchmark> chosen = choose_benchmarks(all, {"layer", "rod", "layer"});
+  ASSERT_EQ(chosen.size(), 2u);
+  EXPECT_EQ(chosen[0].name, "rod");
+  EXPECT_EQ(chosen[1].name, "layer");
+  try {
+    static_cast<void>(choose_benchmarks(all, {"rod", "layr"}));
+    ADD_FAILURE();
+  } catch (const Error& problem) {
+    EXPECT_EQ(problem.kind(), ErrorKind::usage);
+    EXPECT_STREQ(problem.what(), "benchmark: there is no \"layr\" (is \"layer\" meant?); there are rod, bar and layer");
+  }
+}
+
+TEST_F(BenchmarkManifest, OfTheProjectIsRight) {
+  const std::vector<Benchmark> all = read_benchmarks(source_path("benchmarks/benchmarks.toml"));
+  EXPECT_GT(all.size(), 20u);
+  for (const Benchmark& benchmark : all) EXPECT_FALSE(benchmark.description.empty()) << benchmark.name;
+}
+
+}  // namespace
+}  // namespace ricochet
