@@ -49,7 +49,7 @@ TEST_F(BenchmarkManifest, TellsAllThatIsWrong) {
       "[[benchmark]]\nname = \"a\"\ncase = \"b.toml\"\n[[benchmark]]\nname = \"a\"\nfile = \"a.toml\"\n"
       "[[benchmark]]\nname = \"a/b\"\ncase = 3\ndescripton = \"c\"\n[benchmarks]\n");
   for (const char* part : {"benchmarks.toml:3:", "there is no file", "two benchmarks \"a\"", "unknown key \"file\"",
-                           "needs a \"case\"", "letters, digits", "must be a text, not the number 3",
+                           "needs a \"case\"", "letters, digits", "must be a text, not the integer 3",
                            "is \"description\" meant?", "unknown key \"benchmarks\""})
     EXPECT_NE(problem.find(part), std::string::npos) << part << " in\n" << problem;
   EXPECT_NE(problem_of("").find("lists no benchmark"), std::string::npos);
