@@ -200,7 +200,7 @@ void Run::begin_session() {
     replace_old_run(directory_, options_, summary_);
     reported_ = summary_;
   }
-  if (!input_.time.adaptive) warn_of_end(input_.time);
+  warn_of_end(input_.time);
 }
 
 /// An error here is told in the summary, as one of a step is.

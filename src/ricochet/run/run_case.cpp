@@ -10,6 +10,7 @@
 namespace ricochet {
 
 void warn_of_end(const TimeSection& time) {
+  if (time.adaptive) return;
   const double end = static_cast<double>(step_count(time)) * time.step;
   if (std::abs(end - time.end) <= 1e-9 * time.end) return;
   log::warning(

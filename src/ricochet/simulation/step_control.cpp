@@ -28,11 +28,14 @@ StepControl::StepControl(const SemidiscreteProblem& problem, const StepControlOp
   if (!(options.smallest > 0.0) || options.smallest > options.largest)
     refuse(fmt::format("the smallest step, {:.6g}, must be positive and at most the largest, {:.6g}", options.smallest,
                        options.largest));
-  deepest_ = static_cast<int>(std::ceil(std::log2(options.largest / options.smallest) - 1e-9));
-  if (deepest_ > most_levels)
+  const double halvings = std::ceil(std::log2(options.largest / options.smallest) - 1e-9);
+  if (!(halvings <= most_levels))
     refuse(fmt::format("the smallest step, {:.6g}, is more than 2^{} times shorter than the largest, {:.6g}",
                        options.smallest, most_levels, options.largest));
-  const double ticks = std::ceil(options.end / step_of(deepest_) * (1.0 - 1e-12));
+  deepest_ = static_cast<int>(halvings);
+  // An end that is a whole number of smallest steps to rounding is that number of steps.
+  const double ticks =
+      std::ceil(options.end / step_of(deepest_) - std::min(1e-12 * options.end / step_of(deepest_), 0.5));
   if (!(ticks <= most_ticks))
     refuse(fmt::format("{:.3g} of the smallest step, {:.6g}, lead to the end, {:.6g}; at most {:.0e} are possible",
                        ticks, options.smallest, options.end, most_ticks));
@@ -151,6 +154,9 @@ void StepControl::load(const Snapshot& snapshot, const std::string& name) {
   counts_.shortest = numbers[4];
   counts_.longest = numbers[5];
   acceleration_before_ = snapshot.reals(name + ".acceleration", problem_.dof_count());
+  // The end may be another than that which the length was fitted to.
+  level_ = wanted_;
+  fit_to_end();
 }
 
 }  // namespace ricochet

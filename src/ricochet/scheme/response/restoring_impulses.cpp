@@ -16,15 +16,20 @@ Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector&
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   double last = std::numeric_limits<double>::infinity();
   const auto residual = [&](const Vector& at) { return Vector(at.cwiseProduct(approach + 0.5 * (w * at)) - lost); };
-  const auto energy = [&](const Vector& at) {
-    return approach.dot(at) + 0.25 * at.dot(w * at) - lost.dot(Vector(at.array().log()));
+  // Of the terms that the residual is the sum of: where p is large, they cancel.
+  const auto size = [&](const Vector& at, const Vector& error) {
+    const Vector terms = at.cwiseProduct(approach.cwiseAbs() + 0.5 * (w.cwiseAbs() * at)) + lost;
+    return error.cwiseQuotient(terms).lpNorm<Eigen::Infinity>();
+  };
+  // Of the function to be minimised, from p to p exp(change); no logarithm of a number with units.
+  const auto rise = [&](const Vector& next, const Vector& change) {
+    return approach.dot(next - p) + 0.25 * (next - p).dot(w * (next + p)) - lost.dot(change);
   };
   constexpr int most_iterations = 100;
+  constexpr double good_enough = 1e-12;  // where no step makes it smaller
   for (int k = 0; k < most_iterations; ++k) {
     const Vector error = residual(p);
-    // Of the terms that the residual is the sum of: where p is large, they cancel.
-    const Vector terms = p.cwiseProduct(approach.cwiseAbs() + 0.5 * (w.cwiseAbs() * p)) + lost;
-    const double worst = error.cwiseQuotient(terms).lpNorm<Eigen::Infinity>();
+    const double worst = size(p, error);
     if (worst <= rounding || (worst <= 32.0 * rounding && worst >= last)) return p;
     last = worst;
     // d error / d ln p, which is positive definite: diag(c) + ½ diag(p) W diag(p) where error = 0.
@@ -32,13 +37,12 @@ Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector&
     tangent.diagonal() += (error + lost).cwiseMax(lost);
     Vector change = -SmallCholesky(tangent).solve(error);
     change *= std::min(1.0, 3.0 / change.lpNorm<Eigen::Infinity>());
-    const double before = energy(p);
     Vector next = p.cwiseProduct(Vector(change.array().exp()));
-    for (int halving = 0; halving < 30 && energy(next) > before; ++halving) {
+    for (int halving = 0; halving < 30 && rise(next, change) > 0.0 && size(next, residual(next)) >= worst; ++halving) {
       change *= 0.5;
       next = p.cwiseProduct(Vector(change.array().exp()));
     }
-    if (next == p) return p;  // to rounding
+    if (next == p && worst <= good_enough) return p;
     p = next;
   }
   throw Error(ErrorKind::not_converged, "the impulses that give back the energy of contact were not found");
