@@ -32,7 +32,7 @@ struct Method {
   const char *name, *time, *mass;
   bool takes_friction = true;
 };
-const std::array<Method, 15> methods{
+const std::array<Method, 26> methods{
     {{"reduced-kane end, equivalent", "scheme = \"reduced-kane\"\nreaction_weight = \"end\"\n", "equivalent"},
      {"reduced-kane adaptive, equivalent", "scheme = \"reduced-kane\"\nreaction_weight = \"adaptive\"\n", "equivalent"},
      {"reduced-kane, equivalent", "scheme = \"reduced-kane\"\n", "equivalent"},
@@ -47,7 +47,18 @@ const std::array<Method, 15> methods{
      {"newmark trapezoidal, consistent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n", "consistent"},
      {"newmark 0.3025 0.6, consistent", "scheme = \"newmark\"\nbeta = 0.3025\ngamma = 0.6\n", "consistent"},
      {"klr-conserving, consistent", "scheme = \"klr-conserving\"\n", "consistent"},
-     {"midpoint, consistent", "scheme = \"midpoint\"\n", "consistent"}}};
+     {"midpoint, consistent", "scheme = \"midpoint\"\n", "consistent"},
+     {"kane, consistent", "scheme = \"kane\"\n", "consistent"},
+     {"laursen-chawla, consistent", "scheme = \"laursen-chawla\"\n", "consistent"},
+     {"laursen-love, consistent", "scheme = \"laursen-love\"\n", "consistent"},
+     {"paoli-schatzman, consistent", "scheme = \"paoli-schatzman\"\n", "consistent"},
+     {"moreau-jean, consistent", "scheme = \"moreau-jean\"\n", "consistent"},
+     {"generalized-alpha, consistent", "scheme = \"generalized-alpha\"\n", "consistent"},
+     {"generalized-alpha, equivalent", "scheme = \"generalized-alpha\"\n", "equivalent"},
+     {"nonsmooth-generalized-alpha, consistent", "scheme = \"nonsmooth-generalized-alpha\"\n", "consistent", false},
+     {"bathe, consistent", "scheme = \"bathe\"\n", "consistent"},
+     {"bathe, equivalent", "scheme = \"bathe\"\n", "equivalent"},
+     {"penalty-midpoint, consistent", "scheme = \"penalty-midpoint\"\n", "consistent", false}}};
 
 class Random {
  public:

@@ -34,9 +34,10 @@ Resultant momentum(const CaseRun& run, const HistoryRecorder& recorder, const st
   return result;
 }
 
-/// Largest difference, relative to all impulses and momenta; −1: the program refuses the case.
+/// Largest difference, relative to all impulses and momenta; −1: the program refuses the case. That of the energy,
+/// relative to the largest parts of it.
 struct Difference {
-  double momentum = -1.0, angular = -1.0;
+  double momentum = -1.0, angular = -1.0, energy = 0.0;
 };
 Difference largest_difference(const std::string& text) {
   std::unique_ptr<CaseRun> run;
@@ -49,7 +50,7 @@ Difference largest_difference(const std::string& text) {
   MomentumAccount account(run->problem(), run->scheme(), run->state());
   const auto now = [&] { return momentum(*run, recorder, recorder.row(run->state(), run->simulation().account())); };
   const Resultant start = now();
-  double force = 0.0, moment = 0.0, size = start.force.norm();
+  double force = 0.0, moment = 0.0, size = start.force.norm(), energy = 0.0, parts = 0.0;
   run->run(
       [&] {
         account.enter_step(run->state());
@@ -57,11 +58,14 @@ Difference largest_difference(const std::string& text) {
         force = std::max(force, (at.force - start.force - account.impulse().force).norm());
         moment = std::max(moment, (at.moment - start.moment - account.impulse().moment).norm());
         size = std::max(size, at.force.norm());
+        const Energies energies = run->simulation().account().energies(run->state());
+        energy = std::max(energy, std::abs(run->simulation().account().residual(energies)));
+        parts = std::max({parts, energies.kinetic, energies.elastic, std::abs(energies.load_potential)});
       },
       false);
   size += account.size();
   EXPECT_GT(size, 0.0);
-  return {force / size, moment / (size * account.arm())};
+  return {force / size, moment / (size * account.arm()), energy / parts};
 }
 
 TEST(MomentumAccount, BalancesInEverySchemeMassAndMultiplierSpace) {
@@ -80,6 +84,32 @@ TEST(MomentumAccount, BalancesInEverySchemeMassAndMultiplierSpace) {
     EXPECT_GE(found.momentum, 0.0) << bodies[body].name;
     EXPECT_LT(found.momentum, 1e-13) << bodies[body].name;
     EXPECT_LT(found.angular, 1e-13) << bodies[body].name;
+  }
+}
+
+/// Contact presses at the start: what a scheme makes of it there, its accounts begin with.
+TEST(MomentumAccount, BalancesWithTheEnergyFromAStaticStart) {
+  const ThrownBody block = test_support::one_sided_block();
+  for (const std::string& scheme : scheme_names()) {
+    for (const std::string& mass : test_support::masses_of(scheme)) {
+      std::string time = test_support::time_of(scheme);
+      if (scheme == "nonsmooth-generalized-alpha") time += "spectral_radius = 0.5\n";
+      std::string text = test_support::thrown_case(block, mass, time);
+      const auto replace = [&](const std::string& old, const std::string& now) {
+        ASSERT_NE(text.find(old), std::string::npos) << old;
+        text.replace(text.find(old), old.size(), now);
+      };
+      replace("normal = [0.1, 1.0]", "normal = [0.0, 1.0]");
+      replace("gravity = [0.3, -1.0]", "gravity = [0.0, -1.0]");
+      replace("velocity = [\"0.1-0.2*y\", \"-0.5+0.2*x\"]", "displacement = \"static\"");
+      const Difference found =
+          largest_difference(text + "[[traction]]\ngroup = \"contact\"\nvalue = [\"0.1*sin(9*t)\", \"x*sin(9*t)\"]\n");
+      const std::string name = scheme + ' ' + mass;
+      EXPECT_GE(found.momentum, 0.0) << name;
+      EXPECT_LT(found.momentum, 1e-13) << name;
+      EXPECT_LT(found.angular, 1e-13) << name;
+      EXPECT_LT(found.energy, 1e-12) << name;
+    }
   }
 }
 

@@ -41,8 +41,7 @@ class LaursenChawla final : public Scheme {
     require_no_approach(problem, state.displacement, state.time, state.velocity, equations_.obstacle_velocity(), h,
                         stage);
     stage.gap_factor = 2.0 / h;
-    equations_.require_friction(problem, state.velocity, 2.0 / h, stage);
-    if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
+    equations_.require_friction_beside_rates(problem, state.velocity, 2.0 / h, stage);
 
     const StageSolution& solution = stages.solve(0);
     increment = h * state.velocity + 2.0 * solution.increment;

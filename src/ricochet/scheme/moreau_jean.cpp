@@ -1,4 +1,3 @@
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/requirements.hpp"
 #include "ricochet/scheme/restitution_key.hpp"
 #include "ricochet/scheme/scheme.hpp"
@@ -50,14 +49,10 @@ class MoreauJean final : public Scheme {
     equations_.prescribe(problem, state.time + h, to_end, stage);
     place_ = state.displacement + (0.5 * h) * state.velocity;
     equations_.observe_obstacles(problem, state.time + 0.5 * h, place_);
-    impact_ = equations_.obstacle_velocity();
-    impact_.normal *= 1.0 + restitution_;
-    impact_.in_space *= 1.0 + restitution_;
-    rate_ = (1.0 + restitution_) * state.velocity;
-    require_no_approach(problem, place_, state.time + 0.5 * h, rate_, impact_, h, stage);
+    equations_.require_impact_law(problem, place_, state.time + 0.5 * h, state.velocity, state.velocity, restitution_,
+                                  h, stage);
     stage.gap_factor = 1.0 / (theta_ * h);
-    equations_.require_friction(problem, state.velocity, 1.0 / ((slip_at_end_ ? theta_ : 1.0) * h), stage);
-    if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
+    equations_.require_friction_beside_rates(problem, state.velocity, 1.0 / ((slip_at_end_ ? theta_ : 1.0) * h), stage);
 
     const StageSolution& solution = stages.solve(0);
     increment = h * state.velocity + solution.increment;
@@ -80,7 +75,6 @@ class MoreauJean final : public Scheme {
   double theta_, restitution_;
   bool slip_at_end_;
   double dissipation_ = 0.0;
-  ObstacleMotion impact_;
   Vector place_, rate_;
   StepEquations equations_;
 };

@@ -90,8 +90,8 @@ class Scheme {
   /// step leaves for the next one is in the state, so that a run can go on from a checkpoint.
   virtual void analyse(const SemidiscreteProblem&) {}
   /// Completes a starting state whose displacement, velocity, acceleration and forces satisfy the momentum equation at
-  /// t = 0.
-  virtual void start(const SemidiscreteProblem&, State&) {}
+  /// t = 0. May have stages solved; energies and momenta are counted from what it leaves.
+  virtual void start(const SemidiscreteProblem&, State&, StageSolve&) {}
   /// Takes the state to the end of the step: fills stages, has them solved, and reads their solutions. `increment`
   /// receives the displacement that the step's forces work on: of all stages those of one, in state.forces, are the
   /// step's; what another's do is in step_corrections() or other_parts(). Changes the state only after the last solve,

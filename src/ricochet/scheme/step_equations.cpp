@@ -28,9 +28,25 @@ void StepEquations::observe_obstacles(const SemidiscreteProblem& problem, double
   problem.obstacle_velocity(displacement, time, obstacle_velocity_);
 }
 
+void StepEquations::require_impact_law(const SemidiscreteProblem& problem, const Vector& place, double time,
+                                       const Vector& after, const Vector& before, double restitution, double step,
+                                       Stage& stage) {
+  impact_ = obstacle_velocity_;
+  impact_.normal *= 1.0 + restitution;
+  impact_.in_space *= 1.0 + restitution;
+  rate_ = after + restitution * before;
+  require_no_approach(problem, place, time, rate_, impact_, step, stage);
+}
+
 void StepEquations::require_friction(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor,
                                      Stage& stage) const {
   ricochet::require_friction(problem, velocity, obstacle_velocity_, slip_factor, stage);
+}
+
+void StepEquations::require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity,
+                                                  double slip_factor, Stage& stage) const {
+  require_friction(problem, velocity, slip_factor, stage);
+  if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
 }
 
 void StepEquations::require_friction_over_step(const SemidiscreteProblem& problem, const State& state,

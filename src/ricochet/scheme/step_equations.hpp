@@ -40,9 +40,17 @@ class StepEquations {
   /// the motion of the whole step.
   void observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement);
   [[nodiscard]] const ObstacleMotion& obstacle_velocity() const { return obstacle_velocity_; }
+  /// Newton's impact law at the points that touch at `place` and `time`, with the obstacles observed and one
+  /// coefficient of restitution e: y = G (after + s δ) + e G before, of velocities relative to the obstacles.
+  /// Velocities are differences of displacements over `step`. The caller sets s.
+  void require_impact_law(const SemidiscreteProblem& problem, const Vector& place, double time, const Vector& after,
+                          const Vector& before, double restitution, double step, Stage& stage);
   /// Coulomb's law on the slip rate B_T (velocity + slip_factor δ) relative to the obstacles observed.
   void require_friction(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor,
                         Stage& stage) const;
+  /// The same where y is a velocity, too: both round as displacements over a step do.
+  void require_friction_beside_rates(const SemidiscreteProblem& problem, const Vector& velocity, double slip_factor,
+                                     Stage& stage) const;
   /// The same on the mean slip rate B_T ΔU/h of the step, ΔU = predicted + δ; the obstacles' at its middle.
   void require_friction_over_step(const SemidiscreteProblem& problem, const State& state, const Vector& predicted,
                                   double step, Stage& stage);
@@ -64,7 +72,7 @@ class StepEquations {
 
   double time_ = 0.0;
   Vector force_, middle_, rate_;
-  ObstacleMotion obstacle_velocity_;
+  ObstacleMotion obstacle_velocity_, impact_;
 };
 
 /// On dofs without inertia A and V are no states: A = 0, V = ΔU/h.

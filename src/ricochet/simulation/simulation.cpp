@@ -39,7 +39,6 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   if (!scheme_.takes_nonlinear_force()) require_linear(*problem_.internal_force, "this time scheme");
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
-  scheme_.start(problem_, state_);
   if (control) {
     require_changing_steps(scheme_);
     control_.emplace(problem_, *control);
@@ -47,6 +46,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     scheme_.change_step(problem_, control_->step());
   }
   current_ = &make_level(control_ ? control_->level() : 0, options_);
+  scheme_.start(problem_, state_, *this);
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
 }
 

@@ -187,6 +187,8 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   if (has_previous_) guess_ += increment_ - previous_;
   for (const int dof : unsolved_) guess_[dof] = 0.0;
   prescribe(problem_, stage, guess_);
+  // Nothing that acts or is given: the residual of another guess would have nothing to be small beside.
+  if (stage.right_hand_side.isZero(0.0) && stage.prescribed.isZero(0.0)) guess_.setZero();
   const Index points = problem_.contact.size();
   solution.normal_reaction.setZero(points);
   if (problem_.contact.has_friction()) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));

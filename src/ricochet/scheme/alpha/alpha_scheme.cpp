@@ -16,7 +16,7 @@ AlphaWeights generalized_alpha_weights(double step, double spectral_radius) {
   return {step, (2.0 * spectral_radius - 1.0) / (spectral_radius + 1.0), spectral_radius / (spectral_radius + 1.0)};
 }
 
-void AlphaScheme::start(const SemidiscreteProblem&, State& state) {
+void AlphaScheme::start(const SemidiscreteProblem&, State& state, StageSolve&) {
   state.memory[algorithmic_acceleration] = state.acceleration;
 }
 

@@ -46,7 +46,7 @@ class AlphaScheme final : public Scheme {
   [[nodiscard]] JumpResponse jump_response() const override {
     return weights_.gamma > 0.5 ? JumpResponse::fades : JumpResponse::alternates;
   }
-  void start(const SemidiscreteProblem& problem, State& state) override;
+  void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) override;
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override;
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override;
   bool momentum_acceleration(const State& state, Vector& acceleration) const override;

@@ -47,14 +47,17 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
                 "problems do not come apart; take them out, or use scheme \"moreau-jean\"");
   }
 
-  void start(const SemidiscreteProblem&, State& state) override {
+  /// Contact that presses at the start is no part of a₀ and A₀.
+  void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) override {
+    Vector& support = state.memory[smooth_support_reaction];
+    support = state.forces.support_reaction;
+    stages_.take_contact_off(problem, state.forces, state.acceleration, support, stages);
     state.memory[algorithmic_acceleration] = state.acceleration;
-    state.memory[smooth_support_reaction] = state.forces.support_reaction;
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();
-    stages_.take_start(problem, state, stages);
+    stages_.take_start(state);
     support_ = weights_.force * stages_.support;
     change_ = -stages_.algorithmic;
     stages_.position(problem, state, h, weights_, stages);

@@ -14,16 +14,19 @@ const StageSolution& NonsmoothStages::push(const SemidiscreteProblem& problem, c
   return solve_with_forces(problem, normal, velocity_stage, stages);
 }
 
-void NonsmoothStages::take_start(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
+void NonsmoothStages::take_start(const State& state) {
   smooth = state.acceleration;
   algorithmic = state.memory.at(algorithmic_acceleration);
   support = state.memory.at(smooth_support_reaction);
-  if (state.step > 0 || !(state.forces.normal_reaction.sum() > 0.0)) return;
-  stages.stage(velocity_stage).rows = state.forces.rows;
-  const StageSolution& pressed = push(problem, state.forces.normal_reaction, stages);
-  smooth -= pressed.increment;
-  algorithmic = smooth;
-  support -= pressed.support_reaction;
+}
+
+void NonsmoothStages::take_contact_off(const SemidiscreteProblem& problem, const StepForces& forces,
+                                       Vector& acceleration, Vector& support_reaction, StageSolve& stages) {
+  if (!(forces.normal_reaction.sum() > 0.0)) return;
+  stages.stage(velocity_stage).rows = forces.rows;
+  const StageSolution& pressed = push(problem, forces.normal_reaction, stages);
+  acceleration -= pressed.increment;
+  support_reaction -= pressed.support_reaction;
 }
 
 void NonsmoothStages::position(const SemidiscreteProblem& problem, const State& state, double step,
@@ -56,14 +59,10 @@ const StageSolution& NonsmoothStages::impulses(const SemidiscreteProblem& proble
   velocity = state.velocity + step * mean;
   base_ = state.displacement + motion;
   equations_.observe_obstacles(problem, end, base_);
-  impact_ = equations_.obstacle_velocity();
-  impact_.normal *= 1.0 + restitution_;
-  impact_.in_space *= 1.0 + restitution_;
-  approach_ = velocity + restitution_ * state.velocity;
   Stage& stage = stages.stage(velocity_stage);
   stage.right_hand_side.setZero(problem.dof_count());
   stage.prescribed.setZero(problem.supports.size());
-  require_no_approach(problem, base_, end, approach_, impact_, step, stage);
+  equations_.require_impact_law(problem, base_, end, velocity, state.velocity, restitution_, step, stage);
   stage.gap_factor = 1.0;
   for (Index i = 0; i < normal_.size(); ++i) {
     if (normal_[i] > 0.0) stage.eligible[static_cast<std::size_t>(i)] = 1;

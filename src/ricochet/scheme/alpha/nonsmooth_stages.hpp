@@ -15,8 +15,10 @@ class NonsmoothStages {
   // Of the start of the step.
   Vector smooth, algorithmic;  ///< accelerations a₀ and A₀ without contact; position() replaces a₀ by a₁
   Vector support;              ///< what supports exert without contact; likewise
-  /// Takes them from the state; at the start of the run, contact that presses already is taken off.
-  void take_start(const SemidiscreteProblem& problem, const State& state, StageSolve& stages);
+  void take_start(const State& state);
+  /// Takes contact forces out of an acceleration and support reactions: a − M⁻¹Gᵀr.
+  void take_contact_off(const SemidiscreteProblem& problem, const StepForces& forces, Vector& acceleration,
+                        Vector& support_reaction, StageSolve& stages);
 
   // Of the end.
   Vector motion;    ///< U₁ − U₀
@@ -37,8 +39,7 @@ class NonsmoothStages {
   const StageSolution& push(const SemidiscreteProblem& problem, const Vector& normal, StageSolve& stages);
 
   double restitution_;
-  Vector shift_, base_, normal_, approach_;
-  ObstacleMotion impact_;
+  Vector shift_, base_, normal_;
   StepEquations equations_;
 };
 

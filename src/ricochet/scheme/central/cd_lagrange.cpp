@@ -1,4 +1,3 @@
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/central/central_scheme.hpp"
 #include "ricochet/scheme/restitution_key.hpp"
 
@@ -20,19 +19,13 @@ class CdLagrange final : public CentralScheme {
  private:
   void require_contact(const SemidiscreteProblem& problem, const Instant& instant, Stage& stage) override {
     const double h = step();
-    impact_ = equations().obstacle_velocity();
-    impact_.normal *= 1.0 + restitution_;
-    impact_.in_space *= 1.0 + restitution_;
-    approach_ = (1.0 + restitution_) * instant.velocity;
-    require_no_approach(problem, instant.now, instant.time, approach_, impact_, h, stage);
+    equations().require_impact_law(problem, instant.now, instant.time, instant.velocity, instant.velocity, restitution_,
+                                   h, stage);
     stage.gap_factor = 1.0 / h;
-    equations().require_friction(problem, instant.velocity, 1.0 / h, stage);
-    if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
+    equations().require_friction_beside_rates(problem, instant.velocity, 1.0 / h, stage);
   }
 
   double restitution_;
-  ObstacleMotion impact_;
-  Vector approach_;
 };
 
 }  // namespace

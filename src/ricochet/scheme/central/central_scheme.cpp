@@ -24,7 +24,7 @@ void CentralScheme::analyse(const SemidiscreteProblem& problem) {
   check_critical_step(name_, step(), critical_step_);
 }
 
-void CentralScheme::start(const SemidiscreteProblem& problem, State& state) {
+void CentralScheme::start(const SemidiscreteProblem& problem, State& state, StageSolve&) {
   const double h = step();
   Vector& ahead = state.memory[increment_ahead];
   ahead = h * state.velocity + (0.5 * h * h) * state.acceleration;

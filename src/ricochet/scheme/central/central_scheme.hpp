@@ -24,7 +24,7 @@ class CentralScheme : public Scheme {
 
   void analyse(const SemidiscreteProblem& problem) override;
   /// U¹ = U⁰ + hV⁰ + (h²/2)A⁰: the source asks for U¹ = U⁰ + hV⁰ + h z(h) with z → 0.
-  void start(const SemidiscreteProblem& problem, State& state) override;
+  void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) override;
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override;
   void energy_state(const State& state, Vector& displacement, Vector& velocity) const override;
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override;

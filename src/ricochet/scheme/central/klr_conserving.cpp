@@ -22,8 +22,7 @@ class KlrConserving final : public CentralScheme {
     require_no_approach(problem, instant.now, instant.time, instant.velocity, equations().obstacle_velocity(), h,
                         stage);
     stage.gap_factor = 0.5 / h;
-    equations().require_friction(problem, instant.velocity, 0.5 / h, stage);
-    if (stage.slip_offset.size() > 0) stage.slip_offset_rounding = stage.gap_offset_rounding;
+    equations().require_friction_beside_rates(problem, instant.velocity, 0.5 / h, stage);
   }
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
@@ -26,31 +27,61 @@ PenaltyForce penalty_force(double stiffness, double before, double after) {
   return {force, -force / change};
 }
 
+/// The forces at which the law, taken linear, and gap = free + W r agree; `motion`: gap − free.
+Vector newton_forces(const Matrix& w, const Vector& law, const Vector& slope, const Vector& motion) {
+  std::vector<Index> pressing;
+  for (Index i = 0; i < slope.size(); ++i) {
+    if (slope[i] != 0.0) pressing.push_back(i);
+  }
+  Vector result = Vector::Zero(slope.size());
+  if (pressing.empty()) return result;
+  const Vector compliance = -slope(pressing).cwiseInverse();
+  Matrix tangent = w(pressing, pressing);
+  tangent.diagonal() += compliance;
+  result(pressing) = SmallCholesky(tangent).solve(compliance.cwiseProduct(law(pressing)) + motion(pressing));
+  return result;
+}
+
 }  // namespace
 
 double penalty_energy(const Vector& stiffness, const Vector& gap) {
   return 0.5 * stiffness.dot(gap.cwiseMin(0.0).cwiseAbs2());
 }
 
+/// Newton's method for r = f(free + W r), the minimum of a convex function whose derivative is W (r − f). The unknown
+/// is r, with W + diag(−1/slope) of the points that press: written for the gaps, a stiffness much larger than W⁻¹ would
+/// leave of r only the rounding of gaps times that stiffness.
 Vector penalty_forces(const Matrix& w, const PenaltyPoints& points) {
-  constexpr int most_iterations = 200;
-  constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  constexpr int most_iterations = 200, most_halvings = 50;
+  constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon(), good_enough = 1e-12;
   const Index count = points.free.size();
-  Vector gap = points.free, force(count), slope(count);
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  Vector gap = points.free, r = Vector::Zero(count), law(count), slope(count);
+  const auto evaluate = [&](const Vector& at) {
     for (Index i = 0; i < count; ++i) {
-      const PenaltyForce law = penalty_force(points.stiffness[i], points.before[i], gap[i]);
-      force[i] = law.force;
-      slope[i] = law.slope;
+      const PenaltyForce here = penalty_force(points.stiffness[i], points.before[i], at[i]);
+      law[i] = here.force;
+      slope[i] = here.slope;
     }
-    const Vector error = gap - points.free - w * force;
-    // I − W diag(slope), slope ≤ 0.
-    Matrix tangent = -w * slope.asDiagonal();
-    tangent.diagonal().array() += 1.0;
-    const Vector change = PivotedLu(tangent).solve(error);
+  };
+  double last = std::numeric_limits<double>::infinity();
+  evaluate(gap);
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    const Vector change = newton_forces(w, law, slope, gap - points.free) - r;
+    const Vector motion = w * change;
     const double size = std::max(gap.lpNorm<Eigen::Infinity>(), points.free.lpNorm<Eigen::Infinity>());
-    if (change.lpNorm<Eigen::Infinity>() <= rounding * size) return force;
-    gap -= change;
+    const double moved = size > 0.0 ? motion.lpNorm<Eigen::Infinity>() / size : 0.0;
+    // The law at a gap has the gap's rounding times the stiffness; the change has not.
+    if (moved <= rounding || (moved <= good_enough && moved >= 0.5 * last)) return (r + change).cwiseMax(0.0);
+    last = moved;
+    const double descent = -motion.dot(r - law);
+    double part = 1.0;
+    for (int halving = 0; halving < most_halvings; ++halving, part *= 0.5) {
+      evaluate(gap + part * motion);
+      if (motion.dot(r + part * change - law) <= 0.5 * descent) break;
+    }
+    r += part * change;
+    gap = points.free + w * r;
+    evaluate(gap);
   }
   throw Error(ErrorKind::not_converged, "the penalty forces of contact were not found");
 }

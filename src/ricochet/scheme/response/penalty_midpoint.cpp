@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/scheme/kane.hpp"
 #include "ricochet/scheme/response/contact_response.hpp"
 #include "ricochet/scheme/response/penalty_law.hpp"
@@ -40,6 +41,14 @@ class PenaltyMidpoint final : public Kane {
     throw Error(ErrorKind::invalid_input,
                 "scheme \"penalty-midpoint\" takes neither friction nor curved obstacles; take friction out, or use "
                 "scheme \"reduced-kane\"");
+  }
+
+  void start(const SemidiscreteProblem&, State& state, StageSolve&) override {
+    if (!(state.forces.normal_reaction.sum() > 0.0)) return;
+    log::warning(
+        "scheme \"penalty-midpoint\": contact that presses in the static equilibrium has no penetration, without which "
+        "there is no force here: the body falls until it has, and vibrates; start it slightly above the obstacle "
+        "with damping, or use scheme \"reduced-kane\", which rests");
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
@@ -114,7 +123,7 @@ SchemeRegistration penalty_midpoint_scheme() {
             .type = KeyType::number,
             .unit = "1",
             .standard = "10",
-            .range = positive,
+            .range = {.above = 0.0, .at_most = 1e6},
             .doc = "Stiffness of the contact, in units of the body's own stiffness at a contact point."}}};
 }
 

@@ -50,7 +50,7 @@ class SemiExplicit final : public Scheme {
     contact_.analyse(problem);
   }
 
-  void start(const SemidiscreteProblem& problem, State& state) override {
+  void start(const SemidiscreteProblem& problem, State& state, StageSolve&) override {
     problem.internal_force->evaluate(state.displacement, state.memory[force_memory]);
     start_supports(problem, motion_.mass(), step(), state);
   }
