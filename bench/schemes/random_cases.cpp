@@ -32,7 +32,7 @@ struct Method {
   const char *name, *time, *mass;
   bool takes_friction = true;
 };
-const std::array<Method, 26> methods{
+const std::array<Method, 27> methods{
     {{"reduced-kane end, equivalent", "scheme = \"reduced-kane\"\nreaction_weight = \"end\"\n", "equivalent"},
      {"reduced-kane adaptive, equivalent", "scheme = \"reduced-kane\"\nreaction_weight = \"adaptive\"\n", "equivalent"},
      {"reduced-kane, equivalent", "scheme = \"reduced-kane\"\n", "equivalent"},
@@ -58,7 +58,8 @@ const std::array<Method, 26> methods{
      {"nonsmooth-generalized-alpha, consistent", "scheme = \"nonsmooth-generalized-alpha\"\n", "consistent", false},
      {"bathe, consistent", "scheme = \"bathe\"\n", "consistent"},
      {"bathe, equivalent", "scheme = \"bathe\"\n", "equivalent"},
-     {"penalty-midpoint, consistent", "scheme = \"penalty-midpoint\"\n", "consistent", false}}};
+     {"penalty-midpoint, consistent", "scheme = \"penalty-midpoint\"\n", "consistent", false},
+     {"nitsche, consistent", "scheme = \"nitsche\"\n", "consistent", false}}};
 
 class Random {
  public:

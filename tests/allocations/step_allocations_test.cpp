@@ -78,6 +78,7 @@ std::vector<Variant> variants() {
           {"MoreauJean", "scheme = \"moreau-jean\"\n", "consistent", "friction = 0.3\n", {}, false},
           {"PaoliSchatzman", "scheme = \"paoli-schatzman\"\n", "consistent", "friction = 0.3\n", {}, false},
           {"PenaltyMidpoint", "scheme = \"penalty-midpoint\"\n", "lumped", "", {}, false},
+          {"Nitsche", "scheme = \"nitsche\"\n", "lumped", "", {}, false},
           {"NonsmoothGeneralizedAlpha", "scheme = \"nonsmooth-generalized-alpha\"\n", "lumped", "", {}, false},
           {"MovingObstacleReducedKane", ends, "equivalent", "friction = 0.3\n", {}, true, true},
           {"MovingObstacle", trapezoidal, "equivalent", "friction = 0.3\n", {}, true, true},

@@ -76,11 +76,17 @@ std::vector<std::string> masses_of(const std::string& scheme) {
       {"taylor-flanagan", {"lumped"}},
   };
   if (const auto found = known.find(scheme); found != known.end()) return found->second;
-  static const std::set<std::string> with_inertia = {"midpoint",           "klr-conserving",
-                                                     "contact-stabilized", "kane",
-                                                     "laursen-chawla",     "moreau-jean",
-                                                     "paoli-schatzman",    "laursen-love",
-                                                     "penalty-midpoint",   "nonsmooth-generalized-alpha"};
+  static const std::set<std::string> with_inertia = {"midpoint",
+                                                     "klr-conserving",
+                                                     "contact-stabilized",
+                                                     "kane",
+                                                     "laursen-chawla",
+                                                     "moreau-jean",
+                                                     "paoli-schatzman",
+                                                     "laursen-love",
+                                                     "penalty-midpoint",
+                                                     "nonsmooth-generalized-alpha",
+                                                     "nitsche"};
   if (with_inertia.contains(scheme)) return {"consistent", "lumped"};
   std::vector<std::string> result = mass_names();
   if (scheme.starts_with("reduced-") || scheme == "mean-reaction")
@@ -90,7 +96,7 @@ std::vector<std::string> masses_of(const std::string& scheme) {
 
 bool takes_friction(const std::string& scheme) {
   return scheme != "mean-reaction" && scheme != "reduced-midpoint" && scheme != "penalty-midpoint" &&
-         scheme != "nonsmooth-generalized-alpha";
+         scheme != "nitsche" && scheme != "nonsmooth-generalized-alpha";
 }
 
 bool takes_damping(const std::string& scheme) {

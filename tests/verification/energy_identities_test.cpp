@@ -204,6 +204,7 @@ TEST(EnergyIdentity, IsKnownOfEveryScheme) {
                                                       "taylor-flanagan",
                                                       "laursen-love",
                                                       "penalty-midpoint",
+                                                      "nitsche",
                                                       "nonsmooth-generalized-alpha"}));
 }
 

@@ -165,7 +165,7 @@ TimeSection read_time(const SectionReader& reader) {
   time.end = reader.number("end");
   const char* const step = time.adaptive ? "largest" : "step";
   if (!reader.is_usable(step) || !reader.is_usable("end") || time.step == 0.0) return time;
-  if (time.end < time.step) {
+  if (!time.adaptive && time.end < time.step) {
     reader.add_problem("end",
                        fmt::format("\"end\" is {}, before the end of the first step of {}", time.end, time.step));
   } else if (time.end / time.step > most_steps) {

@@ -24,8 +24,8 @@ PlaceInBlock place_of(const Mesh& mesh, Index facet) {
 
 }  // namespace
 
-std::vector<Index> interior_facets(const Mesh& mesh, const std::vector<Index>& facets) {
-  // How many cells contain all vertices of a facet, from the cells around its first vertex.
+std::vector<std::vector<Index>> cells_of_facets(const Mesh& mesh, const std::vector<Index>& facets) {
+  // Those around all of its vertices.
   std::vector<std::vector<Index>> cells_of_vertex(static_cast<std::size_t>(mesh.node_count()));
   std::vector<char> wanted(static_cast<std::size_t>(mesh.node_count()), 0);
   for (const Index facet : facets) {
@@ -42,7 +42,7 @@ std::vector<Index> interior_facets(const Mesh& mesh, const std::vector<Index>& f
       }
     }
   }
-  std::vector<Index> interior;
+  std::vector<std::vector<Index>> result;
   for (const Index facet : facets) {
     const PlaceInBlock at = place_of(mesh, facet);
     std::vector<Index> common = cells_of_vertex[static_cast<std::size_t>(at.block->cell(at.local)[0])];
@@ -50,7 +50,16 @@ std::vector<Index> interior_facets(const Mesh& mesh, const std::vector<Index>& f
       const std::vector<Index>& others = cells_of_vertex[static_cast<std::size_t>(at.block->cell(at.local)[v])];
       std::erase_if(common, [&](Index cell) { return !std::binary_search(others.begin(), others.end(), cell); });
     }
-    if (common.size() > 1) interior.push_back(facet);
+    result.push_back(std::move(common));
+  }
+  return result;
+}
+
+std::vector<Index> interior_facets(const Mesh& mesh, const std::vector<Index>& facets) {
+  const std::vector<std::vector<Index>> cells = cells_of_facets(mesh, facets);
+  std::vector<Index> interior;
+  for (std::size_t k = 0; k < facets.size(); ++k) {
+    if (cells[k].size() > 1) interior.push_back(facets[k]);
   }
   return interior;
 }

@@ -219,6 +219,7 @@ void add_contacts(const Case& input, Model& model) {
   } catch (const Error& problem) {
     refuse(input, "contact", problem.what());
   }
+  model.problem.contact_stress = [&model] { return make_contact_stress(model.body, model.problem.contact); };
   warn_of_bounds_without_area(input, model.problem.contact);
   if (held > 0) {
     log::warning(fmt::format("{} held by supports in the direction of the obstacle's normal: no contact {} there",

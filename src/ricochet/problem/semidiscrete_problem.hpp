@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "ricochet/base/ranks.hpp"
 #include "ricochet/contact/contact_boundary.hpp"
+#include "ricochet/contact/contact_stress.hpp"
 #include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/internal_force.hpp"
 #include "ricochet/problem/loads.hpp"
@@ -25,7 +27,9 @@ struct SemidiscreteProblem {
   Supports supports;
   ContactBoundary contact;
   std::vector<const Obstacle*> obstacles;  ///< of each contact pair
-  const Ranks* ranks = &one_rank();        ///< that the body is divided among; never null
+  /// Makes the stress at the contact points, for the schemes that need it.
+  std::function<ContactStress()> contact_stress;
+  const Ranks* ranks = &one_rank();  ///< that the body is divided among; never null
 
   /// Dofs without inertia: those of the contact nodes when the mass is an equivalent one, else none. Ascending.
   std::vector<Index> massless_dofs;

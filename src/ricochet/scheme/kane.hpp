@@ -35,6 +35,7 @@ class Kane : public Scheme {
   /// Takes the state to the end of the step.
   void take(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution, State& state,
             Vector& increment);
+  [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const Vector& base() const { return base_; }
   [[nodiscard]] StepEquations& equations() { return equations_; }
 

@@ -26,6 +26,7 @@ namespace ricochet {
   scheme(taylor_flanagan_scheme)    \
   scheme(laursen_love_scheme)       \
   scheme(penalty_midpoint_scheme)   \
+  scheme(nitsche_scheme)            \
   scheme(nonsmooth_generalized_alpha_scheme)
 // clang-format on
 

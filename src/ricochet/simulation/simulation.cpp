@@ -176,7 +176,10 @@ void Simulation::take_controlled_step() {
     }
     const double energy =
         0.5 * problem_.mass.form(state_.velocity) + problem_.internal_force->energy(state_.displacement);
-    if (control_->accept(before_, state_, energy)) return;
+    if (control_->accept(before_, state_, energy)) {
+      energy_ = energy;
+      return;
+    }
     state_ = before_;
   }
 }
@@ -190,6 +193,7 @@ void Simulation::advance() {
   state_.step += 1;
   state_.time = control_ ? control_->time() : static_cast<double>(state_.step) * scheme_.step();
   account_->enter_step(increment_, state_);
+  if (control_) control_->watch(energy_, account_->of_method(state_));
 }
 
 }  // namespace ricochet

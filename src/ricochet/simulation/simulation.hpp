@@ -28,7 +28,7 @@ class Simulation : private StageSolve {
   void save(Snapshot& snapshot) const;
 
   /// One step. Throws Error(not_converged) with the step, its time and what to try; the state is then that before the
-  /// step.
+  /// step, but where steps are adaptive and the scheme has created most of the energy.
   void advance();
 
   /// Shows the contact problems of the next steps, and their solutions, to the observer; none if it is empty.
@@ -71,7 +71,8 @@ class Simulation : private StageSolve {
   std::map<int, Level> levels_;  ///< by the control's number; one, 0, without control
   Level* current_ = nullptr;
   std::optional<StepControl> control_;
-  State before_;  ///< an attempt, with control
+  State before_;         ///< an attempt, with control
+  double energy_ = 0.0;  ///< kinetic and elastic, of the step that stayed, with control
   std::unique_ptr<EnergyAccount> account_;
   int iterations_ = 0;  ///< of the contact solver in this step
   Vector increment_;

@@ -51,6 +51,9 @@ class StepControl {
   /// Whether the step from `before` to `after` may stay; chooses the length of the next step, or of the next attempt.
   /// `energy`: kinetic and elastic energy after it.
   [[nodiscard]] bool accept(const State& before, const State& after, double energy);
+  /// After a step that stays: `energy` again, and what of it the method has created since the start. Throws
+  /// Error(not_converged) where that is most of it by far: shorter steps at contact then make a bad scheme worse.
+  void watch(double energy, double created);
   /// The step could not be solved: a shorter one. False where there is none.
   [[nodiscard]] bool shorten();
 
@@ -73,6 +76,7 @@ class StepControl {
   int finest_ = 0;                  ///< of the shortest length that errors have asked for
   int patience_ = 0, backoff_ = 2;  ///< steps before lengths may grow again, and after the last refusal
   double largest_energy_ = 0.0, step_before_ = 0.0, error_ = 0.0;
+  double own_energy_ = 0.0;  ///< the largest that the method has not created
   Vector acceleration_, acceleration_before_, change_;
   StepCounts counts_;
 };

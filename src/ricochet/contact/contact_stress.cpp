@@ -1,0 +1,188 @@
+#include "ricochet/contact/contact_stress.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "ricochet/base/dense_decompositions.hpp"
+#include "ricochet/fem/element_matrices.hpp"
+#include "ricochet/fem/exterior_facets.hpp"
+#include "ricochet/fem/facet_integration.hpp"
+
+namespace ricochet {
+
+namespace {
+
+struct CellPlace {
+  std::size_t block = 0;
+  Index local = 0;
+};
+
+CellPlace locate_cell(const DisplacementSpace& space, Index cell) {
+  CellPlace place;
+  while (cell >= space.cells[place.block].size()) cell -= space.cells[place.block++].size();
+  place.local = cell;
+  return place;
+}
+
+/// A facet of the contact boundary: the cell behind it, and its area.
+struct FacetData {
+  Index cell = 0;
+  double area = 0.0;
+};
+
+/// What a point takes of the stress vector at a node of a facet: s_i = Σ share · (force of it).
+struct Share {
+  Index point = 0;
+  double share = 0.0;
+  Vector row;  ///< D_i n_i·σN, per dof of the cell
+};
+
+template <int d>
+class StressRows {
+ public:
+  StressRows(const Body& body, const ContactBoundary& boundary) : body_(body), boundary_(boundary) {
+    const std::vector<std::vector<Index>> cells = cells_of_facets(*body.mesh, boundary.facets);
+    const FacetIntegration integration(body);
+    FacetQuadrature quadrature;
+    for (std::size_t k = 0; k < boundary.facets.size(); ++k) {
+      integration.evaluate(boundary.facets[k], quadrature);
+      facets_.push_back({cells[k].front(), quadrature.measure.sum()});
+      for (Index a = 0; a < quadrature.node_count(); ++a) area_[quadrature.nodes[a]] += facets_.back().area;
+    }
+    for (Index i = 0; i < boundary.size(); ++i)
+      boundary.visit_nodes(i, [&](Index node, double c) { points_[node].emplace_back(i, c); });
+  }
+
+  ContactStress make() {
+    std::map<Index, std::vector<Share>> of_cells;
+    for (std::size_t k = 0; k < facets_.size(); ++k) add_facet(k, of_cells[facets_[k].cell]);
+    ContactStress result;
+    Vector shares = Vector::Zero(boundary_.size());
+    result.stiffness.setZero(boundary_.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto& [cell, all] : of_cells) {
+      const CellPlace place = locate_cell(*body_.space, cell);
+      const Index* nodes = body_.space->cells[place.block].cell(place.local);
+      const double largest = largest_of_cell(place, cell, all);
+      for (const Share& each : all) {
+        shares[each.point] += std::abs(each.share);
+        result.stiffness[each.point] = std::max(result.stiffness[each.point], largest);
+        for (Index b = 0; b < each.row.size(); ++b)
+          entries.emplace_back(each.point, nodes[b / d] * d + b % d, each.share * each.row[b]);
+      }
+    }
+    result.stiffness.array() *= shares.array();
+    result.rows.resize(boundary_.size(), body_.space->dof_count());
+    result.rows.setFromTriplets(entries.begin(), entries.end());
+    return result;
+  }
+
+ private:
+  using Space = Eigen::Matrix<double, d, 1>;
+
+  void add_facet(std::size_t k, std::vector<Share>& shares) {
+    const FacetPlace at = locate_facet(*body_.space, boundary_.facets[k]);
+    const CellPlace in = locate_cell(*body_.space, facets_[k].cell);
+    const CellBlock& facets = body_.space->facets[at.block];
+    const CellBlock& cells = body_.space->cells[in.block];
+    const Index *nodes = facets.cell(at.local), *corners = cells.cell(in.local);
+    const IsotropicElasticity law = linear_law(body_, material_of(body_, facets_[k].cell));
+    const Points& places = ReferenceElement::get(facets.shape, body_.space->degree).nodes();
+    for (Index a = 0; a < places.cols(); ++a) {
+      const auto points = points_.find(nodes[a]);
+      if (points == points_.end()) continue;
+      const Index own = std::find(corners, corners + cells.nodes_per_cell, nodes[a]) - corners;
+      const Eigen::Matrix<double, Eigen::Dynamic, d> gradients = gradients_at(in, own);
+      const Space outward = normal_at(at, places.col(a), in);
+      for (const auto& [point, c] : points->second) {
+        Share share{point, c * facets_[k].area / area_.at(nodes[a]), Vector(gradients.rows() * d)};
+        const Space n = boundary_.rows->normals.col(point);
+        for (Index b = 0; b < gradients.rows(); ++b) {
+          const Space g = gradients.row(b);
+          // n·σN of the displacement φ_b e, per component of e.
+          share.row.template segment<d>(b * d) =
+              boundary_.weights[point] *
+              (law.lambda * n.dot(outward) * g + law.mu * (g.dot(outward) * n + n.dot(g) * outward));
+        }
+        shares.push_back(std::move(share));
+      }
+    }
+  }
+
+  /// Of the shape functions of a cell, at one of its nodes.
+  Eigen::Matrix<double, Eigen::Dynamic, d> gradients_at(const CellPlace& in, Index node) const {
+    const CellBlock& geometry = body_.mesh->cells[in.block];
+    const ReferenceElement& element = ReferenceElement::get(geometry.shape, body_.space->degree);
+    const Points place = element.nodes().col(node);
+    const Tabulation map = ReferenceElement::get(geometry.shape, body_.mesh->degree).tabulate(place);
+    return element.tabulate(place).gradients[0] *
+           jacobian<d>(body_.mesh->nodes, geometry.cell(in.local), map.gradients[0]).inverse();
+  }
+
+  Space normal_at(const FacetPlace& at, const Vector& place, const CellPlace& in) const {
+    const CellBlock& geometry = body_.mesh->facets[at.block];
+    const Tabulation map = ReferenceElement::get(geometry.shape, body_.mesh->degree).tabulate(place);
+    const auto along = jacobian<d, d - 1>(body_.mesh->nodes, geometry.cell(at.local), map.gradients[0]);
+    Space normal;
+    if constexpr (d == 2) {
+      normal << along(1, 0), -along(0, 0);
+    } else {
+      const Space first = along.col(0), second = along.col(1);
+      normal = first.cross(second);
+    }
+    normal.normalize();
+    const CellBlock& cells = body_.mesh->cells[in.block];
+    Space centre = Space::Zero(), here = Space::Zero();
+    for (int v = 0; v < vertex_count(cells.shape); ++v)
+      centre += body_.mesh->nodes.col(cells.cell(in.local)[v]) / vertex_count(cells.shape);
+    for (int v = 0; v < vertex_count(geometry.shape); ++v)
+      here += body_.mesh->nodes.col(geometry.cell(at.local)[v]) / vertex_count(geometry.shape);
+    return normal.dot(here - centre) < 0.0 ? Space(-normal) : normal;
+  }
+
+  /// The largest Σ |share| s² of a displacement of the cell with uᵀK_cell u = 1.
+  double largest_of_cell(const CellPlace& place, Index cell, const std::vector<Share>& all) const {
+    if (all.empty()) return 0.0;
+    const CellBlock& geometry = body_.mesh->cells[place.block];
+    const int degree = body_.mesh->degree, displacement = body_.space->degree;
+    const BlockIntegration integration(geometry.shape, degree, displacement,
+                                       stiffness_quadrature_degree(geometry.shape, degree, displacement));
+    const int count = static_cast<int>(integration.displacement.values.rows());
+    std::vector<double> pairs(static_cast<std::size_t>(pair_number(0, count)) * d * d);
+    element_stiffness<d>(integration, body_.mesh->nodes, geometry.cell(place.local),
+                         linear_law(body_, material_of(body_, cell)), pairs.data());
+    Matrix stiffness(count * d, count * d);
+    for (int j = 0; j < count; ++j) {
+      for (int i = 0; i <= j; ++i) {
+        const Eigen::Map<const Eigen::Matrix<double, d, d, Eigen::RowMajor>> block(pairs.data() +
+                                                                                   pair_number(i, j) * d * d);
+        stiffness.block<d, d>(i * d, j * d) = block;
+        stiffness.block<d, d>(j * d, i * d) = block.transpose();
+      }
+    }
+    Matrix rows(static_cast<Index>(all.size()), stiffness.cols());
+    for (std::size_t k = 0; k < all.size(); ++k)
+      rows.row(static_cast<Index>(k)) = std::sqrt(std::abs(all[k].share)) * all[k].row.transpose();
+    // In the eigenvectors of K_cell but for its rigid motions, which have no stress.
+    const SymmetricEigen eigen = symmetric_eigen(stiffness);
+    const Index rigid = d * (d + 1) / 2, rest = stiffness.cols() - rigid;
+    const Matrix scaled =
+        rows * eigen.vectors.rightCols(rest) * eigen.values.tail(rest).cwiseSqrt().cwiseInverse().asDiagonal();
+    const Vector values = symmetric_eigenvalues(Matrix(scaled * scaled.transpose()));
+    return values[values.size() - 1];
+  }
+
+  const Body& body_;
+  const ContactBoundary& boundary_;
+  std::vector<FacetData> facets_;
+  std::map<Index, double> area_;                                   ///< of the contact facets around a node
+  std::map<Index, std::vector<std::pair<Index, double>>> points_;  ///< that see a node, with c
+};
+
+}  // namespace
+
+ContactStress make_contact_stress(const Body& body, const ContactBoundary& boundary) {
+  return boundary.dimension == 2 ? StressRows<2>(body, boundary).make() : StressRows<3>(body, boundary).make();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,43 @@
+#include "ricochet/scheme/response/forced_midpoint.hpp"
+
+#include <fmt/format.h>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+void ForcedMidpoint::analyse(const SemidiscreteProblem& problem) {
+  Kane::analyse(problem);
+  if (!problem.contact.has_friction() && !problem.contact.follows_motion()) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("scheme \"{}\" takes neither friction nor curved obstacles; take friction out, or use "
+                          "scheme \"reduced-kane\"",
+                          name()));
+}
+
+void ForcedMidpoint::advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
+  const double end = state.time + step();
+  problem.gaps(state.displacement, state.time, before_);
+  normal_.setZero(before_.size());
+  Stage& stage = balance(problem, state, stages);
+  if (problem.has_moving_obstacles()) equations().observe_obstacles(problem, state.time + 0.5 * step(), base());
+  const StageSolution* solution = &solve_with_forces(problem, normal_, 0, stages);
+  place_ = base() + solution->increment;
+  problem.gaps(place_, end, free_);
+  if (find_forces(problem, *stage.rows, {state, before_, place_, free_}, stages, normal_)) {
+    balance(problem, state, stages);
+    add_other_forces(stage.right_hand_side);
+    solution = &solve_with_forces(problem, normal_, 0, stages);
+  }
+  solution_.increment = solution->increment;
+  solution_.support_reaction = solution->support_reaction;
+  solution_.normal_reaction = normal_;
+  solution_.contact_status.resize(static_cast<std::size_t>(normal_.size()));
+  for (Index i = 0; i < normal_.size(); ++i)
+    solution_.contact_status[static_cast<std::size_t>(i)] =
+        normal_[i] > 0.0 ? ContactStatus::slip : ContactStatus::open;
+  take(problem, stage, solution_, state, increment);
+  corrections_ = account(problem, state, increment);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,118 @@
+#include <map>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/scheme/response/forced_midpoint.hpp"
+#include "ricochet/scheme/response/nitsche_law.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Nitsche's method, symmetric (θ = 1), under the midpoint scheme with the hybrid contact term of F. Chouly, P. Hild
+/// and Y. Renard (ESAIM: M2AN 49 (2015) 481–502 and 503–528), in the contact points: with s_i the force that the stress
+/// of the body asks of the obstacle (ContactStress), Γ_i a stiffness and p = s − Γ g,
+///   r = [½(p₀+p₁)]₊ where p₀ > 0, else ½[p₁]₊;   f = SᵀΓ⁻¹(½(s₀+s₁) − r).
+/// J − ½Σs²/Γ + ½Σ[p]₊²/Γ is kept where p stays positive, and falls by nitsche_dissipation() otherwise, where gaps are
+/// linear and obstacles rest; with Γ_i = `penalty` κ_i that is at least (1−1/penalty) of the elastic energy. f has
+/// neither resultant nor moment. No friction: the source has none. In the exact motion r = s and f = 0, so that points
+/// penetrate by (r − s)/Γ, what the stress of the cells is wrong by.
+///
+/// A step needs one dense problem of all contact points: it is for a few hundred.
+class Nitsche final : public ForcedMidpoint {
+ public:
+  Nitsche(double step, double penalty) : ForcedMidpoint(step, "nitsche"), penalty_(penalty) {}
+
+  [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
+    problem.gaps(state.displacement, state.time, gap_);
+    s_.noalias() = stress_.rows * state.displacement;
+    p_ = s_ - stiffness_.cwiseProduct(gap_);
+    return nitsche_energy(stiffness_, s_, p_);
+  }
+
+  void analyse(const SemidiscreteProblem& problem) override {
+    ForcedMidpoint::analyse(problem);
+    if (!problem.contact_stress)
+      throw Error(ErrorKind::invalid_input, "scheme \"nitsche\" needs the stress at the contact points");
+    stress_ = problem.contact_stress();
+    if (!(stress_.stiffness.array() > 1e-10 * stress_.stiffness.maxCoeff()).all() ||
+        !(problem.contact.weights.array() > 0.0).all())
+      throw Error(ErrorKind::invalid_input,
+                  "scheme \"nitsche\" needs a share of the area at every contact point, which nodal forces of degree 2 "
+                  "have not; set multipliers = \"p1\" or \"dual\", or mesh.degree = 1");
+    stiffness_ = penalty_ * stress_.stiffness;
+  }
+
+ protected:
+  bool find_forces(const SemidiscreteProblem& problem, const ContactRows& rows, const Unforced& unforced,
+                   StageSolve& stages, Vector& normal) override {
+    points_.s_before.noalias() = stress_.rows * unforced.start.displacement;
+    points_.p_before = points_.s_before - stiffness_.cwiseProduct(unforced.gap_before);
+    energy_before_ = nitsche_energy(stiffness_, points_.s_before, points_.p_before);
+    points_.s.noalias() = stress_.rows * unforced.place;
+    points_.gap = unforced.gap;
+    law(problem, rows, stages).solve(points_, normal, q_);
+    return true;
+  }
+
+  void add_other_forces(Vector& force) const override { force.noalias() += stress_.rows.transpose() * q_; }
+
+  StepCorrections account(const SemidiscreteProblem& problem, const State& state, const Vector& increment) override {
+    problem.gaps(state.displacement, state.time + step(), gap_);
+    s_.noalias() = stress_.rows * state.displacement;
+    p_ = s_ - stiffness_.cwiseProduct(gap_);
+    const double lost = nitsche_dissipation(stiffness_, points_.p_before, p_);
+    const double stored = nitsche_energy(stiffness_, s_, p_) - energy_before_;
+    s_.noalias() = stress_.rows * increment;
+    return {.contact_work = q_.dot(s_) + stored + lost, .numerical_dissipation = lost};
+  }
+
+ private:
+  /// Made once per length of the step.
+  NitscheLaw& law(const SemidiscreteProblem& problem, const ContactRows& rows, StageSolve& stages) {
+    const auto found = laws_.find(step());
+    if (found != laws_.end()) return found->second;
+    const Index count = problem.contact.size();
+    Matrix response(2 * count, 2 * count);
+    Vector unit = Vector::Zero(count), column;
+    for (Index i = 0; i < 2 * count; ++i) {
+      Stage& stage = stages.stage(0);
+      stage.right_hand_side.setZero(problem.dof_count());
+      stage.prescribed.setZero(problem.supports.size());
+      unit.setZero();
+      if (i < count) {
+        unit[i] = 1.0;
+      } else {
+        stage.right_hand_side = stress_.rows.row(i - count).transpose();
+      }
+      const Vector& motion = solve_with_forces(problem, unit, 0, stages).increment;
+      rows.normal_motion(motion, column);
+      response.col(i) << column, stress_.rows * motion;
+    }
+    return laws_.emplace(step(), NitscheLaw(response, stiffness_)).first->second;
+  }
+
+  double penalty_, energy_before_ = 0.0;
+  ContactStress stress_;
+  Vector stiffness_, q_;  ///< Γ, and q with f = Sᵀq
+  NitscheLaw::Points points_;
+  std::map<double, NitscheLaw> laws_;
+  mutable Vector gap_, s_, p_;  ///< work space
+};
+
+}  // namespace
+
+SchemeRegistration nitsche_scheme() {
+  const auto make = [](double step, const Parameters& parameters) {
+    return std::make_unique<Nitsche>(step, parameters.number("penalty"));
+  };
+  return {"nitsche",
+          make,
+          {{.name = "penalty",
+            .type = KeyType::number,
+            .unit = "1",
+            .standard = "4",
+            .range = {.above = 1.0, .at_most = 1e6},
+            .doc = "Stiffness of the contact, in units of the least with which the energy has a sign."}}};
+}
+
+}  // namespace ricochet
