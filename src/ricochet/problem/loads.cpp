@@ -78,4 +78,10 @@ void Supports::derivatives(double time, double spacing, Vector& velocity, Vector
   acceleration = (2.0 * at[0] - 5.0 * at[1] + 4.0 * at[2] - at[3]) / (spacing * spacing);
 }
 
+double Supports::work(const Vector& reaction, const Vector& increment) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < dofs_.size(); ++i) sum += reaction[static_cast<Index>(i)] * increment[dofs_[i]];
+  return sum;
+}
+
 }  // namespace ricochet

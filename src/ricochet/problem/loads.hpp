@@ -57,6 +57,8 @@ class Supports {
   /// Velocity and acceleration at an instant t ≥ 0 by second-order one-sided differences with spacing h (only times ≥ t
   /// are asked for, so that formulas may start at t = 0).
   void derivatives(double time, double spacing, Vector& velocity, Vector& acceleration) const;
+  /// Σ of reactions, in the order of dofs(), on an increment of all dofs.
+  [[nodiscard]] double work(const Vector& reaction, const Vector& increment) const;
 
  private:
   std::vector<Index> dofs_;

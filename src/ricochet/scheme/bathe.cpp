@@ -40,8 +40,7 @@ class Bathe final : public Scheme {
     base_ = middle_ + second_;
     Stage& stage = stages.stage(1);
     equations_.balance(problem, state.time + h, base_, rate_, stage);
-    const auto to_place = [&](Index dof, double place) { return place - base_[dof]; };
-    equations_.prescribe(problem, state.time + h, to_place, stage);
+    equations_.prescribe_from(problem, state.time + h, base_, stage);
     require_no_penetration(problem, base_, state.time + h, stage);
     if (problem.has_moving_obstacles()) equations_.observe_obstacles(problem, state.time + h, base_);
     equations_.require_friction(problem, rate_, 3.0 / h, stage);
@@ -55,10 +54,8 @@ class Bathe final : public Scheme {
     state.displacement = middle_ + second_;
     state.velocity = rate_;
     state.acceleration = (9.0 / (h * h)) * solution.increment;
-    for (const Index dof : problem.massless_dofs) {
-      state.velocity[dof] = (first_[dof] + second_[dof]) / h;
-      state.acceleration[dof] = 0.0;
-    }
+    change_ = first_ + second_;
+    follow_without_inertia(problem, change_, h, state);
     equations_.take_forces(problem, stage, solution, h, rate_, 1.0, state);
   }
 
@@ -78,8 +75,7 @@ class Bathe final : public Scheme {
     base_ = state.displacement + first_;
     Stage& stage = stages.stage(0);
     middle_equations_.balance(problem, time, base_, damped_, stage);
-    const auto to_place = [&](Index dof, double place) { return place - base_[dof]; };
-    middle_equations_.prescribe(problem, time, to_place, stage);
+    middle_equations_.prescribe_from(problem, time, base_, stage);
     require_no_penetration(problem, base_, time, stage);
     middle_equations_.require_friction_over_step(problem, state, first_, 0.5 * h, stage);
     middle_solution_ = &stages.solve(0);
@@ -91,16 +87,12 @@ class Bathe final : public Scheme {
 
   void dissipate(const SemidiscreteProblem& problem, const State& state) {
     const Vector& load = problem.loads.constant();
-    const auto product = [&](const Vector& x, const Vector& y) {  // yᵀ K x: linear
-      problem.internal_force->evaluate(x, force_);
-      return y.dot(force_);
-    };
     change_ = rate_ - velocity_;
-    dissipation_ = 0.5 * (product(second_, second_) + problem.mass.form(change_));
+    dissipation_ = 0.5 * (elastic_product(problem, second_, second_, force_) + problem.mass.form(change_));
     change_ = middle_ + second_;
-    dissipation_ -= (product(change_, first_) - first_.dot(load)) / 3.0;
+    dissipation_ -= (elastic_product(problem, change_, first_, force_) - first_.dot(load)) / 3.0;
     change_ = state.displacement + middle_;
-    dissipation_ += step() / 12.0 * (product(change_, rate_) - 2.0 * rate_.dot(load));
+    dissipation_ += step() / 12.0 * (elastic_product(problem, change_, rate_, force_) - 2.0 * rate_.dot(load));
   }
 
   /// Those of the start and the middle, before the state has those of the end.

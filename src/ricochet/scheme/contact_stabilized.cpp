@@ -51,8 +51,7 @@ class ContactStabilized final : public Scheme {
     middle_ = state.displacement + 0.5 * flight_;
     if (problem.has_damping()) rate_ = flight_ / h;
     equations_.balance(problem, state.time + 0.5 * h, middle_, rate_, stage);
-    equations_.prescribe(
-        problem, end, [&](Index dof, double value) { return value - base_[dof]; }, stage);
+    equations_.prescribe_from(problem, end, base_, stage);
     const StepStart start{state.displacement, state.time};
     require_no_penetration(problem, base_, end, stage, &start);
     equations_.require_friction_over_step(problem, state, flight_, h, stage);

@@ -16,8 +16,7 @@ Stage& Kane::balance(const SemidiscreteProblem& problem, const State& state, Sta
   middle_ = state.displacement + 0.5 * predicted_;
   Stage& stage = stages.stage(0);
   equations_.balance(problem, state.time + 0.5 * h, middle_, state.velocity, stage);
-  const auto to_end = [&](Index dof, double value) { return value - base_[dof]; };
-  equations_.prescribe(problem, state.time + h, to_end, stage);
+  equations_.prescribe_from(problem, state.time + h, base_, stage);
   return stage;
 }
 

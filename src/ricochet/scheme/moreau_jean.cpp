@@ -68,8 +68,7 @@ class MoreauJean final : public Scheme {
   void dissipate(const SemidiscreteProblem& problem, const Vector& increment) {
     dissipation_ = 0.0;
     if (theta_ == 0.5) return;
-    problem.internal_force->evaluate(increment, place_);  // linear: K ΔU
-    dissipation_ = (theta_ - 0.5) * (problem.mass.form(rate_) + increment.dot(place_));
+    dissipation_ = (theta_ - 0.5) * (problem.mass.form(rate_) + elastic_product(problem, increment, increment, place_));
   }
 
   double theta_, restitution_;

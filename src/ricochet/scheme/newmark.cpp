@@ -51,8 +51,7 @@ class Newmark final : public Scheme {
     Stage& stage = stages.stage(0);
     if (problem.has_damping()) find_damping_velocity(problem, state);
     equations_.balance(problem, state.time + h, base_, velocity_, stage);
-    const auto to_end = [&](Index dof, double end) { return end - base_[dof]; };
-    equations_.prescribe(problem, state.time + h, to_end, stage);
+    equations_.prescribe_from(problem, state.time + h, base_, stage);
     require_no_penetration(problem, base_, state.time + h, stage);
     equations_.require_friction_over_step(problem, state, predicted_, h, stage);
 
@@ -94,8 +93,7 @@ class Newmark final : public Scheme {
   void dissipate(const SemidiscreteProblem& problem, const State& state, const Vector& increment) {
     dissipation_ = 0.0;
     if (gamma_ == 0.5) return;
-    problem.internal_force->evaluate(increment, force_);  // linear: K ΔU
-    dissipation_ = (gamma_ - 0.5) * increment.dot(force_);
+    dissipation_ = (gamma_ - 0.5) * elastic_product(problem, increment, increment, force_);
     difference_ = acceleration_ - state.acceleration;
     dissipation_ +=
         0.5 * step() * step() * (beta_ - 0.5 * gamma_) * (2.0 * gamma_ - 1.0) * problem.mass.form(difference_);

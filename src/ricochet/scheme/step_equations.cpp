@@ -100,6 +100,11 @@ void StepEquations::take_reactions(const Stage& stage, const StageSolution& solu
   project_motion(*stage.rows, travel);
 }
 
+double elastic_product(const SemidiscreteProblem& problem, const Vector& x, const Vector& y, Vector& force) {
+  problem.internal_force->evaluate(x, force);
+  return y.dot(force);
+}
+
 void follow_without_inertia(const SemidiscreteProblem& problem, const Vector& increment, double step, State& state) {
   for (const Index dof : problem.massless_dofs) {
     state.velocity[dof] = increment[dof] / step;

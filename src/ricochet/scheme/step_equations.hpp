@@ -36,6 +36,12 @@ class StepEquations {
     prescribe(problem, time, increment, stage.prescribed);
   }
 
+  /// The same with the base: supported dofs get to where they are prescribed at `time`.
+  void prescribe_from(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage) {
+    prescribe(
+        problem, time, [&](Index dof, double place) { return place - base[dof]; }, stage);
+  }
+
   /// The obstacles' velocities where the contact points are at a displacement and a time. They, and friction, act on
   /// the motion of the whole step.
   void observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement);
@@ -74,6 +80,10 @@ class StepEquations {
   Vector force_, middle_, rate_;
   ObstacleMotion obstacle_velocity_, impact_;
 };
+
+/// yᵀ K x where the internal force is linear. `force`: work space, receives K x.
+[[nodiscard]] double elastic_product(const SemidiscreteProblem& problem, const Vector& x, const Vector& y,
+                                     Vector& force);
 
 /// On dofs without inertia A and V are no states: A = 0, V = ΔU/h.
 void follow_without_inertia(const SemidiscreteProblem& problem, const Vector& increment, double step, State& state);

@@ -37,9 +37,7 @@ EnergyAccount::StepWorks EnergyAccount::works_of(const StepForces& forces, const
     result.obstacle = normal.dot(obstacle.normal);
     if (tangential.size() > 0) result.obstacle -= tangential.dot(obstacle.tangential);
   }
-  for (Index i = 0; i < forces.support_reaction.size(); ++i) {
-    result.support += forces.support_reaction[i] * increment[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
-  }
+  if (forces.support_reaction.size() > 0) result.support = problem_.supports.work(forces.support_reaction, increment);
   if (forces.varying_load.size() > 0) result.load = forces.varying_load.dot(increment);
   if (forces.damping_force.size() > 0) result.damping = -forces.damping_force.dot(increment);
   return result;

@@ -30,8 +30,7 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
   Stage& stage = stages.stage(0);
   if (problem.has_damping()) find_damping_velocity(problem, state, before);
   equations_.balance(problem, end, base_, velocity_, stage);
-  const auto to_end = [&](Index dof, double value) { return value - base_[dof]; };
-  equations_.prescribe(problem, end, to_end, stage);
+  equations_.prescribe_from(problem, end, base_, stage);
   require_no_penetration(problem, base_, end, stage);
   equations_.require_friction_over_step(problem, state, predicted_, h, stage);
 
@@ -65,8 +64,7 @@ void AlphaScheme::dissipate(const SemidiscreteProblem& problem, const Vector& in
   dissipation_ = weights_.energy_factor * (2.0 * weights_.gamma - 1.0) * change_.dot(force_);
   if (weights_.force == 0.5) return;
   dissipation_ += (0.5 - weights_.force) * increment.dot(force_);
-  problem.internal_force->evaluate(increment, force_);  // linear: K ΔU
-  dissipation_ += (0.5 - weights_.force) * increment.dot(force_);
+  dissipation_ += (0.5 - weights_.force) * elastic_product(problem, increment, increment, force_);
 }
 
 double AlphaScheme::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {

@@ -83,22 +83,18 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   /// F̄ works on ΔU, not on the increment: the difference.
   void account(const SemidiscreteProblem& problem, double time, const StageSolution& impact, const Vector& increment) {
     const double h = step(), less = 0.5 - weights_.force;
-    corrections_ = {};
-    for (Index i = 0; i < problem.supports.size(); ++i) {
-      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      corrections_.support_work += support_[i] * (stages_.motion[dof] - increment[dof]);
-    }
+    work_on_ = stages_.motion - increment;
+    corrections_ = {.support_work = problem.supports.work(support_, work_on_)};
     if (problem.loads.varies()) {
       problem.loads.varying(time, load_);
       problem.loads.varying(time + h, force_);
       load_ = weights_.force * load_ + (1.0 - weights_.force) * force_;
-      corrections_.load_work = load_.dot(stages_.motion - increment);
+      corrections_.load_work = load_.dot(work_on_);
     }
     problem.mass.multiply(change_, force_);
     corrections_.numerical_dissipation =
         less * stages_.motion.dot(force_) + weights_.energy_factor * (2.0 * weights_.gamma - 1.0) * change_.dot(force_);
-    problem.internal_force->evaluate(stages_.motion, force_);  // linear: K ΔU
-    corrections_.numerical_dissipation += less * stages_.motion.dot(force_);
+    corrections_.numerical_dissipation += less * elastic_product(problem, stages_.motion, stages_.motion, force_);
     problem.mass.multiply(stages_.mean, force_);
     corrections_.numerical_dissipation += (stages_.jump - (0.5 * h) * impact.increment).dot(force_);
   }
@@ -114,7 +110,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   AlphaWeights weights_;
   NonsmoothStages stages_;
   StepCorrections corrections_;
-  Vector support_, load_, change_, force_;  ///< F̄ of supports and varying loads, ΔA
+  Vector support_, load_, change_, work_on_, force_;  ///< F̄ of supports and varying loads, ΔA
   StageSolution solution_;
 };
 

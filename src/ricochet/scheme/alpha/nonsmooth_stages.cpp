@@ -37,8 +37,7 @@ void NonsmoothStages::position(const SemidiscreteProblem& problem, const State& 
   base_ = state.displacement + motion;
   Stage& stage = stages.stage(position_stage);
   equations_.balance(problem, end, base_, stage);
-  const auto to_end = [&](Index dof, double place) { return place - base_[dof]; };
-  equations_.prescribe(problem, end, to_end, stage);
+  equations_.prescribe_from(problem, end, base_, stage);
   require_no_penetration(problem, base_, end, stage);
   stage.slip_offset.resize(0);
   const StageSolution& solution = stages.solve(position_stage);

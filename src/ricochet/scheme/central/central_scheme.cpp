@@ -62,8 +62,7 @@ void CentralScheme::energy_state(const State& state, Vector& displacement, Vecto
 double CentralScheme::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {
   if (stiffness_ == 0.25) return 0.0;
   const Vector& ahead = state.memory.at(increment_ahead);
-  problem.internal_force->evaluate(ahead, force_);  // linear: K (Uⁿ⁺¹−Uⁿ)
-  return 0.5 * (stiffness_ - 0.25) * ahead.dot(force_);
+  return 0.5 * (stiffness_ - 0.25) * elastic_product(problem, ahead, ahead, force_);
 }
 
 }  // namespace ricochet
