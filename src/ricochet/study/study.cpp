@@ -9,6 +9,7 @@
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/run/run_identity.hpp"
+#include "ricochet/study/run_folders.hpp"
 #include "ricochet/study/run_pool.hpp"
 #include "ricochet/study/run_state.hpp"
 
@@ -60,15 +61,9 @@ void refuse_other_results(const std::string& directory, const StudyOptions& opti
 
 /// Only what the study itself says is its own.
 void remove_old_study(const std::string& directory) {
-  const Study before = read_study(directory);
-  for (const StudyRun& run : before.runs) {
-    std::error_code problem;
-    std::filesystem::remove_all(before.path(run), problem);
-    if (problem) {
-      throw Error(ErrorKind::file_access,
-                  fmt::format("{}: cannot be removed: {}", before.path(run), problem.message()));
-    }
-  }
+  std::vector<std::string> folders;
+  for (const StudyRun& run : read_study(directory).runs) folders.push_back(run.folder);
+  remove_run_folders(directory, folders);
 }
 
 Study prepare_study(const std::string& directory, const StudyPlan& plan, const StudyQuestions& questions,
