@@ -17,7 +17,6 @@ constexpr double order = 2.0;  ///< of the error of a step
 constexpr int first_level = 4;
 constexpr double most_growth = 4.0;                    ///< of the largest energy in a step, as the measure of its error
 constexpr double aim = 0.5;                            ///< of the tolerance, for the next step
-constexpr double most_ticks = 9e15;                    ///< time is an exact number of them
 constexpr int least_patience = 2, most_patience = 64;  ///< steps
 
 }  // namespace
