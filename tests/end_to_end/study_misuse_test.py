@@ -157,6 +157,8 @@ class StudyMisuse(TestCase):
         self.assertIn("--quantity max(history.lo.gap): history.csv has no column", process.stderr)
         self.assertIn("history.csv has no column", (self.output / "study.md").read_text())
         self.assertIn("2 of 2 runs done", process.stdout)
+        self.refused(1, 'probe "top" has "every"', "study", BAR, *vary, "--quantity", "max(history.top.displacement_y)",
+                     *settings(SHORT | {"probe.1.every": 2}), "-o", self.folder / "no")
         # What depends on what comes out is told afterwards; and is no mistake where some run answers.
         process = self.study("late", *vary, "--quantity", "summary.impacts.7.restitution", status=1)
         self.assertIn("--quantity summary.impacts.7.restitution", process.stderr)

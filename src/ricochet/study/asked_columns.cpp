@@ -94,22 +94,8 @@ std::optional<Names> columns_of(const Case& input) {
   }
 }
 
-/// The probe whose columns stand in a file of their own, or "".
-std::string sampled_probe(const Case& input, const std::string& column) {
-  for (const ProbeSection& probe : input.probes) {
-    if (probe.every > 0 && column.starts_with(probe.name + ".")) return probe.name;
-  }
-  return "";
-}
-
 [[noreturn]] void refuse(const AskedColumn& asked, const Case& input, const Names& columns) {
-  const std::string sampled = sampled_probe(input, asked.column);
-  throw Error(ErrorKind::usage,
-              fmt::format("{}: {}", asked.asked,
-                          sampled.empty() ? no_such_column(asked.column, columns)
-                                          : fmt::format("probe \"{}\" has \"every\", and its columns are not in "
-                                                        "history.csv; leave \"every\" out",
-                                                        sampled)));
+  throw Error(ErrorKind::usage, fmt::format("{}: {}", asked.asked, no_such_column(input, asked.column, columns)));
 }
 
 /// Of runs whose meshes or probes differ.
@@ -117,7 +103,7 @@ void require_possible_column(const AskedColumn& asked, const Case& input) {
   const Names names = history_column_names();
   if (std::count(names.begin(), names.end(), asked.column) > 0) return;
   // Of a probe, which may have another name in another run.
-  if (asked.column.find('.') != std::string::npos && sampled_probe(input, asked.column).empty()) return;
+  if (asked.column.find('.') != std::string::npos) return;
   refuse(asked, input, names);
 }
 
