@@ -149,6 +149,10 @@ class StudyMisuse(TestCase):
         reference = self.simulate(BAR, "reference", SHORT)
         self.refused(1, "--compare kinetic_enrgy", "study", BAR, *vary, "--reference", reference, "--compare",
                      "kinetic_enrgy", *settings(SHORT), "-o", self.folder / "no")
+        self.study("moved", *vary, "--reference", reference)
+        reference.rename(self.folder / "elsewhere")
+        self.refused(1, "name another with --reference", "study", "--resume", self.output)
+        self.assertIn("was moved or removed", self.expect_status(0, run("info", self.output)).stderr)
         # A probe that is in some of the runs alone.
         self.study("probes", "--vary", "probe.0.name=low,lower", "--quantity", "max(history.low.gap)")
         self.refused(1, "no column", "study", BAR, "--vary", "probe.0.name=low,lower", "--quantity",

@@ -104,9 +104,11 @@ std::string checked_reference(const std::string& reference, const StudyPlan& pla
   }
   if (reference.empty()) return "";
   if (holds_run(reference)) return std::filesystem::absolute(reference).lexically_normal().string();
-  throw Error(ErrorKind::usage, fmt::format("--reference {}: is neither the directory of a run nor last:KEY nor "
-                                            "finest:KEY of a key that varies",
-                                            reference));
+  throw Error(ErrorKind::usage,
+              fmt::format("--reference {}: is neither the directory of a run nor last:KEY nor "
+                          "finest:KEY of a key that varies; if that run was moved or removed, name another with "
+                          "--reference",
+                          reference));
 }
 
 void require_study(const std::string& directory) {

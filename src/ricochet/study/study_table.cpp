@@ -222,7 +222,8 @@ std::vector<ComparedQuantity> StudyTableMaker::compared() {
     }
     return result;
   }
-  problems_["--reference " + questions_.reference] = "no run that could be one has a history yet";
+  problems_["--reference " + questions_.reference] =
+      "no run that could be one has a history, or it was moved or removed";
   return {};
 }
 
