@@ -19,7 +19,11 @@ namespace fs = std::filesystem;
 /// `--resume DIR` stands for -o DIR; without a case it is the plan that is there that goes on.
 StudyArguments with_directory(StudyArguments arguments) {
   std::error_code ignored;
-  if (arguments.resume && fs::is_directory(arguments.case_file, ignored)) {
+  const bool names_nothing_else = arguments.output_directory.empty() && arguments.vary.empty();
+  const bool is_directory = fs::is_directory(arguments.case_file, ignored);
+  const bool is_nothing =
+      names_nothing_else && !arguments.case_file.empty() && !fs::exists(arguments.case_file, ignored);
+  if (arguments.resume && (is_directory || is_nothing)) {
     if (!arguments.output_directory.empty())
       throw Error(ErrorKind::usage, "study --resume: either a case file or the directory of one study is required");
     arguments.output_directory = arguments.case_file;

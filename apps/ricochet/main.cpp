@@ -95,7 +95,9 @@ void add_study(CLI::App& app, program::StudyArguments& arguments, std::string& l
       ->excludes("--force");
   study->footer(
       "Exit status: 0 all runs are done; 128 + N stopped by signal N, --resume goes on; else that of the run "
-      "that went worst, as of `ricochet run`.");
+      "that went worst, as of `ricochet run`; 1 where that is 0 and no run has what --quantity, --exact or --compare "
+      "ask "
+      "for.");
   add_common(*study, log_level);
 }
 

@@ -210,5 +210,15 @@ class Probes(TestCase):
             self.assertRegex(process.stderr, r"bad\.toml:\d+:\d+", probe)
 
 
+    def test_columns_in_a_file_of_their_own(self):
+        """They are none of history.csv, and no other probe is meant."""
+        case = self.write("sampled.toml", block_case() + '[[probe]]\nname = "f"\nat = [0.0, 0.0]\nevery = 3\n'
+                          '[[expect]]\nquantity = "max(history.f.displacement_x)"\nmaximum = 1\n')
+        errors = self.expect_status(2, run("run", case, "-o", self.folder / "sampled")).stderr
+        self.assertRegex(errors, r'sampled\.toml:\d+:\d+: history\.csv has no column "f\.displacement_x": probe "f" has '
+                                 r'"every", so that its columns are in probes-3\.csv; leave "every" out')
+        self.assertNotIn("did you mean", errors)
+
+
 if __name__ == "__main__":
     unittest.main()

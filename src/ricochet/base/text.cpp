@@ -24,21 +24,44 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return cost[a.size()][b.size()];
 }
 
+/// Edits to what a word may have been meant to be; none where it is too far away. Every one-letter word is one edit
+/// away from every other: to be near, something must be left of the word.
+std::optional<std::size_t> near_distance(std::string_view word, std::string_view candidate) {
+  if (word == candidate) return 0;
+  if (word.empty()) return std::nullopt;
+  const std::size_t most = std::min(std::max<std::size_t>(2, word.size() / 3), word.size() - 1);
+  const std::size_t distance = edit_distance(word, candidate);
+  return distance <= most ? std::optional(distance) : std::nullopt;
+}
+
+/// Part by part: what one part lacks, the length of another does not make good.
+std::optional<std::size_t> dotted_distance(std::string_view word, std::string_view candidate) {
+  if (std::count(word.begin(), word.end(), '.') != std::count(candidate.begin(), candidate.end(), '.'))
+    return near_distance(word, candidate);
+  std::size_t sum = 0;
+  while (true) {
+    const std::size_t dot = word.find('.'), other_dot = candidate.find('.');
+    const std::optional<std::size_t> part = near_distance(word.substr(0, dot), candidate.substr(0, other_dot));
+    if (!part) return std::nullopt;
+    sum += *part;
+    if (dot == std::string_view::npos) return sum;
+    word.remove_prefix(dot + 1);
+    candidate.remove_prefix(other_dot + 1);
+  }
+}
+
 }  // namespace
 
 std::string nearest_name(std::string_view word, std::span<const std::string> candidates) {
-  std::string best;
-  if (word.empty()) return best;
-  // Every one-letter word is one edit away from every other: to be near, something must be left of the word.
-  std::size_t best_distance = std::min(std::max<std::size_t>(2, word.size() / 3), word.size() - 1) + 1;
+  const std::string* best = nullptr;
+  std::size_t best_distance = 0;
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
+    const std::optional<std::size_t> distance = dotted_distance(word, candidate);
+    if (!distance || (best != nullptr && *distance >= best_distance)) continue;
+    best_distance = *distance;
+    best = &candidate;
   }
-  return best;
+  return best != nullptr ? *best : "";
 }
 
 std::optional<std::string_view> between(std::string_view text, std::string_view begin, std::string_view end) {

@@ -11,7 +11,8 @@
 namespace ricochet {
 
 /// The candidate nearest to `word` by edit distance (transpositions count one), or "" when none is near enough to be
-/// what was meant (more than max(2, length/3) edits away, or as many as the word has letters).
+/// what was meant (more than max(2, length/3) edits away, or as many as the word has letters). Names of as many parts
+/// between dots must be near in each part: "foot.gap" is not "top.gap".
 std::string nearest_name(std::string_view word, std::span<const std::string> candidates);
 
 /// What stands between this beginning and this end; none where the text has another form.

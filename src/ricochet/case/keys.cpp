@@ -41,7 +41,14 @@ std::string entry_of(const Section& section, const std::vector<std::string>& par
       refuse(fmt::format("{} is a list: say which entry, counted from 0, as in {}.0.{}", section_title(section),
                          section.name, section.keys.front().name));
     }
-    return std::to_string(std::stol(parts[1]));  // without leading zeros
+    // One entry has one name: two keys of a study, or of `when`, could else be the same without anybody noticing.
+    const std::string number = std::to_string(std::stol(parts[1]));
+    if (number != parts[1]) {
+      refuse(fmt::format("\"{}\" is no number of an entry of {}: write {}, as in {}.{}.{}", parts[1],
+                         section_title(section), number, section.name, number,
+                         parts.size() > 2 ? join_rest(parts, 2) : section.keys.front().name));
+    }
+    return number;
   }
   if (parts.size() < 2 || !is_plain_name(parts[1])) {
     refuse(fmt::format("the sections {} are named: say which one, as in {}.floor.{}", section_title(section),

@@ -67,6 +67,8 @@ class TreeChecker {
   void check_entry(const Section& section, const std::string& title, TomlNode& table);
   void check_keys(const std::vector<Key>& keys, const std::string& title, TomlNode& table);
   void check_known(const std::vector<Key>& keys, const std::string& title, TomlNode& table);
+  void check_known_of_type(const Section& section, const TypeKeys* type, const std::string& title,
+                           const TomlNode& table);
   const TypeKeys* find_type_of(const Section& section, TomlNode& table);
   void check_foreign_key(const Section& section, const Key& key, const std::string& title, TomlNode& table);
   void check_key(const Key& key, const std::string& title, TomlNode& value);
@@ -218,7 +220,7 @@ void TreeChecker::check_entry(const Section& section, const std::string& title, 
       check_foreign_key(section, key, title, table);
     }
   }
-  check_known(section.keys, title, table);
+  check_known_of_type(section, type, title, table);
   check_keys(keys, title, table);
   if (type != nullptr) check_alternatives(type->alternatives, type->keys, title, table);
 }
@@ -244,6 +246,25 @@ void TreeChecker::check_foreign_key(const Section& section, const Key& key, cons
 void TreeChecker::check_known(const std::vector<Key>& keys, const std::string& title, TomlNode& table) {
   for (const TomlNode& member : table.children) {
     if (!is_key_of(keys, member)) problems_.add(member.key_location, unknown_key_message(member.key, title, keys));
+  }
+}
+
+/// Suggests no key that the entry's type does not take: it would be refused next.
+void TreeChecker::check_known_of_type(const Section& section, const TypeKeys* type, const std::string& title,
+                                      const TomlNode& table) {
+  std::vector<Key> allowed;
+  for (const Key& key : section.keys) {
+    if (type == nullptr || key.only_for.empty() || find_key(type->keys, key.name) != nullptr) allowed.push_back(key);
+  }
+  for (const TomlNode& member : table.children) {
+    if (is_key_of(section.keys, member)) continue;
+    const Key* const meant = find_key(section.keys, nearest_key(member.key, section.keys));
+    const bool is_foreign = meant != nullptr && nearest_key(member.key, allowed).empty();
+    problems_.add(member.key_location,
+                  is_foreign ? fmt::format("unknown key \"{}\" in {}; \"{}\" is for the {} {} only; the {} is \"{}\"",
+                                           member.key, title, meant->name, section.type_key,
+                                           join_names(meant->only_for), section.type_key, type->name)
+                             : unknown_key_message(member.key, title, meant != nullptr ? allowed : section.keys));
   }
 }
 

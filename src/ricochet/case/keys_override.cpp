@@ -88,4 +88,15 @@ std::vector<std::string> apply_overrides(TomlNode& root, const std::vector<std::
   return paths;
 }
 
+std::string override_value_text(const std::string& text) {
+  const TomlNode value = parse_value(trimmed(text), {});
+  return value.kind == TomlNode::Kind::date ? trimmed(text) : value_text(value);  // which says no more than "date"
+}
+
+std::string normal_override(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return trimmed(text);
+  return trimmed(text.substr(0, equals)) + "=" + override_value_text(text.substr(equals + 1));
+}
+
 }  // namespace ricochet

@@ -11,6 +11,7 @@
 #include "ricochet/case/names.hpp"
 #include "ricochet/case/quantity.hpp"
 #include "ricochet/case/section_reader.hpp"
+#include "ricochet/simulation/step_control.hpp"
 
 namespace ricochet {
 
@@ -155,6 +156,27 @@ void read_adaptive_steps(const SectionReader& reader, TimeSection& time) {
     reader.add_problem("smallest", fmt::format("\"smallest\" is {}, above \"largest\", {}", time.smallest, time.step));
 }
 
+/// Operators have 1/h² and h²: of both a double must have all digits.
+bool has_square(double step) {
+  constexpr double largest_factor = 16.0;  // of 1/h² in a scheme
+  return std::isnormal(step * step) && std::isnormal(largest_factor / (step * step));
+}
+
+/// Time is a whole number of the shortest steps, exactly. Of usable entries.
+void check_smallest(const SectionReader& reader, const TimeSection& time) {
+  if (!reader.is_given("smallest") || !reader.is_usable("smallest") || time.smallest > time.step) return;
+  const double levels =
+      std::min(std::floor(std::log2(StepControl::most_ticks * (time.step / time.end))), 1.0 * StepControl::most_levels);
+  const double least = std::ldexp(time.step, -static_cast<int>(levels));
+  if (time.smallest >= least * (1.0 - 1e-9)) return;
+  constexpr double rounded_up = 1.05;  // with two digits still long enough
+  reader.add_problem(
+      "smallest", fmt::format("\"smallest\" is {}, too short beside \"largest\", {}, and \"end\", {}: times are whole "
+                              "numbers of it and would not have all of their digits; give at least {:.2g}, or leave "
+                              "it out",
+                              time.smallest, time.step, time.end, rounded_up * least));
+}
+
 TimeSection read_time(const SectionReader& reader) {
   constexpr double most_steps = 1e9;
   TimeSection time;
@@ -165,13 +187,19 @@ TimeSection read_time(const SectionReader& reader) {
   time.end = reader.number("end");
   const char* const step = time.adaptive ? "largest" : "step";
   if (!reader.is_usable(step) || !reader.is_usable("end") || time.step == 0.0) return time;
-  if (!time.adaptive && time.end < time.step) {
+  if (!has_square(time.step)) {
+    reader.add_problem(step, fmt::format("\"{}\" is {}: the numbers that a computer has do not reach to its square; "
+                                         "choose a unit of time in which steps are nearer to 1",
+                                         step, time.step));
+  } else if (!time.adaptive && time.end < time.step) {
     reader.add_problem("end",
                        fmt::format("\"end\" is {}, before the end of the first step of {}", time.end, time.step));
   } else if (time.end / time.step > most_steps) {
     reader.add_problem(
         step, fmt::format("a step of {} up to the end {} makes {:.3g} steps; at most {:.0e} are possible", time.step,
                           time.end, time.end / time.step, most_steps));
+  } else if (time.adaptive) {
+    check_smallest(reader, time);
   }
   return time;
 }

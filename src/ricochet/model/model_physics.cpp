@@ -16,6 +16,7 @@
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 #include "ricochet/model/model_parts.hpp"
+#include "ricochet/scheme/requirements.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 namespace ricochet {
@@ -79,14 +80,6 @@ void warn_of_long_steps(const Case& input, const Scheme& scheme, const Model& mo
       "which takes any step",
       input.where("time.step").text(), input.time.step, crossings, scheme_text(input.time), limit.crossings,
       limit.trouble, limit.crossings * median));
-}
-
-void check_adaptive_steps(const Case& input, const Scheme& scheme) {
-  if (!input.time.adaptive || scheme.changes_step()) return;
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("{}: scheme \"{}\" remembers the step before and cannot change its length; give time.step as "
-                          "a number, or use scheme \"reduced-kane\"",
-                          input.where("time.step").text(), input.time.scheme));
 }
 
 /// With degree 1 a body whose skin is nearly all of its nodes has little left to carry the inertia of the skin: the
@@ -282,7 +275,10 @@ void assemble_operators(const Case& input, Model& model) {
   }
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
-  check_adaptive_steps(input, *scheme);
+  if (input.time.adaptive) {
+    require_changing_steps(*scheme,
+                           fmt::format("{}: scheme \"{}\"", input.where("time.step").text(), input.time.scheme));
+  }
   warn_of_creep(input, *scheme, model.problem);
   if (!input.time.adaptive) warn_of_long_steps(input, *scheme, model);
   warn_of_thin_inside(model, mass_input.contact_nodes.size());

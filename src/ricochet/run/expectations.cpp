@@ -84,10 +84,11 @@ ExpectationResult described(const ExpectSection& expect) {
 }
 
 /// What is wrong with a quantity in a run of this case, or "".
-std::string problem_of(const Quantity& quantity, const std::vector<std::string>& columns, double end) {
+std::string problem_of(const Case& input, const Quantity& quantity, const std::vector<std::string>& columns,
+                       double end) {
   if (quantity.kind == Quantity::Kind::summary_value) return "";
   if (std::find(columns.begin(), columns.end(), quantity.name) == columns.end())
-    return no_such_column(quantity.name, columns);
+    return no_such_column(input, quantity.name, columns);
   std::vector<double> times;
   if (quantity.kind == Quantity::Kind::value_at_time) times = {quantity.time};
   if (quantity.interval) times = {quantity.interval->begin, quantity.interval->end};
@@ -110,7 +111,7 @@ void check_expected_quantities(const Case& input, const Model& model) {
     const ExpectSection& expect = input.expectations[i];
     if (!reason_not_to_check(input, expect, ExpectationScope::settings_of_the_case).empty()) continue;
     const auto check = [&](const std::string& key, const std::string& text) {
-      const std::string problem = problem_of(parse_quantity(text), columns, end);
+      const std::string problem = problem_of(input, parse_quantity(text), columns, end);
       if (!problem.empty()) problems.add(input.where(fmt::format("expect.{}.{}", i, key)), problem);
     };
     check("quantity", expect.quantity);

@@ -168,6 +168,17 @@ std::string no_such_column(const std::string& name, const std::vector<std::strin
                      near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
 }
 
+std::string no_such_column(const Case& input, const std::string& name, const std::vector<std::string>& names) {
+  for (const ProbeSection& probe : input.probes) {
+    if (probe.every == 0 || !name.starts_with(probe.name + ".")) continue;
+    return fmt::format(
+        "history.csv has no column \"{}\": probe \"{}\" has \"every\", so that its columns are in "
+        "probes-{}.csv; leave \"every\" out",
+        name, probe.name, probe.every);
+  }
+  return no_such_column(name, names);
+}
+
 double value_of(const Quantity& quantity, const HistoryTable& history, const std::string& summary_json) {
   if (quantity.kind == Quantity::Kind::summary_value) return summary_value(summary_json, quantity.name);
   const std::vector<double>& column = column_of(history, quantity.name);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/case/case.hpp"
 #include "ricochet/case/quantity.hpp"
 #include "ricochet/io/history_file.hpp"
 
@@ -16,5 +17,9 @@ namespace ricochet {
 
 /// That history.csv has no column of this name, and which one may be meant.
 [[nodiscard]] std::string no_such_column(const std::string& name, const std::vector<std::string>& names);
+
+/// The same of runs of a case: columns of a probe with "every" are not there, but in a file of their own.
+[[nodiscard]] std::string no_such_column(const Case& input, const std::string& name,
+                                         const std::vector<std::string>& names);
 
 }  // namespace ricochet

@@ -31,6 +31,14 @@ void require_explicit(const SemidiscreteProblem& problem, const std::string& sch
                           scheme));
 }
 
+void require_changing_steps(const Scheme& scheme, const std::string& name) {
+  if (scheme.changes_step()) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{} remembers the step before and cannot change its length; give time.step as a number, or "
+                          "use scheme \"reduced-kane\"",
+                          name));
+}
+
 void check_critical_step(const std::string& scheme, double step, double critical_step) {
   const double fraction = step / critical_step;
   if (fraction >= 1.0) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/scheme.hpp"
 
 /// @file What several schemes ask of a problem and of a time step. All throw Error(invalid_input), which names the
 /// scheme and says what to do.
@@ -15,5 +16,8 @@ void require_contact_inertia(const SemidiscreteProblem& problem, const std::stri
 void require_explicit(const SemidiscreteProblem& problem, const std::string& scheme);
 /// A step below the critical one. Warns of one that is nearly as long.
 void check_critical_step(const std::string& scheme, double step, double critical_step);
+
+/// Steps whose length changes. `name` is the beginning of the message: what asks, and for which scheme.
+void require_changing_steps(const Scheme& scheme, const std::string& name);
 
 }  // namespace ricochet

@@ -152,13 +152,16 @@ void ImpactRecorder::find_other_forces() {
   }
 }
 
-const ImpactRecorder::Force* ImpactRecorder::other_force(std::size_t place) const {
-  const Force* result = nullptr;
-  for (const OtherForces& other : others_) {
-    const Force& force = other.forces[place];
-    if (force.any() && (result == nullptr || force.leading_size > result->leading_size)) result = &force;
+ImpactRecorder::Acting ImpactRecorder::acting_in(std::size_t place) const {
+  Acting acting;
+  const Force &previous = previous_[place], &current = current_[place];
+  if (scheme_.work_rule().previous_weight != 0.0 && previous.any()) acting.previous = &previous;
+  if (current.any()) acting.current = &current;
+  for (const OtherForces& each : others_) {
+    const Force& force = each.forces[place];
+    if (force.any() && (acting.other == nullptr || force.size() > acting.other->size())) acting.other = &force;
   }
-  return result;
+  return acting;
 }
 
 void ImpactRecorder::enter_step(const State& state, double method_energy) {
@@ -177,59 +180,25 @@ void ImpactRecorder::enter_step(const State& state, double method_energy) {
 
 void ImpactRecorder::enter_place(std::size_t place, double instant) {
   Interval& interval = open_[place];
-  const Force &previous = previous_[place], &current = current_[place];
-  const WorkRule rule = scheme_.work_rule();
-  const double h = scheme_.step();
-  const bool acts_before = rule.previous_weight != 0.0 && previous.any();
-  const Force* const other = other_force(place);
-  const bool touches = acts_before || current.any() || other != nullptr;
+  const Acting acting = acting_in(place);
   const bool touched = interval.phase == touching;
-  if (touches != touched && motion_ == nullptr) motion_ = &rigid_.motion(velocity_before_);
-  const auto motion = [&] { return (*motion_)[static_cast<std::size_t>(places_[place].body)]; };
-  if (!touches) {
-    if (touched) {
-      const RigidMotionState now = motion();
-      interval.after = {numbers_of(now.velocity), numbers_of(now.spin), now.kinetic_energy, now.rigid_kinetic_energy};
-      interval.method_after = method_energy_;  // letting go costs energy, too
-      interval.phase = apart;
-    }
+  if (acting.any() != touched && motion_ == nullptr) motion_ = &rigid_.motion(velocity_before_);
+  if (!acting.any()) {
+    if (touched) let_go(interval);
     return;
   }
-  if (!touched) {
-    // Only at the start does a force act before the first instant of the steps.
-    const double time = acts_before ? 0.0 : std::max(0.0, instant - 0.5 * h);
-    if (interval.phase == apart &&
-        time - interval.end < std::max(2.0 * h, separation_[static_cast<std::size_t>(places_[place].body)])) {
-      interval.intervals += 1.0;
-    } else {
-      if (interval.phase == apart) file(interval);
-      begin(interval, time, acts_before ? previous : current.any() ? current : *other, motion());
-    }
-    interval.phase = touching;
-    if (acts_before) {
-      // It acts in the first half of the step, and may be the only one that does.
-      interval.end = instant - 0.5 * h;
-      interval.contact_time += 0.5 * h;
-      take_largest(interval, previous, instant - h);
-    }
-  }
-  for (const auto& [force, weight] :
-       {std::pair(&previous, rule.previous_weight), std::pair(&current, rule.current_weight)}) {
-    add(interval.impulse, h * weight, force->all);
-    add(interval.normal_impulse, h * weight, force->normal);
-  }
-  for (const OtherForces& each : others_) {
-    add(interval.impulse, h * each.weight, each.forces[place].all);
-    add(interval.normal_impulse, h * each.weight, each.forces[place].normal);
-  }
-  if (!current.any()) {
-    if (other == nullptr) return;
+  if (!touched) touch(interval, acting, instant);
+  add_impulses(interval, place);
+  const double h = scheme_.step();
+  if (acting.current == nullptr) {
+    if (acting.other == nullptr) return;
     // It acts before the instant of the others.
     interval.end = instant;
     interval.contact_time += 0.5 * h;
-    take_largest(interval, *other, instant);
+    take_largest(interval, *acting.other, instant);
     return;
   }
+  const Force& current = *acting.current;
   interval.end = instant + 0.5 * h;
   interval.contact_time += h;
   interval.pressing += h * current.pressing;
@@ -238,9 +207,52 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
   take_largest(interval, current, instant);
 }
 
+const RigidMotionState& ImpactRecorder::motion_at(const Interval& interval) const {
+  return (*motion_)[static_cast<std::size_t>(places_[static_cast<std::size_t>(interval.place)].body)];
+}
+
+void ImpactRecorder::let_go(Interval& interval) const {
+  const RigidMotionState& now = motion_at(interval);
+  interval.after = {numbers_of(now.velocity), numbers_of(now.spin), now.kinetic_energy, now.rigid_kinetic_energy};
+  interval.method_after = method_energy_;  // letting go costs energy, too
+  interval.phase = apart;
+}
+
+void ImpactRecorder::touch(Interval& interval, const Acting& acting, double instant) {
+  const double h = scheme_.step();
+  const bool acts_before = acting.previous != nullptr;
+  // Only at the start does a force act before the first instant of the steps.
+  const double time = acts_before ? 0.0 : std::max(0.0, instant - 0.5 * h);
+  const int body = places_[static_cast<std::size_t>(interval.place)].body;
+  if (interval.phase == apart && time - interval.end < std::max(2.0 * h, separation(body))) {
+    interval.intervals += 1.0;
+  } else {
+    if (interval.phase == apart) file(interval);
+    begin(interval, time, acting.first(), motion_at(interval));
+  }
+  interval.phase = touching;
+  if (!acts_before) return;
+  // It acts in the first half of the step, and may be the only one that does.
+  interval.end = instant - 0.5 * h;
+  interval.contact_time += 0.5 * h;
+  take_largest(interval, *acting.previous, instant - h);
+}
+
+void ImpactRecorder::add_impulses(Interval& interval, std::size_t place) const {
+  const WorkRule rule = scheme_.work_rule();
+  const double h = scheme_.step();
+  const auto add_impulse = [&](const Force& force, double weight) {
+    add(interval.impulse, h * weight, force.all);
+    add(interval.normal_impulse, h * weight, force.normal);
+  };
+  add_impulse(previous_[place], rule.previous_weight);
+  add_impulse(current_[place], rule.current_weight);
+  for (const OtherForces& each : others_) add_impulse(each.forces[place], each.weight);
+}
+
 void ImpactRecorder::take_largest(Interval& interval, const Force& force, double instant) {
   interval.most_points = std::max(interval.most_points, static_cast<double>(force.points));
-  const double size = force.all.norm();
+  const double size = force.size();
   if (!(size > interval.largest)) return;
   interval.largest = size;
   interval.largest_time = instant;

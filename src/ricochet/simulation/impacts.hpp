@@ -82,16 +82,30 @@ class ImpactRecorder {
     Eigen::Vector3d sliding = Eigen::Vector3d::Zero();
     long points = 0;            ///< that carry a force
     Index leading = -1;         ///< the point of the largest force, the first of equals
-    double leading_size = 0.0;  ///< of that force
+    double leading_size = 0.0;  ///< of that force, of one point
     [[nodiscard]] bool any() const { return points > 0; }
+    /// What the largest force of an impact, and the largest of several forces in a step, are told by.
+    [[nodiscard]] double size() const { return all.norm(); }
+  };
+  /// The forces with a weight in a step, each null where it does not act: at its beginning, at its end, and the largest
+  /// of those that are not in the state.
+  struct Acting {
+    const Force *previous = nullptr, *current = nullptr, *other = nullptr;
+    [[nodiscard]] bool any() const { return previous != nullptr || current != nullptr || other != nullptr; }
+    [[nodiscard]] const Force& first() const {
+      return previous != nullptr ? *previous : current != nullptr ? *current : *other;
+    }
   };
   void find_places(const std::vector<std::string>& obstacles);
   void find_forces(const StepForces& acting, const ObstacleMotion& travel, std::vector<Force>& forces) const;
   void find_other_forces();
-  /// The largest of the forces that are not in the state; null where none acts.
-  [[nodiscard]] const Force* other_force(std::size_t place) const;
+  [[nodiscard]] Acting acting_in(std::size_t place) const;
   void take_velocity(const State& state, Vector& velocity);
   void enter_place(std::size_t place, double instant);
+  [[nodiscard]] const RigidMotionState& motion_at(const Interval& interval) const;
+  void let_go(Interval& interval) const;
+  void touch(Interval& interval, const Acting& acting, double instant);
+  void add_impulses(Interval& interval, std::size_t place) const;
   void begin(Interval& interval, double time, const Force& first, const RigidMotionState& motion) const;
   [[nodiscard]] Three place_of(Index point) const;
   static void take_largest(Interval& interval, const Force& force, double instant);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/scheme/requirements.hpp"
 
 namespace ricochet {
 
@@ -24,23 +25,18 @@ std::string level_name(int number) {
   return "solver." + std::to_string(number);
 }
 
-void require_changing_steps(const Scheme& scheme) {
-  if (scheme.changes_step()) return;
-  throw Error(ErrorKind::invalid_input,
-              "this time scheme remembers the step before and cannot change its length: give time.step as a number, or "
-              "use scheme \"reduced-kane\"");
-}
+constexpr const char* nameless = "this time scheme";
 
 }  // namespace
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
     : problem_(problem), scheme_(scheme), options_(options) {
-  if (!scheme_.takes_nonlinear_force()) require_linear(*problem_.internal_force, "this time scheme");
+  if (!scheme_.takes_nonlinear_force()) require_linear(*problem_.internal_force, nameless);
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
   if (control) {
-    require_changing_steps(scheme_);
+    require_changing_steps(scheme_, nameless);
     control_.emplace(problem_, *control);
     control_->start(state_);
     scheme_.change_step(problem_, control_->step());
@@ -57,7 +53,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   scheme_.analyse(problem_);
   int first = 0;
   if (control) {
-    require_changing_steps(scheme_);
+    require_changing_steps(scheme_, nameless);
     control_.emplace(problem_, *control);
     control_->load(snapshot, "control");
     first = static_cast<int>(snapshot.integer("level"));

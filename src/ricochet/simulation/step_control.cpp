@@ -18,7 +18,6 @@ constexpr int first_level = 4;
 constexpr double most_created = 100.0;                 ///< times the energy that the motion has by itself
 constexpr double most_growth = 4.0;                    ///< of the largest energy in a step, as the measure of its error
 constexpr double aim = 0.5;                            ///< of the tolerance, for the next step
-constexpr double most_ticks = 9e15;                    ///< time is an exact number of them
 constexpr int least_patience = 2, most_patience = 64;  ///< steps
 
 }  // namespace

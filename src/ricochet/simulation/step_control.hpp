@@ -33,6 +33,7 @@ struct StepControlOptions {
 class StepControl {
  public:
   static constexpr int most_levels = 40;
+  static constexpr double most_ticks = 9e15;  ///< of the smallest length: so many a double counts exactly
 
   /// Throws Error(invalid_input) where the lengths do not fit together.
   StepControl(const SemidiscreteProblem& problem, const StepControlOptions& options);

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
+#include <utility>
 
 #include "ricochet/base/text.hpp"
 #include "ricochet/run/run_case.hpp"
@@ -35,13 +36,67 @@ bool is_strained(const RunSummary& s, Impacts::const_iterator impact) {
   return !s.small_strain_holds_in(static_cast<std::size_t>(impact - s.impacts.begin()));
 }
 
-/// As many as the columns of the largest stress.
-std::vector<TableCell> peak_cells(const RunSummary& s) {
-  if (!s.peak_stress) return std::vector<TableCell>(5);
-  const PeakStressDescription& d = *s.peak_stress;
-  std::vector<TableCell> cells{d.peak.von_mises, d.peak.time};
-  for (std::size_t k = 0; k < 3; ++k) cells.push_back(k < d.place.size() ? TableCell(d.place[k]) : TableCell());
-  return cells;
+/// A coordinate of the place of the largest stress, in as many as there are dimensions.
+TableCell peak_coordinate(const RunSummary& s, std::size_t k) {
+  return s.peak_stress && k < s.peak_stress->place.size() ? TableCell(s.peak_stress->place[k]) : TableCell();
+}
+
+/// What a column is and what stands in it.
+struct OutcomeColumn {
+  TableColumn column;
+  std::function<TableCell(const std::string& run, const RunState& state)> cell;
+};
+
+/// Of a run without a summary nothing.
+OutcomeColumn of_summary(TableColumn column, TableCell (*cell)(const RunSummary&)) {
+  return {std::move(column), [cell](const std::string&, const RunState& state) {
+            return state.summary ? cell(*state.summary) : TableCell();
+          }};
+}
+
+TableCell restitution_of(const RunSummary& s) {
+  const auto first = first_with_restitution(s.impacts);
+  return first != s.impacts.end() ? TableCell(*first->restitution()) : TableCell();
+}
+
+TableCell largest_force_of(const RunSummary& s) {
+  const auto most = hardest(s.impacts);
+  return most != s.impacts.end() ? TableCell(most->largest_force) : TableCell();
+}
+
+TableCell exit_status_of(const RunState& state) {
+  const std::optional<int> status = state.final_status();
+  return status ? TableCell(static_cast<long>(*status)) : TableCell();
+}
+
+using Summary = const RunSummary&;
+
+/// In their order.
+const std::vector<OutcomeColumn>& all_columns() {
+  static const std::vector<OutcomeColumn> columns{
+      {{"run", false}, [](const std::string& run, const RunState&) { return TableCell(run); }},
+      {{"status"}, [](const std::string&, const RunState& state) { return TableCell(state.word()); }},
+      {{"exit_status", false}, [](const std::string&, const RunState& state) { return exit_status_of(state); }},
+      of_summary({"steps"}, [](Summary s) { return TableCell(s.steps); }),
+      of_summary({"time", false}, [](Summary s) { return TableCell(s.time()); }),
+      of_summary({"processor_seconds", true, 3}, [](Summary s) { return TableCell(s.processor_seconds); }),
+      of_summary({"lost_by_method", true, 3}, [](Summary s) { return TableCell(s.loss_by_method()); }),
+      of_summary({"created_by_method", true, 3}, [](Summary s) { return TableCell(s.creation_by_method()); }),
+      of_summary({"max_penetration", true, 3}, [](Summary s) { return TableCell(s.deepest_penetration()); }),
+      of_summary({"impacts", false},
+                 [](Summary s) { return TableCell(static_cast<long>(s.impacts.size()) + s.impacts_left_out); }),
+      of_summary({"restitution", true, 4, 1}, restitution_of),
+      of_summary({"largest_force", true, 4, 1}, largest_force_of),
+      of_summary({"peak_von_mises", true, 4, 1},
+                 [](Summary s) { return s.peak_stress ? TableCell(s.peak_stress->peak.von_mises) : TableCell(); }),
+      of_summary({"peak_von_mises_time", false},
+                 [](Summary s) { return s.peak_stress ? TableCell(s.peak_stress->peak.time) : TableCell(); }),
+      of_summary({"peak_von_mises_x", false}, [](Summary s) { return peak_coordinate(s, 0); }),
+      of_summary({"peak_von_mises_y", false}, [](Summary s) { return peak_coordinate(s, 1); }),
+      of_summary({"peak_von_mises_z", false}, [](Summary s) { return peak_coordinate(s, 2); }),
+      of_summary({"warnings", false}, [](Summary s) { return TableCell(static_cast<long>(s.warnings.size())); }),
+      of_summary({"doubts", true, 4, 1}, [](Summary s) { return TableCell(doubts_of(s)); })};
+  return columns;
 }
 
 }  // namespace
@@ -62,43 +117,14 @@ std::string doubts_of(const RunSummary& s) {
 }
 
 std::vector<TableColumn> outcome_columns() {
-  return {{"run", false},
-          {"status"},
-          {"exit_status", false},
-          {"steps"},
-          {"time", false},
-          {"processor_seconds", true, 3},
-          {"lost_by_method", true, 3},
-          {"created_by_method", true, 3},
-          {"max_penetration", true, 3},
-          {"impacts", false},
-          {"restitution", true, 4, 1},
-          {"largest_force", true, 4, 1},
-          {"peak_von_mises", true, 4, 1},
-          {"peak_von_mises_time", false},
-          {"peak_von_mises_x", false},
-          {"peak_von_mises_y", false},
-          {"peak_von_mises_z", false},
-          {"warnings", false},
-          {"doubts", true, 4, 1}};
+  std::vector<TableColumn> columns;
+  for (const OutcomeColumn& one : all_columns()) columns.push_back(one.column);
+  return columns;
 }
 
 std::vector<TableCell> outcome_cells(const std::string& run, const RunState& state) {
-  const std::optional<int> status = state.final_status();
-  std::vector<TableCell> cells{run, state.word(), status ? TableCell(static_cast<long>(*status)) : TableCell()};
-  if (!state.summary) {
-    cells.resize(outcome_columns().size());
-    return cells;
-  }
-  const RunSummary& s = *state.summary;
-  const auto first = first_with_restitution(s.impacts), most = hardest(s.impacts);
-  cells.insert(cells.end(), {s.steps, s.time(), s.processor_seconds, s.loss_by_method(), s.creation_by_method(),
-                             s.deepest_penetration(), static_cast<long>(s.impacts.size()) + s.impacts_left_out,
-                             first != s.impacts.end() ? TableCell(*first->restitution()) : TableCell(),
-                             most != s.impacts.end() ? TableCell(most->largest_force) : TableCell()});
-  for (TableCell& cell : peak_cells(s)) cells.push_back(std::move(cell));
-  cells.emplace_back(static_cast<long>(s.warnings.size()));
-  cells.emplace_back(doubts_of(s));
+  std::vector<TableCell> cells;
+  for (const OutcomeColumn& one : all_columns()) cells.push_back(one.cell(run, state));
   return cells;
 }
 

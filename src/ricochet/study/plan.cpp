@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
 #include <string_view>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/keys.hpp"
+#include "ricochet/case/keys_override.hpp"
 
 namespace ricochet {
 
@@ -98,7 +100,7 @@ StudyAxis parse_axis(const std::string& text) {
       throw Error(ErrorKind::usage, fmt::format("--vary {}: {}", text, problem.what()));
     }
   }
-  std::set<std::vector<std::string>> seen;
+  std::map<std::vector<std::string>, std::string> seen;  // entries by what they mean, not by how they are written
   for (const std::string& entry : split(text.substr(equals + 1), ',', text)) {
     axis.values.push_back(axis.keys.size() > 1 ? split(entry, '/', text) : std::vector{entry});
     const std::vector<std::string>& values = axis.values.back();
@@ -107,7 +109,13 @@ StudyAxis parse_axis(const std::string& text) {
                                     counted(axis.keys.size(), "key")));
     }
     if (std::count(values.begin(), values.end(), "") > 0) refuse_axis(text, "a value is empty");
-    if (!seen.insert(values).second) refuse_axis(text, fmt::format("\"{}\" is there twice", entry));
+    std::vector<std::string> meant;
+    for (const std::string& value : values) meant.push_back(override_value_text(value));
+    const auto [same, is_new] = seen.emplace(meant, entry);
+    if (is_new) continue;
+    refuse_axis(text, same->second == entry
+                          ? fmt::format("\"{}\" is there twice", entry)
+                          : fmt::format("\"{}\" and \"{}\" are one value: leave one out", same->second, entry));
   }
   return axis;
 }

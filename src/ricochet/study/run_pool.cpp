@@ -18,9 +18,6 @@ namespace ricochet {
 
 namespace {
 
-/// Where a run leaves what it says.
-constexpr const char* messages_file = "messages.txt";
-
 /// Runs that are still to be run, and what is known of them on the way.
 class RunPool {
  public:

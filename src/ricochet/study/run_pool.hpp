@@ -7,6 +7,9 @@
 /// @file Runs of the program, each in a process of its own, some at a time.
 namespace ricochet {
 
+/// Where a run leaves what it says, in its directory.
+inline constexpr const char* messages_file = "messages.txt";
+
 struct PooledRun {
   std::string case_path;              ///< absolute
   std::vector<std::string> settings;  ///< "key.path=value", as --set takes them

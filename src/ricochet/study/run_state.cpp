@@ -18,8 +18,8 @@ constexpr int refused_status = static_cast<int>(ErrorKind::invalid_input),
               failed_status = static_cast<int>(ErrorKind::not_converged),
               unexpected_status = static_cast<int>(ErrorKind::expectation);
 
-std::string outcome_file(const std::string& directory) {
-  return (std::filesystem::path(directory) / "outcome.json").string();
+std::string outcome_path(const std::string& directory) {
+  return (std::filesystem::path(directory) / outcome_file).string();
 }
 
 std::string first_line(const std::string& text) {
@@ -66,9 +66,9 @@ RunState read_run_state(const std::string& directory) {
     }
   }
   state.has_checkpoint = std::filesystem::is_directory(directory, ignored) && !checkpoint_files(directory).empty();
-  if (!std::filesystem::exists(outcome_file(directory), ignored)) return state;
+  if (!std::filesystem::exists(outcome_path(directory), ignored)) return state;
   try {
-    const Json json = Json::parse(read_file(outcome_file(directory)));
+    const Json json = Json::parse(read_file(outcome_path(directory)));
     state.exit_status = json.at("exit_status").get<int>();
     state.message = json.at("message").get<std::string>();
   } catch (const Json::Exception&) {  // then it is not known, and the run is tried again
@@ -78,9 +78,9 @@ RunState read_run_state(const std::string& directory) {
 
 void record_outcome(const std::string& directory, int exit_status, const std::string& message) {
   std::error_code ignored;
-  std::filesystem::remove(outcome_file(directory), ignored);
+  std::filesystem::remove(outcome_path(directory), ignored);
   if (exit_status == 0) return;
-  write_durably(outcome_file(directory), Json{{"exit_status", exit_status}, {"message", message}}.dump(2) + "\n");
+  write_durably(outcome_path(directory), Json{{"exit_status", exit_status}, {"message", message}}.dump(2) + "\n");
 }
 
 std::string last_error(const std::string& messages, const std::string& run_name) {

@@ -8,6 +8,9 @@
 /// @file What has become of a run of a study, and what is still to be done with it.
 namespace ricochet {
 
+/// How the process of a run has ended, in its directory.
+inline constexpr const char* outcome_file = "outcome.json";
+
 /// What its directory tells.
 struct RunState {
   std::optional<RunSummary> summary;  ///< none: there is none, or it cannot be read

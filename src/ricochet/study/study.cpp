@@ -9,6 +9,8 @@
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/run/run_identity.hpp"
+#include "ricochet/study/asked_columns.hpp"
+#include "ricochet/study/run_folders.hpp"
 #include "ricochet/study/run_pool.hpp"
 #include "ricochet/study/run_state.hpp"
 
@@ -60,21 +62,16 @@ void refuse_other_results(const std::string& directory, const StudyOptions& opti
 
 /// Only what the study itself says is its own.
 void remove_old_study(const std::string& directory) {
-  const Study before = read_study(directory);
-  for (const StudyRun& run : before.runs) {
-    std::error_code problem;
-    std::filesystem::remove_all(before.path(run), problem);
-    if (problem) {
-      throw Error(ErrorKind::file_access,
-                  fmt::format("{}: cannot be removed: {}", before.path(run), problem.message()));
-    }
-  }
+  std::vector<std::string> folders;
+  for (const StudyRun& run : read_study(directory).runs) folders.push_back(run.folder);
+  remove_run_folders(directory, folders);
 }
 
 Study prepare_study(const std::string& directory, const StudyPlan& plan, const StudyQuestions& questions,
                     const StudyOptions& options) {
   Study study{directory, plan, questions, number_runs(plan)};
   require_one_valid_case(study);
+  check_asked_columns(study);
   if (holds_study(directory) && options.force) remove_old_study(directory);
   if (holds_study(directory) && options.resume) {
     study.runs = take_over_runs(plan, read_study(directory));

@@ -10,9 +10,11 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/json.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/case/keys_override.hpp"
 #include "ricochet/case/quantity.hpp"
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/run_directory.hpp"
+#include "ricochet/study/run_folders.hpp"
 
 namespace ricochet {
 
@@ -58,8 +60,11 @@ StudyQuestions questions_from(const Json& json) {
   return questions;
 }
 
-std::set<std::string> as_set(const Texts& settings) {
-  return {settings.begin(), settings.end()};
+/// What they mean, however values are written.
+std::set<std::string> meaning_of(const Texts& settings) {
+  std::set<std::string> meaning;
+  for (const std::string& setting : settings) meaning.insert(normal_override(setting));
+  return meaning;
 }
 
 std::string numbered(std::size_t number, const std::string& name) {
@@ -99,9 +104,65 @@ std::string checked_reference(const std::string& reference, const StudyPlan& pla
   }
   if (reference.empty()) return "";
   if (holds_run(reference)) return std::filesystem::absolute(reference).lexically_normal().string();
-  throw Error(ErrorKind::usage, fmt::format("--reference {}: is neither the directory of a run nor last:KEY nor "
-                                            "finest:KEY of a key that varies",
-                                            reference));
+  throw Error(ErrorKind::usage,
+              fmt::format("--reference {}: is neither the directory of a run nor last:KEY nor "
+                          "finest:KEY of a key that varies; if that run was moved or removed, name another with "
+                          "--reference",
+                          reference));
+}
+
+void require_study(const std::string& directory) {
+  if (holds_study(directory)) return;
+  std::error_code ignored;
+  const bool is_there = std::filesystem::is_directory(directory, ignored);
+  const std::string why = !is_there ? "there is no such directory"
+                          : holds_run(directory)
+                              ? "holds a run and no study; `ricochet run --resume` goes on with a run"
+                              : "holds no study: study.json is missing";
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: {}; name the directory of a study, or begin one with `ricochet study CASE.toml --vary "
+                          "KEY=V1,V2,... -o {}`",
+                          directory, why, is_there ? "DIR" : directory));
+}
+
+[[noreturn]] void refuse_damaged(const std::string& path, const std::string& why) {
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{}: this file is damaged: {}; put it back from a copy, or choose another directory for the "
+                          "study with -o, or remove it and the folder \"runs\" beside it and begin anew",
+                          path, why));
+}
+
+void require_format(const Json& json, const std::string& path) {
+  const int format = json.at("ricochet_study");
+  if (format == study_format) return;
+  throw Error(
+      ErrorKind::file_access,
+      fmt::format("{}: has format {}, and this version of Ricochet knows format {}: go on with the version that "
+                  "has made it, or choose another directory for the study with -o",
+                  path, format, study_format));
+}
+
+/// What could not have come from a command line. Throws Json::Exception or Error.
+void require_sound(const StudyPlan& plan) {
+  for (const StudyAxis& axis : plan.axes) {
+    if (axis.keys.empty() || axis.values.empty()) throw Json::Exception("\"axes\": one has no keys or no values");
+    for (const Texts& entry : axis.values) {
+      if (entry.size() != axis.keys.size())
+        throw Json::Exception(
+            fmt::format("\"axes\": {} for {}", counted(entry.size(), "value"), counted(axis.keys.size(), "key")));
+    }
+  }
+  check_plan(plan);
+}
+
+void require_sound(StudyQuestions questions, const StudyPlan& plan) {
+  const bool is_of_study = questions.reference.starts_with("last:") || questions.reference.starts_with("finest:");
+  if (!is_of_study && !questions.reference.empty()) {
+    // A run elsewhere may have been moved or removed since, which the table says.
+    questions.reference.clear();
+    questions.compare.clear();
+  }
+  static_cast<void>(checked_questions(std::move(questions), plan));
 }
 
 }  // namespace
@@ -122,21 +183,28 @@ bool holds_study(const std::string& directory) {
 Study read_study(const std::string& directory) {
   Study study;
   study.directory = directory;
-  const std::string path = study.path("study.json");
-  if (!holds_study(directory))
-    throw Error(ErrorKind::file_access, fmt::format("{}: there is no study: study.json is missing", directory));
+  require_study(directory);
+  const std::string path = study.path("study.json"), text = read_file(path);
   try {
-    const Json json = Json::parse(read_file(path));
-    if (const int format = json.at("ricochet_study"); format != study_format)
-      throw Error(ErrorKind::invalid_input, fmt::format("{}: is of another version of Ricochet", path));
+    const Json json = Json::parse(text);
+    require_format(json, path);
     study.plan = plan_from(json);
+    require_sound(study.plan);
     study.questions = questions_from(json.at("questions"));
+    require_sound(study.questions, study.plan);
     study.runs = number_runs(study.plan);
-    const Json& folders = json.at("runs");
-    if (folders.size() != study.runs.size()) throw Json::Exception("runs are missing");
-    for (std::size_t i = 0; i < study.runs.size(); ++i) study.runs[i].folder = folders.at(i).get<std::string>();
+    const Texts folders = json.at("runs").get<Texts>();
+    if (folders.size() != study.runs.size()) {
+      throw Json::Exception(fmt::format("\"runs\" has {}, but the values of \"axes\" make {}",
+                                        counted(folders.size(), "folder"), counted(study.runs.size(), "run")));
+    }
+    require_run_folder_names(folders, "\"runs\"");
+    for (std::size_t i = 0; i < folders.size(); ++i) study.runs[i].folder = folders[i];
   } catch (const Json::Exception& problem) {
-    throw Error(ErrorKind::invalid_input, fmt::format("{}: not a study: {}", path, problem.what()));
+    refuse_damaged(path, problem.what());
+  } catch (const Error& problem) {
+    if (problem.kind() == ErrorKind::file_access) throw;  // another version
+    refuse_damaged(path, problem.what());
   }
   return study;
 }
@@ -174,7 +242,7 @@ std::vector<StudyRun> take_over_runs(const StudyPlan& plan, const Study& before)
   std::size_t next = left.size();
   for (PlannedRun& planned : runs_of(plan)) {
     const auto same = std::find_if(left.begin(), left.end(), [&](const StudyRun& run) {
-      return as_set(run.planned.settings) == as_set(planned.settings);
+      return meaning_of(run.planned.settings) == meaning_of(planned.settings);
     });
     const std::string folder = same != left.end() ? same->folder : numbered(++next, planned.name);
     runs.push_back({std::move(planned), folder});

@@ -62,6 +62,7 @@ class StudyTableMaker {
   [[nodiscard]] std::optional<std::size_t> run_before(std::size_t run, std::size_t axis) const;
   void add_orders();
   void add_messages();
+  void note_problems();
   void note_messages();
   void note_warnings();
   [[nodiscard]] TableCell value_of(const std::string& quantity, std::size_t run, const std::string& option);
@@ -75,6 +76,8 @@ class StudyTableMaker {
   std::map<std::string, RunHistory> histories_;  ///< read and still needed
   std::vector<CellOf> new_columns_;
   std::map<std::string, std::string> problems_;  ///< what the runs do not have, by the option that asks for it
+  std::set<std::string> answered_;               ///< such options that have a value of some run
+  bool has_unanswered_ = false;
   StudyResults results_;
 };
 
@@ -93,7 +96,17 @@ void StudyTableMaker::fill_columns() {
     if (const std::string own = study_.path(study_.runs[i]); !references.contains(own)) histories_.erase(own);
   }
   new_columns_.clear();
-  for (const auto& [option, problem] : problems_) log::warning(fmt::format("{}: {}", option, problem));
+  note_problems();
+}
+
+/// A question that some runs cannot answer leaves cells empty; one that none can is a mistake in the question.
+void StudyTableMaker::note_problems() {
+  for (const auto& [question, problem] : problems_) {
+    log::warning(fmt::format("{}: {}", question, problem));
+    if (answered_.contains(question)) continue;
+    results_.notes.push_back(fmt::format("{}: {}.", question, problem));
+    has_unanswered_ = true;
+  }
   problems_.clear();
 }
 
@@ -129,12 +142,16 @@ const RunHistory* StudyTableMaker::history_of(const std::string& directory) {
 /// Where somebody has asked for it by an option, runs that do not have it are told.
 TableCell StudyTableMaker::value_of(const std::string& quantity, std::size_t run, const std::string& option) {
   if (states_[run].word() != "done") return {};
-  const RunHistory* history = history_of(study_.path(study_.runs[run]));
-  if (history == nullptr) return {};
+  const std::string question = option + " " + quantity;
   try {
-    return ricochet::value_of(parse_quantity(quantity), history->table, states_[run].summary_json);
+    const RunHistory* history = history_of(study_.path(study_.runs[run]));
+    if (history == nullptr)
+      throw Error(ErrorKind::file_access, fmt::format("history.csv of {} cannot be read", study_.runs[run].folder));
+    const double value = ricochet::value_of(parse_quantity(quantity), history->table, states_[run].summary_json);
+    answered_.insert(question);
+    return value;
   } catch (const Error& problem) {
-    if (!option.empty()) problems_[option + " " + quantity] = problem.what();
+    if (!option.empty()) problems_[question] = problem.what();
     return {};
   }
 }
@@ -199,13 +216,14 @@ std::vector<ComparedQuantity> StudyTableMaker::compared() {
     for (const std::string& name : questions_.compare) {
       try {
         result.push_back(find_compared(name, reference->table));
-      } catch (const Error& problem) {  // the rest of the table is there all the same
-        log::warning(problem.what());
+      } catch (const Error&) {  // the rest of the table is there all the same
+        problems_["--compare " + name] = "the history of the reference has no such column or vector";
       }
     }
     return result;
   }
-  log::warning(fmt::format("--reference {}: no run that could be one has a history yet", questions_.reference));
+  problems_["--reference " + questions_.reference] =
+      "no run that could be one has a history, or it was moved or removed";
   return {};
 }
 
@@ -216,12 +234,17 @@ void StudyTableMaker::add_history_errors() {
       const std::string own = study_.path(study_.runs[run]), directory = reference_of(run);
       if (own == directory || states_[run].word() != "done") return {};
       const RunHistory *history = history_of(own), *reference = history_of(directory);
+      const std::string question = "--compare " + quantity.name;
       if (reference == nullptr || reference->summary.status != "done") {
         problems_["--reference " + directory] = "this run is not done, and there are no errors against it";
         return {};
       }
-      if (history == nullptr) return {};
-      const std::optional<double> error = relative_error(quantity, *history, *reference);
+      answered_.insert("--reference " + directory);
+      const std::optional<double> error =
+          history != nullptr ? relative_error(quantity, *history, *reference) : std::nullopt;
+      if (error) answered_.insert(question);
+      if (!error && !questions_.compare.empty())
+        problems_[question] = "some runs have no such column, no two rows in common with the reference, or it is 0";
       return error ? TableCell(*error) : TableCell();
     });
   }
@@ -312,7 +335,12 @@ StudyResults StudyTableMaker::make() {
   fill_columns();
   note_messages();
   note_warnings();
+  if (has_unanswered_ && results_.worst_status == 0) results_.worst_status = static_cast<int>(ErrorKind::usage);
   return std::move(results_);
+}
+
+std::string markdown_item(const std::string& text) {
+  return fmt::format("- {}\n", markdown_text(text));
 }
 
 }  // namespace
@@ -323,17 +351,18 @@ StudyResults make_study_table(const Study& study) {
 
 void write_study_table(const Study& study, const StudyResults& results) {
   write_durably(study.path("study.csv"), to_csv(results.table));
-  std::string page = fmt::format("# Study of {}\n\n", std::filesystem::path(study.plan.case_path).filename().string());
+  std::string page =
+      fmt::format("# Study of {}\n\n", markdown_text(std::filesystem::path(study.plan.case_path).filename().string()));
   for (const StudyAxis& axis : study.plan.axes) {
     std::vector<std::string> values;
     for (const auto& entry : axis.values) values.push_back(fmt::format("{}", fmt::join(entry, "/")));
-    page += fmt::format("- {} = {}\n", fmt::join(axis.keys, ","), fmt::join(values, ", "));
+    page += markdown_item(fmt::format("{} = {}", fmt::join(axis.keys, ","), fmt::join(values, ", ")));
   }
-  for (const std::string& setting : study.plan.settings) page += fmt::format("- set: {}\n", setting);
+  for (const std::string& setting : study.plan.settings) page += markdown_item("set: " + setting);
   page += "\n" + to_markdown(results.table) + "\n";
-  for (const std::string& note : results.notes) page += "- " + note + "\n";
+  for (const std::string& note : results.notes) page += markdown_item(note);
   if (!results.warnings.empty()) page += "\nWarnings of the runs:\n\n";
-  for (const std::string& warning : results.warnings) page += "- " + warning + "\n";
+  for (const std::string& warning : results.warnings) page += markdown_item(warning);
   write_durably(study.path("study.md"), page);
 }
 

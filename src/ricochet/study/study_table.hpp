@@ -13,8 +13,9 @@ struct StudyResults {
   ResultTable table;
   /// For readers, a sentence each: what the columns mean, and why runs failed; and what runs warned of.
   std::vector<std::string> notes, warnings;
-  int done = 0;          ///< runs that came to their end
-  int worst_status = 0;  /// of the runs that have one
+  int done = 0;  ///< runs that came to their end
+  /// Of the runs that have one; where all of these are 0, that of a question that no run that is done could answer.
+  int worst_status = 0;
 };
 
 /// Reads all runs, as far as they are. Columns: the varied keys; what every run comes to; the quantities of the case's

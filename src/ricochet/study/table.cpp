@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <map>
+#include <string_view>
 
 #include "ricochet/base/text.hpp"
 
@@ -116,9 +118,7 @@ std::string part_to_markdown(const ReadersTable& shown) {
   for (std::size_t r = 0; r < shown.lines.size(); ++r) {
     text += "|";
     for (const std::string& cell : shown.lines[r]) {
-      std::string escaped_cell;
-      for (const char c : cell) escaped_cell += c == '|' ? std::string("\\|") : std::string(1, c);
-      text += " " + escaped_cell + " |";
+      text += fmt::format(" {} |", markdown_text(cell));
     }
     text += "\n";
     if (r > 0) continue;
@@ -183,6 +183,29 @@ std::string to_html(const ResultTable& table) {
 
 std::string to_aligned_text(const ResultTable& table) {
   return joined(table, part_to_aligned_text);
+}
+
+std::string markdown_text(const std::string& text) {
+  std::string result;
+  const auto is_word = [&](std::size_t i) {
+    return i < text.size() && std::isalnum(static_cast<unsigned char>(text[i]));
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    // Of entities, since not every reader of Markdown knows \<.
+    if (c == '<' || c == '>' || c == '&') {
+      result += escaped(std::string(1, c));
+    } else if (c == '\n' || c == '\r') {
+      result += ' ';
+    } else {
+      // Inside of a word _ means nothing; ( makes a link behind ] alone. Names and formulas stay legible so.
+      const bool is_underscore = c == '_' && !(i > 0 && is_word(i - 1) && is_word(i + 1));
+      const bool is_link = c == '(' && i > 0 && text[i - 1] == ']';
+      if (is_underscore || is_link || std::string_view("\\|`*~$").find(c) != std::string_view::npos) result += '\\';
+      result += c;
+    }
+  }
+  return result;
 }
 
 std::string escaped(const std::string& text) {

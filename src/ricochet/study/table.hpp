@@ -43,6 +43,8 @@ struct ResultTable {
 /// In columns of equal width, for a terminal.
 [[nodiscard]] std::string to_aligned_text(const ResultTable& table);
 
+/// A text as one line of Markdown, in a table or not: what a user or a mesh file has named stays what it is.
+[[nodiscard]] std::string markdown_text(const std::string& text);
 /// For HTML.
 [[nodiscard]] std::string escaped(const std::string& text);
 

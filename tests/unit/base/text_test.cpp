@@ -14,6 +14,21 @@ TEST(Text, CountedNouns) {
   EXPECT_EQ(counted(12L, "entry", "entries"), "12 entries");
 }
 
+TEST(Text, TheNearestNameIsOneThatMayHaveBeenMeant) {
+  const std::vector<std::string> names{"step", "scheme", "end", "top.displacement_x", "top.gap", "t"};
+  EXPECT_EQ(nearest_name("stp", names), "step");
+  EXPECT_EQ(nearest_name("shceme", names), "scheme");
+  EXPECT_EQ(nearest_name("something", names), "");
+  EXPECT_EQ(nearest_name("x", names), "") << "one letter is near to every other";
+  EXPECT_EQ(nearest_name("", names), "");
+  EXPECT_EQ(nearest_name("tpo.displacment_x", names), "top.displacement_x");
+  EXPECT_EQ(nearest_name("topgap", names), "top.gap") << "the dot itself may be missing";
+  // A long part does not bring a short one near.
+  EXPECT_EQ(nearest_name("f.displacement_x", names), "");
+  EXPECT_EQ(nearest_name("foot.displacement_x", names), "");
+  EXPECT_EQ(nearest_name("side.displacement_x", names), "");
+}
+
 TEST(Text, Between) {
   EXPECT_EQ(between("step-12.hdf5", "step-", ".hdf5"), "12");
   EXPECT_EQ(between("step-.hdf5", "step-", ".hdf5"), "");

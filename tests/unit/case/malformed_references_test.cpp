@@ -77,6 +77,14 @@ TEST(MalformedCase, References) {
        "\"inside\"; found the text \"within\""},
       {0, "[obstacle.floor]\ntype = \"plain\"\nnrmal = [0, 1]",
        "13:8: \"type\" must be \"plane\" or \"sphere\"; found the text \"plain\"; did you mean \"plane\"?"},
+      // A suggestion would be refused next where the type does not take it.
+      {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\nradus = 1",
+       "16:1: unknown key \"radus\" in [obstacle.floor]; \"radius\" is for the type \"sphere\" only; the type is "
+       "\"plane\""},
+      {10, "step = 0.1\nbeat = 0.25",
+       "11:1: unknown key \"beat\" in [time]; \"beta\" is for the scheme \"newmark\" only; the scheme is \"midpoint\""},
+      {0, "[obstacle.floor]\ntype = \"plane\"\npiont = [0, 0]\nnormal = [0, 1]",
+       "14:1: unknown key \"piont\" in [obstacle.floor]; did you mean \"point\"?"},
       {0, "[obstacle.floor]\ntype = 3",
        "13:8: \"type\" must be \"plane\" or \"sphere\"; found the integer 3. A plane with a half-space behind it, or a "
        "sphere: a ball or, seen from inside, a bowl. Other curved obstacles are not supported."},

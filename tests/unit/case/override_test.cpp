@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "case_text.hpp"
+#include "ricochet/case/keys_override.hpp"
 
 namespace ricochet::case_test {
 
@@ -68,6 +69,8 @@ TEST(Overrides, SayWhatIsWrongWithThem) {
       {"material.1.density=1", "there is no entry 1 of [[material]]: there is only entry 0"},
       {"contact.friction=0.3", "[[contact]] is a list: say which entry, counted from 0, as in contact.0.group"},
       {"contact.-1.friction=0.3", "[[contact]] is a list: say which entry, counted from 0, as in contact.0.group"},
+      {"contact.01.friction=0.3", "\"01\" is no number of an entry of [[contact]]: write 1, as in contact.1.friction"},
+      {"contact.00=0.3", "\"00\" is no number of an entry of [[contact]]: write 0, as in contact.0.group"},
       {"contact=3", "[[contact]] is a list: say which entry, counted from 0, as in contact.0.group"},
       {"obstacle=3", "the sections [obstacle.NAME] are named: say which one, as in obstacle.floor.type"},
       {"time=3", "\"time\" is a section: say which of its keys, as in time.scheme"},
@@ -92,6 +95,15 @@ TEST(Overrides, SayWhatIsWrongWithThem) {
   for (const auto& [text, problem] : expected) {
     EXPECT_EQ(problems_of(contact_case, {text}), "--set " + text + ": " + problem);
   }
+}
+
+TEST(Overrides, AreTheSameHoweverTheyAreWritten) {
+  for (const char* text : {"time.step=0.2", " time.step = 0.20 ", "time.step=2e-1"})
+    EXPECT_EQ(normal_override(text), "time.step=0.2") << text;
+  EXPECT_EQ(override_value_text("[0,-1]"), override_value_text("[0, -1.0]"));
+  EXPECT_EQ(override_value_text("\"a b\""), override_value_text(" a b"));
+  EXPECT_NE(override_value_text("1"), override_value_text("1.0000000000000002"));
+  EXPECT_NE(override_value_text("1979-05-27"), override_value_text("1979-05-28"));
 }
 
 TEST(Overrides, ComeAfterTheProblemsOfTheFile) {

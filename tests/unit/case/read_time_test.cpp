@@ -82,4 +82,39 @@ TEST(ReadTime, OneStepIsEnough) {
   EXPECT_EQ(read_text(edited_case(10, "step = 1.0")).time.step, 1.0);
 }
 
+TEST(ReadTime, RefusesStepsThatNumbersDoNotReach) {
+  const std::string square =
+      ": the numbers that a computer has do not reach to its square; choose a unit of time in which steps are nearer "
+      "to "
+      "1";
+  const std::string file = with_scheme("scheme = \"midpoint\"");
+  for (const std::string step : {"1e-300", "1e-160", "5e-324", "1e+300"}) {
+    EXPECT_EQ(problems_of(file, {"time.step=" + step, "time.end=" + step}),
+              "--set time.step=" + step + ": \"step\" is " + step + square);
+    EXPECT_EQ(problems_of(file, {"time.step=adaptive", "time.largest=" + step, "time.end=" + step}),
+              "--set time.largest=" + step + ": \"largest\" is " + step + square);
+  }
+  EXPECT_EQ(problems_of(file, {"time.step=1e-100", "time.end=1e-98"}), "") << "an odd unit of time, and no more";
+}
+
+TEST(ReadTime, RefusesShortestStepsInWhichTimesCannotBeCounted) {
+  const std::string file = with_scheme("scheme = \"midpoint\"");
+  const auto problem = [&](const std::string& smallest, const std::string& end) {
+    return problems_of(file,
+                       {"time.step=adaptive", "time.largest=0.01", "time.end=" + end, "time.smallest=" + smallest});
+  };
+  for (const std::string smallest : {"1e-300", "5e-324", "1e-17"}) {
+    EXPECT_EQ(problem(smallest, "0.1"),
+              "--set time.smallest=" + smallest + ": \"smallest\" is " + smallest +
+                  ", too short beside \"largest\", 0.01, and \"end\", 0.1: times are whole numbers of it and would not "
+                  "have all of their digits; give at least 9.5e-15, or leave it out");
+  }
+  EXPECT_EQ(problem("9.5e-15", "0.1"), "") << "what the message says is enough";
+  // Far away the end decides: 2e-9 of it are 1e15.
+  EXPECT_EQ(problem("1e-8", "1e6"), "");
+  EXPECT_NE(problem("1e-11", "1e6"), "");
+  EXPECT_NE(problem("1e-12", "1e6").find("give at least 1.6e-10"), std::string::npos) << problem("1e-12", "1e6");
+  EXPECT_EQ(problem("1.6e-10", "1e6"), "");
+}
+
 }  // namespace ricochet::case_test

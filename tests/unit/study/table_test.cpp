@@ -21,12 +21,19 @@ TEST(ResultTable, IsExactInCsv) {
 TEST(ResultTable, IsRoundedForReaders) {
   EXPECT_EQ(to_markdown(table),
             "| time.step | v, m/s | text |\n|---:|---:|---|\n| 1e-3 | 0.3333 | a \"b\" |\n"
-            "| 5e-4 | -2e-30 | µ\\|<c> |\n");
+            "| 5e-4 | -2e-30 | µ\\|&lt;c&gt; |\n");
   EXPECT_EQ(to_aligned_text(table),
             "time.step  v, m/s  text\n"
             "     1e-3  0.3333  a \"b\"\n"
             "     5e-4  -2e-30  µ|<c>\n");
   EXPECT_NE(to_html(table).find("<td>µ|&lt;c&gt;</td>"), std::string::npos);
+}
+
+TEST(MarkdownText, IsReadAsItWasWritten) {
+  EXPECT_EQ(markdown_text("peak_von_mises = 1e-3, [0, -1] (2) #1"), "peak_von_mises = 1e-3, [0, -1] (2) #1");
+  EXPECT_EQ(markdown_text("<b>&|`*~$\\"), "&lt;b&gt;&amp;\\|\\`\\*\\~\\$\\\\");
+  EXPECT_EQ(markdown_text("[a](http://b) _c_ __d"), "[a]\\(http://b) \\_c\\_ \\_\\_d");
+  EXPECT_EQ(markdown_text("one\n# two\r"), "one # two ") << "it stays one line";
 }
 
 TEST(ResultTable, ShowsWideTablesInPartsThatBeginWithTheKeys) {

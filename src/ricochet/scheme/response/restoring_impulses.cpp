@@ -9,10 +9,20 @@
 
 namespace ricochet {
 
+namespace {
+
+/// Of ½ w p² + a p = c. The difference of two equal numbers would be 0 where points part fast and little was lost, and
+/// the logarithm of 0 goes nowhere.
+double positive_root(double w, double a, double c) {
+  const double s = std::sqrt(a * a + 2.0 * w * c);
+  return a > 0.0 ? 2.0 * c / (a + s) : (s - a) / w;
+}
+
+}  // namespace
+
 Vector restoring_impulses(const Matrix& w, const Vector& approach, const Vector& lost) {
-  const Vector diagonal = w.diagonal();
-  Vector p = ((approach.array().square() + 2.0 * diagonal.array() * lost.array()).sqrt() - approach.array()) /
-             diagonal.array();
+  Vector p(approach.size());
+  for (Index i = 0; i < p.size(); ++i) p[i] = positive_root(w(i, i), approach[i], lost[i]);
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   double last = std::numeric_limits<double>::infinity();
   const auto residual = [&](const Vector& at) { return Vector(at.cwiseProduct(approach + 0.5 * (w * at)) - lost); };

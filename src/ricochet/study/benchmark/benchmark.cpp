@@ -10,6 +10,7 @@
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/run/run_identity.hpp"
+#include "ricochet/study/run_folders.hpp"
 #include "ricochet/study/run_state.hpp"
 #include "ricochet/study/study_files.hpp"
 
@@ -95,13 +96,11 @@ void remove_old_runs(const BenchmarkPlan& plan, const BenchmarkOptions& options)
     }
     return true;
   };
+  std::vector<std::string> folders;
   for (const BenchmarkRun& old : read_benchmark_plan(plan.directory).runs) {
-    if (is_kept(old)) continue;
-    std::error_code problem;
-    std::filesystem::remove_all(plan.path(old), problem);
-    if (problem)
-      throw Error(ErrorKind::file_access, fmt::format("{}: cannot be removed: {}", plan.path(old), problem.message()));
+    if (!is_kept(old)) folders.push_back(old.folder);
   }
+  remove_run_folders(plan.directory, folders);
 }
 
 int run_benchmarks(const BenchmarkPlan& plan, const RunPoolOptions& options) {

@@ -7,6 +7,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/json.hpp"
 #include "ricochet/io/durable_file.hpp"
+#include "ricochet/study/run_folders.hpp"
 
 namespace ricochet {
 
@@ -37,6 +38,13 @@ BenchmarkRun run_from(const Json& json) {
           json.at("settings").get<std::vector<std::string>>(),
           json.at("folder"),
           json.at("refusal")};
+}
+
+[[noreturn]] void refuse_damaged_plan(const std::string& path, const std::string& why) {
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{}: this file is damaged: {}; put it back from a copy, or choose another directory for the "
+                          "benchmarks with -o, or remove it and the folder \"runs\" beside it and begin anew",
+                          path, why));
 }
 
 }  // namespace
@@ -70,7 +78,11 @@ BenchmarkPlan read_benchmark_plan(const std::string& directory) {
     plan.is_scorecard = json.at("scorecard");
     for (const Json& run : json.at("runs")) plan.runs.push_back(run_from(run));
   } catch (const Json::Exception& problem) {
-    throw Error(ErrorKind::invalid_input, fmt::format("{}: not of benchmarks: {}", path, problem.what()));
+    refuse_damaged_plan(path, problem.what());
+  }
+  for (const BenchmarkRun& run : plan.runs) {
+    if (!is_run_folder_name(run.folder))
+      refuse_damaged_plan(path, fmt::format("\"{}\" cannot be the name of the folder of a run", run.folder));
   }
   return plan;
 }

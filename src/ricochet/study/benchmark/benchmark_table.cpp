@@ -163,13 +163,13 @@ std::vector<std::string> benchmark_notes(const BenchmarkPlan& plan, const Benchm
 void write_benchmark_tables(const BenchmarkPlan& plan, const BenchmarkResults& results) {
   write_durably(plan.path("benchmark.csv"), to_csv(benchmark_table(plan, results)));
   std::string page = "# Benchmarks\n\n" + to_markdown(benchmark_table_for_readers(plan, results, true)) + "\n";
-  for (const std::string& note : benchmark_notes(plan, results)) page += "- " + note + "\n";
+  for (const std::string& note : benchmark_notes(plan, results)) page += fmt::format("- {}\n", markdown_text(note));
   std::vector<std::string> told;
   page += "\nThe benchmarks:\n\n";
   for (const BenchmarkRun& run : plan.runs) {
     if (std::count(told.begin(), told.end(), run.benchmark.name) > 0) continue;
     told.push_back(run.benchmark.name);
-    page += fmt::format("- `{}`: {}\n", run.benchmark.name, run.benchmark.description);
+    page += fmt::format("- `{}`: {}\n", run.benchmark.name, markdown_text(run.benchmark.description));
   }
   write_durably(plan.path("benchmark.md"), page);
   if (!plan.is_scorecard) return;

@@ -140,15 +140,15 @@ ScorecardMatrix MatrixMaker::make() {
 }
 
 std::string in_words(const ScorecardMatrix& matrix, const char* heading, const char* item,
-                     std::string (*write)(const ResultTable&)) {
+                     std::string (*write)(const ResultTable&), std::string (*write_text)(const std::string&)) {
   std::string text = write(matrix.totals) + "\n";
   for (const ScorecardPart& part : matrix.parts) {
-    if (!part.title.empty()) text += fmt::format("{}{}\n\n", heading, part.title);
+    if (!part.title.empty()) text += fmt::format("{}{}\n\n", heading, write_text(part.title));
     text += write(part.table) + "\n";
   }
   if (!matrix.reasons.empty()) text += "Refused:\n\n";
   for (std::size_t i = 0; i < matrix.reasons.size(); ++i)
-    text += fmt::format("{}{}. {}\n", item, i + 1, matrix.reasons[i]);
+    text += fmt::format("{}{}. {}\n", item, i + 1, write_text(matrix.reasons[i]));
   return text;
 }
 
@@ -185,11 +185,12 @@ ScorecardMatrix scorecard_matrix(const BenchmarkPlan& plan, const BenchmarkResul
 }
 
 std::string scorecard_in_markdown(const BenchmarkPlan& plan, const BenchmarkResults& results) {
-  return in_words(scorecard_matrix(plan, results), "### ", "", to_markdown);
+  return in_words(scorecard_matrix(plan, results), "### ", "", to_markdown, markdown_text);
 }
 
 std::string scorecard_in_aligned_text(const BenchmarkPlan& plan, const BenchmarkResults& results) {
-  return in_words(scorecard_matrix(plan, results), "", "  ", to_aligned_text);
+  return in_words(scorecard_matrix(plan, results), "", "  ", to_aligned_text,
+                  [](const std::string& text) { return text; });
 }
 
 }  // namespace ricochet

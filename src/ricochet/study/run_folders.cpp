@@ -1,0 +1,85 @@
+#include "ricochet/study/run_folders.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <set>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/io/run_directory.hpp"
+#include "ricochet/study/run_pool.hpp"
+#include "ricochet/study/run_state.hpp"
+
+namespace ricochet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse_to_remove(const fs::path& path, const std::string& why) {
+  throw Error(ErrorKind::file_access,
+              fmt::format("{}: {}, and is not removed: see what it is, remove it yourself, or choose another directory "
+                          "with -o",
+                          path.string(), why));
+}
+
+/// A run that has not come far enough to leave anything has an empty folder.
+bool looks_like_run(const fs::path& folder) {
+  std::error_code problem;
+  if (fs::is_empty(folder, problem) && !problem) return true;
+  return holds_run(folder.string()) || fs::exists(folder / messages_file, problem) ||
+         fs::exists(folder / outcome_file, problem);
+}
+
+void require_folder(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::symlink_status(path, ignored);
+  if (fs::is_symlink(status)) refuse_to_remove(path, "is a link");
+  if (!fs::is_directory(status)) refuse_to_remove(path, "is no folder");
+}
+
+}  // namespace
+
+bool is_run_folder_name(std::string_view name) {
+  const auto is_plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("._=+-").find(c) != std::string_view::npos;
+  };
+  // Names that begin with a dot are of this folder, of the one above, or hidden.
+  return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), is_plain);
+}
+
+void require_run_folder_names(const std::vector<std::string>& names, const std::string& file) {
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    const bool is_name = is_run_folder_name(name);
+    if (is_name && seen.insert(name).second) continue;
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: \"{}\" {}", file, name,
+                            is_name ? "is the folder of two runs" : "cannot be the name of the folder of a run"));
+  }
+}
+
+void remove_run_folders(const std::string& directory, const std::vector<std::string>& names) {
+  require_run_folder_names(names, directory);
+  const fs::path runs = fs::path(directory) / "runs";
+  std::error_code problem;
+  if (!fs::exists(fs::symlink_status(runs, problem))) return;
+  require_folder(runs);
+  std::vector<fs::path> folders;
+  for (const std::string& name : names) {
+    if (!fs::exists(fs::symlink_status(runs / name, problem))) continue;
+    require_folder(runs / name);
+    if (!looks_like_run(runs / name)) refuse_to_remove(runs / name, "holds nothing that a run leaves");
+    folders.push_back(runs / name);
+  }
+  for (const fs::path& folder : folders) {
+    fs::remove_all(folder, problem);
+    if (problem)
+      throw Error(ErrorKind::file_access, fmt::format("{}: cannot be removed: {}", folder.string(), problem.message()));
+  }
+}
+
+}  // namespace ricochet
