@@ -25,15 +25,22 @@ std::string short_duration_text(double seconds) {
   return seconds < 1.0 ? fmt::format("{:.2g} s", seconds) : duration_text(seconds);
 }
 
-void print_estimate(const StageEstimate& stage, std::size_t number, long steps) {
+/// "0.2 s for 100 steps"; of adaptive steps the number is not known before the run.
+std::string steps_estimate(const TimeSection& time, double step_seconds) {
+  const long steps = step_count(time);
+  return fmt::format("{}{} for {}{}", time.adaptive ? "at least " : "",
+                     short_duration_text(static_cast<double>(steps) * step_seconds), counted(steps, "step"),
+                     time.adaptive ? " of the longest" : "");
+}
+
+void print_estimate(const StageEstimate& stage, std::size_t number, const TimeSection& time) {
   const std::string of =
       fmt::format("estimate, stage {} of a step, {}", number + 1, counted(stage.unknowns, "unknown"));
   if (stage.chosen.method == SolverMethod::iterative) {
     fmt::print(
-        "{}: method iterative, some {:.0f} iterations; {} per step, {} for {}; its memory is a few times that of the "
+        "{}: method iterative, some {:.0f} iterations; {} per step, {}; its memory is a few times that of the "
         "matrices; chosen as {}{}\n",
-        of, stage.iterations, short_duration_text(stage.step_seconds),
-        short_duration_text(static_cast<double>(steps) * stage.step_seconds), counted(steps, "step"),
+        of, stage.iterations, short_duration_text(stage.step_seconds), steps_estimate(time, stage.step_seconds),
         stage.chosen.reason,
         stage.chosen.predicted_entries > 0.0
             ? fmt::format(" (a factor would have {:.3g} entries and take {:.2g} operations)",
@@ -43,11 +50,10 @@ void print_estimate(const StageEstimate& stage, std::size_t number, long steps) 
   }
   fmt::print(
       "{}: method direct; a factor of {:.3g} entries, {:.2g} GB, {:.2g} GB while it is made, in {}; {} per step, "
-      "{} for {}; {:.2g} GB for every 100 contact points that may touch at a time; chosen as {}\n",
+      "{}; {:.2g} GB for every 100 contact points that may touch at a time; chosen as {}\n",
       of, stage.chosen.predicted_entries, 1e-9 * stage.factor_bytes, 1e-9 * stage.peak_bytes,
       short_duration_text(stage.factorization_seconds), short_duration_text(stage.step_seconds),
-      short_duration_text(static_cast<double>(steps) * stage.step_seconds), counted(steps, "step"),
-      100e-9 * stage.bytes_per_point, stage.chosen.reason);
+      steps_estimate(time, stage.step_seconds), 100e-9 * stage.bytes_per_point, stage.chosen.reason);
 }
 
 /// What a run will take, and seconds until its first step.
@@ -57,13 +63,14 @@ double estimate(const Case& input, const SemidiscreteProblem& problem, const Sch
   const double products = estimate_products(problem);
   double seconds = 0.0, per_step = products;
   for (std::size_t k = 0; k < stages.size(); ++k) {
-    print_estimate(stages[k], k, step_count(input.time));
+    print_estimate(stages[k], k, input.time);
     seconds += stages[k].factorization_seconds;
     per_step += stages[k].step_seconds;
   }
   const double steps = static_cast<double>(step_count(input.time));
-  fmt::print("estimate, all: {} for factorizations, {} per step with {} for the products with the matrices, {}\n",
-             short_duration_text(seconds), short_duration_text(per_step), short_duration_text(products),
+  fmt::print("estimate, all: {} for factorizations{}, {} per step with {} for the products with the matrices, {}{}\n",
+             short_duration_text(seconds), input.time.adaptive ? " for each length of a step" : "",
+             short_duration_text(per_step), short_duration_text(products), input.time.adaptive ? "at least " : "",
              short_duration_text(seconds + steps * per_step));
   fmt::print(
       "(estimates: entries and operations from the symbolic analysis of the operators; times at {:.2g} operations "
