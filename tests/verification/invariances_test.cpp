@@ -302,11 +302,12 @@ TEST(Invariance, RenumberingOfNodes) {
 
 /// Compares a case with the same case seen by an observer who moves with −`moving`, so that body and obstacle move with
 /// it.
-void expect_same_for_observer(const Setting& s, const Eigen::Vector3d& moving, bool obstacle_moves_too) {
+void expect_same_for_observer(const Setting& s, const Eigen::Vector3d& moving, bool obstacle_moves_too,
+                              const std::vector<SchemeChoice>& choices = scheme_choices()) {
   Setting t = s;
   t.velocity += moving;
   if (obstacle_moves_too) t.obstacle_velocity += moving;
-  for (const SchemeChoice& choice : scheme_choices()) {
+  for (const SchemeChoice& choice : choices) {
     const std::vector<Frame> a = frames(s, choice);
     std::vector<Frame> b = frames(t, choice);
     for (std::size_t k = 0; k < b.size(); ++k) {
@@ -334,6 +335,36 @@ TEST(Invariance, ObstacleMovingAgainstBodyMovingTheOtherWay) {
     Eigen::Vector3d moving(0.7, 0.4, dimension == 3 ? -0.3 : 0.0);
     expect_same_for_observer(setting(dimension, friction), moving, true);
   }
+}
+
+/// Restitution and friction are about velocities relative to the obstacle.
+TEST(Invariance, ObstacleMovingUnderPublishedSchemes) {
+  const std::vector<SchemeChoice> with_friction{
+      {"scheme = \"moreau-jean\"\ntheta = 0.7\nrestitution = 0.5\n", "consistent", false},
+      {"scheme = \"moreau-jean\"\nslip = \"theta\"\n", "consistent", false},
+      {"scheme = \"paoli-schatzman\"\nrestitution = 0.5\n", "consistent", false},
+      {"scheme = \"kane\"\n", "consistent", false},
+      {"scheme = \"laursen-chawla\"\n", "consistent", false},
+      {"scheme = \"laursen-love\"\n", "consistent", false},
+      {"scheme = \"generalized-alpha\"\n", "consistent", false},
+      {"scheme = \"bathe\"\n", "consistent", false},
+  };
+  const std::vector<SchemeChoice> without{
+      {"scheme = \"nonsmooth-generalized-alpha\"\nrestitution = 0.5\n", "consistent", false},
+      {"scheme = \"penalty-midpoint\"\n", "consistent", false},
+      {"scheme = \"nitsche\"\n", "consistent", false},
+  };
+  const std::vector<SchemeChoice> with_short_steps{
+      {"scheme = \"cd-lagrange\"\nrestitution = 0.5\n", "lumped", false},
+      {"scheme = \"taylor-flanagan\"\n", "lumped", false},
+  };
+  const Eigen::Vector3d moving(0.7, 0.4, 0.0);
+  expect_same_for_observer(setting(2, 0.3), moving, true, with_friction);
+  expect_same_for_observer(setting(2), moving, true, without);
+  Setting short_steps = setting(2, 0.3);
+  short_steps.step = 0.0015;
+  short_steps.end = 0.3;
+  expect_same_for_observer(short_steps, moving, true, with_short_steps);
 }
 
 TEST(Invariance, SameBitsTwice) {

@@ -272,6 +272,28 @@ TEST(PublishedScheme, MoreauJeanChangesByTheImpulsesOnTheVelocitiesBefore) {
   }
 }
 
+/// Of impulses on V_θ contact has a sign for θ(1+e) ≥ 1 where points approach, and friction always.
+TEST(PublishedScheme, MoreauJeanLosesByFrictionWhereItsSlipIsThatOfTheta) {
+  const auto check = [](CaseRun& run, const std::string& name) {
+    const double h = run.scheme().step();
+    double created = 0.0, slid = 0.0;
+    expect_identity(run, name, [&](const StepEnd& a, const StepEnd& b) {
+      Vector approach, slip;
+      run.problem().contact.rows->normal_motion(a.velocity, approach);
+      const Vector du = b.displacement - a.displacement, dv = b.velocity - a.velocity;
+      run.problem().contact.rows->tangential_motion(du, slip);
+      const double friction = -b.tangential.dot(slip);
+      created = std::max(created, friction / b.size_of_energy_terms);
+      slid = std::min(slid, friction / b.size_of_energy_terms);
+      return friction + 0.25 * h * b.normal.dot(approach) -
+             0.25 * (dv.dot(run.problem().mass.whole() * dv) + du.dot(run.problem().internal_force->tangent() * du));
+    });
+    EXPECT_LT(created, rounding) << name;
+    EXPECT_LT(slid, -1e-9) << name << ": there is friction";
+  };
+  each_run("moreau-jean", "theta = 0.75\nslip = \"theta\"\n", check, "friction = 0.3\n");
+}
+
 /// Changes of the energy at half steps, E^{n+½} − E^{n−½}, against `identity(n−1, n, n+1)`.
 void expect_half_step_identity(CaseRun& run, const std::string& name, double stiffness,
                                const std::function<double(const StepEnd&, const StepEnd&, const StepEnd&)>& identity) {
