@@ -44,7 +44,6 @@ class Bathe final : public Scheme {
     require_no_penetration(problem, base_, state.time + h, stage);
     if (problem.has_moving_obstacles()) equations_.observe_obstacles(problem, state.time + h, base_);
     equations_.require_friction(problem, rate_, 3.0 / h, stage);
-
     const StageSolution& solution = stages.solve(1);
     second_ += solution.increment;            // U₁ − U_½
     rate_ += (3.0 / h) * solution.increment;  // V₁
@@ -70,8 +69,7 @@ class Bathe final : public Scheme {
     const double h = step(), time = state.time + 0.5 * h;
     first_ = (0.5 * h) * state.velocity + (h * h / 16.0) * state.acceleration;
     velocity_ = state.velocity + (0.25 * h) * state.acceleration;
-    damped_ = velocity_;
-    if (problem.has_singular_mass()) damped_ = first_ / (0.5 * h);
+    damped_ = problem.has_singular_mass() ? (2.0 / h) * first_ : 1.0 * velocity_;
     base_ = state.displacement + first_;
     Stage& stage = stages.stage(0);
     middle_equations_.balance(problem, time, base_, damped_, stage);

@@ -47,22 +47,13 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
                 "problems do not come apart; take them out, or use scheme \"moreau-jean\"");
   }
 
-  /// Contact that presses at the start is no part of a₀ and A₀.
   void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) override {
-    Vector& support = state.memory[smooth_support_reaction];
-    support = state.forces.support_reaction;
-    stages_.take_contact_off(problem, state.forces, state.acceleration, support, stages);
-    state.memory[algorithmic_acceleration] = state.acceleration;
+    stages_.start(problem, state, stages);
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();
-    stages_.take_start(state);
-    support_ = weights_.force * stages_.support;
-    change_ = -stages_.algorithmic;
     stages_.position(problem, state, h, weights_, stages);
-    support_ += (1.0 - weights_.force) * stages_.support;
-    change_ += stages_.after;
     const StageSolution& impact = stages_.impulses(problem, state, h, weights_, stages);
     increment = (0.5 * h) * (state.velocity + stages_.velocity + impact.increment);  // that Λ/h works on
     account(problem, state.time, impact, increment);
@@ -84,16 +75,17 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   void account(const SemidiscreteProblem& problem, double time, const StageSolution& impact, const Vector& increment) {
     const double h = step(), less = 0.5 - weights_.force;
     work_on_ = stages_.motion - increment;
-    corrections_ = {.support_work = problem.supports.work(support_, work_on_)};
+    corrections_ = {.support_work = problem.supports.work(stages_.mean_support, work_on_)};
     if (problem.loads.varies()) {
       problem.loads.varying(time, load_);
       problem.loads.varying(time + h, force_);
       load_ = weights_.force * load_ + (1.0 - weights_.force) * force_;
       corrections_.load_work = load_.dot(work_on_);
     }
-    problem.mass.multiply(change_, force_);
-    corrections_.numerical_dissipation =
-        less * stages_.motion.dot(force_) + weights_.energy_factor * (2.0 * weights_.gamma - 1.0) * change_.dot(force_);
+    problem.mass.multiply(stages_.change, force_);
+    corrections_.numerical_dissipation = less * stages_.motion.dot(force_) + weights_.energy_factor *
+                                                                                 (2.0 * weights_.gamma - 1.0) *
+                                                                                 stages_.change.dot(force_);
     corrections_.numerical_dissipation += less * elastic_product(problem, stages_.motion, stages_.motion, force_);
     problem.mass.multiply(stages_.mean, force_);
     corrections_.numerical_dissipation += (stages_.jump - (0.5 * h) * impact.increment).dot(force_);
@@ -101,7 +93,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
 
   void take_forces(const SemidiscreteProblem& problem, StageSolve& stages, const StageSolution& impact, State& state) {
     solution_.normal_reaction = impact.normal_reaction / step();
-    solution_.support_reaction = support_ + impact.support_reaction / step();
+    solution_.support_reaction = stages_.mean_support + impact.support_reaction / step();
     solution_.contact_status = impact.contact_status;
     stages_.equations().take_contact(stages.stage(NonsmoothStages::velocity_stage), solution_, step(), state);
     if (problem.loads.varies()) state.forces.varying_load = load_;
@@ -110,7 +102,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
   AlphaWeights weights_;
   NonsmoothStages stages_;
   StepCorrections corrections_;
-  Vector support_, load_, change_, work_on_, force_;  ///< F̄ of supports and varying loads, ΔA
+  Vector load_, work_on_, force_;  ///< F̄ of varying loads, ΔU less the increment, work space
   StageSolution solution_;
 };
 

@@ -14,24 +14,24 @@ const StageSolution& NonsmoothStages::push(const SemidiscreteProblem& problem, c
   return solve_with_forces(problem, normal, velocity_stage, stages);
 }
 
-void NonsmoothStages::take_start(const State& state) {
-  smooth = state.acceleration;
-  algorithmic = state.memory.at(algorithmic_acceleration);
-  support = state.memory.at(smooth_support_reaction);
-}
-
-void NonsmoothStages::take_contact_off(const SemidiscreteProblem& problem, const StepForces& forces,
-                                       Vector& acceleration, Vector& support_reaction, StageSolve& stages) {
-  if (!(forces.normal_reaction.sum() > 0.0)) return;
-  stages.stage(velocity_stage).rows = forces.rows;
-  const StageSolution& pressed = push(problem, forces.normal_reaction, stages);
-  acceleration -= pressed.increment;
-  support_reaction -= pressed.support_reaction;
+void NonsmoothStages::start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) {
+  Vector& reaction = state.memory[smooth_support_reaction];
+  reaction = state.forces.support_reaction;
+  if (state.forces.normal_reaction.sum() > 0.0) {
+    stages.stage(velocity_stage).rows = state.forces.rows;
+    const StageSolution& pressed = push(problem, state.forces.normal_reaction, stages);
+    state.acceleration -= pressed.increment;
+    reaction -= pressed.support_reaction;
+  }
+  state.memory[algorithmic_acceleration] = state.acceleration;
 }
 
 void NonsmoothStages::position(const SemidiscreteProblem& problem, const State& state, double step,
                                const AlphaWeights& weights, StageSolve& stages) {
   const double h = step, end = state.time + h;
+  smooth = state.acceleration;
+  algorithmic = state.memory.at(algorithmic_acceleration);
+  support = state.memory.at(smooth_support_reaction);
   shift_ = (weights.inertia * algorithmic - weights.force * smooth) / ((1.0 - weights.force) * weights.alpha);
   motion = h * state.velocity + (h * h * (0.5 - weights.beta)) * algorithmic - shift_;
   base_ = state.displacement + motion;
@@ -48,7 +48,10 @@ void NonsmoothStages::position(const SemidiscreteProblem& problem, const State& 
   jump = pushed.increment;
   smooth = weights.alpha * (solution.increment - jump);
   after = (solution.increment - shift_ - jump) / (weights.beta * h * h);
+  change = after - algorithmic;
+  mean_support = weights.force * support;
   support = solution.support_reaction - weights.alpha * pushed.support_reaction;
+  mean_support += (1.0 - weights.force) * support;
 }
 
 const StageSolution& NonsmoothStages::impulses(const SemidiscreteProblem& problem, const State& state, double step,

@@ -12,20 +12,21 @@ class NonsmoothStages {
   /// Numbers of the stages with the operators αM + K and M.
   static constexpr std::size_t position_stage = 0, velocity_stage = 1;
 
-  // Of the start of the step.
+  /// At t = 0: contact that presses already is no part of a₀, A₀ and the support reactions, a₀ = a − M⁻¹Gᵀr.
+  void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages);
+
+  // Of the start of the step, from the state.
   Vector smooth, algorithmic;  ///< accelerations a₀ and A₀ without contact; position() replaces a₀ by a₁
   Vector support;              ///< what supports exert without contact; likewise
-  void take_start(const State& state);
-  /// Takes contact forces out of an acceleration and support reactions: a − M⁻¹Gᵀr.
-  void take_contact_off(const SemidiscreteProblem& problem, const StepForces& forces, Vector& acceleration,
-                        Vector& support_reaction, StageSolve& stages);
 
   // Of the end.
-  Vector motion;    ///< U₁ − U₀
-  Vector jump;      ///< Q
-  Vector after;     ///< A₁
-  Vector velocity;  ///< V₀ + hA*
-  Vector mean;      ///< A*
+  Vector motion;        ///< U₁ − U₀
+  Vector jump;          ///< Q
+  Vector after;         ///< A₁
+  Vector change;        ///< A₁ − A₀
+  Vector mean_support;  ///< (1−α_f) of what supports exert without contact, α_f of that at the start
+  Vector velocity;      ///< V₀ + hA*
+  Vector mean;          ///< A*
   /// U₁ and what comes with it.
   void position(const SemidiscreteProblem& problem, const State& state, double step, const AlphaWeights& weights,
                 StageSolve& stages);

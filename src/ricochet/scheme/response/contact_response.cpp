@@ -1,5 +1,10 @@
 #include "ricochet/scheme/response/contact_response.hpp"
 
+#include <fmt/format.h>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+
 namespace ricochet {
 
 const StageSolution& solve_with_forces(const SemidiscreteProblem& problem, const Vector& normal, std::size_t number,
@@ -13,6 +18,16 @@ const StageSolution& solve_with_forces(const SemidiscreteProblem& problem, const
   stage.gap_factor = 1.0;
   stage.slip_offset.resize(0);
   return stages.solve(number);
+}
+
+void warn_of_dense_response(const std::string& scheme, Index rows) {
+  constexpr Index many = 1000;
+  if (rows <= many) return;
+  log::warning(fmt::format(
+      "scheme \"{}\" keeps a dense matrix of {} for each length of a step, {:.2g} GB, one solve for each: it "
+      "is for a few hundred contact points; name only facets that may touch in the contact group, or use "
+      "scheme \"reduced-kane\"",
+      scheme, counted(rows, "row"), 8e-9 * static_cast<double>(rows) * static_cast<double>(rows)));
 }
 
 Vector point_stiffness(const SemidiscreteProblem& problem) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "ricochet/problem/semidiscrete_problem.hpp"
@@ -16,6 +17,9 @@ const StageSolution& solve_with_forces(const SemidiscreteProblem& problem, const
 
 /// The body's own stiffness at each contact point, n·Kn/|n|⁴ with its row n of G.
 [[nodiscard]] Vector point_stiffness(const SemidiscreteProblem& problem);
+
+/// Warns of a dense matrix of so many rows that a run will be slow or large.
+void warn_of_dense_response(const std::string& scheme, Index rows);
 
 /// W = G A⁻¹ Gᵀ with δ = 0 on supported dofs, columns as they are asked for: one solve each, kept as long as their row
 /// does not change. For a few hundred points.

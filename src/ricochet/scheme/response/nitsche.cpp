@@ -33,6 +33,7 @@ class Nitsche final : public ForcedMidpoint {
     ForcedMidpoint::analyse(problem);
     if (!problem.contact_stress)
       throw Error(ErrorKind::invalid_input, "scheme \"nitsche\" needs the stress at the contact points");
+    warn_of_dense_response("nitsche", 2 * problem.contact.size());
     stress_ = problem.contact_stress();
     if (!(stress_.stiffness.array() > 1e-10 * stress_.stiffness.maxCoeff()).all() ||
         !(problem.contact.weights.array() > 0.0).all())
