@@ -41,7 +41,8 @@ class Scheme {
 
   /// h.
   [[nodiscard]] double step() const { return step_; }
-  /// Steps of different lengths may follow one another: what is remembered does not depend on the last one's.
+  /// Steps of different lengths may follow one another: neither what is remembered nor energy_state() depends on the
+  /// last one's, and advance() moves by step(). (algorithmic_energy() may: the account books the difference.)
   [[nodiscard]] virtual bool changes_step() const { return false; }
   /// The length of the steps from now on, after analyse(). Operators are others then.
   void change_step(const SemidiscreteProblem& problem, double step) {
