@@ -371,5 +371,30 @@ TEST(PublishedScheme, CdLagrangeChangesByTheImpulsesOnTheVelocitiesBefore) {
   }
 }
 
+/// The displacement of a body that vibrates in free flight, with three steps: the order is that of the
+/// schemes, which no identity of a step tells.
+TEST(PublishedScheme, IsOfSecondOrderWhereNothingTouches) {
+  for (const std::string& scheme : scheme_names()) {
+    for (const std::string& mass : masses_of(scheme)) {
+      std::string text = thrown_case(test_support::one_sided_block(), mass, time_of(scheme));
+      const auto replace = [&](const std::string& old, const std::string& now) {
+        ASSERT_NE(text.find(old), std::string::npos) << old;
+        text.replace(text.find(old), old.size(), now);
+      };
+      replace("point = [0.0, 0.0]", "point = [0.0, -10.0]");
+      replace("velocity = [\"0.1-0.2*y\", \"-0.5+0.2*x\"]", "velocity = [\"0.3*x\", \"-0.5+0.1*(y-1)\"]");
+      std::vector<Vector> ends;
+      for (const char* const step : {"time.step=0.0004", "time.step=0.0002", "time.step=0.0001"}) {
+        CaseRun run(text, {step, "time.end=0.16"});
+        run.run([] {});
+        ends.push_back(run.state().displacement);
+      }
+      const double order = std::log2((ends[0] - ends[1]).norm() / (ends[1] - ends[2]).norm());
+      const double expected = scheme == "newmark" ? 1.0 : 2.0;  // γ = 0.6
+      EXPECT_NEAR(order, expected, 0.1) << scheme << ' ' << mass;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ricochet
