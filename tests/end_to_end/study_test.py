@@ -114,6 +114,19 @@ class Study(TestCase):
         self.assertTrue((self.output / "runs.html").exists())
         self.assertIn("tip.displacement", self.expect_status(0, run("info", self.output)).stdout)
 
+    def test_fixed_and_adaptive_steps_are_lines_of_their_own(self):
+        self.study("lines", "--vary", "time.step,time.largest,time.tolerance=4e-3/-/-,2e-3/-/-,adaptive/4e-3/1e-2,adaptive/4e-3/1e-3",
+                   "--exact", "history.time[-1]=0.25", values={"time.end": 0.2, "output.fields_every": 0})
+        self.expect_status(0, run("plot", self.output, "--what", "work-precision", "-o", self.folder / "figure.svg"))
+        text = (self.folder / "figure.svg").read_text()
+        self.assertIn("<!-- numeric step -->", text)
+        self.assertIn("<!-- adaptive -->", text)
+        # Words that are all different, as meshes are, make one line.
+        self.study("one", "--vary", "title,time.step=coarse/4e-3,fine/2e-3", "--exact", "history.time[-1]=0.25",
+                   values={"time.end": 0.2, "output.fields_every": 0})
+        self.expect_status(0, run("plot", self.output, "--what", "work-precision", "-o", self.folder / "figure.svg"))
+        self.assertNotIn("coarse", (self.folder / "figure.svg").read_text())
+
     def test_a_run_that_fails_is_a_row(self):
         """An account that cannot close so well stops a run, and a limit below 0 is none."""
         process = self.study("failing", "--vary", "check.energy_residual=1e-8,1e-17,-1,1e-9", status=3,
