@@ -12,6 +12,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/study/history_errors.hpp"
 #include "ricochet/study/line_labels.hpp"
+#include "ricochet/study/order_columns.hpp"
 #include "ricochet/study/study_table.hpp"
 
 namespace ricochet {
@@ -153,12 +154,18 @@ std::vector<double> orders_of(const StudyLine& line) {
 }
 
 /// The whole orders that are nearest to observed ones, for guides: two at most, and the order at the end of each line.
-void describe_orders(const std::vector<StudyLine>& lines, Json& panel) {
+/// From where the error no longer falls there are none, and the order just before has some of that.
+void describe_orders(const std::vector<StudyLine>& lines, const std::string& key, Json& panel) {
   std::map<long, int> found;
   std::vector<std::string> last;
   for (const StudyLine& line : lines) {
-    const std::vector<double> orders = orders_of(line);
-    last.push_back(orders.empty() ? "-" : fmt::format("{:.2f}", orders.back()));
+    std::vector<double> orders = orders_of(line);
+    const bool ends_idle = !orders.empty() && find_idle_orders(key, orders).back();
+    last.push_back(ends_idle ? "floor" : orders.empty() ? "-" : fmt::format("{:.2f}", orders.back()));
+    if (line.x.front() < line.x.back()) std::reverse(orders.begin(), orders.end());
+    const std::vector<bool> idle = find_idle_orders(key, orders);
+    const auto floor = static_cast<std::size_t>(std::find(idle.begin(), idle.end(), true) - idle.begin());
+    if (floor < orders.size()) orders.resize(floor > 0 ? floor - 1 : 0);
     for (const double order : orders) {
       if (order > 0.5 && order < 4.5) ++found[std::lround(order)];
     }
@@ -205,7 +212,7 @@ Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& tab
   json["log_x"] = panel.log_x || (categories.empty() && spans_much(lines));
   for (const StudyLine& line : lines) json["curves"].push_back({{"label", line.label}, {"x", line.x}, {"y", line.y}});
   json["note"] = "";
-  if (panel.has_slopes) describe_orders(lines, json);
+  if (panel.has_slopes) describe_orders(lines, panel.x, json);
   return json;
 }
 
