@@ -9,6 +9,7 @@
 #include "reading_runs.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/report/figure.hpp"
+#include "ricochet/study/line_labels.hpp"
 #include "ricochet/study/study_figure.hpp"
 #include "ricochet/study/study_table.hpp"
 
@@ -86,12 +87,13 @@ std::string describe_study(const PlotArguments& arguments, const FigureOptions& 
 
 int plot(const PlotArguments& arguments) {
   const std::string format = format_of(arguments.output);
-  const FigureOptions options = options_of(arguments);
+  FigureOptions options = options_of(arguments);
   if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study)) {
     draw_figure(describe_study(arguments, options), format, arguments.output);
     fmt::print("{}\n", arguments.output);
     return 0;
   }
+  if (options.labels.empty()) options.labels = labels_in_study(arguments.directories);
   const bool needs_fields = std::count(options.what.begin(), options.what.end(), "pressure-map") > 0;
   std::string description;
   read_with_patience(arguments.directories,

@@ -13,7 +13,7 @@ try:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     from matplotlib.lines import Line2D
-    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator, ScalarFormatter
+    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator, ScalarFormatter
 except ImportError as problem:
     print(problem)
     sys.exit(3)
@@ -63,6 +63,11 @@ def in_powers(value):
     return rf"${float(mantissa):g} \cdot 10^{{{int(exponent)}}}$"
 
 
+def handle_length(count):
+    """Long enough for a pattern to be told from the others."""
+    return 2.0 if count <= len(COLOURS) else 3.5
+
+
 def draw_curves(axes, panel, several):
     count = len(panel["curves"])
     for i, (curve, width) in enumerate(zip(panel["curves"], widths(panel))):
@@ -85,13 +90,18 @@ def draw_curves(axes, panel, several):
     margin = 0.02 * (last - first)
     axes.set_xlim(first - margin, last + margin)
     axes.xaxis.set_major_locator(MaxNLocator(5))
+    axes.xaxis.set_major_formatter(ScalarFormatter(useMathText=True))
+    axes.ticklabel_format(axis="x", scilimits=(-3, 4), useOffset=False)
     notes = ", ".join(f"{literal(name)} reaches {in_powers(value)}" for name, value in panel.get("notes", []))
     axes.set_title(notes, loc="right", fontsize=7, color="0.35")
-    if several:
-        handles, labels = axes.get_legend_handles_labels()
-        order = sorted(range(count), key=lambda i: panel["curves"][i]["run"])
-        # Long enough for a pattern to be told from the others.
-        axes.legend([handles[i] for i in order], [labels[i] for i in order], frameon=False, handlelength=2.0 if count <= len(COLOURS) else 3.5)
+
+
+def draw_legend(axes, panel):
+    """Inside of the axes, where the curves leave room for short names."""
+    handles, labels = axes.get_legend_handles_labels()
+    order = sorted(range(len(handles)), key=lambda i: panel["curves"][i]["run"])
+    legend = axes.legend([handles[i] for i in order], [labels[i] for i in order], frameon=False, handlelength=handle_length(len(order)))
+    legend.set_in_layout(False)  # the axes keep their width
 
 
 def borders(places):
@@ -206,20 +216,67 @@ def draw_lines(axes, panel, labels):
     axes.set_title(panel["note"], loc="right", fontsize=7, color="0.35")
 
 
-def add_common_legend(figure, panels, width, height):
-    """Above all panels: there is no room in them that is free for sure. The figure grows by it."""
-    labels = labels_of(panels)
+def legend_width(labels):
+    """Of one column, cm."""
+    return 1.4 + 0.16 * max(map(len, labels))
+
+
+def curve_lines(panels):
+    """The lines of runs, by their names, in the order of the runs."""
+    runs = sorted({(curve["run"], curve["label"]) for panel in panels for curve in panel.get("curves", [])})
+    return [Line2D([], [], color=COLOURS[run % len(COLOURS)], ls=PATTERNS[run // len(COLOURS) % len(PATTERNS)], lw=1.2) for run, _ in runs], \
+        [label for _, label in runs]
+
+
+def common_legend(panels, panel_width):
+    """Lines and names of a legend for all panels: of studies always, of runs where their names would hide the curves."""
+    if panels[0]["kind"] == "lines":
+        labels = labels_of(panels)
+        return [Line2D([], [], **look(i, labels, panels[0])) for i in range(len(labels))], labels
+    handles, labels = curve_lines(panels)
+    is_large = len(labels) > 1 and (legend_width(labels) > 0.5 * panel_width or len(labels) > len(COLOURS))
+    return (handles, labels) if is_large else ([], [])
+
+
+def add_head(figure, handles, labels, title, width, height, may_grow):
+    """Title and legend above all panels: there is no room in them that is free for sure. The figure grows by it, unless
+    somebody has said how large it is."""
     if labels == [""]:
-        return
-    handles = [Line2D([], [], **look(i, labels, panels[0])) for i in range(len(labels))]
-    longest = max(map(len, labels))
-    columns = max(1, min(len(labels), int((width - 0.5) / (1.4 + 0.16 * longest))))
-    room = 0.45 * -(-len(labels) // columns) + 0.25
-    figure.set_size_inches(width * CENTIMETRE, (height + room) * CENTIMETRE)
-    top = height / (height + room)
+        labels = []
+    columns = max(1, min(len(labels), int((width - 0.5) / legend_width(labels)))) if labels else 1
+    title_room = 0.75 if title else 0.0
+    room = title_room + (0.45 * -(-len(labels) // columns) + 0.25 if labels else 0.0)
+    whole = height + room if may_grow else height
+    figure.set_size_inches(width * CENTIMETRE, whole * CENTIMETRE)
+    top = max(0.3, 1 - room / whole)
     figure.get_layout_engine().set(rect=(0, 0, 1, top))
-    figure.legend(handles, list(map(literal, labels)), loc="lower left", bbox_to_anchor=(0.01, top), ncol=columns, frameon=False,
-                  borderaxespad=0.0, handlelength=2.0 if len(labels) <= len(COLOURS) else 3.5)
+    if labels:
+        figure.legend(handles, list(map(literal, labels)), loc="lower left", bbox_to_anchor=(0.01, top), ncol=columns, frameon=False,
+                      borderaxespad=0.0, handlelength=handle_length(len(labels)))
+    if title:
+        figure.text(0.5, 1 - 0.5 * title_room / whole, literal(title), fontsize=10, ha="center", va="center")
+
+
+def overlap(axes, renderer):
+    """Whether the names of ticks below the axes touch each other."""
+    boxes = sorted((label.get_window_extent(renderer) for label in axes.get_xticklabels() if label.get_text() and label.get_visible()),
+                   key=lambda box: box.x0)
+    return any(a.x1 + 0.3 * a.height > b.x0 for a, b in zip(boxes, boxes[1:]))
+
+
+def spread_ticks(figure, grid):
+    """What has no room side by side is left out, or stands aslant where it is a word."""
+    renderer = figure.canvas.get_renderer()
+    for bins in (3, 2):
+        figure.draw_without_rendering()
+        crowded = [axes for axes in grid.flat if axes.axison and overlap(axes, renderer)]
+        for axes in crowded:
+            if isinstance(axes.xaxis.get_major_locator(), MaxNLocator):
+                axes.xaxis.set_major_locator(MaxNLocator(bins))
+            elif isinstance(axes.xaxis.get_major_locator(), FixedLocator):
+                plt.setp(axes.get_xticklabels(), rotation=25, ha="right", rotation_mode="anchor")
+        if not crowded:
+            break
 
 
 def main(form, output):
@@ -231,6 +288,7 @@ def main(form, output):
     height = description["height"] or 6.2 * rows if columns < 3 else description["height"] or 5.2 * rows
     figure, grid = plt.subplots(rows, columns, figsize=(width * CENTIMETRE, height * CENTIMETRE), squeeze=False,
                                 constrained_layout=True)
+    handles, labels = common_legend(panels, width / columns)
     for i, axes in enumerate(grid.flat):
         if i >= len(panels):
             axes.set_axis_off()
@@ -239,13 +297,14 @@ def main(form, output):
         elif panels[i]["kind"] == "lines":
             draw_lines(axes, panels[i], labels_of(panels))
         else:
-            draw_curves(axes, panels[i], len(panels[i]["curves"]) > 1)
+            several = len(panels[i]["curves"]) > 1
+            draw_curves(axes, panels[i], several)
+            if several and not labels:
+                draw_legend(axes, panels[i])
             if "time" in description:
                 axes.set_xlim(*description["time"])
-    if panels[0]["kind"] == "lines":
-        add_common_legend(figure, panels, width, height)
-    if description["title"]:
-        figure.suptitle(literal(description["title"]), fontsize=10)
+    add_head(figure, handles, labels, description["title"], width, height, not description["height"])
+    spread_ticks(figure, grid)
     # What a file says about itself must not change from day to day.
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[form]
     figure.savefig(output, format=form, metadata=metadata)

@@ -25,6 +25,20 @@ def curves(path):
     return result
 
 
+def texts(path):
+    """Where the texts of an SVG stand, from the top, in points: matplotlib draws letters and leaves the text in a comment."""
+    return {text: float(height) for text, height in
+            re.findall(r"<!-- (.*?) -->\s*<g [^>]*translate\([-\d.]+ ([-\d.]+)\)", path.read_text(encoding="utf-8"))}
+
+
+def width_of_axes(path):
+    """As a part of the figure's width; of the first panel."""
+    root = xml.etree.ElementTree.parse(path)
+    (box,) = [group for group in root.iter(f"{SVG}g") if group.get("id") == "patch_2"]
+    across = [float(x) for x in re.findall(r"[ML] (-?[\d.]+) ", box.find(f"{SVG}path").get("d"))]
+    return (max(across) - min(across)) / float(root.getroot().get("width").removesuffix("pt"))
+
+
 class Plot(TestCase):
     def simulate(self, name, case=DISC, **values):
         process = run("run", case, "-o", self.folder / name, "--quiet", "--log-level", "error",
@@ -93,6 +107,37 @@ class Plot(TestCase):
                     self.assertTrue(first.startswith(b"%PDF") and first.rstrip().endswith(b"%%EOF"))
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
                          ["figure.pdf", "figure.png", "figure.svg", "run"])
+
+    def test_runs_of_a_study_are_called_by_what_differs(self):
+        """And however long names are, axes keep their width and a title stands above the names."""
+        study = self.folder / "study"
+        values = settings({"time.end": 0.01, "output.fields_every": 0})
+        self.expect_status(0, run("study", DISC, "--vary", "time.scheme,mass.type=reduced-kane/equivalent,midpoint/consistent",
+                                  "--vary", "time.step=2e-4,1e-4", *values, "-o", study, "--quiet"))
+        runs = sorted((study / "runs").iterdir())
+        figure = self.folder / "figure.svg"
+        self.plot(*runs[::2], "--what", "energy", "-o", figure)
+        self.assertLessEqual({"reduced-kane", "midpoint"}, set(texts(figure)))
+        self.plot(*runs, "--what", "energy", "-o", figure)
+        self.assertIn("midpoint, step 1e-4", texts(figure))
+        elsewhere = [shutil.copytree(folder, self.folder / folder.name) for folder in runs]
+        for folders in (runs, elsewhere):
+            self.plot(*folders, "--what", "energy", "-o", figure, "--title", "All of them")
+            self.assertGreater(width_of_axes(figure), 0.7)
+            names = [height for text, height in texts(figure).items() if "midpoint" in text]
+            self.assertTrue(names)
+            self.assertLess(texts(figure)["All of them"] + 5, min(names))
+        self.plot(study, "--what", "peak_von_mises-against-time.step",
+                  "-o", figure, "--title", "All of them")
+        self.assertLess(texts(figure)["All of them"] + 5, texts(figure)["midpoint"])
+
+    def test_names_of_ticks_do_not_touch(self):
+        study = self.folder / "study"
+        names = ",".join(f"a-rather-long-name-{i}" for i in range(6))
+        self.expect_status(0, run("study", DISC, "--vary", f"title={names}", *settings({"time.end": 1e-3}), "-o", study, "--quiet"))
+        self.plot(study, "--what", "steps-against-title", "-o", "figure.svg")
+        text = (self.folder / "figure.svg").read_text(encoding="utf-8")
+        self.assertRegex(text, r"a-rather-long-name-3 -->\s*<g [^>]*rotate\(")
 
     def test_a_run_that_grows_does_not_hide_the_others(self):
         values = {"time.end": 0.06}

@@ -89,7 +89,7 @@ class Study(TestCase):
     def test_orders_of_a_linear_oscillator(self):
         """Midpoint and trapezoidal rule are of second order; the reference is a hundred times as fine."""
         reference = self.simulate(ROD, "reference", {**FREE, "time.scheme": "midpoint", "time.step": 5e-4})
-        self.study("orders", "--vary", "time.scheme,time.preset=newmark/trapezoidal,midpoint/-", "--vary",
+        process = self.study("orders", "--vary", "time.scheme,time.preset=newmark/trapezoidal,midpoint/-", "--vary",
                    "time.step=0.1,0.05,0.025", "--reference", reference, "--compare", "tip.displacement", "--compare",
                    "kinetic_energy", case=ROD, values=FREE)
         rows = table(self.output)
@@ -101,6 +101,8 @@ class Study(TestCase):
                 else:
                     self.assertAlmostEqual(float(order), 2.0, delta=0.02)
         self.assertIn("order:tip.displacement", (self.output / "study.md").read_text())
+        for absent in ("mean nothing", "too large"):
+            self.assertNotIn(absent, process.stdout)
         for what in ("order", "work-precision", "order:tip.displacement", "peak_von_mises-against-time.step",
                      "processor_seconds-against-time.scheme"):
             self.expect_status(0, run("plot", self.output, "--what", what, "-o", self.folder / "figure.svg"))
@@ -113,6 +115,45 @@ class Study(TestCase):
         self.assertIn(f'href="runs/{rows[0]["run"]}"', page)
         self.assertTrue((self.output / "runs.html").exists())
         self.assertIn("tip.displacement", self.expect_status(0, run("info", self.output)).stdout)
+
+    def test_orders_that_mean_nothing_are_told(self):
+        """Against a wrong value the error does not fall; against the finest run orders are too large."""
+        process = self.study("floor", "--vary", "time.step=0.1,0.05,0.025", "--exact", "history.time[-1]=3", "--reference", "finest",
+                             case=ROD, values={**FREE, "time.scheme": "midpoint"})
+        for text in (process.stdout, (self.output / "study.md").read_text()):
+            self.assertIn("mean nothing (2 of 2 of history.time", text)
+            self.assertIn("The last orders are too large", text)
+        self.expect_status(0, run("plot", self.output, "--what", "order:history.time[-1]", "-o", self.folder / "figure.svg"))
+        text = (self.folder / "figure.svg").read_text()
+        self.assertIn("<!-- last order: floor -->", text)
+        self.assertNotIn("<!-- order ", text)
+
+    def test_a_quantity_that_some_runs_lack_is_told_once(self):
+        process = self.study("some", "--vary", "time.step,time.largest=4e-3/-,2e-3/-,adaptive/4e-3", "--quantity",
+                             "summary.adaptive_steps.refused", values={"time.end": 0.1})
+        self.assertEqual(process.stderr.count("adaptive_steps"), 1)
+        self.assertIn("--quantity summary.adaptive_steps.refused: 2 of 3 runs lack it", process.stderr)
+
+    def test_progress_says_what_is_left(self):
+        process = self.study("left", "--vary", "time.step=4e-3,3e-3,2e-3", "--jobs", 1, options=())
+        lines = [line for line in process.stderr.splitlines() if "/3  " in line]
+        self.assertEqual(len(lines), 3, process.stderr)
+        for line in lines[:2]:
+            self.assertRegex(line, r": done, .+ left$")
+        self.assertRegex(lines[2], ": done$")
+
+    def test_fixed_and_adaptive_steps_are_lines_of_their_own(self):
+        self.study("lines", "--vary", "time.step,time.largest,time.tolerance=4e-3/-/-,2e-3/-/-,adaptive/4e-3/1e-2,adaptive/4e-3/1e-3",
+                   "--exact", "history.time[-1]=0.25", values={"time.end": 0.2, "output.fields_every": 0})
+        self.expect_status(0, run("plot", self.output, "--what", "work-precision", "-o", self.folder / "figure.svg"))
+        text = (self.folder / "figure.svg").read_text()
+        self.assertIn("<!-- numeric step -->", text)
+        self.assertIn("<!-- adaptive -->", text)
+        # Words that are all different, as meshes are, make one line.
+        self.study("one", "--vary", "title,time.step=coarse/4e-3,fine/2e-3", "--exact", "history.time[-1]=0.25",
+                   values={"time.end": 0.2, "output.fields_every": 0})
+        self.expect_status(0, run("plot", self.output, "--what", "work-precision", "-o", self.folder / "figure.svg"))
+        self.assertNotIn("coarse", (self.folder / "figure.svg").read_text())
 
     def test_a_run_that_fails_is_a_row(self):
         """An account that cannot close so well stops a run, and a limit below 0 is none."""

@@ -11,6 +11,8 @@
 #include "ricochet/base/json.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/study/history_errors.hpp"
+#include "ricochet/study/line_labels.hpp"
+#include "ricochet/study/order_columns.hpp"
 #include "ricochet/study/study_table.hpp"
 
 namespace ricochet {
@@ -90,21 +92,15 @@ std::vector<StudyPanel> panels_of(const std::string& what, const Study& study, c
   return panels;
 }
 
-/// A value of an axis as short as it can be told from the others: by the first key alone, if that does.
-std::string value_label(const StudyAxis& axis, std::size_t at) {
-  const auto same = [&](const auto& other) { return other.front() == axis.values[at].front(); };
-  if (std::count_if(axis.values.begin(), axis.values.end(), same) == 1) return axis.values[at].front();
-  return fmt::format("{}", fmt::join(axis.values[at], "/"));
-}
-
-/// How the runs of a line are told from the others: by the values of the other axes.
-std::string line_label(const PlannedRun& run, const StudyPlan& plan, std::size_t line_axis) {
-  std::vector<std::string> parts;
+/// How the runs of a line are told from the others: by the values of the other axes, and by their kind along its own.
+std::string line_label(const PlannedRun& run, const StudyPlan& plan, const StudyPanel& panel) {
+  std::vector<std::size_t> others;
   for (std::size_t a = 0; a < plan.axes.size(); ++a) {
-    if (a == line_axis) continue;
-    const std::string &key = plan.axes[a].keys.front(), value = value_label(plan.axes[a], run.at[a]);
-    parts.push_back(number_in(value) ? fmt::format("{} {}", key.substr(key.rfind('.') + 1), value) : value);
+    if (a != panel.axis) others.push_back(a);
   }
+  std::vector<std::string> parts{label_by_axes(run, plan, others),
+                                 kinds_along(plan.axes[panel.axis], panel.x)[run.at[panel.axis]]};
+  std::erase(parts, "");
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -139,7 +135,7 @@ std::vector<StudyLine> lines_of(const StudyPanel& panel, const Study& study, con
     const bool is_shown =
         std::isfinite(x) && std::isfinite(y) && !(panel.log_x && x <= 0.0) && !(panel.log_y && y <= 0.0);
     if (!is_shown) continue;
-    const std::string label = line_label(study.runs[i].planned, study.plan, panel.axis);
+    const std::string label = line_label(study.runs[i].planned, study.plan, panel);
     auto line = std::find_if(lines.begin(), lines.end(), [&](const StudyLine& other) { return other.label == label; });
     if (line == lines.end()) line = lines.insert(line, {label, {}, {}});
     line->x.push_back(x);
@@ -158,12 +154,18 @@ std::vector<double> orders_of(const StudyLine& line) {
 }
 
 /// The whole orders that are nearest to observed ones, for guides: two at most, and the order at the end of each line.
-void describe_orders(const std::vector<StudyLine>& lines, Json& panel) {
+/// From where the error no longer falls there are none, and the order just before has some of that.
+void describe_orders(const std::vector<StudyLine>& lines, const std::string& key, Json& panel) {
   std::map<long, int> found;
   std::vector<std::string> last;
   for (const StudyLine& line : lines) {
-    const std::vector<double> orders = orders_of(line);
-    last.push_back(orders.empty() ? "-" : fmt::format("{:.2f}", orders.back()));
+    std::vector<double> orders = orders_of(line);
+    const bool ends_idle = !orders.empty() && find_idle_orders(key, orders).back();
+    last.push_back(ends_idle ? "floor" : orders.empty() ? "-" : fmt::format("{:.2f}", orders.back()));
+    if (line.x.front() < line.x.back()) std::reverse(orders.begin(), orders.end());
+    const std::vector<bool> idle = find_idle_orders(key, orders);
+    const auto floor = static_cast<std::size_t>(std::find(idle.begin(), idle.end(), true) - idle.begin());
+    if (floor < orders.size()) orders.resize(floor > 0 ? floor - 1 : 0);
     for (const double order : orders) {
       if (order > 0.5 && order < 4.5) ++found[std::lround(order)];
     }
@@ -210,7 +212,7 @@ Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& tab
   json["log_x"] = panel.log_x || (categories.empty() && spans_much(lines));
   for (const StudyLine& line : lines) json["curves"].push_back({{"label", line.label}, {"x", line.x}, {"y", line.y}});
   json["note"] = "";
-  if (panel.has_slopes) describe_orders(lines, json);
+  if (panel.has_slopes) describe_orders(lines, panel.x, json);
   return json;
 }
 

@@ -50,7 +50,7 @@ void StudyProgress::end(const std::string& directory, const std::string& words) 
   if (terminal_) {
     draw();
   } else {
-    fmt::print(stderr, "{}/{}  {}: {}\n", ended_, runs_, directory, words);
+    fmt::print(stderr, "{}/{}  {}: {}{}\n", ended_, runs_, directory, words, time_left(runs_done()));
   }
 }
 
@@ -58,17 +58,26 @@ void StudyProgress::watch() {
   if (!quiet_ && terminal_ && timer_.seconds() - last_drawn_ >= redraw_interval) draw();
 }
 
+double StudyProgress::runs_done() const {
+  auto done = static_cast<double>(ended_);
+  for (const std::string& directory : running_) done += part_done(directory);
+  return done;
+}
+
+std::string StudyProgress::time_left(double done) const {
+  const double here = done - static_cast<double>(ended_before_), left = static_cast<double>(runs_) - done;
+  if (!(here > 0.0 && left > 0.0)) return "";
+  // As many go on at a time as before: the number of jobs is in the mean.
+  return fmt::format(", {} left", duration_text(timer_.seconds() / here * left));
+}
+
 void StudyProgress::draw() {
   last_drawn_ = timer_.seconds();
-  double done = static_cast<double>(ended_);
-  for (const std::string& directory : running_) done += part_done(directory);
-  const double here = done - static_cast<double>(ended_before_);
-  const double left = last_drawn_ / here * (static_cast<double>(runs_) - done);
+  const double done = runs_done();
   constexpr int width = 30;
   const int filled = static_cast<int>(width * done / static_cast<double>(runs_));
   fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {}/{} runs, {} going on  {} gone{}\033[K", "", filled, "", width - filled,
-             ended_, runs_, running_.size(), duration_text(last_drawn_),
-             here > 0.0 ? fmt::format(", {} left", duration_text(left)) : "");
+             ended_, runs_, running_.size(), duration_text(last_drawn_), time_left(done));
   std::fflush(stderr);
   open_ = true;
 }

@@ -25,6 +25,10 @@ class StudyProgress {
 
  private:
   void draw();
+  /// Of all runs, with the part that those that go on have done.
+  [[nodiscard]] double runs_done() const;
+  /// ", 12 s left": what the runs of this command have taken so far, of those that are left. "" before there is any.
+  [[nodiscard]] std::string time_left(double done) const;
 
   std::size_t runs_, ended_before_, ended_;
   bool quiet_, terminal_, open_ = false;

@@ -16,6 +16,7 @@
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/run/quantity_value.hpp"
 #include "ricochet/study/history_errors.hpp"
+#include "ricochet/study/order_columns.hpp"
 #include "ricochet/study/outcome_columns.hpp"
 
 namespace ricochet {
@@ -59,8 +60,6 @@ class StudyTableMaker {
   void add_quantities();
   void add_exact_errors();
   void add_history_errors();
-  [[nodiscard]] std::optional<std::size_t> run_before(std::size_t run, std::size_t axis) const;
-  void add_orders();
   void add_messages();
   void note_problems();
   void note_messages();
@@ -77,6 +76,7 @@ class StudyTableMaker {
   std::vector<CellOf> new_columns_;
   std::map<std::string, std::string> problems_;  ///< what the runs do not have, by the option that asks for it
   std::set<std::string> answered_;               ///< such options that have a value of some run
+  std::map<std::string, int> lacking_;           ///< how many runs do not have it
   bool has_unanswered_ = false;
   StudyResults results_;
 };
@@ -102,6 +102,10 @@ void StudyTableMaker::fill_columns() {
 /// A question that some runs cannot answer leaves cells empty; one that none can is a mistake in the question.
 void StudyTableMaker::note_problems() {
   for (const auto& [question, problem] : problems_) {
+    if (answered_.contains(question) && lacking_.contains(question)) {
+      log::warning(fmt::format("{}: {} of {} lack it", question, lacking_[question], counted(results_.done, "run")));
+      continue;
+    }
     log::warning(fmt::format("{}: {}", question, problem));
     if (answered_.contains(question)) continue;
     results_.notes.push_back(fmt::format("{}: {}.", question, problem));
@@ -151,7 +155,9 @@ TableCell StudyTableMaker::value_of(const std::string& quantity, std::size_t run
     answered_.insert(question);
     return value;
   } catch (const Error& problem) {
-    if (!option.empty()) problems_[question] = problem.what();
+    if (option.empty()) return {};
+    problems_[question] = problem.what();
+    ++lacking_[question];
     return {};
   }
 }
@@ -253,46 +259,6 @@ void StudyTableMaker::add_history_errors() {
                   reference_in_words(questions_.reference)));
 }
 
-/// The run before it along the order's key; nothing for the first.
-std::optional<std::size_t> StudyTableMaker::run_before(std::size_t run, std::size_t axis) const {
-  std::vector<std::size_t> at = study_.runs[run].planned.at;
-  if (at[axis]-- == 0) return std::nullopt;
-  const auto found = std::find_if(study_.runs.begin(), study_.runs.end(),
-                                  [&](const StudyRun& other) { return other.planned.at == at; });
-  return static_cast<std::size_t>(found - study_.runs.begin());
-}
-
-/// Behind each column of errors that of its orders.
-void StudyTableMaker::add_orders() {
-  if (questions_.order_key.empty()) return;
-  const KeyPlace place = find_varied(study_.plan, questions_.order_key, "--order");
-  const auto step = [this, place](std::size_t run) {
-    const std::size_t at = study_.runs[run].planned.at[place.axis];
-    return number_in(study_.plan.axes[place.axis].values[at][place.key]).value();
-  };
-  ResultTable& table = results_.table;
-  bool any = false;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    if (!table.columns[c].name.starts_with(error_prefix)) continue;
-    any = true;
-    const std::string name = table.columns[c].name.substr(std::string(error_prefix).size());
-    const auto behind = static_cast<std::ptrdiff_t>(c + 1);
-    table.columns.insert(table.columns.begin() + behind, {fmt::format("{}{}", order_prefix, name), true, 3, 2});
-    for (std::size_t run = 0; run < table.rows.size(); ++run) {
-      std::optional<double> order;
-      if (const auto before = run_before(run, place.axis)) {
-        order =
-            observed_order(number_of(table.rows[*before][c]), number_of(table.rows[run][c]), step(*before), step(run));
-      }
-      table.rows[run].insert(table.rows[run].begin() + behind, order ? TableCell(*order) : TableCell());
-    }
-  }
-  if (any) {
-    results_.notes.push_back(
-        fmt::format("Orders are those between a value of {} and the one before it.", questions_.order_key));
-  }
-}
-
 void StudyTableMaker::add_messages() {
   add_column({"message", false}, [this](std::size_t run) -> TableCell {
     const RunState& state = states_[run];
@@ -330,7 +296,7 @@ StudyResults StudyTableMaker::make() {
   add_exact_errors();
   add_history_errors();
   fill_columns();
-  add_orders();
+  add_order_columns(study_, results_.table, results_.notes);
   add_messages();
   fill_columns();
   note_messages();

@@ -1,0 +1,104 @@
+#include "ricochet/study/line_labels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "ricochet/base/text.hpp"
+#include "ricochet/study/study_files.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Texts = std::vector<std::string>;
+
+std::string last_part(const std::string& key) {
+  return key.substr(key.rfind('.') + 1);
+}
+
+/// A value of an axis as short as it can be told from the others: by the first key alone, if that does.
+std::string value_label(const StudyAxis& axis, std::size_t at) {
+  const auto same = [&](const auto& other) { return other.front() == axis.values[at].front(); };
+  if (std::count_if(axis.values.begin(), axis.values.end(), same) == 1) return axis.values[at].front();
+  return fmt::format("{}", fmt::join(axis.values[at], "/"));
+}
+
+/// The kinds of one key's values; empty where they make no lines: all numbers, or words that are all different, such
+/// as meshes that become finer.
+Texts kinds_of_key(const StudyAxis& axis, std::size_t key) {
+  Texts kinds;
+  for (const Texts& entry : axis.values) {
+    const std::string& value = entry[key];
+    const std::string name = last_part(axis.keys[key]);
+    kinds.push_back(number_in(value) ? "numeric " + name : value == "-" ? "no " + name : value);
+  }
+  const std::size_t distinct = std::set<std::string>(kinds.begin(), kinds.end()).size();
+  if (distinct == 1 || distinct == kinds.size()) return {};
+  return kinds;
+}
+
+}  // namespace
+
+std::string label_by_axes(const PlannedRun& run, const StudyPlan& plan, const std::vector<std::size_t>& axes) {
+  Texts parts;
+  for (const std::size_t a : axes) {
+    const std::string &key = plan.axes[a].keys.front(), value = value_label(plan.axes[a], run.at[a]);
+    parts.push_back(number_in(value) ? fmt::format("{} {}", last_part(key), value) : value);
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+Texts kinds_along(const StudyAxis& axis, const std::string& shown) {
+  std::vector<Texts> by_key;
+  for (std::size_t key = 0; key < axis.keys.size(); ++key) {
+    if (axis.keys.size() == 1 || axis.keys[key] == shown) continue;
+    if (Texts kinds = kinds_of_key(axis, key); !kinds.empty()) by_key.push_back(std::move(kinds));
+  }
+  Texts whole(axis.values.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (const Texts& kinds : by_key) whole[i] += (whole[i].empty() ? "" : ", ") + kinds[i];
+  }
+  // One key alone, where it tells them apart.
+  const std::size_t distinct = std::set<std::string>(whole.begin(), whole.end()).size();
+  for (const Texts& kinds : by_key) {
+    if (std::set<std::string>(kinds.begin(), kinds.end()).size() == distinct) return kinds;
+  }
+  return whole;
+}
+
+Texts labels_in_study(const Texts& directories) {
+  namespace fs = std::filesystem;
+  std::string home;
+  Texts folders;
+  for (const std::string& directory : directories) {
+    fs::path path = fs::absolute(directory).lexically_normal();
+    if (!path.has_filename()) path = path.parent_path();  // a trailing slash
+    const std::string study = path.parent_path().parent_path().string();
+    if (path.parent_path().filename() != "runs" || !holds_study(study) || (!home.empty() && home != study)) return {};
+    home = study;
+    folders.push_back(path.filename().string());
+  }
+  if (home.empty()) return {};
+  const Study study = read_study(home);
+  std::vector<const PlannedRun*> runs;
+  for (const std::string& folder : folders) {
+    const auto found =
+        std::find_if(study.runs.begin(), study.runs.end(), [&](const StudyRun& run) { return run.folder == folder; });
+    if (found == study.runs.end()) return {};
+    runs.push_back(&found->planned);
+  }
+  std::vector<std::size_t> axes;
+  for (std::size_t a = 0; a < study.plan.axes.size(); ++a) {
+    const auto differs = [&](const PlannedRun* run) { return run->at[a] != runs.front()->at[a]; };
+    if (std::any_of(runs.begin(), runs.end(), differs)) axes.push_back(a);
+  }
+  if (axes.empty()) return {};
+  Texts labels;
+  for (const PlannedRun* run : runs) labels.push_back(label_by_axes(*run, study.plan, axes));
+  return labels;
+}
+
+}  // namespace ricochet

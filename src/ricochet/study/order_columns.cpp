@@ -1,0 +1,103 @@
+#include "ricochet/study/order_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "ricochet/base/text.hpp"
+#include "ricochet/study/history_errors.hpp"
+#include "ricochet/study/study_table.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Solutions with fronts have orders down to a third. Half the step then takes a fifth of the error away, and this
+/// order a fifteenth.
+constexpr double least_order = 0.1;
+
+/// The run before it along an axis; nothing for the first.
+std::optional<std::size_t> run_before(const Study& study, std::size_t run, std::size_t axis) {
+  std::vector<std::size_t> at = study.runs[run].planned.at;
+  if (at[axis]-- == 0) return std::nullopt;
+  const auto found =
+      std::find_if(study.runs.begin(), study.runs.end(), [&](const StudyRun& other) { return other.planned.at == at; });
+  return static_cast<std::size_t>(found - study.runs.begin());
+}
+
+/// Of the column of errors c, run by run.
+std::vector<std::optional<double>> orders_of(const Study& study, const ResultTable& table, std::size_t c) {
+  const KeyPlace place = find_varied(study.plan, study.questions.order_key, "--order");
+  const auto step = [&](std::size_t run) {
+    const std::size_t at = study.runs[run].planned.at[place.axis];
+    return number_in(study.plan.axes[place.axis].values[at][place.key]).value();
+  };
+  std::vector<std::optional<double>> orders(table.rows.size());
+  for (std::size_t run = 0; run < orders.size(); ++run) {
+    const auto before = run_before(study, run, place.axis);
+    if (!before) continue;
+    orders[run] =
+        observed_order(number_of(table.rows[*before][c]), number_of(table.rows[run][c]), step(*before), step(run));
+  }
+  return orders;
+}
+
+/// "2 of 6 of tip.displacement", or "".
+std::string idle_text(const std::string& key, const std::string& name,
+                      const std::vector<std::optional<double>>& orders) {
+  std::vector<double> found;
+  for (const std::optional<double>& order : orders) {
+    if (order) found.push_back(*order);
+  }
+  const std::vector<bool> idle = find_idle_orders(key, found);
+  const auto count = std::count(idle.begin(), idle.end(), true);
+  return count > 0 ? fmt::format("{} of {} of {}", count, found.size(), name) : "";
+}
+
+bool is_biased(const StudyQuestions& questions) {
+  return questions.reference == "finest:" + questions.order_key || questions.reference == "last:" + questions.order_key;
+}
+
+}  // namespace
+
+std::vector<bool> find_idle_orders(const std::string& key, const std::vector<double>& orders) {
+  const auto positive = std::count_if(orders.begin(), orders.end(), [](double order) { return order > 0.0; });
+  const bool smaller_is_finer = key == "time.step" || 2 * positive >= static_cast<std::ptrdiff_t>(orders.size());
+  std::vector<bool> idle;
+  for (const double order : orders) idle.push_back((smaller_is_finer ? order : -order) < least_order);
+  return idle;
+}
+
+void add_order_columns(const Study& study, ResultTable& table, std::vector<std::string>& notes) {
+  const std::string& key = study.questions.order_key;
+  if (key.empty()) return;
+  std::vector<std::string> idle;
+  bool any = false;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (!table.columns[c].name.starts_with(error_prefix)) continue;
+    const std::string name = table.columns[c].name.substr(std::string(error_prefix).size());
+    const std::vector<std::optional<double>> orders = orders_of(study, table, c);
+    any = any || std::any_of(orders.begin(), orders.end(), [](const auto& order) { return order.has_value(); });
+    const auto behind = static_cast<std::ptrdiff_t>(c + 1);
+    table.columns.insert(table.columns.begin() + behind, {order_prefix + name, true, 3, 2});
+    for (std::size_t run = 0; run < table.rows.size(); ++run)
+      table.rows[run].insert(table.rows[run].begin() + behind, orders[run] ? TableCell(*orders[run]) : TableCell());
+    if (std::string text = idle_text(key, name, orders); !text.empty()) idle.push_back(std::move(text));
+  }
+  if (!any) return;
+  notes.push_back(fmt::format("Orders are those between a value of {} and the one before it.", key));
+  if (!idle.empty()) {
+    notes.push_back(
+        fmt::format("Orders below {} mean nothing ({}): there the error no longer falls with {}, and what is left of "
+                    "it comes from something else, such as the mesh or the reference.",
+                    least_order, fmt::join(idle, ", "), key));
+  }
+  if (is_biased(study.questions)) {
+    notes.push_back(
+        "The last orders are too large, since the reference is a run of this study: at half the step it makes an order "
+        "of 2 seem 2.3. Name a run that is much finer with --reference to have none of this.");
+  }
+}
+
+}  // namespace ricochet
