@@ -12,17 +12,18 @@ namespace ricochet {
 
 namespace {
 
-struct CellPlace {
-  std::size_t block = 0;
-  Index local = 0;
-};
+/// Of a block of cells: the rule of the stiffness, and the shape functions at the nodes of the displacement.
+struct BlockRules {
+  BlockIntegration stiffness;
+  Tabulation geometry, displacement;
 
-CellPlace locate_cell(const DisplacementSpace& space, Index cell) {
-  CellPlace place;
-  while (cell >= space.cells[place.block].size()) cell -= space.cells[place.block++].size();
-  place.local = cell;
-  return place;
-}
+  BlockRules(CellShape shape, int geometry_degree, int displacement_degree)
+      : stiffness(stiffness_integration(shape, geometry_degree, displacement_degree)) {
+    const ReferenceElement& element = ReferenceElement::get(shape, displacement_degree);
+    geometry = ReferenceElement::get(shape, geometry_degree).tabulate(element.nodes());
+    displacement = element.tabulate(element.nodes());
+  }
+};
 
 /// A facet of the contact boundary: the cell behind it, and its area.
 struct FacetData {
@@ -41,6 +42,12 @@ template <int d>
 class StressRows {
  public:
   StressRows(const Body& body, const ContactBoundary& boundary) : body_(body), boundary_(boundary) {
+    for (const CellBlock& block : body.mesh->cells)
+      cells_.emplace_back(block.shape, body.mesh->degree, body.space->degree);
+    for (const CellBlock& block : body.mesh->facets) {
+      const Points& nodes = ReferenceElement::get(block.shape, body.space->degree).nodes();
+      facet_maps_.push_back(ReferenceElement::get(block.shape, body.mesh->degree).tabulate(nodes));
+    }
     const std::vector<std::vector<Index>> cells = cells_of_facets(*body.mesh, boundary.facets);
     const FacetIntegration integration(body);
     FacetQuadrature quadrature;
@@ -61,7 +68,7 @@ class StressRows {
     result.stiffness.setZero(boundary_.size());
     std::vector<Eigen::Triplet<double>> entries;
     for (const auto& [cell, all] : of_cells) {
-      const CellPlace place = locate_cell(*body_.space, cell);
+      const PlaceInBlocks place = locate_cell(*body_.space, cell);
       const Index* nodes = body_.space->cells[place.block].cell(place.local);
       const double largest = largest_of_cell(place, cell, all);
       for (const Share& each : all) {
@@ -81,19 +88,18 @@ class StressRows {
   using Space = Eigen::Matrix<double, d, 1>;
 
   void add_facet(std::size_t k, std::vector<Share>& shares) {
-    const FacetPlace at = locate_facet(*body_.space, boundary_.facets[k]);
-    const CellPlace in = locate_cell(*body_.space, facets_[k].cell);
+    const PlaceInBlocks at = locate_facet(*body_.space, boundary_.facets[k]);
+    const PlaceInBlocks in = locate_cell(*body_.space, facets_[k].cell);
     const CellBlock& facets = body_.space->facets[at.block];
     const CellBlock& cells = body_.space->cells[in.block];
     const Index *nodes = facets.cell(at.local), *corners = cells.cell(in.local);
     const IsotropicElasticity law = linear_law(body_, material_of(body_, facets_[k].cell));
-    const Points& places = ReferenceElement::get(facets.shape, body_.space->degree).nodes();
-    for (Index a = 0; a < places.cols(); ++a) {
+    for (Index a = 0; a < facets.nodes_per_cell; ++a) {
       const auto points = points_.find(nodes[a]);
       if (points == points_.end()) continue;
       const Index own = std::find(corners, corners + cells.nodes_per_cell, nodes[a]) - corners;
       const Eigen::Matrix<double, Eigen::Dynamic, d> gradients = gradients_at(in, own);
-      const Space outward = normal_at(at, places.col(a), in);
+      const Space outward = normal_at(at, a, in);
       for (const auto& [point, c] : points->second) {
         Share share{point, c * facets_[k].area / area_.at(nodes[a]), Vector(gradients.rows() * d)};
         const Space n = boundary_.rows->normals.col(point);
@@ -110,19 +116,19 @@ class StressRows {
   }
 
   /// Of the shape functions of a cell, at one of its nodes.
-  Eigen::Matrix<double, Eigen::Dynamic, d> gradients_at(const CellPlace& in, Index node) const {
-    const CellBlock& geometry = body_.mesh->cells[in.block];
-    const ReferenceElement& element = ReferenceElement::get(geometry.shape, body_.space->degree);
-    const Points place = element.nodes().col(node);
-    const Tabulation map = ReferenceElement::get(geometry.shape, body_.mesh->degree).tabulate(place);
-    return element.tabulate(place).gradients[0] *
-           jacobian<d>(body_.mesh->nodes, geometry.cell(in.local), map.gradients[0]).inverse();
+  Eigen::Matrix<double, Eigen::Dynamic, d> gradients_at(const PlaceInBlocks& in, Index node) const {
+    const BlockRules& rules = cells_[in.block];
+    const auto at = static_cast<std::size_t>(node);
+    const Index* nodes = body_.mesh->cells[in.block].cell(in.local);
+    return rules.displacement.gradients[at] *
+           jacobian<d>(body_.mesh->nodes, nodes, rules.geometry.gradients[at]).inverse();
   }
 
-  Space normal_at(const FacetPlace& at, const Vector& place, const CellPlace& in) const {
+  /// Of the facet `at` of the cell `in`, out of the cell, at a node of the facet.
+  Space normal_at(const PlaceInBlocks& at, Index node, const PlaceInBlocks& in) const {
     const CellBlock& geometry = body_.mesh->facets[at.block];
-    const Tabulation map = ReferenceElement::get(geometry.shape, body_.mesh->degree).tabulate(place);
-    const auto along = jacobian<d, d - 1>(body_.mesh->nodes, geometry.cell(at.local), map.gradients[0]);
+    const auto along = jacobian<d, d - 1>(body_.mesh->nodes, geometry.cell(at.local),
+                                          facet_maps_[at.block].gradients[static_cast<std::size_t>(node)]);
     Space normal;
     if constexpr (d == 2) {
       normal << along(1, 0), -along(0, 0);
@@ -141,12 +147,10 @@ class StressRows {
   }
 
   /// The largest Σ |share| s² of a displacement of the cell with uᵀK_cell u = 1.
-  double largest_of_cell(const CellPlace& place, Index cell, const std::vector<Share>& all) const {
+  double largest_of_cell(const PlaceInBlocks& place, Index cell, const std::vector<Share>& all) const {
     if (all.empty()) return 0.0;
     const CellBlock& geometry = body_.mesh->cells[place.block];
-    const int degree = body_.mesh->degree, displacement = body_.space->degree;
-    const BlockIntegration integration(geometry.shape, degree, displacement,
-                                       stiffness_quadrature_degree(geometry.shape, degree, displacement));
+    const BlockIntegration& integration = cells_[place.block].stiffness;
     const int count = static_cast<int>(integration.displacement.values.rows());
     std::vector<double> pairs(static_cast<std::size_t>(pair_number(0, count)) * d * d);
     element_stiffness<d>(integration, body_.mesh->nodes, geometry.cell(place.local),
@@ -174,6 +178,8 @@ class StressRows {
 
   const Body& body_;
   const ContactBoundary& boundary_;
+  std::vector<BlockRules> cells_;       ///< per block of cells
+  std::vector<Tabulation> facet_maps_;  ///< per block of facets: the geometry at the nodes of the displacement
   std::vector<FacetData> facets_;
   std::map<Index, double> area_;                                   ///< of the contact facets around a node
   std::map<Index, std::vector<std::pair<Index, double>>> points_;  ///< that see a node, with c

@@ -26,7 +26,7 @@ class DualMultipliers final : public MultiplierSpace {
     if (space.degree == 1) return;
     for (const ContactPatch::Part& part : patch.parts) {
       for (const Index facet : part.facets) {
-        const FacetPlace place = locate_facet(space, facet);
+        const PlaceInBlocks place = locate_facet(space, facet);
         const CellBlock& block = space.facets[place.block];
         if (block.shape != CellShape::triangle) continue;
         const Index* nodes = block.cell(place.local);

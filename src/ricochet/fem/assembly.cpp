@@ -102,10 +102,8 @@ SparseMatrix scalar_mass(const Body& body, const NodeGraph& graph, const std::ve
 template <int d>
 SparseMatrix stiffness(const Body& body, const NodeGraph& graph, const std::vector<double>& weight) {
   std::vector<BlockIntegration> rules;
-  for (const CellBlock& block : body.mesh->cells) {
-    rules.emplace_back(block.shape, body.mesh->degree, body.space->degree,
-                       stiffness_quadrature_degree(block.shape, body.mesh->degree, body.space->degree));
-  }
+  for (const CellBlock& block : body.mesh->cells)
+    rules.push_back(stiffness_integration(block.shape, body.mesh->degree, body.space->degree));
   return assemble<d>(body, graph, [&](std::size_t b, Index cell, std::size_t number, double* blocks) {
     const auto material_number = static_cast<std::size_t>(body.cell_material[number]);
     const Material& material = body.materials[material_number];

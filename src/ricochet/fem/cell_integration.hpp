@@ -38,6 +38,13 @@ struct BlockIntegration {
   return product_quadrature_degree(shape, geometry_degree, displacement_degree);
 }
 
+/// What the stiffness is integrated with.
+[[nodiscard]] inline BlockIntegration stiffness_integration(CellShape shape, int geometry_degree,
+                                                            int displacement_degree) {
+  return {shape, geometry_degree, displacement_degree,
+          stiffness_quadrature_degree(shape, geometry_degree, displacement_degree)};
+}
+
 /// Jacobian ∂x/∂ξ of the map of a cell: rows are components of x, columns reference directions. `nodes` are its node
 /// numbers.
 template <int space_dimension, int cell_dimension = space_dimension>

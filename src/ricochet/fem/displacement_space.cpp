@@ -143,16 +143,10 @@ double extent(const Points& nodes) {
   return (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
 }
 
-FacetPlace locate_facet(const DisplacementSpace& space, Index facet) {
-  FacetPlace place{0, facet};
-  while (place.local >= space.facets[place.block].size()) place.local -= space.facets[place.block++].size();
-  return place;
-}
-
 std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
   std::vector<Index> nodes;
   for (const Index facet : facets) {
-    const FacetPlace place = locate_facet(space, facet);
+    const PlaceInBlocks place = locate_facet(space, facet);
     const CellBlock& block = space.facets[place.block];
     nodes.insert(nodes.end(), block.cell(place.local), block.cell(place.local) + block.nodes_per_cell);
   }

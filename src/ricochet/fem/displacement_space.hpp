@@ -29,12 +29,13 @@ struct DisplacementSpace {
 /// Builds the space on a mesh whose geometry is of degree 1 or 2, independently of `degree`.
 [[nodiscard]] DisplacementSpace make_displacement_space(const Mesh& mesh, int degree);
 
-/// Where a facet, numbered through all blocks, is kept.
-struct FacetPlace {
-  std::size_t block = 0;
-  Index local = 0;
-};
-[[nodiscard]] FacetPlace locate_facet(const DisplacementSpace& space, Index facet);
+/// Where a facet or a cell, numbered through all blocks, is kept.
+[[nodiscard]] inline PlaceInBlocks locate_facet(const DisplacementSpace& space, Index facet) {
+  return place_in_blocks(space.facets, facet);
+}
+[[nodiscard]] inline PlaceInBlocks locate_cell(const DisplacementSpace& space, Index cell) {
+  return place_in_blocks(space.cells, cell);
+}
 
 /// The nodes of the given facets (numbered through all blocks), ascending, each once.
 [[nodiscard]] std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets);

@@ -3,23 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 namespace ricochet {
 
 namespace {
 
-/// The block and the number in it of a facet numbered through all blocks.
-struct PlaceInBlock {
-  const CellBlock* block = nullptr;
-  Index local = 0;
-};
-
-PlaceInBlock place_of(const Mesh& mesh, Index facet) {
-  for (const CellBlock& block : mesh.facets) {
-    if (facet < block.size()) return {&block, facet};
-    facet -= block.size();
-  }
-  return {};
+/// Of a facet numbered through all blocks.
+std::span<const Index> vertices_of(const Mesh& mesh, Index facet) {
+  const PlaceInBlocks at = place_in_blocks(mesh.facets, facet);
+  const CellBlock& block = mesh.facets[at.block];
+  return {block.cell(at.local), static_cast<std::size_t>(vertex_count(block.shape))};
 }
 
 }  // namespace
@@ -29,9 +23,7 @@ std::vector<std::vector<Index>> cells_of_facets(const Mesh& mesh, const std::vec
   std::vector<std::vector<Index>> cells_of_vertex(static_cast<std::size_t>(mesh.node_count()));
   std::vector<char> wanted(static_cast<std::size_t>(mesh.node_count()), 0);
   for (const Index facet : facets) {
-    const PlaceInBlock at = place_of(mesh, facet);
-    for (int v = 0; v < vertex_count(at.block->shape); ++v)
-      wanted[static_cast<std::size_t>(at.block->cell(at.local)[v])] = 1;
+    for (const Index node : vertices_of(mesh, facet)) wanted[static_cast<std::size_t>(node)] = 1;
   }
   Index number = 0;
   for (const CellBlock& block : mesh.cells) {
@@ -44,10 +36,10 @@ std::vector<std::vector<Index>> cells_of_facets(const Mesh& mesh, const std::vec
   }
   std::vector<std::vector<Index>> result;
   for (const Index facet : facets) {
-    const PlaceInBlock at = place_of(mesh, facet);
-    std::vector<Index> common = cells_of_vertex[static_cast<std::size_t>(at.block->cell(at.local)[0])];
-    for (int v = 1; v < vertex_count(at.block->shape); ++v) {
-      const std::vector<Index>& others = cells_of_vertex[static_cast<std::size_t>(at.block->cell(at.local)[v])];
+    const std::span<const Index> vertices = vertices_of(mesh, facet);
+    std::vector<Index> common = cells_of_vertex[static_cast<std::size_t>(vertices[0])];
+    for (const Index node : vertices.subspan(1)) {
+      const std::vector<Index>& others = cells_of_vertex[static_cast<std::size_t>(node)];
       std::erase_if(common, [&](Index cell) { return !std::binary_search(others.begin(), others.end(), cell); });
     }
     result.push_back(std::move(common));
@@ -68,8 +60,8 @@ std::string facet_tags(const Mesh& mesh, const std::vector<Index>& facets) {
   std::string text;
   constexpr std::size_t shown = 5;
   for (std::size_t i = 0; i < std::min(facets.size(), shown); ++i) {
-    const PlaceInBlock at = place_of(mesh, facets[i]);
-    text += fmt::format("{}{}", i == 0 ? "" : ", ", at.block->tags[static_cast<std::size_t>(at.local)]);
+    const PlaceInBlocks at = place_in_blocks(mesh.facets, facets[i]);
+    text += fmt::format("{}{}", i == 0 ? "" : ", ", mesh.facets[at.block].tags[static_cast<std::size_t>(at.local)]);
   }
   if (facets.size() > shown) text += fmt::format(", … ({} in all)", facets.size());
   return text;

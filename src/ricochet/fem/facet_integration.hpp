@@ -38,7 +38,7 @@ class FacetIntegration {
 
   /// `facet` is numbered through all blocks. What `result` points to lives as long as this object.
   void evaluate(Index facet, FacetQuadrature& result) const {
-    const FacetPlace place = locate_facet(*body_->space, facet);
+    const PlaceInBlocks place = locate_facet(*body_->space, facet);
     const std::size_t b = place.block;
     const Index local = place.local;
     const CellBlock& geometry = body_->mesh->facets[b];

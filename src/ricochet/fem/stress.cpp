@@ -10,12 +10,6 @@ namespace ricochet {
 
 namespace {
 
-/// The rule that the stiffness is assembled with.
-BlockIntegration stiffness_integration(const Body& body, CellShape shape) {
-  const int geometry = body.mesh->degree, displacement = body.space->degree;
-  return {shape, geometry, displacement, stiffness_quadrature_degree(shape, geometry, displacement)};
-}
-
 /// Calls visit(block, number of its first cell).
 template <class Visit>
 void for_each_block(const Body& body, const Visit& visit) {
@@ -29,7 +23,7 @@ void for_each_block(const Body& body, const Visit& visit) {
 template <int d>
 void block_volumes(const Body& body, std::size_t block, Index first_cell, Vector& volumes) {
   const CellBlock& geometry = body.mesh->cells[block];
-  const BlockIntegration integration = stiffness_integration(body, geometry.shape);
+  const BlockIntegration integration = stiffness_integration(geometry.shape, body.mesh->degree, body.space->degree);
   for (Index cell = 0; cell < geometry.size(); ++cell) {
     double volume = 0.0;
     for (Index q = 0; q < integration.rule.weights.size(); ++q) {
@@ -98,8 +92,9 @@ bool has_straight_simplices(const Body& body, CellShape shape) {
 CellStress::CellStress(const Body& body) : body_(body) {
   for (const CellBlock& block : body.mesh->cells) {
     const bool simple = has_straight_simplices(body, block.shape);
-    integrations_.push_back(
-        simple ? nullptr : std::make_unique<const BlockIntegration>(stiffness_integration(body, block.shape)));
+    integrations_.push_back(simple ? nullptr
+                                   : std::make_unique<const BlockIntegration>(
+                                         stiffness_integration(block.shape, body.mesh->degree, body.space->degree)));
   }
 }
 

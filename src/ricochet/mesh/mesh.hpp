@@ -21,6 +21,17 @@ struct CellBlock {
   [[nodiscard]] const Index* cell(Index i) const { return nodes.data() + i * nodes_per_cell; }
 };
 
+/// Where a cell or facet that is numbered through all blocks is kept.
+struct PlaceInBlocks {
+  std::size_t block = 0;
+  Index local = 0;
+};
+[[nodiscard]] inline PlaceInBlocks place_in_blocks(const std::vector<CellBlock>& blocks, Index number) {
+  PlaceInBlocks place{0, number};
+  while (place.local >= blocks[place.block].size()) place.local -= blocks[place.block++].size();
+  return place;
+}
+
 /// A named physical group. An unnamed physical group is called by its number.
 struct Group {
   std::string name;
