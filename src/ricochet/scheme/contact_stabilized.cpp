@@ -38,9 +38,7 @@ class ContactStabilized final : public Scheme {
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step(), end = state.time + h;
     base_ = state.displacement + h * state.velocity;
-    Stage& projection = stages.stage(0);
-    projection.right_hand_side.setZero(problem.dof_count());
-    projection.prescribed.setZero(problem.supports.size());
+    Stage& projection = unloaded_stage(problem, 0, stages);
     require_no_penetration(problem, base_, end, projection);
     const StageSolution& projected = stages.solve(0);
     const Vector& shift = projected.increment;  // Û − U₀ − hV₀
@@ -58,11 +56,8 @@ class ContactStabilized final : public Scheme {
     const StageSolution& solution = stages.solve(1);
 
     problem.mass.multiply(solution.increment, momentum_);
-    support_work_ = 0.0;  // of what holds supports during the projection
-    for (Index i = 0; i < problem.supports.size(); ++i) {
-      const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
-      support_work_ -= 2.0 / (h * h) * projected.support_reaction[i] * solution.increment[dof];
-    }
+    // Of what holds supports during the projection.
+    support_work_ = -2.0 / (h * h) * problem.supports.work(projected.support_reaction, solution.increment);
     dissipation_ = 2.0 / (h * h) * shift.dot(momentum_) + support_work_;
     increment = flight_ + solution.increment;
     state.displacement += increment;

@@ -100,6 +100,13 @@ void StepEquations::take_reactions(const Stage& stage, const StageSolution& solu
   project_motion(*stage.rows, travel);
 }
 
+Stage& unloaded_stage(const SemidiscreteProblem& problem, std::size_t number, StageSolve& stages) {
+  Stage& stage = stages.stage(number);
+  stage.right_hand_side.setZero(problem.dof_count());
+  stage.prescribed.setZero(problem.supports.size());
+  return stage;
+}
+
 double elastic_product(const SemidiscreteProblem& problem, const Vector& x, const Vector& y, Vector& force) {
   problem.internal_force->evaluate(x, force);
   return y.dot(force);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ricochet/problem/stage.hpp"
+#include "ricochet/scheme/stage_solve.hpp"
 #include "ricochet/scheme/step_part.hpp"
 
 /// @file What every scheme says of its stages, and takes from them: written once.
@@ -80,6 +81,9 @@ class StepEquations {
   Vector force_, middle_, rate_;
   ObstacleMotion obstacle_velocity_, impact_;
 };
+
+/// A stage on which nothing acts: b = 0, δ = 0 on supported dofs. Its rows and contact conditions are as they were.
+Stage& unloaded_stage(const SemidiscreteProblem& problem, std::size_t number, StageSolve& stages);
 
 /// yᵀ K x where the internal force is linear. `force`: work space, receives K x.
 [[nodiscard]] double elastic_product(const SemidiscreteProblem& problem, const Vector& x, const Vector& y,

@@ -160,7 +160,7 @@ void Simulation::use_level(int number) {
   current_ = found != levels_.end() ? &found->second : &make_level(number, options_);
 }
 
-void Simulation::take_controlled_step() {
+double Simulation::take_controlled_step() {
   before_ = state_;
   while (true) {
     use_level(control_->level());
@@ -172,24 +172,22 @@ void Simulation::take_controlled_step() {
     }
     const double energy =
         0.5 * problem_.mass.form(state_.velocity) + problem_.internal_force->energy(state_.displacement);
-    if (control_->accept(before_, state_, energy)) {
-      energy_ = energy;
-      return;
-    }
+    if (control_->accept(before_, state_, energy)) return energy;
     state_ = before_;
   }
 }
 
 void Simulation::advance() {
+  double energy = 0.0;
   if (control_) {
-    take_controlled_step();
+    energy = take_controlled_step();
   } else {
     take_step();
   }
   state_.step += 1;
   state_.time = control_ ? control_->time() : static_cast<double>(state_.step) * scheme_.step();
   account_->enter_step(increment_, state_);
-  if (control_) control_->watch(energy_, account_->of_method(state_));
+  if (control_) control_->watch(energy, account_->of_method(state_));
 }
 
 }  // namespace ricochet

@@ -59,7 +59,8 @@ class Simulation : private StageSolve {
   Level& make_level(int level, const StepSolverOptions& options);
   void use_level(int level);
   void take_step();
-  void take_controlled_step();
+  /// Returns kinetic and elastic energy at its end.
+  double take_controlled_step();
   Stage& stage(std::size_t number) override;
   const StageSolution& solve(std::size_t number) override;
 
@@ -71,8 +72,7 @@ class Simulation : private StageSolve {
   std::map<int, Level> levels_;  ///< by the control's number; one, 0, without control
   Level* current_ = nullptr;
   std::optional<StepControl> control_;
-  State before_;         ///< an attempt, with control
-  double energy_ = 0.0;  ///< kinetic and elastic, of the step that stayed, with control
+  State before_;  ///< an attempt, with control
   std::unique_ptr<EnergyAccount> account_;
   int iterations_ = 0;  ///< of the contact solver in this step
   Vector increment_;

@@ -8,9 +8,7 @@ namespace ricochet {
 /// M δ = Gᵀ normal: a jump of positions or velocities.
 const StageSolution& NonsmoothStages::push(const SemidiscreteProblem& problem, const Vector& normal,
                                            StageSolve& stages) {
-  Stage& stage = stages.stage(velocity_stage);
-  stage.right_hand_side.setZero(problem.dof_count());
-  stage.prescribed.setZero(problem.supports.size());
+  unloaded_stage(problem, velocity_stage, stages);
   return solve_with_forces(problem, normal, velocity_stage, stages);
 }
 
@@ -61,9 +59,7 @@ const StageSolution& NonsmoothStages::impulses(const SemidiscreteProblem& proble
   velocity = state.velocity + step * mean;
   base_ = state.displacement + motion;
   equations_.observe_obstacles(problem, end, base_);
-  Stage& stage = stages.stage(velocity_stage);
-  stage.right_hand_side.setZero(problem.dof_count());
-  stage.prescribed.setZero(problem.supports.size());
+  Stage& stage = unloaded_stage(problem, velocity_stage, stages);
   equations_.require_impact_law(problem, base_, end, velocity, state.velocity, restitution_, step, stage);
   stage.gap_factor = 1.0;
   for (Index i = 0; i < normal_.size(); ++i) {

@@ -4,6 +4,7 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/scheme/step_equations.hpp"
 
 namespace ricochet {
 
@@ -48,9 +49,7 @@ const Vector& ContactResponse::column(const SemidiscreteProblem& problem, const 
                                       StageSolve& stages) {
   Vector& column = columns_[static_cast<std::size_t>(point)];
   if (column.size() > 0) return column;
-  Stage& stage = stages.stage(number_);
-  stage.right_hand_side.setZero(problem.dof_count());
-  stage.prescribed.setZero(problem.supports.size());
+  unloaded_stage(problem, number_, stages);
   unit_.setZero(problem.contact.size());
   unit_[point] = 1.0;
   rows.normal_motion(solve_with_forces(problem, unit_, number_, stages).increment, column);

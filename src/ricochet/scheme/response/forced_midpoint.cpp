@@ -15,9 +15,15 @@ void ForcedMidpoint::analyse(const SemidiscreteProblem& problem) {
                           name()));
 }
 
+double ForcedMidpoint::algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const {
+  problem.gaps(state.displacement, state.time, gap_);
+  return contact_energy(state.displacement, gap_);
+}
+
 void ForcedMidpoint::advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
   const double end = state.time + step();
   problem.gaps(state.displacement, state.time, before_);
+  const double energy_before = contact_energy(state.displacement, before_);
   normal_.setZero(before_.size());
   Stage& stage = balance(problem, state, stages);
   if (problem.has_moving_obstacles()) equations().observe_obstacles(problem, state.time + 0.5 * step(), base());
@@ -37,7 +43,10 @@ void ForcedMidpoint::advance(const SemidiscreteProblem& problem, State& state, S
     solution_.contact_status[static_cast<std::size_t>(i)] =
         normal_[i] > 0.0 ? ContactStatus::slip : ContactStatus::open;
   take(problem, stage, solution_, state, increment);
-  corrections_ = account(problem, state, increment);
+  problem.gaps(state.displacement, end, gap_);
+  corrections_ = {.numerical_dissipation = lost(state.displacement, gap_)};
+  corrections_.contact_work = other_work(increment) + contact_energy(state.displacement, gap_) - energy_before +
+                              corrections_.numerical_dissipation;
 }
 
 }  // namespace ricochet

@@ -15,6 +15,8 @@ class ForcedMidpoint : public Kane {
   using Kane::Kane;
 
   [[nodiscard]] double force_instant() const override { return -0.5; }
+  /// Of the contact.
+  [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override;
   /// What the forces take from the body and the contact stores.
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override { return corrections_; }
   void analyse(const SemidiscreteProblem& problem) override;
@@ -30,14 +32,17 @@ class ForcedMidpoint : public Kane {
   virtual bool find_forces(const SemidiscreteProblem& problem, const ContactRows& rows, const Unforced& unforced,
                            StageSolve& stages, Vector& normal) = 0;
   virtual void add_other_forces(Vector&) const {}
-  /// Of the step that has been done.
-  [[nodiscard]] virtual StepCorrections account(const SemidiscreteProblem& problem, const State& state,
-                                                const Vector& increment) = 0;
+  /// What the contact stores at a displacement with these gaps: J and this together change by what the law loses.
+  [[nodiscard]] virtual double contact_energy(const Vector& displacement, const Vector& gap) const = 0;
+  /// What the law has taken in the step that ends there, ≥ 0, and the work of f.
+  [[nodiscard]] virtual double lost(const Vector&, const Vector&) const { return 0.0; }
+  [[nodiscard]] virtual double other_work(const Vector&) const { return 0.0; }
 
  private:
   StepCorrections corrections_;
   Vector before_, free_, normal_, place_;
   StageSolution solution_;
+  mutable Vector gap_;  ///< work space
 };
 
 }  // namespace ricochet

@@ -68,9 +68,7 @@ class LaursenLove final : public Kane {
   /// The change of the velocity, and the work of the impulses on the mean of the velocities before and after.
   void kick(const SemidiscreteProblem& problem, StageSolve& stages) {
     const double h = step();
-    Stage& stage = stages.stage(1);
-    stage.right_hand_side.setZero(problem.dof_count());
-    stage.prescribed.setZero(problem.supports.size());
+    unloaded_stage(problem, 1, stages);
     const StageSolution& solution = solve_with_forces(problem, impulse_.forces.normal_reaction, 1, stages);
     kick_ = h * solution.increment;
     impulse_.weight = 1.0;

@@ -22,13 +22,6 @@ class Nitsche final : public ForcedMidpoint {
  public:
   Nitsche(double step, double penalty) : ForcedMidpoint(step, "nitsche"), penalty_(penalty) {}
 
-  [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
-    problem.gaps(state.displacement, state.time, gap_);
-    s_.noalias() = stress_.rows * state.displacement;
-    p_ = s_ - stiffness_.cwiseProduct(gap_);
-    return nitsche_energy(stiffness_, s_, p_);
-  }
-
   void analyse(const SemidiscreteProblem& problem) override {
     ForcedMidpoint::analyse(problem);
     if (!problem.contact_stress)
@@ -46,9 +39,7 @@ class Nitsche final : public ForcedMidpoint {
  protected:
   bool find_forces(const SemidiscreteProblem& problem, const ContactRows& rows, const Unforced& unforced,
                    StageSolve& stages, Vector& normal) override {
-    points_.s_before.noalias() = stress_.rows * unforced.start.displacement;
-    points_.p_before = points_.s_before - stiffness_.cwiseProduct(unforced.gap_before);
-    energy_before_ = nitsche_energy(stiffness_, points_.s_before, points_.p_before);
+    find_pressures(unforced.start.displacement, unforced.gap_before, points_.s_before, points_.p_before);
     points_.s.noalias() = stress_.rows * unforced.place;
     points_.gap = unforced.gap;
     law(problem, rows, stages).solve(points_, normal, q_);
@@ -57,17 +48,26 @@ class Nitsche final : public ForcedMidpoint {
 
   void add_other_forces(Vector& force) const override { force.noalias() += stress_.rows.transpose() * q_; }
 
-  StepCorrections account(const SemidiscreteProblem& problem, const State& state, const Vector& increment) override {
-    problem.gaps(state.displacement, state.time + step(), gap_);
-    s_.noalias() = stress_.rows * state.displacement;
-    p_ = s_ - stiffness_.cwiseProduct(gap_);
-    const double lost = nitsche_dissipation(stiffness_, points_.p_before, p_);
-    const double stored = nitsche_energy(stiffness_, s_, p_) - energy_before_;
+  [[nodiscard]] double contact_energy(const Vector& displacement, const Vector& gap) const override {
+    find_pressures(displacement, gap, s_, p_);
+    return nitsche_energy(stiffness_, s_, p_);
+  }
+  [[nodiscard]] double lost(const Vector& displacement, const Vector& gap) const override {
+    find_pressures(displacement, gap, s_, p_);
+    return nitsche_dissipation(stiffness_, points_.p_before, p_);
+  }
+  [[nodiscard]] double other_work(const Vector& increment) const override {
     s_.noalias() = stress_.rows * increment;
-    return {.contact_work = q_.dot(s_) + stored + lost, .numerical_dissipation = lost};
+    return q_.dot(s_);
   }
 
  private:
+  /// s and p.
+  void find_pressures(const Vector& displacement, const Vector& gap, Vector& s, Vector& p) const {
+    s.noalias() = stress_.rows * displacement;
+    p = s - stiffness_.cwiseProduct(gap);
+  }
+
   /// Made once per length of the step.
   NitscheLaw& law(const SemidiscreteProblem& problem, const ContactRows& rows, StageSolve& stages) {
     const auto found = laws_.find(step());
@@ -76,9 +76,7 @@ class Nitsche final : public ForcedMidpoint {
     Matrix response(2 * count, 2 * count);
     Vector unit = Vector::Zero(count), column;
     for (Index i = 0; i < 2 * count; ++i) {
-      Stage& stage = stages.stage(0);
-      stage.right_hand_side.setZero(problem.dof_count());
-      stage.prescribed.setZero(problem.supports.size());
+      Stage& stage = unloaded_stage(problem, 0, stages);
       unit.setZero();
       if (i < count) {
         unit[i] = 1.0;
@@ -92,12 +90,12 @@ class Nitsche final : public ForcedMidpoint {
     return laws_.emplace(step(), NitscheLaw(response, stiffness_)).first->second;
   }
 
-  double penalty_, energy_before_ = 0.0;
+  double penalty_;
   ContactStress stress_;
   Vector stiffness_, q_;  ///< Γ, and q with f = Sᵀq
   NitscheLaw::Points points_;
   std::map<double, NitscheLaw> laws_;
-  mutable Vector gap_, s_, p_;  ///< work space
+  mutable Vector s_, p_;  ///< work space
 };
 
 }  // namespace

@@ -20,12 +20,6 @@ class PenaltyMidpoint final : public ForcedMidpoint {
  public:
   PenaltyMidpoint(double step, double penalty) : ForcedMidpoint(step, "penalty-midpoint"), penalty_(penalty) {}
 
-  /// Σψ.
-  [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override {
-    problem.gaps(state.displacement, state.time, looked_at_);
-    return penalty_energy(stiffness_, looked_at_);
-  }
-
   void analyse(const SemidiscreteProblem& problem) override {
     ForcedMidpoint::analyse(problem);
     stiffness_ = penalty_ * point_stiffness(problem);
@@ -45,7 +39,6 @@ class PenaltyMidpoint final : public ForcedMidpoint {
   /// On the points that are or come inside: more of them where forces bring others there.
   bool find_forces(const SemidiscreteProblem& problem, const ContactRows& rows, const Unforced& unforced,
                    StageSolve& stages, Vector& normal) override {
-    energy_before_ = penalty_energy(stiffness_, unforced.gap_before);
     points_.clear();
     gap_ = unforced.gap;
     while (true) {
@@ -63,18 +56,17 @@ class PenaltyMidpoint final : public ForcedMidpoint {
     }
   }
 
-  StepCorrections account(const SemidiscreteProblem& problem, const State& state, const Vector&) override {
-    problem.gaps(state.displacement, state.time + step(), gap_);
-    return {.contact_work = penalty_energy(stiffness_, gap_) - energy_before_};
+  /// Σψ.
+  [[nodiscard]] double contact_energy(const Vector&, const Vector& gap) const override {
+    return penalty_energy(stiffness_, gap);
   }
 
  private:
-  double penalty_, energy_before_ = 0.0;
+  double penalty_;
   ContactResponse response_{0};
   Vector stiffness_;           ///< k, per contact point
   Vector gap_;                 ///< g₁
   std::vector<Index> points_;  ///< that may press, ascending
-  mutable Vector looked_at_;   ///< work space
 };
 
 }  // namespace
