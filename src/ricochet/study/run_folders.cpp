@@ -51,6 +51,13 @@ bool is_run_folder_name(std::string_view name) {
   return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), is_plain);
 }
 
+void refuse_damaged_plan(const std::string& path, const std::string& why, const std::string& of) {
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{}: this file is damaged: {}; put it back from a copy, or choose another directory for the "
+                          "{} with -o, or remove it and the folder \"runs\" beside it and begin anew",
+                          path, why, of));
+}
+
 void require_run_folder_names(const std::vector<std::string>& names, const std::string& file) {
   std::set<std::string> seen;
   for (const std::string& name : names) {

@@ -11,6 +11,9 @@ namespace ricochet {
 /// The name of one folder, of characters that names of runs are made of: no path that leads elsewhere.
 [[nodiscard]] bool is_run_folder_name(std::string_view name);
 
+/// Throws Error(invalid_input): what is wrong with the plan in this file, and what to do. `of`: "study", "benchmarks".
+[[noreturn]] void refuse_damaged_plan(const std::string& path, const std::string& why, const std::string& of);
+
 /// Throws Error(invalid_input), which begins with `file`, where a name is none, or two are the same.
 void require_run_folder_names(const std::vector<std::string>& names, const std::string& file);
 

@@ -125,13 +125,6 @@ void require_study(const std::string& directory) {
                           directory, why, is_there ? "DIR" : directory));
 }
 
-[[noreturn]] void refuse_damaged(const std::string& path, const std::string& why) {
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("{}: this file is damaged: {}; put it back from a copy, or choose another directory for the "
-                          "study with -o, or remove it and the folder \"runs\" beside it and begin anew",
-                          path, why));
-}
-
 void require_format(const Json& json, const std::string& path) {
   const int format = json.at("ricochet_study");
   if (format == study_format) return;
@@ -201,10 +194,10 @@ Study read_study(const std::string& directory) {
     require_run_folder_names(folders, "\"runs\"");
     for (std::size_t i = 0; i < folders.size(); ++i) study.runs[i].folder = folders[i];
   } catch (const Json::Exception& problem) {
-    refuse_damaged(path, problem.what());
+    refuse_damaged_plan(path, problem.what(), "study");
   } catch (const Error& problem) {
     if (problem.kind() == ErrorKind::file_access) throw;  // another version
-    refuse_damaged(path, problem.what());
+    refuse_damaged_plan(path, problem.what(), "study");
   }
   return study;
 }

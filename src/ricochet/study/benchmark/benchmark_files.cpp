@@ -40,13 +40,6 @@ BenchmarkRun run_from(const Json& json) {
           json.at("refusal")};
 }
 
-[[noreturn]] void refuse_damaged_plan(const std::string& path, const std::string& why) {
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("{}: this file is damaged: {}; put it back from a copy, or choose another directory for the "
-                          "benchmarks with -o, or remove it and the folder \"runs\" beside it and begin anew",
-                          path, why));
-}
-
 }  // namespace
 
 bool BenchmarkRun::operator==(const BenchmarkRun& other) const {
@@ -78,11 +71,12 @@ BenchmarkPlan read_benchmark_plan(const std::string& directory) {
     plan.is_scorecard = json.at("scorecard");
     for (const Json& run : json.at("runs")) plan.runs.push_back(run_from(run));
   } catch (const Json::Exception& problem) {
-    refuse_damaged_plan(path, problem.what());
+    refuse_damaged_plan(path, problem.what(), "benchmarks");
   }
   for (const BenchmarkRun& run : plan.runs) {
     if (!is_run_folder_name(run.folder))
-      refuse_damaged_plan(path, fmt::format("\"{}\" cannot be the name of the folder of a run", run.folder));
+      refuse_damaged_plan(path, fmt::format("\"{}\" cannot be the name of the folder of a run", run.folder),
+                          "benchmarks");
   }
   return plan;
 }
