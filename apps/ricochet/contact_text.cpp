@@ -30,7 +30,7 @@ std::string motion_text(const ContactDescription& c) {
 
 void print_contacts(const std::vector<ContactDescription>& contacts) {
   for (const ContactDescription& c : contacts) {
-    fmt::print("  contact of \"{}\" with \"{}\"{}: {}, {} multipliers\n", c.group, c.obstacle, motion_text(c),
+    fmt::print("  contact of \"{}\" with \"{}\"{}: {}, {} multipliers\n", c.group, c.opponent, motion_text(c),
                law_text(c), c.multipliers);
   }
 }

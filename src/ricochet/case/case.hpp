@@ -53,10 +53,14 @@ struct ObstacleSection {
 
 struct ContactSection {
   std::string group;
-  std::string obstacle;
+  std::string obstacle;         ///< empty: between bodies
+  std::string against;          ///< the other group; empty: an obstacle
   double friction = 0.0;        ///< F of Coulomb's law
   double friction_bound = 0.0;  ///< largest friction traction, a stress; 0: no bound
   std::string multipliers = "nodal";
+  std::string multipliers_on = "automatic";  ///< between bodies: "automatic", "group" or "against"
+  bool closed_gaps = false;                  ///< initial_gap = "closed"
+  std::vector<double> pair_at;               ///< empty: where bodies start
   bool allow_unstable_multipliers = false;
 };
 

@@ -17,11 +17,11 @@ Key parameters_key() {
           .doc = "Numbers by name, for use in the expressions of this section."};
 }
 
-Key group_key(const char* kind, const char* built_in) {
+Key group_key(const char* kind, const char* built_in, const char* name = "group", bool required = true) {
   return {
-      .name = "group",
+      .name = name,
       .type = KeyType::groups,
-      .required = true,
+      .required = required,
       .doc = fmt::format("Group of {0} in the mesh, or several: [\"a\", \"b\"]. \"{1}\" stands for all {0}, unless the "
                          "mesh has a group of that name.",
                          kind, built_in)};
@@ -47,6 +47,12 @@ Key placement_key() {
       .doc =
           "Turns the mesh, after `scale` and before `move`. Obstacles, probes and expressions see where it is "
           "then."};
+}
+
+Key against_key() {
+  Key key = group_key("boundary facets", "boundary", "against", false);
+  key.doc = "Group of boundary facets of another body, or several: what `group` may touch, in place of an obstacle.";
+  return key;
 }
 
 Key damping_key() {
@@ -151,10 +157,12 @@ Section contact_section() {
   return {
       .name = "contact",
       .kind = SectionKind::list,
-      .doc = "A part of the boundary that may touch an obstacle.",
+      .alternatives = {{"obstacle"}, {"against"}},
+      .doc = "A part of the boundary that may touch an obstacle, or the boundary of another body.",
       .keys = {
           group_key("boundary facets", "boundary"),
-          {.name = "obstacle", .required = true, .doc = "Name of the obstacle, a section [obstacle.NAME]."},
+          {.name = "obstacle", .doc = "Name of the obstacle, a section [obstacle.NAME]."},
+          against_key(),
           {.name = "friction",
            .type = KeyType::number,
            .unit = "1",
@@ -170,10 +178,32 @@ Section contact_section() {
                   "Alone it is Tresca's law: the friction traction is at most this wherever the body is pressed."},
           {.name = "multipliers",
            .type = KeyType::choice,
-           .standard = "nodal",
            .choices = multiplier_space_names(),
            .doc = "Space of the contact pressure and the friction traction: forces at the nodes, piecewise constant, "
-                  "continuous piecewise linear, or biorthogonal to the displacement. See docs/multipliers.md."},
+                  "continuous piecewise linear, or biorthogonal to the displacement. See docs/multipliers.md. Absent: "
+                  "nodal with an obstacle, p1 between bodies."},
+          {.name = "multipliers_on",
+           .type = KeyType::choice,
+           .standard = "automatic",
+           .choices = {"automatic", "group", "against"},
+           .doc = "Between bodies, the side that carries the multipliers. \"automatic\" takes the one with the finer "
+                  "mesh; of meshes that are alike, the more curved one, then the softer one."},
+          {.name = "initial_gap",
+           .type = KeyType::choice,
+           .standard = "geometry",
+           .choices = {"geometry", "closed"},
+           .doc = "Between bodies, gaps at the start: those of the meshes, or zero where the meshes overlap. Facets of "
+                  "curved surfaces that touch overlap by up to h²/8R."},
+          {.name = "pair_at",
+           .type = KeyType::vector,
+           .unit = "length",
+           .doc = "Between bodies, the displacement of the body of `group`, relative to the other one, at which facets "
+                  "that face each other are found: where the bodies will meet. Absent: where they start."},
+          {.name = "sliding",
+           .type = KeyType::choice,
+           .standard = "small",
+           .choices = {"small"},
+           .doc = "Between bodies: small sliding keeps the pairs of facets that were found at the start."},
           {.name = "unstable_multipliers",
            .type = KeyType::choice,
            .standard = "refuse",

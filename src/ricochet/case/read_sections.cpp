@@ -93,9 +93,24 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
   ContactSection contact;
   contact.group = reader.groups("group", result.group_lists);
   contact.obstacle = reader.text("obstacle");
+  contact.against = reader.groups("against", result.group_lists);
   contact.friction = reader.number("friction");
   contact.friction_bound = reader.number("friction_bound");
   contact.multipliers = reader.text("multipliers");
+  if (contact.multipliers.empty()) contact.multipliers = contact.against.empty() ? "nodal" : "p1";
+  contact.multipliers_on = reader.text("multipliers_on");
+  contact.closed_gaps = reader.text("initial_gap") == "closed";
+  contact.pair_at = reader.vector("pair_at");
+  for (const char* const key : {"multipliers_on", "initial_gap", "pair_at", "sliding"}) {
+    if (!reader.is_given(key) || reader.is_given("against")) continue;
+    reader.add_problem(key, fmt::format("\"{}\" is of contact between bodies; give \"against\", or leave it out", key));
+  }
+  if (reader.is_usable("against") && contact.against == contact.group) {
+    reader.add_problem("against",
+                       fmt::format("\"against\" is \"{}\", the group itself: a surface does not touch itself "
+                                   "here; name a group of another body",
+                                   contact.against));
+  }
   contact.allow_unstable_multipliers = reader.text("unstable_multipliers") == "allow";
   return contact;
 }
@@ -119,7 +134,7 @@ void check_distinct(const std::vector<SectionReader>& readers, const std::string
     for (std::size_t j = 0; j < i; ++j) {
       if (!readers[j].is_usable(name) || readers[j].value(name) != readers[i].value(name)) continue;
       if (!together.empty() && readers[i].is_usable(together) && readers[j].is_usable(together) &&
-          readers[i].text(together) != readers[j].text(together)) {
+          readers[i].value(together) != readers[j].value(together)) {
         continue;
       }
       readers[i].add_problem(name, fmt::format("the {} \"{}\" is in another [[{}]] already, at {}", name,
@@ -307,7 +322,13 @@ void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections,
     result.contacts.push_back(read_contact(reader, result));
     if (obstacles == nullptr || !obstacles->is_refused) check_obstacle_name(reader, names);
   }
-  check_distinct(contacts, "contact", "group", "obstacle");
+  for (const char* const opponent : {"obstacle", "against"}) {
+    std::vector<SectionReader> of_kind;
+    for (const SectionReader& reader : contacts) {
+      if (reader.is_usable(opponent)) of_kind.push_back(reader);
+    }
+    check_distinct(of_kind, "contact", "group", opponent);
+  }
 }
 
 }  // namespace

@@ -11,10 +11,6 @@ namespace ricochet {
 
 namespace {
 
-constexpr int pieces_of_leaf = 4;
-/// Of the tree: half of the pieces go to each side.
-constexpr std::size_t deepest_tree = 64;
-
 double squared_distance(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& point) {
   return box.squaredExteriorDistance(point);
 }
@@ -49,12 +45,9 @@ BodySurface::BodySurface(const Points& positions, const std::vector<Piece>& piec
       around_[static_cast<std::size_t>(next[static_cast<std::size_t>(pieces_[piece][k])]++)] = static_cast<int>(piece);
   }
   positions_.assign(nodes_.size(), Eigen::Vector3d::Zero());
+  boxes_.resize(pieces_.size());
   move(positions, Vector());
-
-  order_.resize(pieces_.size());
-  std::iota(order_.begin(), order_.end(), 0);
-  build(order_, 0, static_cast<int>(order_.size()));
-  refit();
+  tree_ = BoxTree(boxes_);
   for (const std::array<int, 3>& piece : pieces_) {
     for (std::size_t k = 0; k < corners; ++k) edge_length_ += (at(piece[k]) - at(piece[(k + 1) % corners])).norm();
   }
@@ -68,51 +61,15 @@ void BodySurface::move(const Points& positions, const Vector& displacement) {
     for (Index k = 0; k < d; ++k)
       positions_[i][k] = positions(k, node) + (displacement.size() > 0 ? displacement[node * d + k] : 0.0);
   }
-  refit();
+  place_boxes();
+  if (!tree_.empty()) tree_.refit(boxes_);
 }
 
-/// Halves along the longest side of the box around the middles of the pieces. Returns the number of the box.
-int BodySurface::build(std::vector<int>& pieces, int first, int last) {
-  const int number = static_cast<int>(tree_.size());
-  tree_.push_back({{}, first, last - first, 0});
-  if (last - first <= pieces_of_leaf) return number;
-  const auto middle_of = [&](int piece, Index axis) {
-    const std::array<int, 3>& corners = pieces_[static_cast<std::size_t>(piece)];
-    const double two = at(corners[0])[axis] + at(corners[1])[axis];
-    return plane_ ? two / 2.0 : (two + at(corners[2])[axis]) / 3.0;
-  };
-  Eigen::AlignedBox3d middles;
-  for (int i = first; i < last; ++i) {
-    const int piece = pieces[static_cast<std::size_t>(i)];
-    middles.extend(Eigen::Vector3d(middle_of(piece, 0), middle_of(piece, 1), middle_of(piece, 2)));
-  }
-  Index axis = 0;
-  middles.sizes().maxCoeff(&axis);
-  const int half = (first + last) / 2;
-  std::nth_element(pieces.begin() + first, pieces.begin() + half, pieces.begin() + last, [&](int a, int b) {
-    const double left = middle_of(a, axis), right = middle_of(b, axis);
-    return left != right ? left < right : a < b;
-  });
-  tree_[static_cast<std::size_t>(number)].count = 0;
-  build(pieces, first, half);
-  const int second = build(pieces, half, last);
-  tree_[static_cast<std::size_t>(number)].second = second;
-  return number;
-}
-
-/// From the last box to the first: those inside of a box come after it.
-void BodySurface::refit() {
-  for (auto box = tree_.rbegin(); box != tree_.rend(); ++box) {
-    box->box.setEmpty();
-    if (box->count == 0) {
-      const std::size_t number = static_cast<std::size_t>(tree_.rend() - box) - 1;
-      box->box.extend(tree_[number + 1].box).extend(tree_[static_cast<std::size_t>(box->second)].box);
-      continue;
-    }
-    for (int i = box->first; i < box->first + box->count; ++i) {
-      for (const int node : pieces_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]) {
-        if (node >= 0) box->box.extend(at(node));
-      }
+void BodySurface::place_boxes() {
+  for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
+    boxes_[piece].setEmpty();
+    for (const int node : pieces_[piece]) {
+      if (node >= 0) boxes_[piece].extend(at(node));
     }
   }
 }
@@ -131,17 +88,19 @@ void BodySurface::try_piece(const Eigen::Vector3d& point, int piece, Closest& be
 
 BodySurface::Closest BodySurface::closest(const Eigen::Vector3d& point) const {
   Closest best{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero(), -1, {-1, -1, -1}};
-  std::array<int, deepest_tree> waiting{};
+  const std::vector<BoxTree::Node>& nodes = tree_.nodes();
+  std::array<int, BoxTree::deepest> waiting{};
   std::size_t count = 1;
   while (count > 0) {
     const int number = waiting[--count];
-    const Box& box = tree_[static_cast<std::size_t>(number)];
+    const BoxTree::Node& box = nodes[static_cast<std::size_t>(number)];
     if (squared_distance(box.box, point) >= best.squared_distance) continue;
-    for (int i = box.first; i < box.first + box.count; ++i) try_piece(point, order_[static_cast<std::size_t>(i)], best);
+    for (int i = box.first; i < box.first + box.count; ++i)
+      try_piece(point, tree_.order()[static_cast<std::size_t>(i)], best);
     if (box.count > 0) continue;
     // The nearer one first: it comes from the end.
-    const bool first_is_nearer = squared_distance(tree_[static_cast<std::size_t>(number) + 1].box, point) <=
-                                 squared_distance(tree_[static_cast<std::size_t>(box.second)].box, point);
+    const bool first_is_nearer = squared_distance(nodes[static_cast<std::size_t>(number) + 1].box, point) <=
+                                 squared_distance(nodes[static_cast<std::size_t>(box.second)].box, point);
     waiting[count++] = first_is_nearer ? box.second : number + 1;
     waiting[count++] = first_is_nearer ? number + 1 : box.second;
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/base/types.hpp"
+#include "ricochet/contact/box_tree.hpp"
 
 /// @file The closed surface of one body, wherever its nodes have moved to: how deep is a point inside?
 namespace ricochet {
@@ -26,7 +27,7 @@ class BodySurface {
   /// The nodes of the surface, ascending, and where they are.
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
   [[nodiscard]] const std::vector<Eigen::Vector3d>& positions() const { return positions_; }
-  [[nodiscard]] const Eigen::AlignedBox3d& box() const { return tree_.front().box; }
+  [[nodiscard]] const Eigen::AlignedBox3d& box() const { return tree_.nodes().front().box; }
   /// Mean length of the edges where the surface starts.
   [[nodiscard]] double edge_length() const { return edge_length_; }
 
@@ -36,11 +37,6 @@ class BodySurface {
   [[nodiscard]] double signed_distance(const Eigen::Vector3d& point) const;
 
  private:
-  struct Box {
-    Eigen::AlignedBox3d box;
-    int first = 0, count = 0;  ///< pieces (in order_) of a leaf; count 0: two boxes, the next one and `second`
-    int second = 0;
-  };
   struct Closest {
     double squared_distance;
     Eigen::Vector3d position;
@@ -48,8 +44,7 @@ class BodySurface {
     std::array<int, 3> corners{-1, -1, -1};  ///< surface nodes between which it lies
   };
 
-  int build(std::vector<int>& pieces, int first, int last);
-  void refit();
+  void place_boxes();
   [[nodiscard]] Closest closest(const Eigen::Vector3d& point) const;
   void try_piece(const Eigen::Vector3d& point, int piece, Closest& best) const;
   [[nodiscard]] Eigen::Vector3d normal_of(int piece) const;
@@ -62,8 +57,8 @@ class BodySurface {
   std::vector<std::array<int, 3>> pieces_;  ///< by numbers of the surface's own nodes
   std::vector<int> first_piece_;            ///< of each node, in around_; one more at the end
   std::vector<int> around_;                 ///< the pieces around one node after another
-  std::vector<int> order_;                  ///< pieces by leaves
-  std::vector<Box> tree_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< of the pieces
+  BoxTree tree_;
   double edge_length_ = 0.0;
 };
 

@@ -50,6 +50,7 @@ bool coincide(const Obstacle& one, const Obstacle& other, const Vector& at) {
 
 BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& pairs, const FreeComponent& is_free) {
   for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (pairs[k].between_bodies()) continue;
     for (const Index node : facet_nodes(*body.space, pairs[k].facets)) {
       const auto [entry, added] = nodes_.try_emplace({node, pairs[k].obstacle});
       if (added) {

@@ -9,7 +9,7 @@
 /// @file The nodes of all contact pairs and the conditions they must meet.
 namespace ricochet {
 
-/// Each node once per obstacle.
+/// Each node once per obstacle. Pairs of bodies have no part in it.
 class BoundaryNodes {
  public:
   /// Throws Error(invalid_input) when pairs that share a node and an obstacle differ in multipliers or, where a

@@ -31,14 +31,25 @@ struct FrictionLaw {
   friend bool operator==(const FrictionLaw&, const FrictionLaw&) = default;
 };
 
-/// One boundary group against one obstacle, as a case asks for it.
+/// One boundary group against one obstacle, or against another group, as a case asks for it.
 struct ContactPair {
-  std::string group;
+  std::string group;          ///< that carries the multipliers
   std::vector<Index> facets;  ///< numbered through all blocks
-  std::string obstacle_name;
+  std::string obstacle_name;  ///< empty: against a group
   const Obstacle* obstacle = nullptr;
   FrictionLaw friction;
   std::string multipliers = "nodal";
+  // Against another group:
+  std::string opposite_group = {};
+  std::vector<Index> opposite_facets = {};
+  Vector pair_at = {};       ///< displacement of the group's body at which facets are paired; empty: none
+  bool closed_gaps = false;  ///< initial gaps below zero are taken for zero
+
+  [[nodiscard]] bool between_bodies() const { return obstacle == nullptr; }
+  /// For messages: obstacle "floor", group "plate.top".
+  [[nodiscard]] std::string opponent() const {
+    return between_bodies() ? "group \"" + opposite_group + '"' : "obstacle \"" + obstacle_name + '"';
+  }
 };
 
 /// Whether a node may move along a direction of space: false where a support prescribes that component.
@@ -49,6 +60,9 @@ using FreeComponent = std::function<bool(Index node, int component)>;
 /// g_i = (1/D_i) ∫ψ_i g and its reaction is r_i = D_i λ_i for a multiplier λ in stress units: λ_h = Σ_i (r_i/D_i) ψ_i.
 /// The signs of the source's Λ_N^h and the disc of Λ_T^h are conditions on the λ_i. For nodal multipliers c is the
 /// identity: each node is a contact point, once per obstacle that may touch it.
+///
+/// Between two bodies the trace is t = [c, −m] with m_ik of the nodes of the opposite surface (body_contact.hpp), and
+/// the rows of G and B_T are t ⊗ n and t ⊗ τ. A reaction acts on both bodies; its sum over them is zero.
 ///
 /// What is here is fixed. Directions and gaps are in `rows`, which `geometry` makes anew where they follow the motion.
 struct ContactBoundary {
@@ -61,16 +75,20 @@ struct ContactBoundary {
   Vector weights;                                   ///< D_i > 0: length in 2D, area in 3D
   Vector friction_coefficient;                      ///< F
   Vector friction_bound;                            ///< a force, bound × D_i; 0: none
-  SparseRowMatrix trace;                            ///< c, points × nodes of the space
+  SparseRowMatrix trace;                            ///< t, points × nodes of the space: c, and −m between bodies
+  SparseRowMatrix own_trace;                        ///< c: where the point is
+  Vector net;                                       ///< Σ_j t_ij: 1 at obstacles, 0 between bodies
   std::shared_ptr<const ContactRows> rows;          ///< at the start: against planes for good
   std::shared_ptr<const ContactGeometry> geometry;  ///< null where rows never change
 
-  // Per node of the contact boundary (once per obstacle), for what is reported node by node:
-  std::vector<Index> nodes;      ///< ascending; all nodes that the trace of some point reaches
-  std::vector<int> node_pair;    ///< index of the (first) ContactPair
-  std::vector<Index> own_point;  ///< the contact point anchored at the node, or −1
-  Points node_normals;           ///< at the start, d × nodes
-  Vector node_initial_gap;
+  // Per node of the contact boundary (once per obstacle or pair), for what is reported node by node:
+  std::vector<Index> nodes;        ///< ascending; all nodes that the trace of some point reaches
+  std::vector<int> node_pair;      ///< index of the (first) ContactPair
+  std::vector<char> is_opposite;   ///< 1: of the side of a pair of bodies that carries no multipliers
+  std::vector<Index> own_point;    ///< the contact point anchored at the node, or −1
+  Points node_normals;             ///< towards the node's body, at the start, d × nodes
+  Vector node_initial_gap;         ///< NaN where the node faces nothing
+  SparseRowMatrix opposite_place;  ///< contact nodes × nodes: where the node faces another body; 0 × 0 without such
   SparseRowMatrix pressure_recovery;  ///< contact nodes × points: pressure at the nodes = this · r_N, in stress units;
                                       ///< any component of the friction traction likewise from that of the reaction
 
@@ -85,7 +103,18 @@ struct ContactBoundary {
     for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry)
       visit(static_cast<Index>(entry.col()), entry.value());
   }
-  [[nodiscard]] Index first_node(Index point) const { return SparseRowMatrix::InnerIterator(trace, point).col(); }
+  /// The same for c alone: the nodes whose mean place is that of the point.
+  template <class Visit>
+  void visit_own_nodes(Index point, const Visit& visit) const {
+    for (SparseRowMatrix::InnerIterator entry(own_trace, point); entry; ++entry)
+      visit(static_cast<Index>(entry.col()), entry.value());
+  }
+  [[nodiscard]] Index first_own_node(Index point) const {
+    return SparseRowMatrix::InnerIterator(own_trace, point).col();
+  }
+  [[nodiscard]] bool between_bodies(Index point) const { return net[point] == 0.0; }
+  /// Of the bodies that touch the first node of the other one; −1 at obstacles.
+  [[nodiscard]] Index first_opposite_node(Index point) const;
   /// Calls visit(point, value) for the points that the pressure at an entry of `nodes` comes from.
   template <class Visit>
   void visit_recovery(Index entry, const Visit& visit) const {
@@ -96,20 +125,26 @@ struct ContactBoundary {
   void recover_pressure(const Vector& normal_reaction, Vector& pressure) const {
     pressure.noalias() = pressure_recovery * normal_reaction;
   }
-  /// Σ_j c_ij X_j with the nodes' positions: d × points.
-  [[nodiscard]] Points positions(const Points& node_positions) const {
+  /// Σ_j t_ij X_j with the nodes' positions, d × points: the place of a point or, between bodies, the mean vector
+  /// across the gap. With it as its arm the force of a point has the moment that it has on all bodies together.
+  [[nodiscard]] Points arms(const Points& node_positions) const {
     return (trace * node_positions.transpose()).transpose();
   }
   /// The nodes that the trace of some point reaches, ascending, each once.
   [[nodiscard]] std::vector<Index> unique_nodes() const;
 };
 
+struct PairFacing;
+
 /// Builds the boundary. Multipliers of nodes that supports hold along the normal are left out, and so are those of
 /// facets all of whose nodes are; `held_nodes` (may be null) receives the number of such nodes, each once per obstacle.
 /// Throws Error(invalid_input) when obstacles at a shared node are one plane of unlike friction, when pairs that share
 /// a node and an obstacle differ in multipliers or (but for "p0") in friction, when a multiplier space is unknown, when
-/// a multiplier has no positive D_i, or when a nodal force has a negative one under Tresca's law.
+/// a multiplier has no positive D_i, or when a nodal force has a negative one under Tresca's law. `facings`
+/// (may be null) receives how the groups of each pair face each other; nothing of pairs with obstacles. A pair of
+/// bodies that do not face each other gets no points.
 [[nodiscard]] ContactBoundary make_contact_boundary(const Body& body, const std::vector<ContactPair>& pairs,
-                                                    const FreeComponent& is_free, Index* held_nodes = nullptr);
+                                                    const FreeComponent& is_free, Index* held_nodes = nullptr,
+                                                    std::vector<PairFacing>* facings = nullptr);
 
 }  // namespace ricochet

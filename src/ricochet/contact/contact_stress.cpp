@@ -57,7 +57,7 @@ class StressRows {
       for (Index a = 0; a < quadrature.node_count(); ++a) area_[quadrature.nodes[a]] += facets_.back().area;
     }
     for (Index i = 0; i < boundary.size(); ++i)
-      boundary.visit_nodes(i, [&](Index node, double c) { points_[node].emplace_back(i, c); });
+      boundary.visit_own_nodes(i, [&](Index node, double c) { points_[node].emplace_back(i, c); });
   }
 
   ContactStress make() {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 
 #include "ricochet/base/dense_decompositions.hpp"
@@ -19,6 +20,10 @@ namespace {
 ///   φ̃_v = φ_v + α Σ_e φ_e over the edges e at v,   φ̃_e = (1 − 2α) φ_e,   α = 1/5,
 /// on every edge of a triangular facet, where another shape shares it, too. The coefficients of a trace with nodal
 /// values g are then g̃_v = g_v and g̃_e = (g_e − α (g_v1 + g_v2))/(1 − 2α).
+///
+/// Between bodies a facet may be covered in part. Functions that are biorthogonal there can have negative integrals (on
+/// less than 2/3 of an interval, those of the whole one), or come from a matrix that is nearly singular. So such a
+/// facet has Bernstein's polynomials: they span the same space, are positive and sum to 1, whatever is covered.
 class DualMultipliers final : public MultiplierSpace {
  public:
   explicit DualMultipliers(const ContactPatch& patch) : MultiplierSpace(patch), integration_(*patch.body) {
@@ -85,6 +90,11 @@ class DualMultipliers final : public MultiplierSpace {
   }
 
   void evaluate(const FacetQuadrature& facet, FacetMultipliers& result) const override {
+    if (!facet.whole) {
+      result.anchors.assign(facet.nodes, facet.nodes + facet.node_count());
+      result.values = bernstein(facet) * *facet.displacement;
+      return;
+    }
     const Matrix basis = basis_change(facet) * *facet.displacement;
     const Vector weights = basis * facet.measure;
     const Matrix mass = basis * facet.measure.asDiagonal() * basis.transpose();
@@ -105,6 +115,27 @@ class DualMultipliers final : public MultiplierSpace {
       const auto column = static_cast<Index>(k);
       result(column, column) = 1.0 - 2.0 * alpha;
       for (const int v : vertices_of[k]) result(v, column) = alpha;
+    }
+    return result;
+  }
+
+  /// Bernstein's polynomials at the nodes: those of degree 2 are (1 − s)², 2s(1 − s), s² along an edge.
+  [[nodiscard]] static Matrix bernstein(const FacetQuadrature& facet) {
+    Matrix result = Matrix::Identity(facet.node_count(), facet.node_count());
+    if (facet.node_count() == facet.vertex_count()) return result;
+    const auto& vertices_of = node_vertices(facet.shape, 2);
+    const auto is_between = [&](std::size_t inner, std::size_t outer) {
+      return std::includes(vertices_of[outer].begin(), vertices_of[outer].end(), vertices_of[inner].begin(),
+                           vertices_of[inner].end());
+    };
+    for (std::size_t at = 0; at < vertices_of.size(); ++at) {
+      for (std::size_t k = 0; k < vertices_of.size(); ++k) {
+        // A node at the mean of an edge's ends has halves of its own and quarters of theirs; one inside, their
+        // products.
+        const double own = static_cast<double>(vertices_of[k].size()),
+                     all = static_cast<double>(vertices_of[at].size());
+        result(static_cast<Index>(k), static_cast<Index>(at)) = is_between(k, at) ? own / (all * all) : 0.0;
+      }
     }
     return result;
   }

@@ -17,6 +17,7 @@ struct FacetQuadrature {
   Vector measure;                        ///< per point: quadrature weight × area per reference area; sum: the area
   const Matrix* displacement = nullptr;  ///< φ, nodes × points
   const Matrix* hats = nullptr;          ///< (multi)linear functions of the vertices, vertices × points
+  bool whole = true;                     ///< the points are those of all of the facet, not of a part of it
 
   [[nodiscard]] Index node_count() const { return displacement->rows(); }
   [[nodiscard]] Index vertex_count() const { return hats->rows(); }

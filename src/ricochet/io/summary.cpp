@@ -55,7 +55,7 @@ Json contacts_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (const ContactDescription& c : summary.contacts) {
     result.push_back({{"group", c.group},
-                      {"obstacle", c.obstacle},
+                      {c.between_bodies ? "against" : "obstacle", c.opponent},
                       {"multipliers", c.multipliers},
                       {"friction", c.friction},
                       {"friction_bound", c.friction_bound},
@@ -294,9 +294,10 @@ RunSummary read_summary(const std::string& path) {
     read_method(json, s);
     read_outcome(json, path, s);
     for (const auto& contact : json.at("contacts")) {
-      s.contacts.push_back({contact.at("group"), contact.at("obstacle"), contact.at("multipliers"),
-                            contact.at("friction"), contact.at("friction_bound"), contact.at("obstacle_velocity"),
-                            contact.at("obstacle_rotation_rate")});
+      const bool between_bodies = contact.contains("against");
+      s.contacts.push_back({contact.at("group"), contact.at(between_bodies ? "against" : "obstacle"),
+                            contact.at("multipliers"), contact.at("friction"), contact.at("friction_bound"),
+                            contact.at("obstacle_velocity"), contact.at("obstacle_rotation_rate"), between_bodies});
     }
     for (const auto& probe : json.at("probes")) {
       s.probes.push_back({probe.at("name"), probe.at("node"), probe.at("distance"),

@@ -45,10 +45,11 @@ struct CheckResult {
 
 /// A [[contact]] entry as it ran.
 struct ContactDescription {
-  std::string group, obstacle, multipliers;
+  std::string group, opponent, multipliers;  ///< the opponent: an obstacle, or a group of another body
   double friction = 0.0, friction_bound = 0.0;
   std::vector<double> obstacle_velocity = {};  ///< empty: at rest
   double obstacle_rotation_rate = 0.0;
+  bool between_bodies = false;
 };
 
 /// A body of the mesh, and how long its contact must be lost for an impact to have ended.

@@ -65,6 +65,8 @@ void check_dimensions(const Case& input, int dimension) {
                    obstacle.parameters.vector(key.name).size(), dimension);
     }
   }
+  for (std::size_t i = 0; i < input.contacts.size(); ++i)
+    check_length(input, fmt::format("contact.{}.pair_at", i), input.contacts[i].pair_at.size(), dimension);
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     for (const int component : input.supports[i].components) {
       if (component >= dimension)
@@ -295,6 +297,7 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   const double assembly_seconds = timer.restart();
   add_loads(input, *model);
   add_initial_conditions(input, *model);
+  check_body_overlaps(input, *model);
   check_obstacles(input, *model);
   add_probes(input, *model);
   model->rotation = std::make_unique<RotationGauge>(model->body);

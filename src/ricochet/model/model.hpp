@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ricochet/case/case.hpp"
+#include "ricochet/contact/body_contact.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/starting_state.hpp"
@@ -21,6 +22,7 @@ struct Model {
   Body body;
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<ContactPair> contact_pairs;
+  std::vector<PairFacing> pair_facings;  ///< of each; nothing of those with obstacles
   SemidiscreteProblem problem;
   std::string mass_built;  ///< the name of the construction; for "equivalent" the one that it chose
   InitialConditions initial;

@@ -83,6 +83,10 @@ void complete_groups(const Case& input, Mesh& mesh) {
   for (std::size_t i = 0; i < input.materials.size(); ++i)
     groups.require(fmt::format("material.{}.group", i), input.materials[i].group, mesh.dimension);
   require_boundaries("contact", input.contacts);
+  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
+    if (!input.contacts[i].against.empty())
+      groups.require(fmt::format("contact.{}.against", i), input.contacts[i].against, mesh.dimension - 1);
+  }
   require_boundaries("support", input.supports);
   require_boundaries("traction", input.tractions);
   for (std::size_t i = 0; i < input.probes.size(); ++i) {

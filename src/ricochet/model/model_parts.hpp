@@ -26,6 +26,12 @@ void complete_groups(const Case& input, Mesh& mesh);
 void assign_materials(const Case& input, Model& model);
 void add_supports(const Case& input, Model& model);
 void add_contacts(const Case& input, Model& model);
+/// The groups of a contact between bodies; that which carries the multipliers is the pair's first.
+[[nodiscard]] ContactPair body_pair(const Case& input, std::size_t number, const Model& model);
+/// Refuses groups that do not face each other, and warns of what their contact cannot do well.
+void check_facing(const Case& input, std::size_t number, const Model& model);
+/// Refuses bodies that overlap where the run starts.
+void check_body_overlaps(const Case& input, const Model& model);
 void assemble_operators(const Case& input, Model& model);
 void add_loads(const Case& input, Model& model);
 void add_initial_conditions(const Case& input, Model& model);

@@ -4,13 +4,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <optional>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
-#include "ricochet/contact/multiplier_space.hpp"
 #include "ricochet/fem/cell_masses.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/mass/mass.hpp"
@@ -22,42 +20,6 @@
 namespace ricochet {
 
 namespace {
-
-/// Facets may belong to one contact only: to be pressed by the same obstacle twice has no meaning.
-void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
-  for (std::size_t i = 1; i < pairs.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      std::vector<Index> common;
-      std::set_intersection(pairs[i].facets.begin(), pairs[i].facets.end(), pairs[k].facets.begin(),
-                            pairs[k].facets.end(), std::back_inserter(common));
-      if (common.empty() || pairs[i].obstacle != pairs[k].obstacle) continue;
-      refuse(input, fmt::format("contact.{}.group", i),
-             fmt::format("contact groups \"{}\" and \"{}\" overlap: they share {} against the same obstacle \"{}\"",
-                         pairs[k].group, pairs[i].group, counted(common.size(), "facet"), pairs[i].obstacle_name));
-    }
-  }
-}
-
-/// Nodal forces have no share of the area at the vertices of flat six-node triangles, and so no friction under a bound.
-void warn_of_bounds_without_area(const Case& input, const ContactBoundary& contact) {
-  for (std::size_t k = 0; k < input.contacts.size(); ++k) {
-    const ContactSection& section = input.contacts[k];
-    if (section.friction_bound == 0.0) continue;
-    double largest = 0.0;
-    const auto of_pair = [&](Index point) {
-      return contact.pair[static_cast<std::size_t>(point)] == static_cast<int>(k);
-    };
-    for (Index i = 0; i < contact.size(); ++i)
-      largest = std::max(largest, of_pair(i) ? contact.friction_bound[i] : 0.0);
-    Index without = 0;
-    for (Index i = 0; i < contact.size(); ++i) without += of_pair(i) && contact.friction_bound[i] <= 1e-10 * largest;
-    if (without == 0) continue;
-    log::warning(fmt::format(
-        "contact of group \"{}\": with multipliers \"{}\" no friction acts at {}, whose share of the area is zero, "
-        "since friction_bound is a force per area; use multipliers \"dual\" or \"p1\"",
-        section.group, section.multipliers, counted(without, "contact point")));
-  }
-}
 
 void warn_of_creep(const Case& input, const Scheme& scheme, const SemidiscreteProblem& problem) {
   if (!scheme.stuck_nodes_alternate() || problem.has_singular_mass() || !problem.contact.has_friction()) return;
@@ -160,66 +122,7 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
   }
 }
 
-/// Multipliers that do not go together with the displacement's degree on the facets of a group are refused, or warned
-/// of.
-void check_stability(const Case& input, std::size_t number, const Model& model) {
-  const ContactSection& section = input.contacts[number];
-  for (const Index facet : model.contact_pairs.back().facets) {
-    const CellShape shape = model.space.facets[locate_facet(model.space, facet).block].shape;
-    const std::string reason = instability(section.multipliers, shape, model.space.degree);
-    if (reason.empty()) continue;
-    if (!section.allow_unstable_multipliers) {
-      refuse(input, fmt::format("contact.{}.multipliers", number),
-             fmt::format("{} (unstable_multipliers = \"allow\" runs it all the same)", reason));
-    }
-    log::warning(
-        fmt::format("contact of group \"{}\": {}; pressures may oscillate from point to point", section.group, reason));
-    return;
-  }
-}
-
 }  // namespace
-
-void add_contacts(const Case& input, Model& model) {
-  std::map<std::string, const Obstacle*> by_name;
-  for (const ObstacleSection& section : input.obstacles) {
-    try {
-      model.obstacles.push_back(make_obstacle(section.type, section.parameters));
-    } catch (const Error& problem) {
-      refuse(input, "obstacle." + section.name, problem.what());
-    }
-    by_name[section.name] = model.obstacles.back().get();
-  }
-  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
-    const ContactSection& section = input.contacts[i];
-    model.contact_pairs.push_back({section.group,
-                                   boundary_at(input, fmt::format("contact.{}.group", i), model.mesh, section.group),
-                                   section.obstacle,
-                                   by_name.at(section.obstacle),
-                                   {section.friction, section.friction_bound},
-                                   section.multipliers});
-    model.problem.obstacles.push_back(model.contact_pairs.back().obstacle);
-    check_stability(input, i, model);
-  }
-  check_overlap(input, model.contact_pairs);
-  const int d = model.mesh.dimension;
-  const auto is_free = [&](Index node, int component) {
-    return !model.problem.supports.contains(node * d + component);
-  };
-  Index held = 0;
-  try {
-    model.problem.contact = make_contact_boundary(model.body, model.contact_pairs, is_free, &held);
-  } catch (const Error& problem) {
-    refuse(input, "contact", problem.what());
-  }
-  model.problem.contact_stress = [&model] { return make_contact_stress(model.body, model.problem.contact); };
-  warn_of_bounds_without_area(input, model.problem.contact);
-  if (held > 0) {
-    log::warning(fmt::format("{} held by supports in the direction of the obstacle's normal: no contact {} there",
-                             counted(held, "node of contact boundaries is", "nodes of contact boundaries are"),
-                             held == 1 ? "point is" : "points are"));
-  }
-}
 
 void assemble_operators(const Case& input, Model& model) {
   const NodeGraph graph = node_graph(model.space);

@@ -47,9 +47,8 @@ class ProbeMaker {
       const auto pair =
           static_cast<std::size_t>(model_.problem.contact.node_pair[static_cast<std::size_t>(probe.contact_node)]);
       log::warning(
-          fmt::format("probe \"{}\" is at a node that {} obstacles may touch: its gap, pressure and reaction are "
-                      "those of obstacle \"{}\"",
-                      name, entries, model_.contact_pairs[pair].obstacle_name));
+          fmt::format("probe \"{}\" is at a node of {} contacts: its gap, pressure and reaction are those with {}",
+                      name, entries, model_.contact_pairs[pair].opponent()));
     }
     add(section, make_point_sensor(model_.problem, probe));
     model_.probes.push_back(probe);

@@ -78,6 +78,7 @@ void refuse_lost_digits(const Case& input, const ContactPair& pair, const Model&
 
 void check_obstacles(const Case& input, const Model& model) {
   for (const ContactPair& pair : model.contact_pairs) {
+    if (pair.between_bodies()) continue;
     refuse_lost_digits(input, pair, model);
     warn_of_sharp_obstacle(pair, model.space);
     warn_of_long_step(input, pair, model);

@@ -11,7 +11,7 @@ namespace {
 void subtract_translation(const std::vector<const Obstacle*>& obstacles, const std::vector<int>& pair,
                           const Points& normals, double time, Vector& gap) {
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    if (!obstacles[k]->moves()) continue;
+    if (obstacles[k] == nullptr || !obstacles[k]->moves()) continue;
     const SpaceVector translation = obstacles[k]->translation(time);
     for (Index i = 0; i < gap.size(); ++i) {
       if (pair[static_cast<std::size_t>(i)] == static_cast<int>(k)) gap[i] -= normals.col(i).dot(translation);
@@ -22,7 +22,8 @@ void subtract_translation(const std::vector<const Obstacle*>& obstacles, const s
 }  // namespace
 
 bool SemidiscreteProblem::has_moving_obstacles() const {
-  return std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle* obstacle) { return obstacle->moves(); });
+  return std::any_of(obstacles.begin(), obstacles.end(),
+                     [](const Obstacle* obstacle) { return obstacle != nullptr && obstacle->moves(); });
 }
 
 void SemidiscreteProblem::gaps(const Vector& displacement, double time, Vector& gap) const {
@@ -37,6 +38,11 @@ void SemidiscreteProblem::node_gaps(const Vector& displacement, double time, Vec
   for (Index i = 0; i < gap.size(); ++i) {
     const Index first = contact.nodes[static_cast<std::size_t>(i)] * dimension;
     gap[i] = contact.node_initial_gap[i] + contact.node_normals.col(i).dot(displacement.segment(first, dimension));
+  }
+  for (Index i = 0; i < contact.opposite_place.rows(); ++i) {
+    for (SparseRowMatrix::InnerIterator entry(contact.opposite_place, i); entry; ++entry)
+      gap[i] -= entry.value() *
+                contact.node_normals.col(i).dot(displacement.segment(Index{entry.col()} * dimension, dimension));
   }
   subtract_translation(obstacles, contact.node_pair, contact.node_normals, time, gap);
   if (contact.follows_motion()) contact.geometry->node_gaps(displacement, time, gap);
@@ -56,8 +62,9 @@ void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double t
   if (contact.follows_motion()) velocity.in_space.setZero(dimension, contact.size());
   SpaceVector position(dimension);
   for (Index i = 0; i < contact.size(); ++i) {
-    const Obstacle& obstacle = *obstacle_of_point(i);
-    if (!obstacle.moves()) continue;
+    const Obstacle* const moving = obstacle_of_point(i);
+    if (moving == nullptr || !moving->moves()) continue;
+    const Obstacle& obstacle = *moving;
     position.setZero();
     contact.visit_nodes(i, [&](Index node, double weight) {
       position += weight * (nodes.col(node) + displacement.segment(node * dimension, dimension));

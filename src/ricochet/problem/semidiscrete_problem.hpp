@@ -14,7 +14,8 @@
 /// @file The semi-discrete problem, eq. (2) of the source:
 ///   M Ü + C U̇ + K U = L + Gᵀ r_N − B_Tᵀ r_T  (+ support reactions),   0 ≤ r_N ⟂ g₀ + G U ≥ 0,
 ///   |r_T,i| ≤ F_i r_N,i,   r_T,i = F_i r_N,i w_i/|w_i| where the slip rate w = B_T U̇ − (the obstacle's) is not zero.
-/// Where an obstacle translates by s(t), the gap is g₀ + G U − n·s(t).
+/// Where an obstacle translates by s(t), the gap is g₀ + G U − n·s(t). Between two bodies G and B_T have the difference
+/// of their displacements, and so reactions act on both.
 namespace ricochet {
 
 struct SemidiscreteProblem {
@@ -26,7 +27,7 @@ struct SemidiscreteProblem {
   Loads loads;
   Supports supports;
   ContactBoundary contact;
-  std::vector<const Obstacle*> obstacles;  ///< of each contact pair
+  std::vector<const Obstacle*> obstacles;  ///< of each contact pair; null between bodies
   /// Makes the stress at the contact points, for the schemes that need it.
   std::function<ContactStress()> contact_stress;
   const Ranks* ranks = &one_rank();  ///< that the body is divided among; never null
@@ -40,6 +41,7 @@ struct SemidiscreteProblem {
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
   [[nodiscard]] bool has_damping() const { return damping.cols() > 0; }
   [[nodiscard]] bool has_singular_mass() const { return !massless_dofs.empty(); }
+  /// Null between bodies.
   [[nodiscard]] const Obstacle* obstacle_of_point(Index point) const {
     return obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];
   }

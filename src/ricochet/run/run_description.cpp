@@ -14,12 +14,23 @@ namespace ricochet {
 std::vector<ContactDescription> describe_contacts(const Case& input) {
   std::vector<ContactDescription> result;
   for (const ContactSection& contact : input.contacts) {
+    if (!contact.against.empty()) {
+      result.push_back({contact.group,
+                        contact.against,
+                        contact.multipliers,
+                        contact.friction,
+                        contact.friction_bound,
+                        {},
+                        0.0,
+                        true});
+      continue;
+    }
     const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
                                        [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
     const Parameters& of_obstacle = obstacle->parameters;
     result.push_back({contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound,
                       of_obstacle.has("velocity") ? of_obstacle.vector("velocity") : std::vector<double>(),
-                      of_obstacle.has("rotation_rate") ? of_obstacle.number("rotation_rate") : 0.0});
+                      of_obstacle.has("rotation_rate") ? of_obstacle.number("rotation_rate") : 0.0, false});
   }
   return result;
 }

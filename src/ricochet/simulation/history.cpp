@@ -110,7 +110,8 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
 
 void HistoryRecorder::add_contact_force(const State& state) {
   SpaceVector force = SpaceVector::Zero(problem_.dimension);
-  for (Index i = 0; i < problem_.contact.size(); ++i) force += contact_force(state.forces, i);
+  // Forces between bodies cancel.
+  for (Index i = 0; i < problem_.contact.size(); ++i) force += problem_.contact.net[i] * contact_force(state.forces, i);
   append(force, row_);
 }
 
@@ -138,7 +139,8 @@ void HistoryRecorder::add_contact_state(const Observation& observation) {
     sticking += status == ContactStatus::stick ? 1.0 : 0.0;
     slipping += status == ContactStatus::slip ? 1.0 : 0.0;
   }
-  const double penetration = observation.gap.size() > 0 ? std::max(0.0, -observation.gap.minCoeff()) : 0.0;
+  double penetration = 0.0;
+  for (const double gap : observation.gap) penetration = std::max(penetration, -gap);  // false of NaN
   for (const double value : {active, sticking, slipping, penetration, static_cast<double>(state.iterations)})
     row_.push_back(value);
 }

@@ -92,7 +92,7 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
 void ImpactRecorder::find_places(const std::vector<std::string>& obstacles) {
   const ContactBoundary& contact = problem_.contact;
   for (Index point = 0; point < contact.size(); ++point) {
-    const int body = rigid_.body_of_node(contact.first_node(point));
+    const int body = rigid_.body_of_node(contact.first_own_node(point));
     const std::string& obstacle = obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];
     const auto found = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
       return place.body == body && place.obstacle == obstacle;
@@ -262,7 +262,7 @@ void ImpactRecorder::take_largest(Interval& interval, const Force& force, double
 ImpactRecorder::Three ImpactRecorder::place_of(Index point) const {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   double sum = 0.0;
-  problem_.contact.visit_nodes(point, [&](Index node, double weight) {
+  problem_.contact.visit_own_nodes(point, [&](Index node, double weight) {
     place.head(problem_.dimension) += weight * problem_.nodes.col(node);
     sum += weight;
   });

@@ -27,7 +27,7 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
     : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()) {
   arm_ = problem.nodes.colwise().norm().maxCoeff();
   constant_load_ = of_nodes(problem.loads.constant());
-  positions_ = problem.contact.positions(problem.nodes);
+  arms_ = problem.contact.arms(problem.nodes);
   previous_ = resultant(state.forces);
   algorithmic_ = algorithmic(state);
 }
@@ -71,8 +71,11 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const 
   Resultant contact, supports;
   for (Index i = 0; i < forces.acting_normal().size(); ++i) {
     // Under Tresca's law a point without pressure may still carry friction.
-    if (carries_acting_force(forces, i))
-      add(contact, in_space(positions_.col(i)), in_space(acting_contact_force(forces, i)));
+    if (!carries_acting_force(forces, i)) continue;
+    // Between bodies nothing is left but the moment of forces that do not act along the gap.
+    const Eigen::Vector3d force = in_space(acting_contact_force(forces, i));
+    contact.force += problem_.contact.net[i] * force;
+    contact.moment += in_space(arms_.col(i)).cross(force);
   }
   include(contact);
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {

@@ -47,7 +47,7 @@ class MomentumAccount {
   WorkRule rule_;
   double arm_ = 0.0;
   Resultant constant_load_;
-  Points positions_;  ///< of the contact points: Σ_j c_ij X_j
+  Points arms_;  ///< of the contact points: Σ_j t_ij X_j
   Sum previous_;
   Resultant algorithmic_;  ///< of M a, Scheme::momentum_acceleration
   Vector acceleration_, momentum_;

@@ -42,8 +42,9 @@ class FreeMotions {
   [[nodiscard]] Index count() const { return modes_.cols(); }
   [[nodiscard]] bool contains(Index dof) const { return in_body_[static_cast<std::size_t>(dof / d_)] != 0; }
   [[nodiscard]] const Vector& centre() const { return centre_; }
-  /// Adds factor × the generalized force of a unit force on this dof.
+  /// Adds factor × the generalized force of a unit force on this dof; nothing of the dofs of other bodies.
   void add_force(Index dof, double factor, Vector& force) const {
+    if (!contains(dof)) return;
     force.noalias() += modes_.transpose() * (factor * speeds(dof)).head(modes_.rows());
   }
   /// Of the centre.
@@ -213,7 +214,11 @@ std::vector<Cone> make_cones(const SemidiscreteProblem& problem, const FreeMotio
   const Index tangents = problem.dimension - 1;
   std::vector<Cone> cones;
   for (Index i = 0; i < contact.size(); ++i) {
-    if (!motions.contains(contact.first_node(i) * problem.dimension)) continue;
+    // Another body is taken for one that can press as it is pressed: what no reactions can hold, they cannot either.
+    bool reaches = false;
+    contact.visit_nodes(i,
+                        [&](Index node, double) { reaches = reaches || motions.contains(node * problem.dimension); });
+    if (!reaches) continue;
     Cone cone{Vector::Zero(motions.count()), Matrix::Zero(motions.count(), tangents), 0.0, false, i};
     rows.visit_normal(i, [&](Index dof, double value) { motions.add_force(dof, value, cone.normal); });
     if (frictionless.empty() || frictionless[static_cast<std::size_t>(i)] == 0) {

@@ -22,7 +22,8 @@ void CondensedContact::throw_contradiction(const std::vector<Index>& contradicti
   for (const Index candidate : contradiction) {
     const Index point = candidates_.points()[static_cast<std::size_t>(candidate)];
     Vector at = Vector::Zero(problem_.dimension);
-    problem_.contact.visit_nodes(point, [&](Index node, double weight) { at += weight * problem_.nodes.col(node); });
+    problem_.contact.visit_own_nodes(point,
+                                     [&](Index node, double weight) { at += weight * problem_.nodes.col(node); });
     places.insert(as_text(at));
     contacts.insert(fmt::format("contact.{} (normal {})", problem_.contact.pair[static_cast<std::size_t>(point)],
                                 as_text(rows_->normals.col(point))));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "ricochet/io/fields/field_source.hpp"
@@ -56,7 +57,7 @@ void ContactFields::evaluate(const State& state) {
   for (Index i = 0; i < node_gap_.size(); ++i) {
     const std::size_t node = number(contact.nodes[static_cast<std::size_t>(i)]);
     pressure_[node] = std::max(pressure_[node], node_pressure_[i]);
-    gap_[node] = status_[node] < 0 ? node_gap_[i] : std::min(gap_[node], node_gap_[i]);
+    gap_[node] = std::fmin(gap_[node], node_gap_[i]);  // of a number and NaN the number
     status_[node] = std::max(status_[node], 0);
     // A node does what its own contact point does, or, without one, what those do that its pressure comes from.
     const auto take = [&](Index point) {
@@ -82,9 +83,11 @@ void ContactFields::evaluate_friction(const State& state) {
   const int d = problem_.dimension;
   node_traction_.setZero(problem_.dof_count());
   for (std::size_t i = 0; i < contact.nodes.size() && state.forces.tangential_reaction.size() > 0; ++i) {
+    // On the other body the traction is the opposite one.
+    const double sign = contact.is_opposite[i] != 0 ? 1.0 : -1.0;
     contact.visit_recovery(static_cast<Index>(i), [&](Index point, double value) {
-      node_traction_.segment(contact.nodes[i] * d, d) -=
-          value * state.forces.rows->along_tangents(point, state.forces.tangential_reaction);
+      node_traction_.segment(contact.nodes[i] * d, d) +=
+          sign * value * state.forces.rows->along_tangents(point, state.forces.tangential_reaction);
     });
   }
   take_vector(space_, node_traction_, traction_);

@@ -33,8 +33,8 @@ class ContactSensor final : public Sensor {
       if (!(normal > 0.0)) continue;
       pressing += normal;
       area += contact.weights[point];
-      contact.visit_nodes(point,
-                          [&](Index node, double weight) { centre += normal * weight * problem_.nodes.col(node); });
+      contact.visit_own_nodes(point,
+                              [&](Index node, double weight) { centre += normal * weight * problem_.nodes.col(node); });
     }
     // A ratio of sums: the sensor sees to it itself.
     pressing = problem_.ranks->sum(pressing);

@@ -13,8 +13,11 @@ class PointSensor final : public Sensor {
     // All points of this obstacle whose trace reaches the node.
     const ContactBoundary& contact = problem.contact;
     const int pair = contact.node_pair[static_cast<std::size_t>(probe_.contact_node)];
+    const Obstacle* const obstacle = problem.obstacles[static_cast<std::size_t>(pair)];
     for (Index point = 0; point < contact.size(); ++point) {
-      if (problem.obstacle_of_point(point) != problem.obstacles[static_cast<std::size_t>(pair)]) continue;
+      const bool is_same = obstacle != nullptr ? problem.obstacle_of_point(point) == obstacle
+                                               : contact.pair[static_cast<std::size_t>(point)] == pair;
+      if (!is_same) continue;
       contact.visit_nodes(point, [&](Index node, double weight) {
         if (node == probe_.node) points_.emplace_back(point, weight);
       });

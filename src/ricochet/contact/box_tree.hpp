@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+/// @file Axis-aligned boxes in a tree: which of many things may be near?
+namespace ricochet {
+
+/// A binary tree over things that are known by their boxes, in three coordinates (the third is 0 in the plane). Each
+/// half of a box has half of its things, along the longest side of the box around their middles; ties go by number. So
+/// the tree depends on nothing but the boxes. Nothing is allocated after the construction.
+class BoxTree {
+ public:
+  using Box = Eigen::AlignedBox3d;
+  struct Node {
+    Box box;
+    int first = 0, count = 0;  ///< things (in `order`) of a leaf; count 0: two nodes, the next one and `second`
+    int second = 0;
+  };
+  static constexpr std::size_t deepest = 64;  ///< of the ways from the root to a leaf
+
+  BoxTree() = default;
+  /// Not empty.
+  explicit BoxTree(const std::vector<Box>& boxes);
+  /// The same things, elsewhere.
+  void refit(const std::vector<Box>& boxes);
+
+  [[nodiscard]] bool empty() const { return nodes_.empty(); }
+  /// A node comes before those inside of it; the first is the root.
+  [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
+  /// Things by leaves.
+  [[nodiscard]] const std::vector<int>& order() const { return order_; }
+
+  /// Calls visit(thing) for the things of all leaves that `may_touch(box)` lets through, in an order that depends on
+  /// the tree alone.
+  template <class MayTouch, class Visit>
+  void visit(const MayTouch& may_touch, const Visit& visit) const {
+    if (nodes_.empty()) return;
+    std::array<int, deepest> waiting{};
+    std::size_t count = 1;
+    while (count > 0) {
+      const int number = waiting[--count];
+      const Node& node = nodes_[static_cast<std::size_t>(number)];
+      if (!may_touch(node.box)) continue;
+      for (int i = node.first; i < node.first + node.count; ++i) visit(order_[static_cast<std::size_t>(i)]);
+      if (node.count > 0) continue;
+      waiting[count++] = node.second;
+      waiting[count++] = number + 1;
+    }
+  }
+
+ private:
+  int build(const std::vector<Box>& boxes, int first, int last);
+
+  std::vector<Node> nodes_;
+  std::vector<int> order_;
+};
+
+}  // namespace ricochet

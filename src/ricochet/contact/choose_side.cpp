@@ -1,0 +1,95 @@
+#include "ricochet/contact/choose_side.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ricochet/contact/facet_surface.hpp"
+#include "ricochet/fem/exterior_facets.hpp"
+#include "ricochet/fem/mesh_measures.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Ratio from which two sides differ.
+constexpr double alike = 1.1;
+
+struct Side {
+  double size = 0.0;       ///< mean distance of nodes on the facets
+  double curvature = 0.0;  ///< mean turn of the normal per length from facet to facet
+  double stiffness = 0.0;  ///< the mean of Young's modulus behind the facets, by area
+};
+
+/// Of facets that share a node: the angle of their normals over the distance of their centres, the mean of all.
+double curvature_of(const Body& body, const FacetSurface& surface) {
+  std::map<Index, std::vector<std::size_t>> around;
+  std::vector<FacetSurface::Three> centres;
+  for (std::size_t k = 0; k < surface.facets().size(); ++k) {
+    const FacetSurface::Facet& facet = surface.facets()[k];
+    const PlaceInBlocks place = place_in_blocks(body.mesh->facets, facet.number);
+    const CellBlock& block = body.mesh->facets[place.block];
+    FacetSurface::Three centre = FacetSurface::Three::Zero();
+    const int vertices = vertex_count(block.shape);
+    for (int v = 0; v < vertices; ++v) {
+      const Index node = block.cell(place.local)[v];
+      centre.head(body.mesh->dimension) += body.mesh->nodes.col(node) / vertices;
+      around[node].push_back(k);
+    }
+    centres.push_back(centre);
+  }
+  double sum = 0.0;
+  Index count = 0;
+  for (const auto& [node, facets] : around) {
+    for (std::size_t i = 1; i < facets.size(); ++i) {
+      const FacetSurface::Three one = surface.facets()[facets[i - 1]].area_vector.normalized(),
+                                other = surface.facets()[facets[i]].area_vector.normalized();
+      const double angle = std::atan2(one.cross(other).norm(), one.dot(other));
+      constexpr double rounding = 1e-6;
+      const double distance = (centres[facets[i - 1]] - centres[facets[i]]).norm();
+      sum += angle > rounding && distance > 0.0 ? angle / distance : 0.0;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+Side measure(const Body& body, const std::vector<Index>& facets, const std::vector<double>& heights) {
+  const FacetSurface surface(body, facets, heights);
+  const std::vector<std::vector<Index>> cells = cells_of_facets(*body.mesh, facets);
+  Side side;
+  double area = 0.0;
+  for (std::size_t k = 0; k < surface.facets().size(); ++k) {
+    const FacetSurface::Facet& facet = surface.facets()[k];
+    side.size += facet.size / body.space->degree;
+    const IsotropicElasticity law = linear_law(body, material_of(body, cells[k].front()));
+    side.stiffness += facet.area * law.mu * (3.0 * law.lambda + 2.0 * law.mu) / (law.lambda + law.mu);
+    area += facet.area;
+  }
+  side.size /= static_cast<double>(std::max<std::size_t>(surface.facets().size(), 1));
+  side.stiffness /= area;
+  side.curvature = curvature_of(body, surface);
+  return side;
+}
+
+}  // namespace
+
+SideChoice choose_side(const Body& body, const ContactPair& pair) {
+  const std::vector<double> heights = cell_heights(*body.mesh);
+  const Side one = measure(body, pair.facets, heights), other = measure(body, pair.opposite_facets, heights);
+  const auto differ = [](double a, double b) { return std::max(a, b) > alike * std::min(a, b); };
+  const auto choice = [](bool opposite, const char* what, double own, double others) {
+    return SideChoice{
+        opposite, fmt::format("{} ({:.3g} against {:.3g})", what, opposite ? others : own, opposite ? own : others)};
+  };
+  if (differ(one.size, other.size)) return choice(other.size < one.size, "its mesh is finer", one.size, other.size);
+  if (differ(one.curvature, other.curvature))
+    return choice(other.curvature > one.curvature, "it is more curved", one.curvature, other.curvature);
+  if (differ(one.stiffness, other.stiffness))
+    return choice(other.stiffness < one.stiffness, "it is softer", one.stiffness, other.stiffness);
+  return {false, "both sides are alike"};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,115 @@
+#include "ricochet/contact/facet_surface.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "ricochet/fem/exterior_facets.hpp"
+#include "ricochet/mesh/flat_pieces.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Three = FacetSurface::Three;
+
+/// Of the facet's size: nodes that are no farther from the mean of their vertices are on it.
+constexpr double straight = 1e-12;
+
+Three in_space(const Points& positions, Index node) {
+  Three result = Three::Zero();
+  result.head(positions.rows()) = positions.col(node);
+  return result;
+}
+
+double largest_distance(const std::vector<Three>& corners) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) largest = std::max(largest, (corners[i] - corners[k]).norm());
+  }
+  return largest;
+}
+
+/// A facet of second order whose nodes lie where those of a straight one would has the pieces of that one.
+bool is_straight(CellShape shape, const std::vector<Three>& nodes, double size) {
+  const auto& vertices_of = node_vertices(shape, 2);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    Three mean = Three::Zero();
+    for (const int v : vertices_of[k])
+      mean += nodes[static_cast<std::size_t>(v)] / static_cast<double>(vertices_of[k].size());
+    if ((nodes[k] - mean).norm() > straight * size) return false;
+  }
+  return true;
+}
+
+/// Twice the area of a triangle, and the length of a segment, along the normal on the side where the nodes turn
+/// counter-clockwise, or to the right of the way.
+Three area_vector(const std::array<Three, 3>& corners, bool plane) {
+  const Three along = corners[1] - corners[0];
+  if (plane) return {along[1], -along[0], 0.0};
+  return 0.5 * along.cross(corners[2] - corners[0]);
+}
+
+}  // namespace
+
+FacetSurface::FacetSurface(const Body& body, const std::vector<Index>& facets, const std::vector<double>& cell_height,
+                           const Vector& shift)
+    : nodes_(facet_nodes(*body.space, facets)), shift_(shift.size() > 0 ? shift : Vector::Zero(body.mesh->dimension)) {
+  const std::vector<std::vector<Index>> cells = cells_of_facets(*body.mesh, facets);
+  for (std::size_t k = 0; k < facets.size(); ++k) {
+    add_facet(body, facets[k], cells[k].front());
+    const double height = facets_.back().height = cell_height[static_cast<std::size_t>(cells[k].front())];
+    const PlaceInBlocks place = locate_facet(*body.space, facets[k]);
+    const CellBlock& block = body.space->facets[place.block];
+    for (int i = 0; i < block.nodes_per_cell; ++i) {
+      double& least = node_height_.try_emplace(block.cell(place.local)[i], height).first->second;
+      least = std::min(least, height);
+    }
+  }
+  std::vector<BoxTree::Box> boxes(pieces_.size());
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    for (const Three& corner : pieces_[p].corners) boxes[p].extend(corner);
+  }
+  if (!boxes.empty()) tree_ = BoxTree(boxes);
+}
+
+void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
+  const Mesh& mesh = *body.mesh;
+  const PlaceInBlocks place = place_in_blocks(mesh.facets, number), behind = place_in_blocks(mesh.cells, cell);
+  const CellBlock& block = mesh.facets[place.block];
+  const bool plane = mesh.dimension == 2;
+  Three moved = Three::Zero(), inside = Three::Zero();
+  moved.head(mesh.dimension) = shift_;
+  const CellBlock& cells = mesh.cells[behind.block];
+  for (int v = 0; v < vertex_count(cells.shape); ++v)
+    inside += (in_space(mesh.nodes, cells.cell(behind.local)[v]) + moved) / vertex_count(cells.shape);
+  std::vector<Three> nodes;
+  for (int k = 0; k < block.nodes_per_cell; ++k)
+    nodes.push_back(in_space(mesh.nodes, block.cell(place.local)[k]) + moved);
+  Facet facet{number, static_cast<int>(pieces_.size())};
+  facet.size = largest_distance({nodes.begin(), nodes.begin() + vertex_count(block.shape)});
+  const bool as_straight = mesh.degree == 1 || is_straight(block.shape, nodes, facet.size);
+  BoxTree::Box box;
+  for (const FlatPiece& local : flat_pieces(block.shape, as_straight ? 1 : 2)) {
+    Piece piece{static_cast<int>(facets_.size()), {}, Three::Zero()};
+    for (std::size_t k = 0; k < 3; ++k) {
+      piece.corners[k] = nodes[static_cast<std::size_t>(local[k] >= 0 ? local[k] : local[1])];
+      box.extend(piece.corners[k]);
+    }
+    Three area = area_vector(piece.corners, plane);
+    if (area.dot(inside - piece.corners[0]) > 0.0) {
+      std::swap(piece.corners[0], piece.corners[1]);
+      area = -area;
+      if (plane) piece.corners[2] = piece.corners[1];
+    }
+    facet.area += area.norm();
+    facet.area_vector += area;
+    piece.normal = area.normalized();
+    pieces_.push_back(piece);
+  }
+  facet.piece_count = static_cast<int>(pieces_.size()) - facet.first_piece;
+  facet.range = {box.min(), box.max()};
+  facets_.push_back(facet);
+}
+
+}  // namespace ricochet

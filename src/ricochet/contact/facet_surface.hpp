@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "ricochet/contact/box_tree.hpp"
+#include "ricochet/fem/facet_map.hpp"
+
+/// @file One side of a contact between bodies: its facets, cut into flat pieces, where they can be found.
+namespace ricochet {
+
+/// Everything has three coordinates; in two dimensions the third is 0.
+class FacetSurface {
+ public:
+  using Three = Eigen::Vector3d;
+  /// A segment or, in three dimensions, a triangle between nodes of a facet.
+  struct Piece {
+    int facet = 0;  ///< its place in facets()
+    std::array<Three, 3> corners;
+    Three normal;  ///< out of the body, of length 1
+  };
+  struct Facet {
+    Index number = 0;  ///< through all blocks
+    int first_piece = 0, piece_count = 0;
+    double area = 0.0;             ///< of the pieces
+    Three area_vector{0, 0, 0};    ///< ∫ N of them, out of the body
+    double size = 0.0;             ///< the longest distance between corners
+    double height = 0.0;           ///< of the cell behind it
+    std::array<Three, 2> range{};  ///< corners of the box around it
+  };
+
+  /// `facets`: numbered through all blocks, ascending. They are seen where they are displaced by `shift` (d; empty: not
+  /// at all). `cell_height` is per cell (cell_heights).
+  FacetSurface(const Body& body, const std::vector<Index>& facets, const std::vector<double>& cell_height,
+               const Vector& shift = {});
+
+  [[nodiscard]] const std::vector<Facet>& facets() const { return facets_; }
+  [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+  [[nodiscard]] const BoxTree& tree() const { return tree_; }
+  /// The nodes of the displacement's space on these facets, ascending.
+  [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
+  /// The least height of the cells behind the facets around a node.
+  [[nodiscard]] double height_at(Index node) const { return node_height_.at(node); }
+  [[nodiscard]] const Vector& shift() const { return shift_; }
+
+ private:
+  void add_facet(const Body& body, Index facet, Index cell);
+
+  std::vector<Facet> facets_;
+  std::vector<Piece> pieces_;
+  std::vector<Index> nodes_;
+  std::map<Index, double> node_height_;
+  Vector shift_;
+  BoxTree tree_;  ///< of the pieces
+};
+
+}  // namespace ricochet

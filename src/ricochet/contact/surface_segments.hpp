@@ -1,0 +1,64 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/contact/facet_surface.hpp"
+
+/// @file Where two surfaces face each other: the pieces into which the facets of both cut one of them, with points to
+/// integrate over each.
+namespace ricochet {
+
+/// The part of a facet of the own surface that one facet of the opposite surface faces.
+struct SurfaceSegment {
+  Index opposite = 0;     ///< facet, numbered through all blocks
+  Points own_local;       ///< reference coordinates on the own facet, (d−1) × points
+  Points opposite_local;  ///< on the opposite facet, of the points that face them
+  Vector weights;         ///< areas in the plane perpendicular to the direction
+};
+
+struct FacetSegments {
+  Points axes;  ///< d × (d−1), orthonormal with the direction
+  std::vector<SurfaceSegment> segments;
+  double covered = 0.0;  ///< part of the facet, seen along the direction, that faces the other surface
+  [[nodiscard]] bool is_whole() const { return covered > 1.0 - 1e-8; }
+};
+
+/// Cuts facets of one surface by those of another, seen along one direction.
+///
+/// Both are cut in the plane perpendicular to the direction: intervals in two dimensions, polygons of triangles in
+/// three. A rule on every triangle of a polygon integrates there, so that what is piecewise polynomial on the two
+/// meshes is integrated exactly: of degree `degree` of the facets' own coordinates, where those depend linearly on the
+/// place. Own and opposite shape functions are taken at the same points: their sums agree to rounding with any rule.
+class SegmentFinder {
+ public:
+  /// Keeps references. `own` and `opposite` may belong to one body.
+  SegmentFinder(const FacetMap& map, const FacetSurface& own, const FacetSurface& opposite, int degree);
+
+  /// `facet`: place in own.facets(). `direction`: unit, out of the opposite surface. Pieces that are seen nearly
+  /// edge-on, or do not face each other, count for nothing, and so do those that lie inside of each other by more than
+  /// half of the height of the cells behind them: a line that passes through a thin body meets its far side there. Of
+  /// several pieces behind each other the nearest counts.
+  [[nodiscard]] FacetSegments find(int facet, const Eigen::Vector3d& direction) const;
+
+  /// A point of the own side, seen along a direction: the facet that it faces, and where. None: facet −1.
+  struct Hit {
+    Index facet = -1;
+    Points local;      ///< (d−1) × 1
+    double gap = 0.0;  ///< along the direction
+  };
+  /// `reach`: how far it may be inside of the opposite surface.
+  [[nodiscard]] Hit find_point(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double reach) const;
+
+ private:
+  struct View;
+  struct Cut;
+  void cut_piece(const View& view, int piece, std::vector<Cut>& cuts) const;
+  void add_points(const View& view, const std::vector<Cut>& cuts, std::vector<SurfaceSegment>& segments) const;
+  [[nodiscard]] bool find_coordinates(Index facet, const Points& axes, SurfaceSegment& segment) const;
+
+  const FacetMap& map_;
+  const FacetSurface &own_, &opposite_;
+  QuadratureRule interval_, triangle_;
+};
+
+}  // namespace ricochet

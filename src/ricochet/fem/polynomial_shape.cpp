@@ -1,0 +1,63 @@
+#include "ricochet/fem/polynomial_shape.hpp"
+
+#include <Eigen/LU>
+
+namespace ricochet {
+
+namespace {
+
+double power(double x, int exponent) {
+  return exponent == 0 ? 1.0 : exponent == 1 ? x : x * x;
+}
+
+/// Of x^exponent.
+double slope(double x, int exponent) {
+  return exponent == 0 ? 0.0 : exponent == 1 ? 1.0 : 2.0 * x;
+}
+
+}  // namespace
+
+/// The monomials of the space of the shape functions, and what each shape function has of them: it is 1 at its node.
+PolynomialShape::PolynomialShape(CellShape shape, int degree) : dimension_(dimension(shape)) {
+  const bool simplex = shape != CellShape::quadrilateral;
+  for (int j = 0; j <= (dimension_ == 2 ? degree : 0); ++j) {
+    for (int i = 0; i <= (simplex ? degree - j : degree); ++i, ++terms_) {
+      powers_[terms_][0] = i;
+      powers_[terms_][1] = j;
+    }
+  }
+  const Points& nodes = ReferenceElement::get(shape, degree).nodes();
+  Matrix at_nodes(terms_, nodes.cols());
+  for (Index k = 0; k < nodes.cols(); ++k) monomials(nodes.col(k).data(), at_nodes.col(k).data());
+  coefficients_ = at_nodes.inverse();
+}
+
+void PolynomialShape::monomials(const double* point, double* terms) const {
+  for (int t = 0; t < terms_; ++t)
+    terms[t] = power(point[0], powers_[t][0]) * (dimension_ == 2 ? power(point[1], powers_[t][1]) : 1.0);
+}
+
+void PolynomialShape::derivatives(const double* point, int axis, double* terms) const {
+  for (int t = 0; t < terms_; ++t) {
+    terms[t] = slope(point[axis], powers_[t][axis]);
+    if (dimension_ == 2) terms[t] *= power(point[1 - axis], powers_[t][1 - axis]);
+  }
+}
+
+void PolynomialShape::values(const double* point, double* values) const {
+  double terms[most_nodes];
+  monomials(point, terms);
+  Eigen::Map<Vector>(values, node_count()).noalias() = coefficients_ * Eigen::Map<const Vector>(terms, terms_);
+}
+
+void PolynomialShape::gradients(const double* point, double* values, double* gradients) const {
+  double terms[most_nodes];
+  this->values(point, values);
+  for (int axis = 0; axis < dimension_; ++axis) {
+    derivatives(point, axis, terms);
+    Eigen::Map<Vector>(gradients + axis * node_count(), node_count()).noalias() =
+        coefficients_ * Eigen::Map<const Vector>(terms, terms_);
+  }
+}
+
+}  // namespace ricochet

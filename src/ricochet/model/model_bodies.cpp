@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/contact/choose_side.hpp"
+#include "ricochet/model/model_parts.hpp"
+
+/// @file [[contact]] between bodies: which side carries the multipliers, and how the groups face each other.
+namespace ricochet {
+
+namespace {
+
+/// Length of the mean normal around a multiplier below which its direction is that of none of its facets: facets that
+/// meet at an angle of more than 50 degrees.
+constexpr double sharp_edge = 0.9;
+
+std::string place_text(const Vector& place) {
+  return fmt::format("({:.6g})", fmt::join(place, ", "));
+}
+
+std::string names_of_pair(const ContactPair& pair) {
+  return fmt::format("contact groups \"{}\" and \"{}\"", pair.group, pair.opposite_group);
+}
+
+}  // namespace
+
+ContactPair body_pair(const Case& input, std::size_t number, const Model& model) {
+  const ContactSection& section = input.contacts[number];
+  const std::string key = fmt::format("contact.{}.", number);
+  ContactPair pair;
+  pair.group = section.group;
+  pair.facets = boundary_at(input, key + "group", model.mesh, section.group);
+  pair.opposite_group = section.against;
+  pair.opposite_facets = boundary_at(input, key + "against", model.mesh, section.against);
+  pair.friction = {section.friction, section.friction_bound};
+  pair.multipliers = section.multipliers;
+  pair.closed_gaps = section.closed_gaps;
+  if (!section.pair_at.empty())
+    pair.pair_at = Eigen::Map<const Vector>(section.pair_at.data(), static_cast<Index>(section.pair_at.size()));
+  std::vector<Index> common;
+  std::set_intersection(pair.facets.begin(), pair.facets.end(), pair.opposite_facets.begin(),
+                        pair.opposite_facets.end(), std::back_inserter(common));
+  if (!common.empty()) {
+    refuse(input, key + "against",
+           fmt::format("groups \"{}\" and \"{}\" share {}: the same facets cannot be on both sides of a contact; name "
+                       "facets of one body in each",
+                       section.group, section.against, counted(common.size(), "facet")));
+  }
+  const bool is_chosen = section.multipliers_on == "automatic";
+  const SideChoice choice =
+      is_chosen ? choose_side(model.body, pair) : SideChoice{section.multipliers_on == "against", ""};
+  if (choice.opposite) {
+    std::swap(pair.group, pair.opposite_group);
+    std::swap(pair.facets, pair.opposite_facets);
+    if (pair.pair_at.size() > 0) pair.pair_at = -pair.pair_at;
+  }
+  if (is_chosen) {
+    log::info(fmt::format("contact of \"{}\" against \"{}\": group \"{}\" carries the multipliers: {}", section.group,
+                          section.against, pair.group, choice.reason));
+  }
+  return pair;
+}
+
+void check_facing(const Case& input, std::size_t number, const Model& model) {
+  const ContactPair& pair = model.contact_pairs[number];
+  const PairFacing& facing = model.pair_facings[number];
+  if (facing.points == 0 && facing.held == 0) {
+    refuse(input, fmt::format("contact.{}.against", number),
+           fmt::format("{} do not face each other: seen along the normals of \"{}\" there is no facet of \"{}\"; check "
+                       "which groups they are and where the bodies lie, or say with pair_at by how much the body of "
+                       "\"{}\" moves until they meet",
+                       names_of_pair(pair), pair.group, pair.opposite_group, input.contacts[number].group));
+  }
+  if (facing.held > 0) {
+    log::warning(fmt::format("{}: {} held by supports on both sides in the direction of contact: no contact {} there",
+                             names_of_pair(pair), counted(facing.held, "multiplier is", "multipliers are"),
+                             facing.held == 1 ? "point is" : "points are"));
+  }
+  if (facing.sharpest < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node) {
+    log::warning(
+        fmt::format("{}: facets of \"{}\" meet at an edge at {}, where the direction of contact is the mean of their "
+                    "normals; give the facets of each side of the edge a contact of their own",
+                    names_of_pair(pair), pair.group, place_text(facing.edge)));
+  }
+  if (pair.multipliers == "nodal" && !facing.matches) {
+    log::warning(fmt::format(
+        "{}: multipliers \"nodal\" on meshes that do not match: nodes of one side against facets of the other do not "
+        "pass a uniform pressure, and stresses near the contact can be wrong by tens of per cent; use \"p1\"",
+        names_of_pair(pair)));
+  }
+}
+
+void check_body_overlaps(const Case& input, const Model& model) {
+  if (model.initial.static_equilibrium) return;  // a press fit: the static start pushes the bodies apart
+  Vector gap;
+  model.problem.gaps(model.initial.displacement, 0.0, gap);
+  const ContactBoundary& contact = model.problem.contact;
+  for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
+    const ContactPair& pair = model.contact_pairs[number];
+    if (!pair.between_bodies()) continue;
+    Index deepest = -1, inside = 0;
+    for (Index i = 0; i < contact.size(); ++i) {
+      if (contact.pair[static_cast<std::size_t>(i)] != static_cast<int>(number)) continue;
+      if (!(gap[i] < -contact.rows->gap_rounding[i])) continue;
+      ++inside;
+      if (deepest < 0 || gap[i] < gap[deepest]) deepest = i;
+    }
+    if (deepest < 0) continue;
+    Vector place = Vector::Zero(model.mesh.dimension);
+    contact.visit_own_nodes(deepest, [&](Index node, double weight) { place += weight * model.space.nodes.col(node); });
+    refuse(
+        input, fmt::format("contact.{}.group", number),
+        fmt::format("{} overlap at the start: {} inside of the other body, the deepest by {:.3g} at {}, and would be "
+                    "pushed out at once, which creates energy; move the bodies apart, set initial_gap = \"closed\" "
+                    "where surfaces that touch overlap since their facets are flat, or set initial.displacement = "
+                    "\"static\" for a press fit",
+                    names_of_pair(pair), counted(inside, "contact point is", "contact points are"), -gap[deepest],
+                    place_text(place)));
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/contact/body_contact.hpp"
+#include "ricochet/contact/choose_side.hpp"
+#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/model/model_parts.hpp"
+
+/// @file What [[contact]] asks for.
+namespace ricochet {
+
+namespace {
+
+std::vector<Index> common_facets(const std::vector<Index>& one, const std::vector<Index>& other) {
+  std::vector<Index> common;
+  std::set_intersection(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(common));
+  return common;
+}
+
+/// Facets may belong to one contact only: to be pressed by the same obstacle twice has no meaning, and two conditions
+/// between the same surfaces depend on each other.
+void check_overlap(const Case& input, const std::vector<ContactPair>& pairs) {
+  const auto refuse_pair = [&](std::size_t i, std::size_t k, std::size_t facets, const std::string& against) {
+    refuse(input, fmt::format("contact.{}.group", i),
+           fmt::format("contact groups \"{}\" and \"{}\" overlap: they share {} against {}", pairs[k].group,
+                       pairs[i].group, counted(facets, "facet"), against));
+  };
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (pairs[i].obstacle != pairs[k].obstacle) continue;
+      if (!pairs[i].between_bodies()) {
+        const std::vector<Index> common = common_facets(pairs[i].facets, pairs[k].facets);
+        if (!common.empty()) refuse_pair(i, k, common.size(), "the same " + pairs[i].opponent());
+        continue;
+      }
+      for (const bool crosswise : {false, true}) {
+        const auto &first = crosswise ? pairs[k].opposite_facets : pairs[k].facets,
+                   &second = crosswise ? pairs[k].facets : pairs[k].opposite_facets;
+        const std::vector<Index> own = common_facets(pairs[i].facets, first);
+        if (own.empty() || common_facets(pairs[i].opposite_facets, second).empty()) continue;
+        refuse_pair(i, k, own.size(), "the same facets of another group: one contact of two surfaces is enough");
+      }
+    }
+  }
+}
+
+/// Nodal forces have no share of the area at the vertices of flat six-node triangles, and so no friction under a bound.
+void warn_of_bounds_without_area(const Case& input, const ContactBoundary& contact) {
+  for (std::size_t k = 0; k < input.contacts.size(); ++k) {
+    const ContactSection& section = input.contacts[k];
+    if (section.friction_bound == 0.0) continue;
+    double largest = 0.0;
+    const auto of_pair = [&](Index point) {
+      return contact.pair[static_cast<std::size_t>(point)] == static_cast<int>(k);
+    };
+    for (Index i = 0; i < contact.size(); ++i)
+      largest = std::max(largest, of_pair(i) ? contact.friction_bound[i] : 0.0);
+    Index without = 0;
+    for (Index i = 0; i < contact.size(); ++i) without += of_pair(i) && contact.friction_bound[i] <= 1e-10 * largest;
+    if (without == 0) continue;
+    log::warning(fmt::format(
+        "contact of group \"{}\": with multipliers \"{}\" no friction acts at {}, whose share of the area is zero, "
+        "since friction_bound is a force per area; use multipliers \"dual\" or \"p1\"",
+        section.group, section.multipliers, counted(without, "contact point")));
+  }
+}
+
+/// Multipliers that do not go together with the displacement's degree on the facets of a group are refused, or warned
+/// of.
+void check_stability(const Case& input, std::size_t number, const Model& model) {
+  const ContactSection& section = input.contacts[number];
+  for (const Index facet : model.contact_pairs.back().facets) {
+    const CellShape shape = model.space.facets[locate_facet(model.space, facet).block].shape;
+    const std::string reason = instability(section.multipliers, shape, model.space.degree);
+    if (reason.empty()) continue;
+    if (!section.allow_unstable_multipliers) {
+      refuse(input, fmt::format("contact.{}.multipliers", number),
+             fmt::format("{} (unstable_multipliers = \"allow\" runs it all the same)", reason));
+    }
+    log::warning(
+        fmt::format("contact of group \"{}\": {}; pressures may oscillate from point to point", section.group, reason));
+    return;
+  }
+}
+
+ContactPair obstacle_pair(const Case& input, std::size_t number, const Model& model,
+                          const std::map<std::string, const Obstacle*>& obstacles) {
+  const ContactSection& section = input.contacts[number];
+  ContactPair pair;
+  pair.group = section.group;
+  pair.facets = boundary_at(input, fmt::format("contact.{}.group", number), model.mesh, section.group);
+  pair.obstacle_name = section.obstacle;
+  pair.obstacle = obstacles.at(section.obstacle);
+  pair.friction = {section.friction, section.friction_bound};
+  pair.multipliers = section.multipliers;
+  return pair;
+}
+
+}  // namespace
+
+void add_contacts(const Case& input, Model& model) {
+  std::map<std::string, const Obstacle*> by_name;
+  for (const ObstacleSection& section : input.obstacles) {
+    try {
+      model.obstacles.push_back(make_obstacle(section.type, section.parameters));
+    } catch (const Error& problem) {
+      refuse(input, "obstacle." + section.name, problem.what());
+    }
+    by_name[section.name] = model.obstacles.back().get();
+  }
+  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
+    const bool between_bodies = !input.contacts[i].against.empty();
+    model.contact_pairs.push_back(between_bodies ? body_pair(input, i, model)
+                                                 : obstacle_pair(input, i, model, by_name));
+    model.problem.obstacles.push_back(model.contact_pairs.back().obstacle);
+    check_stability(input, i, model);
+  }
+  check_overlap(input, model.contact_pairs);
+  const int d = model.mesh.dimension;
+  const auto is_free = [&](Index node, int component) {
+    return !model.problem.supports.contains(node * d + component);
+  };
+  Index held = 0;
+  try {
+    model.problem.contact = make_contact_boundary(model.body, model.contact_pairs, is_free, &held, &model.pair_facings);
+  } catch (const Error& problem) {
+    refuse(input, "contact", problem.what());
+  }
+  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
+    if (model.contact_pairs[i].between_bodies()) check_facing(input, i, model);
+  }
+  model.problem.contact_stress = [&model] { return make_contact_stress(model.body, model.problem.contact); };
+  warn_of_bounds_without_area(input, model.problem.contact);
+  if (held > 0) {
+    log::warning(fmt::format("{} held by supports in the direction of the obstacle's normal: no contact {} there",
+                             counted(held, "node of contact boundaries is", "nodes of contact boundaries are"),
+                             held == 1 ? "point is" : "points are"));
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/box_mesh.hpp"
+
+/// @file Two bodies in one mesh, made in memory.
+namespace ricochet::test_support {
+
+/// The meshes beside each other, sharing no node. Groups are called "lower.y1", "upper.y0", …
+[[nodiscard]] Mesh join_meshes(const Mesh& lower, const Mesh& upper);
+
+/// The mesh as text of Gmsh's format 2.2, written to a file of this name in the tests' temporary directory; its path.
+[[nodiscard]] std::string write_mesh(const std::string& name, const Mesh& mesh);
+
+/// A box on another one: the side where the last coordinate is largest below, smallest above.
+struct StackedBoxes {
+  CellShape lower_shape = CellShape::triangle, upper_shape = CellShape::triangle;
+  std::vector<int> lower_counts = {}, upper_counts = {};
+  double distortion = 0.15;
+  int geometry_degree = 1;
+  PointMap lower_map = {}, upper_map = {};  ///< from [0, 1]ᵈ; empty: [0, 1]ᵈ, and the same above it
+  PointMap both = {};                       ///< after these: turns and moves the two together; empty: nothing
+};
+[[nodiscard]] Mesh make_stack(const StackedBoxes& stack);
+
+}  // namespace ricochet::test_support

@@ -1,0 +1,219 @@
+#include "ricochet/contact/body_contact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/contact/multiplier_space.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
+#include "support/two_bodies.hpp"
+
+/// @file Contact rows between two bodies on meshes that do not match: a uniform pressure passes, rows sum to zero, mean
+/// gap vectors are along the normals.
+namespace ricochet::test_support {
+namespace {
+
+const FreeComponent all_free = [](Index, int) { return true; };
+
+/// A turn about a skew axis, and a move.
+PointMap skew(int d) {
+  Matrix turn = Matrix::Identity(d, d);
+  if (d == 2) turn = Eigen::Rotation2Dd(0.4).toRotationMatrix();
+  if (d == 3) turn = Eigen::AngleAxisd(0.5, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  return affine_map(turn, Vector::LinSpaced(d, 0.3, -0.7));
+}
+
+struct Pairing {
+  CellShape lower, upper;
+  int degree;
+  bool upper_carries;
+};
+
+std::vector<Pairing> all_pairings() {
+  std::vector<Pairing> result;
+  for (const auto& shapes : {std::vector{CellShape::triangle, CellShape::quadrilateral},
+                             std::vector{CellShape::tetrahedron, CellShape::hexahedron}}) {
+    for (const CellShape lower : shapes) {
+      for (const CellShape upper : shapes) {
+        for (const int degree : {1, 2}) {
+          for (const bool upper_carries : {true, false}) result.push_back({lower, upper, degree, upper_carries});
+        }
+      }
+    }
+  }
+  return result;
+}
+
+std::string last_axis(int d, const char* end) {
+  return std::string(d == 2 ? "y" : "z") + end;
+}
+
+ContactPair pair_of(const MeshedBody& test, bool upper_carries, const std::string& multipliers) {
+  const int d = test.mesh.dimension;
+  ContactPair pair;
+  pair.group = "lower." + last_axis(d, "1");
+  pair.opposite_group = "upper." + last_axis(d, "0");
+  if (upper_carries) std::swap(pair.group, pair.opposite_group);
+  pair.facets = test.mesh.group(pair.group, d - 1).members;
+  pair.opposite_facets = test.mesh.group(pair.opposite_group, d - 1).members;
+  pair.multipliers = multipliers;
+  return pair;
+}
+
+/// ∫φ_j over facets.
+Vector integrals(const MeshedBody& test, const std::vector<Index>& facets) {
+  Vector result = Vector::Zero(test.space.node_count());
+  const FacetIntegration integration(test.body);
+  FacetQuadrature quadrature;
+  for (const Index facet : facets) {
+    integration.evaluate(facet, quadrature);
+    const Vector own = *quadrature.displacement * quadrature.measure;
+    for (Index k = 0; k < own.size(); ++k) result[quadrature.nodes[k]] += own[k];
+  }
+  return result;
+}
+
+/// Nodal forces of a uniform pressure 1 on both sides: on the own nodes Σ D_i c_ij, on the opposite ones −Σ D_i m_ik.
+Vector forces_of_pressure(const ContactBoundary& boundary) {
+  return boundary.trace.transpose() * boundary.weights;
+}
+
+double tolerance_of(const MeshedBody& test) {
+  const bool simplices = std::all_of(test.mesh.facets.begin(), test.mesh.facets.end(),
+                                     [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
+  return simplices ? 1e-13 : 1e-9;
+}
+
+TEST(BodyContact, PassesAUniformPressureBetweenMeshesThatDoNotMatch) {
+  for (const Pairing& p : all_pairings()) {
+    const int d = dimension(p.lower);
+    StackedBoxes stack{p.lower, p.upper, {5, 3}, {7, 2}};
+    if (d == 3) stack.lower_counts = {3, 2, 2}, stack.upper_counts = {2, 4, 1};
+    stack.both = skew(d);
+    const auto test = make_meshed_body(make_stack(stack), p.degree);
+    for (const std::string& multipliers : multiplier_space_names()) {
+      if (multipliers == "nodal") continue;
+      SCOPED_TRACE(name(p.lower) + name(p.upper) + std::to_string(p.degree) + multipliers +
+                   (p.upper_carries ? "upper" : "lower"));
+      const ContactPair pair = pair_of(*test, p.upper_carries, multipliers);
+      std::vector<PairFacing> facings;
+      const ContactBoundary boundary = make_contact_boundary(test->body, {pair}, all_free, nullptr, &facings);
+      const Vector expected = integrals(*test, pair.facets) - integrals(*test, pair.opposite_facets);
+      const Vector found = forces_of_pressure(boundary);
+      const double largest = expected.lpNorm<Eigen::Infinity>();
+      EXPECT_LT((found - expected).lpNorm<Eigen::Infinity>(), tolerance_of(*test) * largest);
+      EXPECT_EQ(facings[0].uncovered, 0);
+      EXPECT_NEAR(facings[0].covered, facings[0].area, 1e-9);
+      // Rows sum to zero; the gap is that of the planes, which touch.
+      const Vector sums = boundary.trace * Vector::Ones(test->space.node_count());
+      EXPECT_LT(sums.lpNorm<Eigen::Infinity>(), 1e-13);
+      EXPECT_LT(boundary.initial_gap.lpNorm<Eigen::Infinity>(), 1e-14);
+      EXPECT_TRUE((boundary.net.array() == 0.0).all());
+      EXPECT_GT(boundary.weights.minCoeff(), 0.0);
+      // The pressure on both sides, from the reactions of a uniform one.
+      const Vector pressure = boundary.pressure_recovery * boundary.weights;
+      EXPECT_LT((pressure.array() - 1.0).abs().maxCoeff(), 1e-12);
+      EXPECT_EQ(pressure.size(), static_cast<Index>(facet_nodes(test->space, pair.facets).size() +
+                                                    facet_nodes(test->space, pair.opposite_facets).size()));
+      EXPECT_LT(boundary.node_initial_gap.lpNorm<Eigen::Infinity>(), 1e-13);
+    }
+  }
+}
+
+/// A narrow body on a wide one, whose mesh has edges where the narrow one ends: what is covered can be integrated.
+TEST(BodyContact, PassesAUniformPressureWhereOnlyAPartIsCovered) {
+  for (const Pairing& p : all_pairings()) {
+    const int d = dimension(p.lower);
+    StackedBoxes stack{p.lower, p.upper, {4, 3}, {3, 2}};
+    if (d == 3) stack.lower_counts = {4, 4, 1}, stack.upper_counts = {3, 2, 1};
+    stack.distortion = 0.0;
+    stack.upper_map = [d](const Vector& x) {
+      Vector y = x;
+      y[d - 1] += 1.0;
+      for (int k = 0; k < d - 1; ++k) y[k] = 0.25 + 0.5 * x[k];
+      return y;
+    };
+    const PointMap turn = skew(d);
+    stack.both = turn;
+    const auto test = make_meshed_body(make_stack(stack), p.degree);
+    for (const std::string& multipliers : multiplier_space_names()) {
+      if (multipliers == "nodal") continue;
+      SCOPED_TRACE(name(p.lower) + name(p.upper) + std::to_string(p.degree) + multipliers +
+                   (p.upper_carries ? "upper" : "lower"));
+      const ContactPair pair = pair_of(*test, p.upper_carries, multipliers);
+      const ContactBoundary boundary = make_contact_boundary(test->body, {pair}, all_free);
+      const auto& wide = p.upper_carries ? pair.opposite_facets : pair.facets;
+      const auto& narrow = p.upper_carries ? pair.facets : pair.opposite_facets;
+      std::vector<Index> inside;
+      const Vector low = turn(Vector::Zero(d));
+      for (const Index facet : wide) {
+        const PlaceInBlocks place = place_in_blocks(test->mesh.facets, facet);
+        const CellBlock& block = test->mesh.facets[place.block];
+        Vector centre = Vector::Zero(d);
+        for (int k = 0; k < block.nodes_per_cell; ++k)
+          centre += test->mesh.nodes.col(block.cell(place.local)[k]) / block.nodes_per_cell;
+        bool is_inside = true;
+        for (int k = 0; k < d - 1; ++k) {
+          const double at = (turn(Vector::Unit(d, k)) - low).dot(centre - low);
+          is_inside = is_inside && at > 0.25 && at < 0.75;
+        }
+        if (is_inside) inside.push_back(facet);
+      }
+      const double sign = p.upper_carries ? 1.0 : -1.0;
+      const Vector expected = sign * (integrals(*test, narrow) - integrals(*test, inside));
+      const Vector found = forces_of_pressure(boundary);
+      EXPECT_LT((found - expected).lpNorm<Eigen::Infinity>(), tolerance_of(*test) * expected.lpNorm<Eigen::Infinity>());
+      EXPECT_GT(boundary.weights.minCoeff(), 0.0);
+      EXPECT_NEAR(boundary.weights.sum(), d == 2 ? 0.5 : 0.25, 1e-12);
+    }
+  }
+}
+
+/// Curved, tilted, apart: the mean gap vector of each point is along its normal, so that forces along it have no
+/// moment.
+TEST(BodyContact, HasMeanGapVectorsAlongTheNormals) {
+  for (const Pairing& p : all_pairings()) {
+    const int d = dimension(p.lower);
+    for (const int geometry : {1, 2}) {
+      if (p.degree < geometry) continue;
+      StackedBoxes stack{p.lower, p.upper, {5, 3}, {7, 2}};
+      if (d == 3) stack.lower_counts = {3, 2, 2}, stack.upper_counts = {2, 4, 1};
+      stack.geometry_degree = geometry;
+      stack.lower_map = [d](const Vector& x) {
+        Vector y = x;
+        y[d - 1] += x[d - 1] * (0.3 * std::pow(x[0] - 0.4, 2) - 0.05 * x[0] * (d == 3 ? x[1] : 1.0));
+        return y;
+      };
+      stack.upper_map = [d](const Vector& x) {
+        Vector y = x;
+        y[0] += 0.13;
+        y[d - 1] += 1.2 - (1.0 - x[d - 1]) * 0.2 * std::pow(x[0] - 0.6, 2);
+        return y;
+      };
+      stack.both = skew(d);
+      const auto test = make_meshed_body(make_stack(stack), p.degree);
+      for (const std::string& multipliers : multiplier_space_names()) {
+        SCOPED_TRACE(name(p.lower) + name(p.upper) + std::to_string(p.degree) + multipliers +
+                     (p.upper_carries ? "upper" : "lower"));
+        const ContactBoundary boundary =
+            make_contact_boundary(test->body, {pair_of(*test, p.upper_carries, multipliers)}, all_free);
+        ASSERT_GT(boundary.size(), 3);
+        const Points arms = boundary.arms(test->space.nodes);
+        for (Index i = 0; i < boundary.size(); ++i) {
+          const Vector normal = boundary.rows->normals.col(i);
+          EXPECT_NEAR(normal.norm(), 1.0, 1e-14);
+          EXPECT_LT((arms.col(i) - boundary.initial_gap[i] * normal).norm(), 2e-14);
+          EXPECT_GT(boundary.initial_gap[i], 0.05);
+        }
+        const Vector sums = boundary.trace * Vector::Ones(test->space.node_count());
+        EXPECT_LT(sums.lpNorm<Eigen::Infinity>(), 1e-13);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ricochet::test_support
