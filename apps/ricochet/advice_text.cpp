@@ -147,6 +147,10 @@ void print_groups(const Mesh& of_file) {
   const int d = mesh.dimension;
   add_built_in_group(mesh, all_cells_name, d);
   add_built_in_group(mesh, whole_boundary_name, d - 1);
+  for (const MeshPart& part : of_file.parts) {
+    add_built_in_group(mesh, part.group_name(all_cells_name), d);
+    add_built_in_group(mesh, part.group_name(whole_boundary_name), d - 1);
+  }
   const double size = reach(mesh);
   constexpr std::array<const char*, 4> sizes{"", "length", "area", "volume"};
   for (const Group& group : mesh.groups) {

@@ -12,6 +12,7 @@
 #include "method_text.hpp"
 #include "outcome_text.hpp"
 #include "penetration_text.hpp"
+#include "place_text.hpp"
 #include "probe_text.hpp"
 #include "progress_text.hpp"
 #include "ricochet/base/error.hpp"
@@ -72,10 +73,29 @@ void print_critical_step(double step, double critical) {
   fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", critical, step / critical);
 }
 
+void print_files(const Case& input) {
+  if (input.parts.empty()) {
+    fmt::print("  mesh    {} (displacement of degree {})\n", input.mesh.file, input.mesh.degree);
+    return;
+  }
+  fmt::print("  mesh    of {} (displacement of degree {})\n", counted(input.parts.size(), "part"), input.mesh.degree);
+  for (const PartSection& part : input.parts)
+    fmt::print("  part \"{}\": {}{}\n", part.name, part.file, placement_text(part));
+}
+
+/// Files that are not meshed yet, and must not be without being asked.
+std::string unmeshed_files(const Case& input) {
+  std::vector<std::string> paths;
+  for (const CaseMeshFile& file : mesh_files(input)) {
+    if (must_be_meshed_first(file.file)) paths.push_back(file.file.path);
+  }
+  return join_names(paths, " and ", false);
+}
+
 void describe_case(const std::string& path) {
   const Case input = read_case(path);
   fmt::print("{}: {}\n", path, input.title.empty() ? "a case" : input.title);
-  fmt::print("  mesh    {} (displacement of degree {})\n", input.mesh.file, input.mesh.degree);
+  print_files(input);
   for (const MaterialSection& m : input.materials) {
     const std::unique_ptr<MaterialLaw> law = make_material_law(m.law, m.parameters);
     fmt::print("  material \"{}\": density {:g}, lambda {:g}, mu {:g}\n", m.group, m.density, law->lambda(), law->mu());
@@ -83,11 +103,12 @@ void describe_case(const std::string& path) {
   print_contacts(describe_contacts(input));
   fmt::print("  scheme {}, mass {}, {} to {:g}\n", input.time.scheme, input.mass.type, steps_text(input.time),
              input.time.end);
-  if (require_mesh_file(input); must_be_meshed_first(mesh_file(input))) {
+  require_mesh_files(input);
+  if (const std::string unmeshed = unmeshed_files(input); !unmeshed.empty()) {
     fmt::print(
         "  groups, sizes and a suggested step are only known once {} is meshed: `ricochet validate {} --mesh` does "
         "that\n",
-        input.mesh.file, path);
+        unmeshed, path);
     return;
   }
   print_advice(input, *build_model(input));

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "commands.hpp"
 #include "place_text.hpp"
 #include "ricochet/base/error.hpp"
@@ -79,18 +81,40 @@ double estimate(const Case& input, const SemidiscreteProblem& problem, const Sch
   return seconds;
 }
 
-/// Whether there is one to be checked, or one may be made: gmsh may run shell commands of the file, and meshing may
-/// take long.
-bool has_mesh(const Case& input, const ValidateArguments& arguments) {
-  if (!needs_gmsh_program(input.mesh.file) || arguments.mesh) return true;
-  require_mesh_file(input);
+/// Whether there is a mesh of it to be checked, or one may be made: gmsh may run shell commands of the file, and
+/// meshing may take long.
+bool has_mesh(const MeshFile& file) {
+  if (!needs_gmsh_program(file.path)) return true;
   try {
-    return is_meshed(mesh_file(input));
+    return is_meshed(file);
   } catch (const Error& problem) {
     if (problem.kind() != ErrorKind::invalid_input) throw;
     log::warning(problem.what());  // the gmsh program is not there
     return false;
   }
+}
+
+std::vector<std::string> files_without_mesh(const Case& input, const ValidateArguments& arguments) {
+  std::vector<std::string> paths;
+  if (arguments.mesh) return paths;
+  require_mesh_files(input);
+  for (const CaseMeshFile& file : mesh_files(input)) {
+    if (!has_mesh(file.file)) paths.push_back(file.file.path);
+  }
+  return paths;
+}
+
+void print_valid_without(const std::vector<std::string>& files, const ValidateArguments& arguments) {
+  const std::string& case_file = arguments.case_file;
+  fmt::print("{}: valid, as far as can be told without a mesh of {}\n", case_file, join_names(files, " and ", false));
+  fmt::print(
+      "{}: not checked: what needs the mesh: names of groups, numbers of components, materials, supports, contacts, "
+      "probes, columns of [[expect]], memory and time, and the start of the run; `ricochet validate {}{} --mesh` "
+      "meshes the {} and checks them{}\n",
+      case_file, case_file, arguments.overrides.empty() ? "" : " --set …", files.size() == 1 ? "file" : "files",
+      std::any_of(files.begin(), files.end(), may_run_commands)
+          ? " (gmsh runs shell commands that a .geo or .opt file contains: mesh files that you trust)"
+          : "");
 }
 
 }  // namespace
@@ -100,16 +124,8 @@ int validate(const ValidateArguments& arguments) {
   Session session(case_file, arguments.overrides);
   const Case& input = session.input();
   warn_of_end(input.time);
-  if (!has_mesh(input, arguments)) {
-    fmt::print("{}: valid, as far as can be told without a mesh of {}\n", case_file, input.mesh.file);
-    fmt::print(
-        "{}: not checked: what needs the mesh: names of groups, numbers of components, materials, supports, contacts, "
-        "probes, columns of [[expect]], memory and time, and the start of the run; `ricochet validate {}{} --mesh` "
-        "meshes the file and checks them{}\n",
-        case_file, case_file, arguments.overrides.empty() ? "" : " --set …",
-        may_run_commands(input.mesh.file)
-            ? " (gmsh runs shell commands that a .geo or .opt file contains: mesh files that you trust)"
-            : "");
+  if (const std::vector<std::string> files = files_without_mesh(input, arguments); !files.empty()) {
+    print_valid_without(files, arguments);
     return 0;
   }
   const Model& model = session.model();

@@ -10,15 +10,6 @@ namespace ricochet::program {
 
 namespace {
 
-/// What has brought the mesh there.
-std::string placement_text(const MeshSection& mesh) {
-  std::string text;
-  if (mesh.scale != 1.0) text += fmt::format(", scaled by {:g}", mesh.scale);
-  if (mesh.placement.angle != 0.0) text += fmt::format(", turned by {:g}°", mesh.placement.angle);
-  if (!mesh.placement.move.empty()) text += fmt::format(", moved");
-  return text;
-}
-
 /// Positions of all nodes at t = 0, but for what a static equilibrium adds.
 Points starting_positions(const Model& model) {
   const Points& nodes = model.space.nodes;
@@ -26,6 +17,14 @@ Points starting_positions(const Model& model) {
 }
 
 }  // namespace
+
+std::string placement_text(const BodyFile& mesh) {
+  std::string text;
+  if (mesh.scale != 1.0) text += fmt::format(", scaled by {:g}", mesh.scale);
+  if (mesh.placement.angle != 0.0) text += fmt::format(", turned by {:g}°", mesh.placement.angle);
+  if (!mesh.placement.move.empty()) text += fmt::format(", moved");
+  return text;
+}
 
 std::string gap_text(double gap, double rounding) {
   if (std::abs(gap) <= rounding) return "touches";

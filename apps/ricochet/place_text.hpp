@@ -9,6 +9,9 @@ namespace ricochet::program {
 /// are none.
 [[nodiscard]] std::string gap_text(double gap, double rounding);
 
+/// What has brought the mesh of a file to its place: ", scaled by 2, turned by 30°, moved".
+[[nodiscard]] std::string placement_text(const BodyFile& mesh);
+
 /// The box around the mesh, after it was scaled, turned and moved, and a line per obstacle: how far it is from the
 /// nearest node at the start.
 void print_place(const Case& input, const Model& model);

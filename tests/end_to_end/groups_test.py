@@ -103,8 +103,6 @@ when = {{ "contact.0.group" = ["bottom", "sides"] }}
         overlap = message(block_case(MIXED.name).replace('"body"', '["left half"]')
                           + '[[material]]\ngroup = "all"\ndensity = 1.0\nlambda = 1.0\nmu = 1.0\n')
         self.assertIn("overlap: they share cells", overlap)
-        part = message(block_case() + '[part.ball]\nfile = "ball.step"\n')
-        self.assertIn("[part.NAME], parts from files of their own, is for a later version", part)
 
     def test_resume_knows_the_list(self):
         text = block_case().replace('"bottom"', '["bottom", "sides"]') + "[output]\ncheckpoint_every = 10\n"

@@ -38,6 +38,8 @@ std::string wanted(const Key& key) {
       return key.choices.empty() ? with_range("integer", key.range) : one_of(key.choices, false);
     case KeyType::vector:
       return "a vector of 2 or 3 numbers";
+    case KeyType::axial:
+      return "a number in two dimensions, a vector of 3 numbers in three";
     case KeyType::formula:
       return fmt::format("a number or an expression in {}", key.variables);
     case KeyType::formulas:

@@ -15,6 +15,7 @@ enum class KeyType {
   number,      ///< finite, within `range`, or one of `choices`
   integer,     ///< within `range`, or one of `choices`
   vector,      ///< 2 or 3 numbers
+  axial,       ///< of a rotation: a number in two dimensions, 3 numbers in three
   formula,     ///< a number or an expression in `variables`
   formulas,    ///< 2 or 3 of them, or one of `choices`
   components,  ///< a list of distinct `choices`, which name the directions of space
@@ -46,7 +47,9 @@ struct Key {
   std::string variables = {};  ///< of expressions: "t", "x, y and z" or "x, y, z and t"
   std::vector<Key> keys = {};  ///< of a sub-table
   bool decides = false;        ///< which other keys there are: where its value is refused, nothing else is looked at
-  std::string doc;             ///< one line of documentation
+  /// The section whose entries take the place of this key: where there are some it is refused, else it may be required.
+  std::string gives_way_to = {};
+  std::string doc;  ///< one line of documentation
   /// Filled in by the table: the types that have this key; empty: it belongs to the section whatever the type.
   std::vector<std::string> only_for = {};
 };

@@ -23,13 +23,22 @@ struct SourceLocation {
   [[nodiscard]] std::string text() const;
 };
 
-struct MeshSection {
+/// A file with one body or several, and where they are put.
+struct BodyFile {
   std::string file;  ///< as resolved: relative paths are relative to the case file's directory
   std::optional<double> size;
   double scale = 1.0;
+  Placement placement;  ///< turn and move
+};
+
+/// Its file is empty where there are parts.
+struct MeshSection : BodyFile {
   int degree = 1;                ///< of the displacement
   std::string plane = "strain";  ///< "strain" or "stress"
-  Placement placement;           ///< turn and move
+};
+
+struct PartSection : BodyFile {
+  std::string name;
 };
 
 struct DampingSection {
@@ -84,6 +93,16 @@ struct InitialSection {
   bool static_equilibrium = false;       ///< displacement = "static"
   std::vector<Expression> displacement;  ///< of x, y, z; empty: zero
   std::vector<Expression> velocity;      ///< of x, y, z; empty: zero
+};
+
+/// Cells that move like a rigid body at t = 0: a [[motion]], or `velocity` and `spin` of a part.
+struct MotionSection {
+  std::string section;           ///< where it stands: "motion.0", "part.ball"
+  std::string group;             ///< of cells; empty for those of a part
+  std::string part;              ///< its name; empty for those of a group
+  std::vector<double> velocity;  ///< empty: zero
+  std::vector<double> spin;      ///< rad per time; one number in two dimensions, three in three; empty: zero
+  std::vector<double> about;     ///< empty: the centre of mass of the cells
 };
 
 struct MassSection {
@@ -157,6 +176,7 @@ struct Case {
   std::string path;  ///< of the case file
   std::string title;
   MeshSection mesh;
+  std::vector<PartSection> parts;  ///< in the order of the file; none: the mesh is that of [mesh]
   std::vector<MaterialSection> materials;
   std::vector<ObstacleSection> obstacles;
   std::vector<ContactSection> contacts;
@@ -164,6 +184,7 @@ struct Case {
   std::vector<TractionSection> tractions;
   LoadSection load;
   InitialSection initial;
+  std::vector<MotionSection> motions;  ///< those of parts first
   MassSection mass;
   TimeSection time;
   std::vector<ProbeSection> probes;

@@ -140,11 +140,6 @@ std::string unknown_section_message(std::string_view name) {
   for (const Section& section : case_sections()) {
     if (section.kind != SectionKind::top) titles.push_back(section_title(section));
   }
-  if (name == "part") {
-    return "[part.NAME], parts from files of their own, is for a later version; put all bodies into one mesh file, "
-           "which "
-           "[mesh] names";
-  }
   const std::string near = nearest_section(name);
   const std::string hint = near.empty() ? fmt::format("the sections are {}", join_names(titles, " and ", false))
                                         : fmt::format("did you mean {}?", section_title(*find_section(near)));

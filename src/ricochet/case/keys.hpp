@@ -31,6 +31,7 @@ struct Section {
   std::string name;
   SectionKind kind = SectionKind::table;
   bool required = false;
+  std::string gives_way_to = {};  ///< the section with whose entries this one is not required
   KeySets alternatives = {};
   std::string doc;
   std::vector<Key> keys;  ///< with those of all types

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <tuple>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
@@ -46,6 +45,14 @@ bool needs_a_user(const Key& table) {
   return std::any_of(table.keys.begin(), table.keys.end(), [](const Key& key) { return key.required; });
 }
 
+/// The table that [part.a.b] is to TOML; none where it may be a key that was misspelt.
+const TomlNode* find_dotted(const Section& section, const TomlNode& entry) {
+  const auto found = std::find_if(entry.children.begin(), entry.children.end(), [&](const TomlNode& member) {
+    return member.is_table() && !is_key_of(section.keys, member) && nearest_key(member.key, section.keys).empty();
+  });
+  return found != entry.children.end() ? &*found : nullptr;
+}
+
 // Goes through the document section by section, as the table of keys says.
 class TreeChecker {
  public:
@@ -53,12 +60,6 @@ class TreeChecker {
   void run();
 
  private:
-  struct VectorFound {
-    SourceLocation location;
-    std::string name;
-    std::size_t size;
-  };
-
   void check_top();
   void check_top_member(const TomlNode& member);
   void check_section(const Section& section);
@@ -72,15 +73,15 @@ class TreeChecker {
   const TypeKeys* find_type_of(const Section& section, TomlNode& table);
   void check_foreign_key(const Section& section, const Key& key, const std::string& title, TomlNode& table);
   void check_key(const Key& key, const std::string& title, TomlNode& value);
+  [[nodiscard]] bool has_entries(const std::string& section) const;
+  [[nodiscard]] bool gives_way(const std::string& section) const;
   void check_alternatives(const KeySets& alternatives, const std::vector<Key>& keys, const std::string& title,
                           const TomlNode& table);
   void report_missing_section(const Section& section);
-  void check_dimension();
 
   TomlNode& root_;
   Problems& problems_;
-  std::vector<VectorFound> vectors_;
-  std::vector<SourceLocation> third_components_;  ///< where "z" stands in a list of components
+  DimensionCheck dimension_;
 };
 
 void TreeChecker::run() {
@@ -88,7 +89,7 @@ void TreeChecker::run() {
   for (const Section& section : case_sections()) {
     if (section.kind != SectionKind::top) check_section(section);
   }
-  check_dimension();
+  dimension_.run(problems_);
   check_conditions(root_, problems_);
 }
 
@@ -124,7 +125,7 @@ void TreeChecker::check_top_member(const TomlNode& member) {
 void TreeChecker::check_section(const Section& section) {
   TomlNode* node = root_.find(section.name);
   if (node == nullptr) {
-    if (section.required) return report_missing_section(section);
+    if (section.required && !gives_way(section.gives_way_to)) return report_missing_section(section);
     if (section.kind != SectionKind::table) return;
     // An absent section has its defaults all the same.
     node = &root_.children.emplace_back();
@@ -181,6 +182,11 @@ void TreeChecker::check_named(const Section& section, TomlNode& sections) {
     } else if (!is_plain_name(entry.key)) {
       entry.is_refused = true;
       problems_.add(entry.key_location, fmt::format("the name of {} can only have letters, digits, _ and -", title));
+    } else if (const TomlNode* const inner = find_dotted(section, entry)) {
+      entry.is_refused = true;
+      problems_.add(inner->key_location,
+                    fmt::format("[{0}.{1}.{2}]: a name has no dot; write [{0}.{1}-{2}] or the like", section.name,
+                                entry.key, inner->key));
     } else {
       check_entry(section, title, entry);
     }
@@ -268,11 +274,34 @@ void TreeChecker::check_known_of_type(const Section& section, const TypeKeys* ty
   }
 }
 
+/// Whether the case has entries of that section; refused ones count.
+bool TreeChecker::has_entries(const std::string& section) const {
+  const TomlNode* const node = section.empty() ? nullptr : root_.find(section);
+  return node != nullptr && !(node->is_table() && node->children.empty());
+}
+
+/// Whether a key or section need not be there, for that one; also where its name was misspelt, and reported as such.
+bool TreeChecker::gives_way(const std::string& section) const {
+  if (section.empty()) return false;
+  return has_entries(section) || std::any_of(root_.children.begin(), root_.children.end(), [&](const TomlNode& member) {
+           return find_section(member.key) == nullptr && (member.is_table() || member.is_list_of_tables()) &&
+                  nearest_section(member.key) == section;
+         });
+}
+
 void TreeChecker::check_keys(const std::vector<Key>& keys, const std::string& title, TomlNode& table) {
   for (const Key& key : keys) {
-    if (TomlNode* value = table.find(key.name)) {
+    TomlNode* const value = table.find(key.name);
+    if (value != nullptr && has_entries(key.gives_way_to)) {
+      value->is_refused = true;
+      problems_.add(
+          value->location,
+          fmt::format("\"{0}\" of {1} and {2} exclude each other: each {2} has a \"{0}\" of its own; leave it "
+                      "out here",
+                      key.name, title, section_title(*find_section(key.gives_way_to))));
+    } else if (value != nullptr) {
       check_key(key, title, *value);
-    } else if (is_misspelt(key, keys, table)) {
+    } else if (is_misspelt(key, keys, table) || gives_way(key.gives_way_to)) {
       continue;
     } else if (key.required) {
       problems_.add(table.location,
@@ -292,15 +321,7 @@ void TreeChecker::check_key(const Key& key, const std::string& title, TomlNode& 
     check_known(key.keys, of_table, value);
     check_keys(key.keys, of_table, value);
   }
-  const bool is_vector = key.type == KeyType::vector || key.type == KeyType::formulas;
-  if (is_vector && value.kind == Kind::list) {
-    vectors_.push_back({value.location, fmt::format("\"{}\" of {}", key.name, title), value.children.size()});
-  }
-  if (key.type == KeyType::components) {
-    for (const TomlNode& component : value.children) {
-      if (component.text == key.choices.back()) third_components_.push_back(component.location);
-    }
-  }
+  dimension_.note(key, title, value);
 }
 
 void TreeChecker::check_alternatives(const KeySets& alternatives, const std::vector<Key>& keys,
@@ -333,32 +354,12 @@ void TreeChecker::report_missing_section(const Section& section) {
   for (const Key& key : section.keys) {
     if (key.required) names.push_back(key.name);
   }
-  problems_.add({root_.location.file, 1, 1}, fmt::format("there is no section {}, which must have {}. {}",
-                                                         section_title(section), join_names(names), section.doc));
-}
-
-void TreeChecker::check_dimension() {
-  if (vectors_.empty()) return;
-  // Values of --set come after those of the file, whatever they stand for.
-  const auto before = [](const VectorFound& a, const VectorFound& b) {
-    const bool a_is_override = a.location.line == 0, b_is_override = b.location.line == 0;
-    return std::tie(a_is_override, a.location.line, a.location.column) <
-           std::tie(b_is_override, b.location.line, b.location.column);
-  };
-  std::stable_sort(vectors_.begin(), vectors_.end(), before);
-  const VectorFound& first = vectors_.front();
-  for (const VectorFound& vector : vectors_) {
-    if (vector.size == first.size) continue;
-    problems_.add(vector.location, fmt::format("{} has {}, but {} at {} has {}: all vectors must have as many as the "
-                                               "mesh has dimensions",
-                                               vector.name, counted(vector.size, "entry", "entries"), first.name,
-                                               first.location.text(), first.size));
-  }
-  for (const SourceLocation& location : third_components_) {
-    if (first.size == 2)
-      problems_.add(location, fmt::format("there is no component \"z\" in two dimensions: {} at {} has 2 entries",
-                                          first.name, first.location.text()));
-  }
+  const std::string other = section.gives_way_to.empty()
+                                ? ""
+                                : fmt::format(", and no {} either", section_title(*find_section(section.gives_way_to)));
+  problems_.add({root_.location.file, 1, 1},
+                fmt::format("there is no section {}, which must have {}{}. {}", section_title(section),
+                            join_names(names), other, section.doc));
 }
 
 }  // namespace

@@ -84,6 +84,11 @@ void check_vector(const Key& key, TomlNode& value, bool with_expressions, Proble
   }
 }
 
+void check_axial(const Key& key, TomlNode& value, Problems& problems) {
+  if (value.kind == Kind::list && value.children.size() == 3) return check_vector(key, value, false, problems);
+  if (!value.is_number() || !make_finite_number(value)) refuse_type(key, value, problems);
+}
+
 void check_directions(const Key& key, TomlNode& value, Problems& problems) {
   if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
   std::vector<std::string> seen;
@@ -155,6 +160,8 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
       return check_integer(key, value, problems);
     case KeyType::vector:
       return check_vector(key, value, false, problems);
+    case KeyType::axial:
+      return check_axial(key, value, problems);
     case KeyType::formula:
       if (value.kind != Kind::text) check_number(key, value, problems);
       return;

@@ -18,8 +18,14 @@ template <class Type>
   return section;
 }
 
-// keys_table_model.cpp: what is simulated.
+/// `kind` is "cells" or "boundary facets", `built_in` the name of all of them.
+[[nodiscard]] Key group_key(const char* kind, const char* built_in);
+
+// keys_table_bodies.cpp: what bodies there are, where, and how they move at the start.
 [[nodiscard]] Section mesh_section();
+[[nodiscard]] Section part_section();
+[[nodiscard]] Section motion_section();
+// keys_table_model.cpp: what else is simulated.
 [[nodiscard]] Section material_section();
 [[nodiscard]] Section obstacle_section();
 [[nodiscard]] Section contact_section();

@@ -3,7 +3,7 @@
 #include "ricochet/case/keys_table.hpp"
 #include "ricochet/case/names.hpp"
 
-// The part of the table that is about what is simulated: the body, its contact, what acts on it, where it starts.
+// The part of the table that is about what is simulated: materials, contact, what acts on the body, where it starts.
 namespace ricochet {
 
 namespace {
@@ -17,40 +17,10 @@ Key parameters_key() {
           .doc = "Numbers by name, for use in the expressions of this section."};
 }
 
-Key group_key(const char* kind, const char* built_in, const char* name = "group", bool required = true) {
-  return {
-      .name = name,
-      .type = KeyType::groups,
-      .required = required,
-      .doc = fmt::format("Group of {0} in the mesh, or several: [\"a\", \"b\"]. \"{1}\" stands for all {0}, unless the "
-                         "mesh has a group of that name.",
-                         kind, built_in)};
-}
-
-Key placement_key() {
-  return {
-      .name = "turn",
-      .type = KeyType::table,
-      .keys = {{.name = "angle",
-                .type = KeyType::number,
-                .unit = "degrees",
-                .required = true,
-                .doc = "Right-handed about the axis; in two dimensions counter-clockwise."},
-               {.name = "axis",
-                .type = KeyType::vector,
-                .unit = "1",
-                .doc = "Direction of the axis, of any length but zero; in three dimensions only, and required there."},
-               {.name = "about",
-                .type = KeyType::vector,
-                .unit = "length",
-                .doc = "A point of the axis, in the coordinates after `scale`; absent: the origin."}},
-      .doc =
-          "Turns the mesh, after `scale` and before `move`. Obstacles, probes and expressions see where it is "
-          "then."};
-}
-
 Key against_key() {
-  Key key = group_key("boundary facets", "boundary", "against", false);
+  Key key = group_key("boundary facets", "boundary");
+  key.name = "against";
+  key.required = false;
   key.doc = "Group of boundary facets of another body, or several: what `group` may touch, in place of an obstacle.";
   return key;
 }
@@ -75,47 +45,14 @@ Key damping_key() {
 
 }  // namespace
 
-Section mesh_section() {
+Key group_key(const char* kind, const char* built_in) {
   return {
-      .name = "mesh",
+      .name = "group",
+      .type = KeyType::groups,
       .required = true,
-      .doc = "The body and how it is discretized.",
-      .keys = {
-          {.name = "file",
-           .required = true,
-           .doc = "Mesh file (.msh, .inp, .vtu, .med, …; see docs/meshes.md), or geometry for the gmsh program (.geo, "
-                  ".step, "
-                  "…). A relative path is relative to "
-                  "the "
-                  "folder of the case file, also when given by --set."},
-          {.name = "size",
-           .type = KeyType::number,
-           .unit = "length",
-           .range = positive,
-           .doc = "Target size of the cells; only for geometry that is still to be meshed, in the unit of that file."},
-          {.name = "scale",
-           .type = KeyType::number,
-           .unit = "1",
-           .standard = "1",
-           .range = positive,
-           .doc = "Multiplies all coordinates of the mesh."},
-          placement_key(),
-          {.name = "move",
-           .type = KeyType::vector,
-           .unit = "length",
-           .doc = "Added to all coordinates, after `scale` and `turn`."},
-          {.name = "degree",
-           .type = KeyType::integer,
-           .unit = "1",
-           .standard = "1",
-           .choices = {"1", "2"},
-           .doc = "Polynomial degree of the displacement."},
-          {.name = "plane",
-           .type = KeyType::choice,
-           .standard = "strain",
-           .choices = {"strain", "stress"},
-           .doc = "In two dimensions: plane strain or plane stress."},
-      }};
+      .doc = fmt::format("Group of {0} in the mesh, or several: [\"a\", \"b\"]. \"{1}\" stands for all {0}, unless the "
+                         "mesh has a group of that name.",
+                         kind, built_in)};
 }
 
 Section material_section() {

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/case/names.hpp"
 #include "ricochet/case/quantity.hpp"
+#include "ricochet/case/read_bodies.hpp"
 #include "ricochet/case/section_reader.hpp"
 #include "ricochet/simulation/step_control.hpp"
 
@@ -41,33 +41,6 @@ class Sections {
   const TomlNode& root_;
   Problems& problems_;
 };
-
-MeshSection read_mesh(const SectionReader& reader, const std::string& case_path) {
-  MeshSection mesh;
-  const std::filesystem::path file = reader.text("file");
-  mesh.file = (std::filesystem::path(case_path).parent_path() / file).lexically_normal().string();
-  mesh.size = reader.optional_number("size");
-  mesh.scale = reader.number("scale");
-  mesh.degree = static_cast<int>(reader.integer("degree"));
-  mesh.plane = reader.text("plane");
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  if (reader.is_usable("turn")) {
-    const SectionReader turn = reader.table("turn");
-    mesh.placement = {turn.number("angle"), turn.vector("axis"), turn.vector("about"), {}};
-    const std::vector<double>& axis = mesh.placement.axis;
-    if (turn.is_usable("axis") && std::all_of(axis.begin(), axis.end(), [](double a) { return a == 0.0; }))
-      turn.add_problem("axis", "\"axis\" must not be zero: it is the direction that the mesh turns about");
-  }
-  mesh.placement.move = reader.vector("move");
-  if (mesh.size && extension == ".msh") {
-    reader.add_problem(
-        "size",
-        fmt::format("\"size\" is for geometry that is still to be meshed; \"{}\" is a mesh already", file.string()));
-  }
-  return mesh;
-}
 
 MaterialSection read_material(const SectionReader& reader, Case& result) {
   MaterialSection material;
@@ -337,6 +310,7 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems) {
   const Sections sections(root, problems);
   result.title = SectionReader(case_sections().front().keys, root, problems).text("title");
   result.mesh = read_mesh(sections.one("mesh"), result.path);
+  for (const SectionReader& reader : sections.all("part")) result.parts.push_back(read_part(reader, result.path));
   for (const SectionReader& reader : sections.all("material"))
     result.materials.push_back(read_material(reader, result));
   check_distinct(sections.all("material"), "material", "group");
@@ -348,6 +322,7 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems) {
   const SectionReader load = sections.one("load");
   result.load = {load.vector("gravity"), load.formulas("body_force")};
   result.initial = read_initial(sections.one("initial"));
+  read_motions(sections.all("part"), sections.all("motion"), result);
   const SectionReader mass = sections.one("mass");
   result.mass = {mass.text("type"), mass.type_parameters(*find_section("mass"))};
   result.time = read_time(sections.one("time"));

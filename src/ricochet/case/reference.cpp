@@ -81,14 +81,16 @@ when = { "time.scheme" = "newmark" }
 
 - **Units** are your own and must be consistent: m, kg, s or mm, t, s or anything else. The column *unit* below says what
   kind of quantity a number is; 1 is a pure number.
-- **Vectors** have 2 or 3 entries, all of them in a file the same number: that of the mesh's dimensions.
+- **Vectors** have 2 or 3 entries, all of them in a file the same number: that of the mesh's dimensions. A `spin` is a number
+  in two dimensions, a vector of 3 entries in three.
 - **Numbers** are finite; integers will do where numbers are wanted, but not the other way round.
 - **Expressions** are texts in [muParser's syntax](https://beltoforion.de/en/muparser/features.php): `+ - * / ^`,
   comparisons, `a ? b : c`, `sin`, `cos`, `exp`, `sqrt`, `min`, `max` and so on, the constant `pi`, the names in the table
   `parameters` of the same section, and those of x, y, z and t that the key allows. x, y, z are reference coordinates,
-  after `mesh.scale`, `mesh.turn` and `mesh.move`.
+  after `scale`, `turn` and `move` of the mesh or the part.
 - **Groups** are those of the mesh; "all" (every cell) and "boundary" (every boundary facet) are built in, and a list is the
-  union of its groups: `group = ["rim", "skin"]`. [meshes.md](meshes.md) says which groups a file gives.
+  union of its groups: `group = ["rim", "skin"]`. Those of a [part](#partname) are called "NAME.group", "NAME.all" and
+  "NAME.boundary". [meshes.md](meshes.md) says which groups a file gives.
 - **All problems** are reported together, with file, line and column; an unknown key is one of them. The exit status is
   then 2, or 4 if the file cannot be read.
 - **On the command line**, `--set key.path=value` replaces or adds a value before anything is checked:
@@ -143,7 +145,10 @@ std::string cell(std::string text) {
 }
 
 std::string default_text(const Key& key) {
-  if (key.required) return "**required**";
+  if (key.required)
+    return key.gives_way_to.empty()
+               ? "**required**"
+               : fmt::format("**required** without `{}`", section_title(*find_section(key.gives_way_to)));
   if (!key.standard) return "";
   const bool is_text = key.type == KeyType::text || key.type == KeyType::choice;
   return is_text ? fmt::format("`\"{}\"`", *key.standard) : fmt::format("`{}`", *key.standard);
@@ -164,6 +169,8 @@ std::string occurrence(const Section& section) {
     case SectionKind::top:
       return "";
     case SectionKind::table:
+      if (section.required && !section.gives_way_to.empty())
+        return fmt::format(" Required without `{}`.", section_title(*find_section(section.gives_way_to)));
       return section.required ? " Required." : " Optional.";
     case SectionKind::list:
       return section.required ? " One or more of them." : " Any number of them.";

@@ -57,6 +57,10 @@ Json type_schema(const Key& key) {
       return integer_schema(key);
     case KeyType::vector:
       return vector_schema({{"type", "number"}});
+    case KeyType::axial: {
+      const Json vector{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+      return {{"anyOf", Json::array({Json{{"type", "number"}}, vector})}};
+    }
     case KeyType::formula:
       return {{"type", {"number", "string"}}};
     case KeyType::formulas:
@@ -102,7 +106,7 @@ Json keys_schema(const std::vector<Key>& keys) {
   Json required = Json::array();
   for (const Key& key : keys) {
     schema["properties"][key.name] = key_schema(key);
-    if (key.required && key.only_for.empty()) required.push_back(key.name);
+    if (key.required && key.only_for.empty() && key.gives_way_to.empty()) required.push_back(key.name);
   }
   if (!required.empty()) schema["required"] = required;
   schema["additionalProperties"] = false;
@@ -167,6 +171,23 @@ Json section_schema(const Section& section) {
   return schema;
 }
 
+// Either a section with its required keys, or entries of the section that it gives way to, and none of the keys that
+// do.
+Json one_of_two(const Section& section) {
+  Json required = Json::array(), given = Json::array();
+  for (const Key& key : section.keys) {
+    if (key.gives_way_to.empty()) continue;
+    if (key.required) required.push_back(key.name);
+    given.push_back({{"required", Json::array({key.name})}});
+  }
+  const std::string& other = section.gives_way_to;
+  const Json alone{{"required", Json::array({section.name})},
+                   {"properties", {{section.name, {{"required", required}}}, {other, {{"maxProperties", 0}}}}}};
+  const Json replaced{{"required", Json::array({other})},
+                      {"properties", {{section.name, {{"not", {{"anyOf", given}}}}}, {other, {{"minProperties", 1}}}}}};
+  return Json::array({alone, replaced});
+}
+
 }  // namespace
 
 std::string case_schema() {
@@ -180,7 +201,11 @@ std::string case_schema() {
   for (const Section& section : sections) {
     if (section.kind == SectionKind::top) continue;
     schema["properties"][section.name] = section_schema(section);
-    if (section.required) required.push_back(section.name);
+    if (!section.gives_way_to.empty()) {
+      schema["oneOf"] = one_of_two(section);
+    } else if (section.required) {
+      required.push_back(section.name);
+    }
   }
   schema["required"] = required;
   return schema.dump(2) + "\n";

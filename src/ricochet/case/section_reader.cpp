@@ -63,6 +63,11 @@ std::vector<double> SectionReader::vector(const std::string& name) const {
   return values;
 }
 
+std::vector<double> SectionReader::axial(const std::string& name) const {
+  const TomlNode* const node = usable(name);
+  return node != nullptr && node->is_number() ? std::vector<double>{node->real} : vector(name);
+}
+
 std::vector<int> SectionReader::choice_numbers(const std::string& name) const {
   const std::vector<std::string>& choices = find_key(keys_, name)->choices;
   std::vector<int> numbers;

@@ -37,6 +37,8 @@ class SectionReader final : public ParameterCheck {
   [[nodiscard]] long integer(const std::string& name) const;
   [[nodiscard]] std::optional<long> optional_integer(const std::string& name) const;
   [[nodiscard]] std::vector<double> vector(const std::string& name) const;
+  /// One number in two dimensions, three in three; empty where it is absent.
+  [[nodiscard]] std::vector<double> axial(const std::string& name) const;
   /// The entries' places among the key's choices: 0, 1, 2 for "x", "y", "z".
   [[nodiscard]] std::vector<int> choice_numbers(const std::string& name) const;
   /// Compile the expressions with the section's parameters; their errors are problems at the place of the expression.

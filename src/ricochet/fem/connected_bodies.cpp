@@ -60,13 +60,16 @@ std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies
   for (const int body : bodies.of_cell) ++cells[static_cast<std::size_t>(body)];
   std::vector<std::string> whole(count);               // a group that is all of the body and nothing else
   std::vector<std::vector<std::string>> parts(count);  // groups that are in this body alone
+  const auto look_at = [&](const std::string& name, const std::vector<Index>& members) {
+    if (members.empty()) return;
+    const std::size_t body = body_of(members.front());
+    if (!std::all_of(members.begin(), members.end(), [&](Index cell) { return body_of(cell) == body; })) return;
+    parts[body].push_back(name);
+    if (whole[body].empty() && members.size() == cells[body]) whole[body] = name;
+  };
+  for (const MeshPart& part : mesh.parts) look_at(part.name, part.cells);  // a body of a file of its own is called so
   for (const Group& group : mesh.groups) {
-    if (group.dimension != mesh.dimension || group.members.empty()) continue;
-    const std::size_t body = body_of(group.members.front());
-    if (!std::all_of(group.members.begin(), group.members.end(), [&](Index cell) { return body_of(cell) == body; }))
-      continue;
-    parts[body].push_back(group.name);
-    if (whole[body].empty() && group.members.size() == cells[body]) whole[body] = group.name;
+    if (group.dimension == mesh.dimension) look_at(group.name, group.members);
   }
   std::vector<std::string> result;
   for (std::size_t body = 0; body < count; ++body) {

@@ -17,8 +17,9 @@ struct ConnectedBodies {
 
 [[nodiscard]] ConnectedBodies find_connected_bodies(const DisplacementSpace& space);
 
-/// What messages call each: "the body" where there is one; else, by the groups of cells that no other body has a part
-/// in, body "left", or body "core" and "shell"; and body 0 where there is no such group.
+/// What messages call each: "the body" where there is one; else body "ball", where all of it and nothing else is in the
+/// part "ball"; else, by the groups of cells that no other body has a part in, body "left", or body "core" and "shell";
+/// and body 0 where there is no such group.
 [[nodiscard]] std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies& bodies);
 
 /// Per body: the time in which a compression wave runs along the longest side of the box around it, at the speed of its

@@ -77,11 +77,15 @@ void renumber(const std::vector<Index>& before, const std::vector<Index>& after,
   }
 }
 
-void add_whole_boundary(Mesh& mesh) {
+/// Of a part, or of the whole mesh where there is none.
+void add_boundary(Mesh& mesh, const std::string& name, const MeshPart* part) {
   std::map<CellShape, std::vector<CellFacet>> by_shape;
-  for (const CellFacet& facet : boundary_facets(mesh.cells))
-    by_shape[facet_shape(mesh.cells[facet.block].shape)].push_back(facet);
-  Group boundary{whole_boundary_name, free_tag(mesh, mesh.dimension - 1), mesh.dimension - 1, {}};
+  for (const CellFacet& facet : boundary_facets(mesh.cells)) {
+    const CellBlock& block = mesh.cells[facet.block];
+    if (part == nullptr || part->has_node(block.cell(facet.cell)[0]))
+      by_shape[facet_shape(block.shape)].push_back(facet);
+  }
+  Group boundary{name, free_tag(mesh, mesh.dimension - 1), mesh.dimension - 1, {}};
   for (const auto& [shape, facets] : by_shape) (void)block_of(mesh, shape);
   const std::vector<Index> before = first_numbers(mesh.facets);
   std::vector<std::vector<Index>> members;
@@ -94,13 +98,35 @@ void add_whole_boundary(Mesh& mesh) {
   mesh.groups.push_back(std::move(boundary));
 }
 
+/// What a built-in name stands for.
+struct BuiltIn {
+  bool exists = false;
+  const MeshPart* part = nullptr;  ///< none: the whole mesh
+};
+
+BuiltIn find_built_in(const Mesh& mesh, const std::string& name, int dimension) {
+  if (dimension != mesh.dimension && dimension != mesh.dimension - 1) return {};
+  const std::string of_whole = dimension == mesh.dimension ? all_cells_name : whole_boundary_name;
+  if (name == of_whole) return {true, nullptr};
+  for (const MeshPart& part : mesh.parts) {
+    if (name == part.group_name(of_whole)) return {true, &part};
+  }
+  return {};
+}
+
 }  // namespace
+
+bool is_built_in_group(const Mesh& mesh, const std::string& name, int dimension) {
+  return find_built_in(mesh, name, dimension).exists;
+}
 
 void add_built_in_group(Mesh& mesh, const std::string& name, int dimension) {
   if (mesh.find_group(name, dimension) != nullptr) return;
-  if (name == all_cells_name && dimension == mesh.dimension)
-    mesh.groups.push_back({name, free_tag(mesh, dimension), dimension, numbers_up_to(mesh.cell_count())});
-  if (name == whole_boundary_name && dimension == mesh.dimension - 1) add_whole_boundary(mesh);
+  const auto [exists, part] = find_built_in(mesh, name, dimension);
+  if (!exists) return;
+  if (dimension == mesh.dimension - 1) return add_boundary(mesh, name, part);
+  mesh.groups.push_back(
+      {name, free_tag(mesh, dimension), dimension, part != nullptr ? part->cells : numbers_up_to(mesh.cell_count())});
 }
 
 void add_union_of_groups(Mesh& mesh, const std::string& name, const std::vector<std::string>& parts, int dimension) {

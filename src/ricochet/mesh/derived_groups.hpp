@@ -13,8 +13,12 @@ namespace ricochet {
 inline constexpr const char* all_cells_name = "all";
 inline constexpr const char* whole_boundary_name = "boundary";
 
-/// Adds "all" or "boundary" where that is the name, the dimension is its own, and the mesh has no such group yet.
-/// Facets of the boundary that are in no group of the file join the mesh's facets, with the tag 0.
+/// Whether a name stands for every cell, or every facet on the boundary, of the mesh ("all") or of one of its parts
+/// ("ball.all").
+[[nodiscard]] bool is_built_in_group(const Mesh& mesh, const std::string& name, int dimension);
+
+/// Adds such a group where the mesh has none of that name yet. Facets of the boundary that are in no group of the file
+/// join the mesh's facets, with the tag 0.
 void add_built_in_group(Mesh& mesh, const std::string& name, int dimension);
 
 /// Adds the union of groups, all of that dimension and there, under a name of its own, if it is not there yet.

@@ -22,6 +22,16 @@ std::string entity_name(int dimension, int mesh_dimension) {
   return dimension == 0 ? "points" : "curves";
 }
 
+/// Of a mesh of several files: "ball.skin", where "skin" was asked for.
+std::vector<std::string> names_in_parts(const Mesh& mesh, const std::string& name, int dimension) {
+  std::vector<std::string> names;
+  for (const MeshPart& part : mesh.parts) {
+    const std::string full = part.group_name(name);
+    if (mesh.find_group(full, dimension) != nullptr) names.push_back(full);
+  }
+  return names;
+}
+
 [[noreturn]] void fail_missing(const Mesh& mesh, const std::string& name, int dimension) {
   std::vector<std::string> names;
   for (const Group& group : mesh.groups) {
@@ -36,7 +46,16 @@ std::string entity_name(int dimension, int mesh_dimension) {
     message += fmt::format("; a case's \"{}\" is every cell", all_cells_name);
   if (dimension == mesh.dimension - 1 && is_free(whole_boundary_name))
     message += fmt::format("; a case's \"{}\" is every boundary facet", whole_boundary_name);
-  if (const std::string nearest = nearest_name(name, names); !nearest.empty()) {
+  if (!mesh.parts.empty() && (dimension == mesh.dimension || dimension == mesh.dimension - 1)) {
+    message +=
+        fmt::format(", and \"{}\" those of part \"{}\"",
+                    mesh.parts.front().group_name(dimension == mesh.dimension ? all_cells_name : whole_boundary_name),
+                    mesh.parts.front().name);
+  }
+  const std::vector<std::string> in_parts = names_in_parts(mesh, name, dimension);
+  if (const std::string nearest = nearest_name(name, names); !in_parts.empty()) {
+    message += fmt::format("; did you mean {}?", join_names(in_parts, " or "));
+  } else if (!nearest.empty()) {
     message += fmt::format("; did you mean \"{}\"?", nearest);
   }
   for (const Group& group : mesh.groups) {

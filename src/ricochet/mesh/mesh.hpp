@@ -42,8 +42,19 @@ struct Group {
   std::vector<Index> members;
 };
 
+/// What one of several files gave, see merge_parts. Parts share no nodes.
+struct MeshPart {
+  std::string name;
+  Index first_node = 0, node_count = 0;  ///< its nodes follow one another
+  std::vector<Index> cells;              ///< numbered through all blocks, ascending
+
+  [[nodiscard]] bool has_node(Index node) const { return node >= first_node && node < first_node + node_count; }
+  /// Of one of its groups, in the whole mesh: "ball.skin".
+  [[nodiscard]] std::string group_name(const std::string& group) const { return name + "." + group; }
+};
+
 struct Mesh {
-  std::string source;                   ///< the file, for messages
+  std::string source;                   ///< the file, for messages; of several, the parts
   int dimension = 2;                    ///< 2 or 3: of the cells and of the space
   int degree = 1;                       ///< of the geometry: 1 straight, 2 second-order
   Points nodes;                         ///< dimension × count; every node belongs to a cell
@@ -51,6 +62,7 @@ struct Mesh {
   std::vector<CellBlock> cells;         ///< one block per shape present
   std::vector<CellBlock> facets;  ///< facets that belong to a group, one block per shape; each is a facet of a cell
   std::vector<Group> groups;      ///< of every dimension
+  std::vector<MeshPart> parts;    ///< of a mesh of several files, in their order; else none
 
   [[nodiscard]] Index node_count() const { return nodes.cols(); }
   [[nodiscard]] Index cell_count() const;

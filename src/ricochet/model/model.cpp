@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/fem/exterior_facets.hpp"
-#include "ricochet/mesh/place_mesh.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "ricochet/model/model_parts.hpp"
 
@@ -21,8 +19,6 @@ void refuse(const Case& input, const std::string& key_path, const std::string& m
   throw Error(ErrorKind::invalid_input, fmt::format("{}: {}", input.where(key_path).text(), message));
 }
 
-namespace {
-
 void check_length(const Case& input, const std::string& key_path, std::size_t length, int dimension) {
   if (length != 0 && static_cast<int>(length) != dimension) {
     refuse(input, key_path,
@@ -30,6 +26,8 @@ void check_length(const Case& input, const std::string& key_path, std::size_t le
                        counted(length, "entry", "entries"), dimension, dimension));
   }
 }
+
+namespace {
 
 /// As check_length; in two dimensions "z" would silently be 0.
 void check_expressions(const Case& input, const std::string& key_path, const std::vector<Expression>& value,
@@ -43,21 +41,10 @@ void check_expressions(const Case& input, const std::string& key_path, const std
   }
 }
 
-void check_placement(const Case& input, int dimension) {
-  const Placement& placement = input.mesh.placement;
-  check_length(input, "mesh.move", placement.move.size(), dimension);
-  check_length(input, "mesh.turn.about", placement.about.size(), dimension);
-  if (dimension == 2 && !placement.axis.empty())
-    refuse(input, "mesh.turn.axis", "the mesh has dimension 2, where it turns about a point: leave out the axis");
-  check_length(input, "mesh.turn.axis", placement.axis.size(), dimension);
-  if (dimension == 3 && placement.axis.empty() && placement.angle != 0.0)
-    refuse(input, "mesh.turn", "the mesh has dimension 3: give \"turn\" an axis, as in axis = [0, 0, 1]");
-}
-
 }  // namespace
 
 void check_dimensions(const Case& input, int dimension) {
-  check_placement(input, dimension);
+  for (const CaseMeshFile& file : mesh_files(input)) check_placement(input, file, dimension);
   for (const ObstacleSection& obstacle : input.obstacles) {
     for (const Key& key : obstacle_registry().find(obstacle.type).keys) {
       if (key.type != KeyType::vector || !obstacle.parameters.has(key.name)) continue;
@@ -81,6 +68,7 @@ void check_dimensions(const Case& input, int dimension) {
   check_expressions(input, "load.body_force", input.load.body_force, dimension);
   check_expressions(input, "initial.displacement", input.initial.displacement, dimension);
   check_expressions(input, "initial.velocity", input.initial.velocity, dimension);
+  check_motions(input, dimension);
   for (std::size_t i = 0; i < input.probes.size(); ++i) {
     const ProbeSection& probe = input.probes[i];
     for (const auto& [key, value] : {std::pair{"at", &probe.at}, std::pair{"from", &probe.from},
@@ -108,17 +96,6 @@ std::vector<Index> boundary_at(const Case& input, const std::string& key_path, c
                        facet_tags(mesh, interior)));
   }
   return group.members;
-}
-
-MeshFile mesh_file(const Case& input) {
-  return {input.mesh.file, input.mesh.size, input.mesh.scale, input.mesh.degree};
-}
-
-void require_mesh_file(const Case& input) {
-  if (std::filesystem::exists(input.mesh.file)) return;
-  throw Error(ErrorKind::file_access,
-              fmt::format("{}: there is no file {}; a relative path is relative to the folder of the case file",
-                          input.where("mesh.file").text(), input.mesh.file));
 }
 
 void assign_materials(const Case& input, Model& model) {
@@ -274,11 +251,11 @@ std::string scheme_text(const TimeSection& time) {
 std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   auto model = std::make_unique<Model>();
   Timer timer;
-  require_mesh_file(input);
-  model->mesh = read_mesh(mesh_file(input));
+  require_mesh_files(input);
+  std::vector<NamedMesh> files = read_mesh_files(input);
   const double read_seconds = timer.restart();
-  check_dimensions(input, model->mesh.dimension);
-  place_mesh(model->mesh, input.mesh.placement);
+  check_dimensions(input, files.front().mesh.dimension);
+  model->mesh = put_together(input, std::move(files));
   complete_groups(input, model->mesh);
   model->space = make_displacement_space(model->mesh, input.mesh.degree);
   model->contains_rotations = input.mesh.degree > 1 || !is_curved(model->mesh);
@@ -297,6 +274,7 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   const double assembly_seconds = timer.restart();
   add_loads(input, *model);
   add_initial_conditions(input, *model);
+  add_motions(input, *model);
   check_body_overlaps(input, *model);
   check_obstacles(input, *model);
   add_probes(input, *model);

@@ -49,11 +49,19 @@ struct Model {
 /// The scheme with its parameters: "newmark (beta 0.25, gamma 0.5)".
 [[nodiscard]] std::string scheme_text(const TimeSection& time);
 
-/// The mesh as the case asks for it.
-[[nodiscard]] MeshFile mesh_file(const Case& input);
+/// A file that the mesh comes from, as the case asks for it.
+struct CaseMeshFile {
+  std::string section;  ///< of the case: "mesh", "part.ball"
+  std::string part;     ///< its name; empty for the file of [mesh]
+  MeshFile file;
+  Placement placement;
+};
 
-/// Throws Error(file_access), at its place in the case, where the mesh file is not there.
-void require_mesh_file(const Case& input);
+/// That of [mesh], or those of the parts in their order.
+[[nodiscard]] std::vector<CaseMeshFile> mesh_files(const Case& input);
+
+/// Throws Error(file_access), at their places in the case, where files are not there.
+void require_mesh_files(const Case& input);
 
 /// Seconds spent in the phases of building a model.
 struct BuildTimes {

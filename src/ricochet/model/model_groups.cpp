@@ -34,13 +34,12 @@ class GroupCompleter {
   /// Groups of cells, or else of facets.
   void require_any(const std::string& key_path, const std::string& group) {
     const std::vector<std::string> names = names_in(group);
-    const auto are_groups = [&](int dimension, const char* built_in) {
+    const auto are_groups = [&](int dimension) {
       return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
-        return name == built_in || mesh_.find_group(name, dimension) != nullptr;
+        return is_built_in_group(mesh_, name, dimension) || mesh_.find_group(name, dimension) != nullptr;
       });
     };
-    const bool of_facets =
-        !are_groups(mesh_.dimension, all_cells_name) && are_groups(mesh_.dimension - 1, whole_boundary_name);
+    const bool of_facets = !are_groups(mesh_.dimension) && are_groups(mesh_.dimension - 1);
     require(key_path, group, of_facets ? mesh_.dimension - 1 : mesh_.dimension);
   }
 
@@ -89,6 +88,9 @@ void complete_groups(const Case& input, Mesh& mesh) {
   }
   require_boundaries("support", input.supports);
   require_boundaries("traction", input.tractions);
+  for (const MotionSection& motion : input.motions) {
+    if (motion.part.empty()) groups.require(motion.section + ".group", motion.group, mesh.dimension);
+  }
   for (std::size_t i = 0; i < input.probes.size(); ++i) {
     const ProbeSection& probe = input.probes[i];
     if (!probe.boundary.empty())

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ricochet/mesh/merge_parts.hpp"
 #include "ricochet/model/model.hpp"
 
 /// @file The pieces of build_model, one file each. Not part of the public interface.
@@ -8,8 +9,23 @@ namespace ricochet {
 /// Error(invalid_input) at the place of a key of the case.
 [[noreturn]] void refuse(const Case& input, const std::string& key_path, const std::string& message);
 
+/// Refuses a vector that has not as many entries as the mesh has dimensions; none of one that is absent.
+void check_length(const Case& input, const std::string& key_path, std::size_t length, int dimension);
+
+[[nodiscard]] inline Vector vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+}
+
 /// Checks every vector and component of the case against the dimension of the mesh.
 void check_dimensions(const Case& input, int dimension);
+
+/// The meshes of mesh_files, where they are in their files; the name of that of [mesh] is empty. Errors of parts have
+/// the place of their `file`; so have parts that do not go together.
+[[nodiscard]] std::vector<NamedMesh> read_mesh_files(const Case& input);
+/// Checks `turn` and `move` of a file.
+void check_placement(const Case& input, const CaseMeshFile& file, int dimension);
+/// One mesh of them, each where the case has it.
+[[nodiscard]] Mesh put_together(const Case& input, std::vector<NamedMesh> files);
 
 /// Adds to the mesh what the case's groups need: "all", "boundary", and the unions of lists under their text. Throws
 /// Error(invalid_input) with all names at once that are no groups.
@@ -35,6 +51,10 @@ void check_body_overlaps(const Case& input, const Model& model);
 void assemble_operators(const Case& input, Model& model);
 void add_loads(const Case& input, Model& model);
 void add_initial_conditions(const Case& input, Model& model);
+/// Checks velocities and spins of bodies.
+void check_motions(const Case& input, int dimension);
+/// Adds them to the velocity at the start. Refuses two that move one node.
+void add_motions(const Case& input, Model& model);
 void add_probes(const Case& input, Model& model);
 /// Refuses, or warns of, obstacles that gaps to cannot be found for, or that points and steps may miss.
 void check_obstacles(const Case& input, const Model& model);

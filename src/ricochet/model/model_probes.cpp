@@ -14,10 +14,6 @@ namespace {
 /// Part of the body's size up to which a node lies on a segment.
 constexpr double on_segment = 1e-6;
 
-Vector vector_of(const std::vector<double>& values) {
-  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
-}
-
 class ProbeMaker {
  public:
   ProbeMaker(const Case& input, Model& model) : input_(input), model_(model) {}

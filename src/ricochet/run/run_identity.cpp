@@ -9,6 +9,7 @@
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/library_versions.hpp"
+#include "ricochet/run/mesh_identity.hpp"
 #include "ricochet/version.hpp"
 
 namespace ricochet {
@@ -16,28 +17,13 @@ namespace ricochet {
 namespace {
 
 bool decides_results(const std::string& key) {
+  // Of the files of meshes the content counts, not the name.
   static const std::set<std::string> others{"title", "mesh.file", "output.checkpoint_every",
                                             "output.checkpoint_seconds"};
+  const bool is_file = key.starts_with("part.") && key.ends_with(".file");
   // Not the end either: what was written before it does not depend on it.
-  return !others.contains(key) && key != "time.end" && !key.starts_with("expect.") && !key.starts_with("check.");
-}
-
-/// Per part of the mesh: its checksum.
-std::map<std::string, std::string> mesh_checksums(const Mesh& mesh) {
-  std::map<std::string, std::string> result;
-  const auto add = [&](const char* part, const Checksum& sum) { result[part] = sum.text(); };
-  add("nodes", Checksum().add(mesh.nodes.data(), static_cast<std::size_t>(mesh.nodes.size())));
-  Checksum cells, facets, groups;
-  for (const CellBlock& block : mesh.cells) cells.add(block.nodes.data(), block.nodes.size());
-  for (const CellBlock& block : mesh.facets) facets.add(block.nodes.data(), block.nodes.size());
-  for (const Group& group : mesh.groups) {
-    groups.add(group.name.data(), group.name.size()).add(&group.dimension, 1);
-    groups.add(group.members.data(), group.members.size());
-  }
-  add("cells", cells);
-  add("boundary facets", facets);
-  add("groups", groups);
-  return result;
+  return !is_file && !others.contains(key) && key != "time.end" && !key.starts_with("expect.") &&
+         !key.starts_with("check.");
 }
 
 /// Of products with a fixed vector: sees every rounding of the operators.
@@ -73,9 +59,9 @@ void save_identity(const Case& input, const Model& model, Snapshot& snapshot) {
     keys.push_back(key);
     values.push_back(value);
   }
-  for (const auto& [part, sum] : mesh_checksums(model.mesh)) {
-    parts.push_back(part);
-    sums.push_back(sum);
+  for (const MeshChecksum& checksum : mesh_checksums(model.mesh)) {
+    parts.push_back(checksum.of);
+    sums.push_back(checksum.sum);
   }
   snapshot.save("identity.case.keys", std::move(keys));
   snapshot.save("identity.case.values", std::move(values));
@@ -132,16 +118,18 @@ void require_same_case(const Case& input, const Snapshot& snapshot, const std::s
 
 std::string compare_model(const Case& input, const Model& model, const Snapshot& snapshot) {
   const std::map<std::string, std::string> before = read_map(snapshot, "identity.mesh.parts", "identity.mesh.sums");
-  std::string differences;
-  for (const auto& [part, sum] : mesh_checksums(model.mesh)) {
-    const auto found = before.find(part);
-    if (found == before.end() || found->second != sum) differences += (differences.empty() ? "" : ", ") + part;
+  std::string differences, place = input.parts.empty() ? "mesh.file" : "part";
+  for (const MeshChecksum& checksum : mesh_checksums(model.mesh)) {
+    const auto found = before.find(checksum.of);
+    if (found != before.end() && found->second == checksum.sum) continue;
+    if (differences.empty() && !checksum.part.empty()) place = "part." + checksum.part + ".file";
+    differences += (differences.empty() ? "" : ", ") + checksum.of;
   }
   if (!differences.empty()) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: the run cannot be resumed: the mesh has changed since it began (differences in: {}); "
                             "restore the mesh, or start anew in another directory (-o) or over this run (--force)",
-                            input.where("mesh.file").text(), differences));
+                            input.where(place).text(), differences));
   }
   const std::string libraries = library_versions();
   if (libraries != snapshot.text("identity.libraries")) {

@@ -16,8 +16,10 @@ TEST(MalformedCase, Structure) {
        "and \"damping\""},
       {0, "[tim]\nstep = 1", "12:2: unknown section \"tim\"; did you mean [time]?"},
       {0, "[rocket]\nstep = 1",
-       "12:2: unknown section \"rocket\"; the sections are [mesh], [[material]], [obstacle.NAME], [[contact]], "
-       "[[support]], [[traction]], [load], [initial], [mass], [time], [solver], [[probe]], [output], [check] and "
+       "12:2: unknown section \"rocket\"; the sections are [mesh], [part.NAME], [[material]], [obstacle.NAME], "
+       "[[contact]], "
+       "[[support]], [[traction]], [load], [initial], [[motion]], [mass], [time], [solver], [[probe]], [output], "
+       "[check] and "
        "[[expect]]"},
       {0, "[[contacts]]\ngroup = \"a\"", "12:3: unknown section \"contacts\"; did you mean [[contact]]?"},
       {1, "titel = \"a\"\n[mesh]", "1:1: unknown key \"titel\" in the top level of the file; did you mean \"title\"?"},

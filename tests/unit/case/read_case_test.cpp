@@ -274,7 +274,8 @@ TEST(ReadCase, SaysWhenAFileCannotBeRead) {
 TEST(ReadCase, AnEmptyFileLacksTheRequiredSections) {
   EXPECT_EQ(
       problems_of(""),
-      "1:1: there is no section [mesh], which must have \"file\". The body and how it is discretized.\n"
+      "1:1: there is no section [mesh], which must have \"file\", and no [part.NAME] either. The body and how it is "
+      "discretized. With sections [part.NAME] only `degree` and `plane` are given here, and hold for all parts.\n"
       "1:1: there is no section [[material]], which must have \"group\" and \"density\". The material of one or more "
       "groups of cells.\n"
       "1:1: there is no section [time], which must have \"step\" and \"end\". The time scheme and its steps.");

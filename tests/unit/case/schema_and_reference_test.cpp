@@ -30,8 +30,8 @@ void expect_keys(const Json& schema, const std::vector<Key>& keys) {
     EXPECT_NE(found.at("description").get<std::string>().find(key.doc), std::string::npos);
     EXPECT_EQ(found.contains("default"), key.standard.has_value());
     const Json required = schema.value("required", Json::array());
-    // A key of one type among several is required where that type is named.
-    const bool always = key.required && key.only_for.empty();
+    // A key of one type among several is required where that type is named; one that gives way, without the others.
+    const bool always = key.required && key.only_for.empty() && key.gives_way_to.empty();
     EXPECT_EQ(std::find(required.begin(), required.end(), key.name) != required.end(), always);
     if (key.type == KeyType::table) expect_keys(found, key.keys);
   }
@@ -49,7 +49,7 @@ std::string file_text(const std::string& path) {
 TEST(CaseSchema, HasEveryKeyAndNoOther) {
   const Json schema = Json::parse(case_schema());
   EXPECT_EQ(schema.at("$schema"), "https://json-schema.org/draft/2020-12/schema");
-  EXPECT_EQ(schema.at("required"), (Json{"mesh", "material", "time"}));
+  EXPECT_EQ(schema.at("required"), (Json{"material", "time"}));
   for (const Section& section : case_sections()) {
     SCOPED_TRACE(section.name);
     const Json& entry = entry_schema(schema, section);
@@ -70,6 +70,23 @@ TEST(CaseSchema, AsksForTheKeysOfTheTypeThatIsNamed) {
   }
   EXPECT_EQ(required.at("plane"), (Json{"point", "normal"}));
   EXPECT_EQ(required.at("sphere"), (Json{"centre", "radius"}));
+}
+
+TEST(CaseSchema, AsksForAMeshOrForParts) {
+  const Json schema = Json::parse(case_schema());
+  const Json& alone = schema.at("oneOf").at(0);
+  EXPECT_EQ(alone.at("required"), Json{"mesh"});
+  EXPECT_EQ(alone.at("properties").at("mesh").at("required"), Json{"file"});
+  EXPECT_EQ(alone.at("properties").at("part").at("maxProperties"), 0);
+  const Json& parts = schema.at("oneOf").at(1);
+  EXPECT_EQ(parts.at("required"), Json{"part"});
+  EXPECT_EQ(parts.at("properties").at("mesh").at("not").at("anyOf").size(), 5U);
+  const Json& part = schema.at("properties").at("part").at("additionalProperties");
+  EXPECT_EQ(part.at("required"), Json{"file"});
+  const Json& spin = part.at("properties").at("spin").at("anyOf");
+  EXPECT_EQ(spin.at(0).at("type"), "number");
+  EXPECT_EQ(spin.at(1).at("minItems"), 3);
+  EXPECT_EQ(spin.at(1).at("maxItems"), 3);
 }
 
 TEST(CaseSchema, CarriesBoundsChoicesAndUnits) {
@@ -96,7 +113,7 @@ TEST(CaseKeys, AreDocumentedAndHaveUnits) {
       EXPECT_FALSE(key.doc.empty()) << section.name << '.' << key.name;
       const bool is_number = key.type == KeyType::number || key.type == KeyType::integer ||
                              key.type == KeyType::vector || key.type == KeyType::formula ||
-                             key.type == KeyType::formulas;
+                             key.type == KeyType::formulas || key.type == KeyType::axial;
       EXPECT_EQ(!key.unit.empty(), is_number) << section.name << '.' << key.name;
       EXPECT_FALSE(key.required && key.standard.has_value()) << section.name << '.' << key.name;
     }

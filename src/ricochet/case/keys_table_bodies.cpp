@@ -1,0 +1,125 @@
+#include "ricochet/case/keys_table.hpp"
+
+// The part of the table that is about bodies: their files and places, and how they move at the start.
+namespace ricochet {
+
+namespace {
+
+Key turn_key() {
+  return {
+      .name = "turn",
+      .type = KeyType::table,
+      .keys = {{.name = "angle",
+                .type = KeyType::number,
+                .unit = "degrees",
+                .required = true,
+                .doc = "Right-handed about the axis; in two dimensions counter-clockwise."},
+               {.name = "axis",
+                .type = KeyType::vector,
+                .unit = "1",
+                .doc = "Direction of the axis, of any length but zero; in three dimensions only, and required there."},
+               {.name = "about",
+                .type = KeyType::vector,
+                .unit = "length",
+                .doc = "A point of the axis, in the coordinates after `scale`; absent: the origin."}},
+      .doc =
+          "Turns the mesh, after `scale` and before `move`. Obstacles, probes and expressions see where it is "
+          "then."};
+}
+
+/// Which file, and where its mesh is put: of [mesh], and of every part.
+std::vector<Key> file_keys() {
+  return {
+      {.name = "file",
+       .required = true,
+       .doc = "Mesh file (.msh, .inp, .vtu, .med, …; see docs/meshes.md), or geometry for the gmsh program (.geo, "
+              ".step, …). A relative path is relative to the folder of the case file, also when given by --set."},
+      {.name = "size",
+       .type = KeyType::number,
+       .unit = "length",
+       .range = positive,
+       .doc = "Target size of the cells; only for geometry that is still to be meshed, in the unit of that file."},
+      {.name = "scale",
+       .type = KeyType::number,
+       .unit = "1",
+       .standard = "1",
+       .range = positive,
+       .doc = "Multiplies all coordinates of the mesh."},
+      turn_key(),
+      {.name = "move",
+       .type = KeyType::vector,
+       .unit = "length",
+       .doc = "Added to all coordinates, after `scale` and `turn`."},
+  };
+}
+
+Key velocity_key(const char* what) {
+  return {.name = "velocity",
+          .type = KeyType::vector,
+          .unit = "length/time",
+          .doc = std::string("Velocity at t = 0 of ") + what + ", added to that of [initial]. Zero if absent."};
+}
+
+Key spin_key(const char* about) {
+  return {.name = "spin",
+          .type = KeyType::axial,
+          .unit = "1/time",
+          .doc = std::string("Angular velocity at t = 0, in rad per time, about ") + about +
+                 "; in two dimensions counter-clockwise. Zero if absent."};
+}
+
+}  // namespace
+
+Section mesh_section() {
+  Section section{.name = "mesh",
+                  .required = true,
+                  .gives_way_to = "part",
+                  .doc =
+                      "The body and how it is discretized. With sections [part.NAME] only `degree` and `plane` are "
+                      "given here, and hold for all parts.",
+                  .keys = file_keys()};
+  for (Key& key : section.keys) key.gives_way_to = "part";
+  section.keys.push_back({.name = "degree",
+                          .type = KeyType::integer,
+                          .unit = "1",
+                          .standard = "1",
+                          .choices = {"1", "2"},
+                          .doc = "Polynomial degree of the displacement."});
+  section.keys.push_back({.name = "plane",
+                          .type = KeyType::choice,
+                          .standard = "strain",
+                          .choices = {"strain", "stress"},
+                          .doc = "In two dimensions: plane strain or plane stress."});
+  return section;
+}
+
+Section part_section() {
+  Section section{.name = "part",
+                  .kind = SectionKind::named,
+                  .doc =
+                      "A body, or several, from a file of its own. Its groups are called \"NAME.group\"; \"NAME.all\" "
+                      "are all of its cells, \"NAME.boundary\" all of its boundary facets. Parts share no nodes.",
+                  .keys = file_keys()};
+  section.keys.push_back(velocity_key("the part as a rigid body"));
+  section.keys.push_back(spin_key("the part's centre of mass"));
+  return section;
+}
+
+Section motion_section() {
+  return {.name = "motion",
+          .kind = SectionKind::list,
+          .doc =
+              "Cells that move like a rigid body at t = 0; what a part's `velocity` and `spin` are for bodies of one "
+              "file.",
+          .keys = {
+              group_key("cells", "all"),
+              velocity_key("the nodes of these cells"),
+              spin_key("`about`"),
+              {.name = "about",
+               .type = KeyType::vector,
+               .unit = "length",
+               .doc = "A point of the axis of `spin`; absent: the centre of mass of these cells."},
+          }};
+}
+
+}  // namespace ricochet

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/model/model_parts.hpp"
+
+/// @file The mesh of a case, from one file or from those of its parts.
+namespace ricochet {
+
+std::vector<CaseMeshFile> mesh_files(const Case& input) {
+  const auto made = [&](const std::string& section, const std::string& part, const BodyFile& body) {
+    return CaseMeshFile{section, part, {body.file, body.size, body.scale, input.mesh.degree}, body.placement};
+  };
+  if (input.parts.empty()) return {made("mesh", "", input.mesh)};
+  std::vector<CaseMeshFile> files;
+  for (const PartSection& part : input.parts) files.push_back(made("part." + part.name, part.name, part));
+  return files;
+}
+
+void require_mesh_files(const Case& input) {
+  std::string missing;
+  for (const CaseMeshFile& file : mesh_files(input)) {
+    if (std::filesystem::exists(file.file.path)) continue;
+    missing += fmt::format("{}{}: there is no file {}; a relative path is relative to the folder of the case file",
+                           missing.empty() ? "" : "\n", input.where(file.section + ".file").text(), file.file.path);
+  }
+  if (!missing.empty()) throw Error(ErrorKind::file_access, missing);
+}
+
+namespace {
+
+Mesh read_part(const Case& input, const CaseMeshFile& file) {
+  if (file.part.empty()) return read_mesh(file.file);
+  try {
+    return read_mesh(file.file);
+  } catch (const Error& problem) {
+    throw Error(problem.kind(), fmt::format("{}: part \"{}\": {}", input.where(file.section + ".file").text(),
+                                            file.part, problem.what()));
+  }
+}
+
+}  // namespace
+
+std::vector<NamedMesh> read_mesh_files(const Case& input) {
+  std::vector<NamedMesh> meshes;
+  for (const CaseMeshFile& file : mesh_files(input)) {
+    meshes.push_back({file.part, read_part(input, file)});
+    if (const std::string why = mismatch_of_parts(meshes.front(), meshes.back()); !why.empty())
+      refuse(input, file.section + ".file", why);
+  }
+  return meshes;
+}
+
+void check_placement(const Case& input, const CaseMeshFile& file, int dimension) {
+  const Placement& placement = file.placement;
+  const std::string move = file.section + ".move", turn = file.section + ".turn";
+  check_length(input, move, placement.move.size(), dimension);
+  check_length(input, turn + ".about", placement.about.size(), dimension);
+  if (dimension == 2 && !placement.axis.empty())
+    refuse(input, turn + ".axis", "the mesh has dimension 2, where it turns about a point: leave out the axis");
+  check_length(input, turn + ".axis", placement.axis.size(), dimension);
+  if (dimension == 3 && placement.axis.empty() && placement.angle != 0.0)
+    refuse(input, turn, "the mesh has dimension 3: give \"turn\" an axis, as in axis = [0, 0, 1]");
+}
+
+Mesh put_together(const Case& input, std::vector<NamedMesh> files) {
+  const std::vector<CaseMeshFile> places = mesh_files(input);
+  for (std::size_t i = 0; i < files.size(); ++i) place_mesh(files[i].mesh, places[i].placement);
+  return input.parts.empty() ? std::move(files.front().mesh) : merge_parts(files);
+}
+
+}  // namespace ricochet
