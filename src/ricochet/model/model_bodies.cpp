@@ -79,6 +79,10 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
                              names_of_pair(pair), counted(facing.held, "multiplier is", "multipliers are"),
                              facing.held == 1 ? "point is" : "points are"));
   }
+  if (facing.closed > 0) {
+    log::info(fmt::format("{} overlap by up to {:.3g} at {}, as meshes: there they are taken to touch",
+                          names_of_pair(pair), -facing.smallest_gap, counted(facing.closed, "contact point")));
+  }
   if (facing.sharpest < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node) {
     log::warning(
         fmt::format("{}: facets of \"{}\" meet at an edge at {}, where the direction of contact is the mean of their "
