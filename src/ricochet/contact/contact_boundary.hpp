@@ -44,6 +44,7 @@ struct ContactPair {
   std::vector<Index> opposite_facets = {};
   Vector pair_at = {};       ///< displacement of the group's body at which facets are paired; empty: none
   bool closed_gaps = false;  ///< initial gaps below zero are taken for zero
+  bool tied = false;         ///< glued (tied_surfaces.hpp): there are no contact points
 
   [[nodiscard]] bool between_bodies() const { return obstacle == nullptr; }
   /// For messages: obstacle "floor", group "plate.top".

@@ -122,6 +122,12 @@ class ProbeMaker {
       refuse(input_, key + ".contact",
              fmt::format("there is no contact {}: the case has {} of them, numbered from 0", *section.contact, count));
     }
+    if (model_.contact_pairs[static_cast<std::size_t>(*section.contact)].tied) {
+      refuse(input_, key + ".contact",
+             fmt::format("contact {} is tied: it has no contact points whose forces could be watched; use a probe with "
+                         "\"group\" for stresses near the surface",
+                         *section.contact));
+    }
     add(section, make_contact_sensor(section.name, model_.problem, static_cast<int>(*section.contact)));
   }
 
