@@ -49,6 +49,7 @@ bool must_be_meshed_first(const MeshFile& file) {
 void describe_mesh(const std::string& path) {
   MeshFile file;
   file.path = path;
+  file.bodies_may_touch = true;  // what belongs together a case says
   if (must_be_meshed_first(file)) {
     fmt::print(
         "{}: a geometry that was not meshed yet: its groups and sizes are not known. The gmsh program meshes it when a "

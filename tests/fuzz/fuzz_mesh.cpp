@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     ricochet::gmsh::BuildOptions options;
     options.source = "mesh.msh";
-    options.allow_coincident_nodes = size % 2 == 0;
+    options.bodies_may_touch = size % 2 == 0;
     options.name_entities = size % 3 == 0;
     require_valid(ricochet::gmsh::build_mesh(ricochet::gmsh::read_msh(content, options.source), options));
   } catch (const ricochet::Error& error) {

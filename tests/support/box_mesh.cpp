@@ -179,7 +179,7 @@ Mesh make_checked_box_mesh(const BoxMesh& box) {
   Mesh mesh = make_box_mesh(box);
   gmsh::check_facets(mesh);
   gmsh::orient_cells(mesh);
-  gmsh::check_coincident_nodes(mesh);
+  gmsh::check_coincident_nodes(mesh, false);
   return mesh;
 }
 

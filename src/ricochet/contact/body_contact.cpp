@@ -38,17 +38,22 @@ struct AreaSum {
   double size = 0.0;
 };
 
-/// Degree of the rule on segments. On straight simplices products of two shape functions are polynomials of the place;
-/// elsewhere they are not, and the rule is exact to some digits (surface_segments_test.cpp says how many).
+/// Degree of the rule on segments. On straight simplices products of two shape functions are polynomials of the place.
+/// On quadrilaterals they are rational functions, and the rule is exact to nine digits (body_contact_test.cpp). On
+/// curved facets areas are those of the flat pieces anyway, to the order of the geometry.
 int segment_degree(const Body& body) {
-  const bool straight = std::all_of(body.mesh->facets.begin(), body.mesh->facets.end(),
-                                    [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
-  return 2 * body.space->degree + (straight && body.mesh->degree == 1 ? 0 : 8);
+  const bool simplices = std::all_of(body.mesh->facets.begin(), body.mesh->facets.end(),
+                                     [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
+  if (!simplices) return 2 * body.space->degree + 8;
+  return 2 * body.space->degree + (body.mesh->degree == 1 ? 0 : 2);
 }
 
-std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface& surface) {
+/// `only`: facets that count; null: all.
+std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface& surface,
+                                            const std::set<Index>* only = nullptr) {
   std::map<Index, AreaSum> result;
   for (const FacetSurface::Facet& facet : surface.facets()) {
+    if (only != nullptr && !only->contains(facet.number)) continue;
     const PlaceInBlocks place = locate_facet(*body.space, facet.number);
     const CellBlock& block = body.space->facets[place.block];
     for (int k = 0; k < block.nodes_per_cell; ++k) {
@@ -117,6 +122,9 @@ struct BodyPairing::Implementation {
   [[nodiscard]] Vector in_mesh(const Three& values) const { return values.head(body.mesh->dimension); }
 
   AnchorDirections find_directions(bool at_facets, PairFacing& found) const;
+  [[nodiscard]] std::map<Index, AreaSum> areas_of_faced_nodes() const;
+  [[nodiscard]] Three middle_direction(const Three& at, const Three& direction, double height,
+                                       const std::map<Index, AreaSum>& faced) const;
   void take_functions(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
   void take_nodes_as_points(const MultiplierSpace& space, const AnchorDirections& directions,
                             BodyContact& result) const;
@@ -127,12 +135,19 @@ struct BodyPairing::Implementation {
   void summarize(bool has_gaps, BodyContact& result) const;
 };
 
-/// n_i: minus the mean normal of the facing facets around the anchor.
+/// n_i: between minus the mean normal of the facing facets around the anchor, and the normal of the surface that the
+/// anchor faces along it. Normals of one side alone are off those of the contact by their angle at the edges of a
+/// contact of curved bodies; that is of first order in a/R, has the opposite sign on the other side, and would make
+/// friction between equal bodies that are only pressed.
 AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, PairFacing& found) const {
   AnchorDirections directions;
+  const std::map<Index, AreaSum> faced = areas_of_faced_nodes();
   if (at_facets) {
     for (std::size_t k = 0; k < own.facets().size(); ++k) {
-      if (faces(k)) directions[own.facets()[k].number] = -normal_of(k);
+      if (!faces(k)) continue;
+      const FacetSurface::Facet& facet = own.facets()[k];
+      directions[facet.number] =
+          middle_direction(0.5 * (facet.range[0] + facet.range[1]), -normal_of(k), facet.height, faced);
     }
     return directions;
   }
@@ -167,7 +182,39 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
                             "edge out of the group, or give them a contact of their own",
                             pair.group, fmt::join(found.edge, ", "), pair.opposite_group));
   }
+  for (auto& [node, direction] : directions) {
+    Three at = position(node);
+    at.head(body.mesh->dimension) += own.shift();
+    direction = middle_direction(at, direction, own.height_at(node), faced);
+  }
   return directions;
+}
+
+/// Around the nodes of the opposite facets that some own facet faces.
+std::map<Index, AreaSum> BodyPairing::Implementation::areas_of_faced_nodes() const {
+  std::set<Index> faced;
+  for (const FacetSegments& segments : direct) {
+    for (const SurfaceSegment& segment : segments.segments) faced.insert(segment.opposite);
+  }
+  return areas_around_nodes(body, opposite, &faced);
+}
+
+Three BodyPairing::Implementation::middle_direction(const Three& at, const Three& direction, double height,
+                                                    const std::map<Index, AreaSum>& faced) const {
+  const SegmentFinder::Hit hit = finder.find_point(at, direction, 0.5 * height);
+  if (hit.facet < 0) return direction;
+  Matrix values;
+  map.hats(hit.facet, hit.local, values);
+  const PlaceInBlocks place = locate_facet(*body.space, hit.facet);
+  const Index* const nodes = body.space->facets[place.block].cell(place.local);
+  Three normal = Three::Zero();
+  for (Index k = 0; k < values.rows(); ++k) {
+    const auto around = faced.find(nodes[k]);
+    if (around != faced.end()) normal += values(k, 0) * around->second.vector.normalized();
+  }
+  if (normal.dot(direction) <= 0.0) return direction;
+  const Three mean = (direction + normal.normalized()).normalized();
+  return (mean - direction).norm() > same_direction ? mean : direction;
 }
 
 void BodyPairing::Implementation::take_functions(const MultiplierSpace& space, const AnchorDirections& directions,

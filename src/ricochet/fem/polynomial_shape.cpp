@@ -44,10 +44,20 @@ void PolynomialShape::derivatives(const double* point, int axis, double* terms) 
   }
 }
 
+/// A product with few entries, written out: Eigen's is made for larger ones.
+void PolynomialShape::combine(const double* terms, double* result) const {
+  const auto count = static_cast<int>(coefficients_.rows());
+  const double* coefficient = coefficients_.data();
+  for (int i = 0; i < count; ++i) result[i] = 0.0;
+  for (int t = 0; t < terms_; ++t) {
+    for (int i = 0; i < count; ++i) result[i] += *coefficient++ * terms[t];
+  }
+}
+
 void PolynomialShape::values(const double* point, double* values) const {
   double terms[most_nodes];
   monomials(point, terms);
-  Eigen::Map<Vector>(values, node_count()).noalias() = coefficients_ * Eigen::Map<const Vector>(terms, terms_);
+  combine(terms, values);
 }
 
 void PolynomialShape::gradients(const double* point, double* values, double* gradients) const {
@@ -55,8 +65,7 @@ void PolynomialShape::gradients(const double* point, double* values, double* gra
   this->values(point, values);
   for (int axis = 0; axis < dimension_; ++axis) {
     derivatives(point, axis, terms);
-    Eigen::Map<Vector>(gradients + axis * node_count(), node_count()).noalias() =
-        coefficients_ * Eigen::Map<const Vector>(terms, terms_);
+    combine(terms, gradients + axis * node_count());
   }
 }
 

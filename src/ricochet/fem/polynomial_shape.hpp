@@ -19,6 +19,7 @@ class PolynomialShape {
   void gradients(const double* point, double* values, double* gradients) const;
 
  private:
+  void combine(const double* terms, double* result) const;
   void monomials(const double* point, double* terms) const;
   void derivatives(const double* point, int axis, double* terms) const;
 

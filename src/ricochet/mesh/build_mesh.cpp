@@ -206,7 +206,7 @@ Mesh build_mesh(RawMesh raw, const BuildOptions& options) {
   keep_used_nodes(raw, options.scale, mesh);
   orient_cells(mesh);
   warn_of_overlaps(mesh);
-  if (!options.allow_coincident_nodes) check_coincident_nodes(mesh);
+  check_coincident_nodes(mesh, options.bodies_may_touch);
   return mesh;
 }
 

@@ -14,7 +14,7 @@ namespace ricochet::gmsh {
 struct BuildOptions {
   std::string source;  ///< the file, for messages
   double scale = 1.0;
-  bool allow_coincident_nodes = false;
+  bool bodies_may_touch = false;
   /// Without any physical group, make the group "body" of all cells, a group "volume N" (in two dimensions "surface N")
   /// of the cells on each entity of the geometry, where there are several, and a group "surface N" ("curve N") of the
   /// facets on each: a CAD file cannot name its parts, and many a mesh has no names.
@@ -71,7 +71,7 @@ void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh);
 /// none of those turned round may overlap a neighbour: such a mesh is folded.
 void orient_cells(Mesh& mesh);
 
-/// No two nodes may be at the same place.
-void check_coincident_nodes(const Mesh& mesh);
+/// No two nodes may be at the same place, or none of one body.
+void check_coincident_nodes(const Mesh& mesh, bool bodies_may_touch);
 
 }  // namespace ricochet::gmsh

@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
@@ -252,27 +254,56 @@ class NodeGrid {
   std::vector<Index> next_;
 };
 
+/// Per node the least node of all that hang together with it by cells.
+std::vector<Index> bodies_of_nodes(const Mesh& mesh) {
+  std::vector<Index> parent(static_cast<std::size_t>(mesh.node_count()));
+  std::iota(parent.begin(), parent.end(), Index{0});
+  const auto root = [&](Index node) {
+    while (parent[static_cast<std::size_t>(node)] != node) {
+      Index& up = parent[static_cast<std::size_t>(node)];
+      up = parent[static_cast<std::size_t>(up)];
+      node = up;
+    }
+    return node;
+  };
+  for (const CellBlock& block : mesh.cells) {
+    for (Index cell = 0; cell < block.size(); ++cell) {
+      for (int k = 1; k < block.nodes_per_cell; ++k) {
+        const Index one = root(block.cell(cell)[0]), other = root(block.cell(cell)[k]);
+        parent[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
+      }
+    }
+  }
+  for (Index node = 0; node < mesh.node_count(); ++node) parent[static_cast<std::size_t>(node)] = root(node);
+  return parent;
+}
+
 }  // namespace
 
 void orient_cells(Mesh& mesh) {
   mesh.dimension == 2 ? orient_cells_of_dimension<2>(mesh) : orient_cells_of_dimension<3>(mesh);
 }
 
-void check_coincident_nodes(const Mesh& mesh) {
+void check_coincident_nodes(const Mesh& mesh, bool bodies_may_touch) {
   NodeGrid grid(mesh.nodes);
+  const std::vector<Index> body = bodies_may_touch ? bodies_of_nodes(mesh) : std::vector<Index>();
   Index count = 0;
   std::string pairs;
   for (Index node = 0; node < mesh.node_count(); ++node) {
     const Index other = grid.find_and_enter(node);
     if (other < 0) continue;
+    if (bodies_may_touch && body[static_cast<std::size_t>(node)] != body[static_cast<std::size_t>(other)]) continue;
     if (++count > 5) continue;
     pairs += fmt::format("{}{} and {}", count == 1 ? "" : ", ", mesh.node_tags[static_cast<std::size_t>(other)],
                          mesh.node_tags[static_cast<std::size_t>(node)]);
   }
   if (count == 0) return;
-  fail_mesh(mesh.source, fmt::format("{} at the same place: {}{}; cells that should be joined are not (in Gmsh: "
-                                     "Mesh > Remove duplicate nodes, or BooleanFragments on the geometry)",
-                                     counted(count, "pair of nodes", "pairs of nodes"), pairs, count > 5 ? ", …" : ""));
+  fail_mesh(
+      mesh.source,
+      fmt::format("{} at the same place: {}{}; cells that should be joined are not (in Gmsh: "
+                  "Mesh > Remove duplicate nodes, or BooleanFragments on the geometry){}",
+                  counted(count, "pair of nodes", "pairs of nodes"), pairs, count > 5 ? ", …" : "",
+                  bodies_may_touch ? "" : "; of bodies that touch a case says so by a [[contact]] with \"against\""));
 }
 
 }  // namespace ricochet::gmsh

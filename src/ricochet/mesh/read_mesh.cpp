@@ -76,7 +76,7 @@ bool is_meshed(const MeshFile& file) {
 Mesh read_mesh(const MeshFile& file) {
   const bool by_program = needs_gmsh_program(file.path);
   check_request(file, by_program);
-  gmsh::BuildOptions options{file.path, file.scale, file.allow_coincident_nodes, true};
+  gmsh::BuildOptions options{file.path, file.scale, file.bodies_may_touch, true};
   const bool converted = is_foreign_mesh(file.path);
   std::filesystem::path path = file.path;
   if (by_program || converted) {

@@ -14,9 +14,9 @@ struct MeshFile {
   std::optional<double> size;  ///< target element size, for .geo and CAD files only, in the file's units
   double scale = 1.0;          ///< multiplies coordinates
   int geometry_degree = 1;     ///< order asked of the gmsh program for .geo and CAD files
-  /// Two nodes at one place are nearly always a mesh whose parts should have been joined; bodies that only touch are
-  /// not.
-  bool allow_coincident_nodes = false;
+  /// Two nodes at one place are nearly always a mesh whose parts should have been joined. With this they are allowed
+  /// where they belong to bodies that share no node.
+  bool bodies_may_touch = false;
 };
 
 /// True for files that need the gmsh program (.geo, .step, .stp, .iges, .igs, .brep).

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "ricochet/base/error.hpp"
@@ -31,9 +32,13 @@ void require_mesh_files(const Case& input) {
 namespace {
 
 Mesh read_part(const Case& input, const CaseMeshFile& file) {
-  if (file.part.empty()) return read_mesh(file.file);
+  const bool bodies_touch = std::any_of(input.contacts.begin(), input.contacts.end(),
+                                        [](const ContactSection& contact) { return !contact.against.empty(); });
+  MeshFile wanted = file.file;
+  wanted.bodies_may_touch = bodies_touch;
+  if (file.part.empty()) return read_mesh(wanted);
   try {
-    return read_mesh(file.file);
+    return read_mesh(wanted);
   } catch (const Error& problem) {
     throw Error(problem.kind(), fmt::format("{}: part \"{}\": {}", input.where(file.section + ".file").text(),
                                             file.part, problem.what()));

@@ -38,8 +38,8 @@ inline Mesh read_test_mesh(const std::string& name) {
 }
 
 /// As read_mesh, but from a string.
-inline Mesh mesh_of(const std::string& content, double scale = 1.0, bool allow_coincident_nodes = false) {
-  gmsh::BuildOptions options{"test.msh", scale, allow_coincident_nodes, false};
+inline Mesh mesh_of(const std::string& content, double scale = 1.0, bool bodies_may_touch = false) {
+  gmsh::BuildOptions options{"test.msh", scale, bodies_may_touch, false};
   return gmsh::build_mesh(gmsh::read_msh(content, "test.msh"), options);
 }
 
