@@ -52,6 +52,59 @@ class BarImpact:
         return self.force if self.begin < time < self.end else 0.0
 
 
+class TwoBars:
+    """Two free uniform bars of uniaxial elasticity, without strain at first, meet end on; each has an impedance z, the time T of a
+    wave there and back, and a velocity towards the other one (bar 2: away from it). The far end of bar 2 may be clamped.
+
+    In bar 1 v + p/z runs towards the contact unchanged and v - p/z away from it, in bar 2 v - p/z and v + p/z (p: pressure). A free
+    end turns one into the other after T, a clamped one with the opposite sign. With I1 and I2 arriving, equal velocities of the
+    faces give p = z1 z2 (I1 - I2)/(z1 + z2), and the bars part where that is not positive.
+    """
+
+    def __init__(self, z, transit, velocity, gap, end, clamped=False):
+        self.z, self.transit, self.velocity, self.clamped = z, transit, velocity, clamped
+        self.pieces = []  # (begin, end, pressure, velocities of the faces), all constant
+        breaks, time = [0.0], 0.0
+        while time < end:
+            arriving = [self.arriving(bar, time) for bar in (0, 1)]
+            closing = arriving[0] - arriving[1]
+            pressure = z[0] * z[1] / (z[0] + z[1]) * closing if gap <= 0.0 < closing else 0.0
+            faces = (arriving[0] - pressure / z[0], arriving[1] + pressure / z[1])
+            later = [b + t for b in breaks for t in transit if b + t > time + 1e-9 * transit[0]]
+            if gap > 0.0 and closing > 0.0:
+                later.append(time + gap / closing)
+            until = min(later, default=end)
+            gap -= (until - time) * (faces[0] - faces[1])
+            gap = 0.0 if gap < 1e-12 * abs(velocity[0] - velocity[1]) * transit[0] else gap
+            self.pieces.append((time, until, pressure, faces))
+            breaks.append(until)
+            time = until
+
+    def arriving(self, bar, time):
+        sent = time - self.transit[bar]
+        sign = -1.0 if bar == 1 and self.clamped else 1.0
+        if sent < -1e-9 * self.transit[bar]:
+            return self.velocity[bar]
+        _, _, pressure, faces = self.piece(sent + 1e-9 * self.transit[bar])
+        return sign * (faces[bar] + (pressure if bar == 1 else -pressure) / self.z[bar])
+
+    def piece(self, time):
+        return next(piece for piece in self.pieces if piece[0] <= time < piece[1])
+
+    def pressure(self, time):
+        return self.piece(time)[2]
+
+    def impulse(self, time):
+        return sum(p * (min(end, time) - begin) for begin, end, p, _ in self.pieces if begin < time)
+
+    def displacement(self, bar, time):
+        return sum(faces[bar] * (min(end, time) - begin) for begin, end, _, faces in self.pieces if begin < time)
+
+    def mean_velocity(self, bar, time):
+        mass = 0.5 * self.z[bar] * self.transit[bar]
+        return self.velocity[bar] + (self.impulse(time) if bar == 1 else -self.impulse(time)) / mass
+
+
 def place_of(case, quantity):
     """The column and the time of history.COLUMN(t=T), or of the first or the last row of it; else no column."""
     found = re.fullmatch(r"history\.(.+)(?:\(t=(.+)\)|\[(0|-1)\])", quantity)
@@ -90,6 +143,31 @@ def bar(case, quantity, area, axis):
         f"free.velocity_{letter}": lambda: impact.velocity(impact.length, time),
     }
     return moving[column]() if column in moving else None
+
+
+def sdnl111(case, quantity):
+    """The second bar is clamped at its far end; x runs from it to the first one, which flies at -1 m/s."""
+    material, gap, height, length = case["material"][0], 1.0e-5, 0.02, 1.0
+    young, poisson, density = (material[key] for key in ("young", "poisson", "density"))
+    wave_speed = math.sqrt(young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) / density)
+    impedance, transit, speed = density * wave_speed, 2.0 * length / wave_speed, -case["motion"][0]["velocity"][0]
+    bars = TwoBars((impedance, impedance), (transit, transit), (speed, 0.0), gap, case["time"]["end"], clamped=True)
+    contact = [piece for piece in bars.pieces if piece[2] > 0.0]
+    energy = 0.5 * density * length * height * speed**2
+    fixed = {
+        "first_time(history.contact.area > 0.01)": contact[0][0],
+        "last_time(history.contact.area > 0.01)": contact[-1][1],
+        "history.total_energy[-1]": energy,
+        "max(history.total_energy)": energy,
+    }
+    if quantity in fixed:
+        return fixed[quantity]
+    column, time = place_of(case, quantity)
+    return {
+        "struck.pressure": lambda: bars.pressure(time),
+        "struck.displacement_x": lambda: -bars.displacement(0, time),
+        "bar.velocity_average_x": lambda: -bars.mean_velocity(0, time),
+    }.get(column, lambda: None)()
 
 
 WEDGE_AREA = 4.0 * (1.0 + 0.6) / 2.0  # cgs-4/wedges.geo
@@ -229,6 +307,51 @@ def held(case, quantity):
         (re.fullmatch(r"(?:min|max)\(history\.(.+)\)", quantity) or [None, None])[1])
 
 
+def two_bars(case, quantity, names, transit, height=0.05):
+    """Bars of wave speed 1 whose faces have a probe face-NAME; all forces on the second bar."""
+    speed, (first, second) = 0.01, names
+    bars = TwoBars((3.0, 1.0), transit, (speed, 0.0), 0.05 * speed, case["time"]["end"])
+    contact = [piece for piece in bars.pieces if piece[2] > 0.0]
+    middle = re.fullmatch(r"mean\(history\.contact\.force_x, (.+), (.+)\)", quantity)
+    if middle:
+        begin, end = map(float, middle.groups())
+        return height * (bars.impulse(end) - bars.impulse(begin)) / (end - begin)
+    fixed = {
+        "first_time(history.contact.area > 0.025)": contact[0][0],
+        "last_time(history.contact.area > 0.025)": contact[-1][1],
+        "max(history.total_energy)": 0.5 * 3.0 * speed**2 * height,
+        "min(history.total_energy)": 0.5 * 3.0 * speed**2 * height,
+        "history.momentum_x[-1]": 3.0 * speed * height,
+    }
+    if quantity in fixed:
+        return fixed[quantity]
+    column, time = place_of(case, quantity)
+    time -= 1e-9
+    return {
+        f"face-{first}.pressure": lambda: bars.pressure(time),
+        f"face-{second}.pressure": lambda: bars.pressure(time),
+        f"face-{first}.displacement_x": lambda: bars.displacement(0, time),
+        f"face-{second}.displacement_x": lambda: bars.displacement(1, time),
+        f"{first}.velocity_average_x": lambda: bars.mean_velocity(0, time),
+        f"{second}.velocity_average_x": lambda: bars.mean_velocity(1, time),
+    }.get(column, lambda: None)()
+
+
+def cradle(case, quantity):
+    """Four rods of E = rho = c = L = 1 and height 0.05: contact k carries half of zV from k - 1 to k + 1, k = 1, 2, 3."""
+    momentum = 0.01 * 0.05
+    contacts = {"ab": 0, "bc": 1, "cd": 2}
+    found = re.fullmatch(r"(\w+)\(history\.(ab|bc|cd)\.(force_x|area)(?: > 0\.025)?(?:, .+)?\)", quantity)
+    if found:
+        begin = contacts[found[2]]
+        return {"integral": -momentum, "mean": -0.5 * momentum, "first_time": begin, "last_time": begin + 2.0}.get(found[1])
+    return {
+        "history.a.velocity_average_x[-1]": 0.0, "history.b.velocity_average_x[-1]": 0.0, "history.c.velocity_average_x[-1]": 0.0,
+        "history.d.velocity_average_x[-1]": 0.01, "history.momentum_x[-1]": momentum, "max(history.total_energy)": 0.5 * 0.01 * momentum,
+        "min(history.total_energy)": 0.5 * 0.01 * momentum,
+    }.get(quantity)
+
+
 HERTZ_MODULUS = 1.0 / (1.0 - 0.3**2)  # E = rho = R = 1
 
 
@@ -282,6 +405,7 @@ BENCHMARKS = {
     "abaqus-1-3-15/eighty.toml": lambda case, q: bar(case, q, 0.2, 0),
     "metal-bar/metal-bar.toml": lambda case, q: bar(case, q, COPPER_QUARTER, 2),
     "metal-bar/poisson.toml": lambda case, q: bar(case, q, COPPER_QUARTER, 2),
+    "sdnl111/sdnl111.toml": sdnl111,
     "cgs-4/cgs-4.toml": cgs_4,
     "cgs-4/threshold.toml": cgs_4,
     "cattaneo-mindlin/cattaneo-mindlin.toml": cattaneo_mindlin,
@@ -296,6 +420,9 @@ CASES = {
     "layer/layer.toml": layer,
     "incline/incline.toml": incline,
     "incline/held.toml": held,
+    "bars-pair/pair.toml": lambda case, q: two_bars(case, q, ("one", "two"), (2.0, 2.0)),
+    "bars-pair/hammer.toml": lambda case, q: two_bars(case, q, ("hammer", "pile"), (2.0, 8.0)),
+    "cradle/cradle.toml": cradle,
     "hertz/cylinder.toml": cylinder,
     "hertz/sphere.toml": sphere,
     "hertz/cylinder-impact.toml": cylinder_impact,
