@@ -223,6 +223,37 @@ def cattaneo_mindlin(case, quantity):
     }.get(column)
 
 
+def roller(case, quantity):
+    """Hertz' contact of a cylinder of radius 50 and a block; half of the load, and pressures at probes."""
+    load, radius = case["traction"][0]["parameters"]["P"], 50.0
+    modulus = 1.0 / sum((1.0 - m["poisson"] ** 2) / m["young"] for m in case["material"])
+    half_width = math.sqrt(4.0 * load * radius / (math.pi * modulus))
+    largest = 2.0 * load / (math.pi * half_width)
+    column, _ = place_of(case, quantity)
+    if column and column.endswith(".pressure"):
+        place = next(probe["at"][0] for probe in case["probe"] if probe["name"] == column.split(".")[0])
+        return largest * math.sqrt(1.0 - (place / half_width) ** 2)
+    return {"contact.force_y": load / 2.0, "contact.area": half_width}.get(column)
+
+
+def patch_test(case, quantity):
+    """Blocks with a height of 2 together, pressed by 0.1 on an area of 1."""
+    young, strain = case["material"][0]["young"], -case["support"][-1]["value"] / 2.0
+    axis = case["support"][0]["components"][0]
+    column, _ = place_of(case, quantity)
+    return {
+        f"contact.force_{axis}": young * strain,
+        "contact.area": 1.0,
+        "corner.pressure": young * strain,
+        "other.pressure": young * strain,
+        f"facing-up.displacement_minimum_{axis}": -strain,
+        f"facing-up.displacement_maximum_{axis}": -strain,
+        "blocks.von_mises_minimum": young * strain,
+        "blocks.von_mises_maximum": young * strain,
+        "total_energy": young * strain**2,
+    }.get(column)
+
+
 def greco(case, quantity):
     """Only the balance of the pressure on the top, 40 mm long."""
     return 0.04 * 50.0e6 if quantity == "history.contact_force_y[-1]" else None
@@ -410,6 +441,9 @@ BENCHMARKS = {
     "cgs-4/threshold.toml": cgs_4,
     "cattaneo-mindlin/cattaneo-mindlin.toml": cattaneo_mindlin,
     "greco-plate/greco-plate.toml": greco,
+    "nafems-roller/roller.toml": roller,
+    "patch-test/patch-test.toml": patch_test,
+    "patch-test/space.toml": patch_test,
 }
 
 CASES = {
