@@ -320,6 +320,32 @@ def layer(case, quantity, friction):
     }.get(column)
 
 
+def stack(case, quantity):
+    """Two plates with H/c = 1, impedances z1 and z2 and free backs; V of the upper one, width 0.5. What arrives at the faces is D; the
+    upper face moves at D1 - q/z1, the lower one at D2 + q/z2, with q = F p while that slides, else what makes them equal."""
+    z = [math.sqrt(m["density"] * m["young"] / 2.0) for m in case["material"]]
+    width, bound = 0.5, case["contact"][0]["friction"] * case["traction"][0]["parameters"]["p"]
+    relative = z[0] * z[1] / (z[0] + z[1])
+    arriving, phases = [case["part"]["upper"]["velocity"][0], 0.0], []
+    for _ in range(4):
+        needed = relative * (arriving[0] - arriving[1])
+        friction = needed if abs(needed) <= bound else math.copysign(bound, needed)
+        phases.append((friction, arriving[0] - friction / z[0], arriving[1] + friction / z[1]))
+        arriving = [arriving[0] - 2.0 * friction / z[0], arriving[1] + 2.0 * friction / z[1]]
+    column, time = place_of(case, quantity)
+    moved = [sum(min(max(time - 2.0 * k, 0.0), 2.0) * phase[face] for k, phase in enumerate(phases)) for face in (1, 2)]
+    energy = 0.5 * z[0] * width * case["part"]["upper"]["velocity"][0] ** 2
+    work = -width * bound * (moved[0] - moved[1])
+    return {
+        "contact.force_x": -width * phases[min(int(time / 2.0), 3)][0],
+        "upper.displacement_average_x": moved[0],
+        "lower.displacement_average_x": moved[1],
+        "friction_work": work,
+        "total_energy": energy + work,
+        "momentum_x": z[0] * width * case["part"]["upper"]["velocity"][0],
+    }.get(column)
+
+
 def incline(case, quantity, friction):
     mass = 20.0
     along, across = case["load"]["gravity"][0], -case["load"]["gravity"][1]
@@ -412,6 +438,48 @@ def sphere_impact(case, quantity):
     return HERTZ_MODULUS * approach**1.5 / 3.0
 
 
+class PointImpact:
+    """Hertz' impact of two balls (radius inf: a half-space of a body with the mass): the force 4/3 E* sqrt(R) d^(3/2) is a spring
+    between the masses. Half of m v^2 is its work at the largest compression, and contact lasts 2.943 compressions over the speed."""
+
+    def __init__(self, moduli, radii, masses, speed):
+        self.modulus = 1.0 / sum((1.0 - poisson**2) / young for young, poisson in moduli)
+        self.radius, mass = 1.0 / sum(1.0 / r for r in radii), masses[0] * masses[1] / sum(masses)
+        self.compression = (15.0 * mass * speed**2 / (16.0 * self.modulus * math.sqrt(self.radius))) ** 0.4
+        self.force = 4.0 / 3.0 * self.modulus * math.sqrt(self.radius) * self.compression**1.5
+        self.duration = 0.8 * math.sqrt(math.pi) * math.gamma(0.4) / math.gamma(0.9) * self.compression / speed
+        self.area = math.pi * self.radius * self.compression
+        self.impulse = 2.0 * masses[1] / sum(masses)  # over that of the first body
+
+
+def two_balls(case, quantity):
+    """The area is that of a quarter."""
+    material, radii = case["material"][0], [part["scale"] for part in case["part"].values()]
+    elastic = (material["young"], material["poisson"])
+    masses = [material["density"] * 4.0 / 3.0 * math.pi * radius**3 for radius in radii]
+    impact = PointImpact((elastic, elastic), radii, masses, -case["part"]["upper"]["velocity"][2])
+    return {
+        "max(history.contact.force_z)": impact.force,
+        "last_time(history.contact.force_z > 0.5)": impact.duration,
+        "max(history.contact.area)": impact.area / 4.0,
+        "integral(history.contact.force_z)": impact.impulse,
+    }.get(quantity)
+
+
+def ball_block(case, quantity):
+    """A cube of side 4 for a half-space; areas are those of a quarter."""
+    ball, block = case["material"]
+    radius, side = case["part"]["ball"]["scale"], 4.0 * case["part"]["block"]["scale"]
+    masses = [ball["density"] * 4.0 / 3.0 * math.pi * radius**3, block["density"] * side**3]
+    impact = PointImpact([(m["young"], m["poisson"]) for m in (ball, block)], (radius, math.inf), masses, -case["part"]["ball"]["velocity"][2])
+    return {
+        "max(history.contact.force_z)": impact.force,
+        "last_time(history.contact.force_z > 0.5)": impact.duration,
+        "max(history.contact.area)": impact.area / 4.0,
+        "integral(history.contact.force_z)": impact.impulse,
+    }.get(quantity)
+
+
 def cylinder_impact(case, quantity):
     """W(P) = P^2/(pi E*) (K/2 - 1/4 - ln(P)/2) is the energy at the largest force P; two halves."""
     if quantity != "max(history.contact_force_y)":
@@ -451,12 +519,16 @@ CASES = {
     "rod/quadrilaterals.toml": rod,
     "bar/impact.toml": bar_impact,
     "bar/bounce.toml": bar_bounce,
+    "stack/stack.toml": stack,
     "layer/layer.toml": layer,
     "incline/incline.toml": incline,
     "incline/held.toml": held,
     "bars-pair/pair.toml": lambda case, q: two_bars(case, q, ("one", "two"), (2.0, 2.0)),
     "bars-pair/hammer.toml": lambda case, q: two_bars(case, q, ("hammer", "pile"), (2.0, 8.0)),
     "cradle/cradle.toml": cradle,
+    "balls/balls.toml": two_balls,
+    "balls/unequal.toml": two_balls,
+    "ball-block/ball-block.toml": ball_block,
     "hertz/cylinder.toml": cylinder,
     "hertz/sphere.toml": sphere,
     "hertz/cylinder-impact.toml": cylinder_impact,

@@ -367,47 +367,43 @@ def point_impact(stiffness, mass, speed, steps=4000):
     return step * np.arange(len(forces)), np.array(forces)
 
 
+def impact_of_two(axes, history, moduli, radius, masses, color, label):
+    """Force and velocities of two bodies, a quarter of which is computed, beside Hertz; the first one comes with 1 m/s."""
+    force, velocity = axes
+    modulus = 1 / sum((1 - poisson**2) / young for young, poisson in moduli)
+    times, forces = point_impact(4 / 3 * modulus * radius**0.5, masses[0] * masses[1] / sum(masses), 1.0)
+    computed = 4 * history["contact.force_z"]
+    force.plot(1e6 * times, forces, label="Hertz" if color == 0 else None, **EXACT)
+    force.plot(1e6 * history["time"], computed, f"C{color}", linewidth=1.3, label=label[0])
+    for body, start, mass, sign in (("upper", 1.0, masses[0], -1), ("lower", 0.0, masses[1], 1)):
+        for time, values, style in ((times, forces, EXACT), (history["time"], computed, {"color": f"C{color}", "linewidth": 1.3})):
+            impulse = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time))])
+            line = {} if style is EXACT else {"linestyle": "-" if sign < 0 else "--", "label": label[1 if sign < 0 else 2]}
+            velocity.plot(1e6 * time, start + sign * impulse / mass, **style, **line)
+
+
 def balls():
-    figure, (force, velocity) = plt.subplots(1, 2, figsize=(11, 3.8))
-    modulus = 0.5 * 2.1e11 / (1 - 0.3**2)
-    density = 7800 * 4 / 3 * np.pi
-    for color, (scale, radius) in enumerate(((0.01, 0.01), (0.02, 0.02))):
-        history = run("balls/balls", f"balls-{radius}", f"part.lower.scale={scale}", "time.end=8e-5")
-        microseconds = 1e6 * history["time"]
-        masses = density * 0.01**3, density * radius**3
-        effective = 0.01 * radius / (0.01 + radius)
-        times, forces = point_impact(4 / 3 * modulus * effective**0.5, masses[0] * masses[1] / sum(masses), 1.0)
-        force.plot(1e6 * times, forces, label="Hertz" if color == 0 else None, **EXACT)
-        force.plot(microseconds, 4 * history["contact.force_z"], f"C{color}", linewidth=1.3, label=f"radii 10 and {1000 * radius:.0f} mm")
-        for body, line in (("upper", "-"), ("lower", "--")):
-            velocity.plot(microseconds, -history[f"{body}.velocity_average_z"], f"C{color}{line}", linewidth=1.3,
-                          label=f"{body}, radii 10 and {1000 * radius:.0f} mm")
-    for value in (0.0, 1.0, (1 - 8) / 9, 2 / 9):
-        velocity.axhline(value, color="0.75", linewidth=4, zorder=0)
-    force.set(xlabel="time, µs", title="contact force, N")
-    velocity.set(xlabel="time, µs", title="velocities downwards, m/s (grey: elastic impact)")
-    force.legend(loc="upper right")
-    velocity.legend(loc="center left", fontsize=8)
+    figure, axes = plt.subplots(1, 2, figsize=(11, 3.8))
+    steel, density = (2.1e11, 0.3), 7800 * 4 / 3 * np.pi
+    for color, (case, radius) in enumerate((("balls", 0.01), ("unequal", 0.02))):
+        impact_of_two(axes, run(f"balls/{case}", f"balls-{case}"), (steel, steel), 0.01 * radius / (0.01 + radius),
+                      (density * 0.01**3, density * radius**3), color,
+                      (f"radii 10 and {1000 * radius:.0f} mm", f"the striking ball, 10 mm ({case})", f"the struck ball, {1000 * radius:.0f} mm ({case})"))
+    axes[0].set(xlabel="time, µs", title="contact force, N")
+    axes[1].set(xlabel="time, µs", title="velocities of the centres of mass, m/s", ylim=(-0.9, 1.75))
+    axes[0].legend(loc="lower center")
+    axes[1].legend(loc="upper right", fontsize=8, ncol=2)
     save(figure, "cases/balls/balls.png")
 
 
 def ball_block():
-    history = run("ball-block/ball-block", "ball-block")
-    figure, (force, velocity) = plt.subplots(1, 2, figsize=(11, 3.8))
-    microseconds = 1e6 * history["time"]
-    masses = 7800 * 4 / 3 * np.pi * 0.01**3, 2700 * 0.04**3
-    modulus = 1 / ((1 - 0.3**2) / 2.1e11 + (1 - 0.33**2) / 7e10)
-    times, forces = point_impact(4 / 3 * modulus * 0.01**0.5, masses[0] * masses[1] / sum(masses), 1.0)
-    force.plot(1e6 * times, forces, label="Hertz", **EXACT)
-    force.plot(microseconds, 4 * history["contact.force_z"], linewidth=1.3, label="computed")
-    impulse = np.concatenate([[0.0], np.cumsum(0.5 * (forces[1:] + forces[:-1]) * np.diff(times))])
-    for body, start, mass, sign in (("ball", 1.0, masses[0], -1), ("block", 0.0, masses[1], 1)):
-        velocity.plot(1e6 * times, start + sign * impulse / mass, label="Hertz" if sign > 0 else None, **EXACT)
-        velocity.plot(microseconds, -history[f"{body}.velocity_average_z"], linewidth=1.3, label=body)
-    force.set(xlabel="time, µs", title="contact force, N")
-    velocity.set(xlabel="time, µs", title="velocities downwards, m/s")
-    force.legend(loc="upper right")
-    velocity.legend(loc="lower left")
+    figure, axes = plt.subplots(1, 2, figsize=(11, 3.8))
+    impact_of_two(axes, run("ball-block/ball-block", "ball-block"), ((2.1e11, 0.3), (7e10, 0.33)), 0.01,
+                  (7800 * 4 / 3 * np.pi * 0.01**3, 2700 * 0.04**3), 0, ("computed", "ball", "block"))
+    axes[0].set(xlabel="time, µs", title="contact force, N")
+    axes[1].set(xlabel="time, µs", title="velocities of the centres of mass, m/s")
+    axes[0].legend(loc="lower center")
+    axes[1].legend(loc="upper right")
     save(figure, "cases/ball-block/ball-block.png")
 
 
@@ -422,9 +418,9 @@ def stack():
     for body in ("upper", "lower"):
         face = np.diff(history[f"{body}.displacement_average_x"]) / np.diff(history["time"])
         velocity.plot(middle, face / 0.01, linewidth=1, label=f"face of the {body} plate")
-    friction.plot(history["time"], history["contact.force_x"] / 0.5 / 0.01, linewidth=1, label="computed")
+    friction.plot(history["time"], -history["contact.force_x"] / 0.5 / 0.01, linewidth=1, label="computed")
     velocity.set(xlabel="time", title="velocities of the faces / V", ylim=(-0.1, 1.1))
-    friction.set(xlabel="time", title="friction traction on the lower plate / (z V)", ylim=(-0.4, 0.6))
+    friction.set(xlabel="time", title="friction traction on the lower plate / (ρ c V)", ylim=(-0.4, 0.6))
     velocity.legend(loc="upper right")
     friction.legend(loc="upper right")
     save(figure, "cases/stack/stack.png")
