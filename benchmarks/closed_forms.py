@@ -223,6 +223,41 @@ def cattaneo_mindlin(case, quantity):
     }.get(column)
 
 
+def cattaneo_mindlin_pair(case, quantity):
+    """Two equal cylinders of radius 1."""
+    material = case["material"][0]
+    modulus, radius = 0.5 * material["young"] / (1.0 - material["poisson"] ** 2), 0.5
+    friction = case["contact"][0]["friction"]
+    load = next(e["value"] for e in case["expect"] if e["quantity"] == "history.contact.force_y[-1]")
+    push = case["traction"][0]["parameters"]["Q"]
+    half_width = math.sqrt(4.0 * load * radius / (math.pi * modulus))
+    column, time = place_of(case, quantity)
+    force = push * min(time / 200.0, 1.0)
+    stick = half_width * math.sqrt(1.0 - force / (friction * load))
+    return {
+        "contact.area": 2.0 * half_width,
+        "middle.pressure": 2.0 * load / (math.pi * half_width),
+        "sticking": 2.0 * stick / (2.0 * 0.03 / 48),  # half-disc.geo
+        # divided by the normal reaction, 1 in these units
+        "middle.reaction_tangential_x": friction * (1.0 - stick / half_width),
+        "middle.reaction_normal": 1.0,
+        "contact.force_x": -force,
+    }.get(column)
+
+
+def hertz_cylinders(case, quantity):
+    """A load per length, and pressures at probes of the two bodies."""
+    load = case["traction"][0]["parameters"]["P"]
+    modulus = 1.0 / sum((1.0 - m["poisson"] ** 2) / m["young"] for m in case["material"])
+    radius = 1.0 / sum(1.0 / part["scale"] for part in case["part"].values())
+    half_width = math.sqrt(4.0 * load * radius / (math.pi * modulus))
+    column, _ = place_of(case, quantity)
+    if column and column.endswith(".pressure"):
+        place = next(probe["at"][0] for probe in case["probe"] if probe["name"] == column.split(".")[0])
+        return 2.0 * load / (math.pi * half_width) * math.sqrt(1.0 - (place / half_width) ** 2)
+    return {"contact.force_y": load, "contact.area": 2.0 * half_width}.get(column)
+
+
 def roller(case, quantity):
     """Hertz' contact of a cylinder of radius 50 and a block; half of the load, and pressures at probes."""
     load, radius = case["traction"][0]["parameters"]["P"], 50.0
@@ -509,6 +544,8 @@ BENCHMARKS = {
     "cgs-4/threshold.toml": cgs_4,
     "cattaneo-mindlin/cattaneo-mindlin.toml": cattaneo_mindlin,
     "greco-plate/greco-plate.toml": greco,
+    "cattaneo-mindlin-pair/cattaneo-mindlin-pair.toml": cattaneo_mindlin_pair,
+    "hertz-cylinders/hertz-cylinders.toml": hertz_cylinders,
     "nafems-roller/roller.toml": roller,
     "patch-test/patch-test.toml": patch_test,
     "patch-test/space.toml": patch_test,
@@ -541,6 +578,9 @@ NOT_CLOSED = {
     } | {"history.next.reaction_normal[-1]": "published: code_aster"},
     "cattaneo-mindlin/cattaneo-mindlin.toml": {
         "history.contact_force_y[-1]": "measured: the load that the closed form takes"
+    },
+    "cattaneo-mindlin-pair/cattaneo-mindlin-pair.toml": {
+        "history.contact.force_y[-1]": "measured: the load that the closed form takes"
     },
 }
 
