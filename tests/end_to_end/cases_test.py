@@ -18,19 +18,39 @@ def vector_columns(name, dimension):
     return [f"{name}_{axis}" for axis in AXES[:dimension]]
 
 
-def documented_columns(dimension, probes):
+def boundary_groups(case):
+    """The groups of facets that a case names, where it says what happens there."""
+    entries = [entry[key] for section in ("contact", "support", "traction") for entry in case.get(section, [])
+               for key in ("group", "against") if key in entry]
+    return {name for entry in entries for name in ([entry] if isinstance(entry, str) else entry)}
+
+
+def probe_columns(probe, dimension, on_contact_boundary, of_facets):
+    """The columns of an entry [[probe]]: of a contact, of a group, or of a point."""
+    name = probe["name"]
+    if "contact" in probe:
+        return vector_columns(name + ".force", dimension) + vector_columns(name + ".centre", dimension) + [name + ".area"]
+    if "group" in probe:
+        columns = [column for quantity in ("displacement", "velocity") for kind in ("average", "minimum", "maximum")
+                   for column in vector_columns(f"{name}.{quantity}_{kind}", dimension)]
+        return columns + ([] if of_facets else [f"{name}.von_mises_{kind}" for kind in ("average", "minimum", "maximum")])
+    columns = vector_columns(name + ".displacement", dimension) + vector_columns(name + ".velocity", dimension)
+    if on_contact_boundary:
+        columns += [f"{name}.{column}" for column in ("gap", "pressure", "reaction_normal")]
+        columns += vector_columns(name + ".reaction_tangential", dimension)
+    return columns
+
+
+def documented_columns(dimension, case, points):
     columns = ["step", "time", "kinetic_energy", "elastic_energy", "load_potential", "algorithmic_energy",
                "total_energy", "load_work", "contact_work", "friction_work", "support_work", "obstacle_work",
                "damping_work", "numerical_dissipation", "energy_residual"]
     columns += vector_columns("contact_force", dimension) + vector_columns("momentum", dimension)
     columns += ["angular_momentum_z"] if dimension == 2 else vector_columns("angular_momentum", 3)
     columns += ["max_rotation", "active_contacts", "sticking", "slipping", "max_penetration", "iterations"]
-    for probe in probes:
-        columns += vector_columns(probe["name"] + ".displacement", dimension)
-        columns += vector_columns(probe["name"] + ".velocity", dimension)
-        if probe["in_contact_boundary"]:
-            columns += [f"{probe['name']}.{name}" for name in ("gap", "pressure", "reaction_normal")]
-            columns += vector_columns(probe["name"] + ".reaction_tangential", dimension)
+    facets, on_contact_boundary = boundary_groups(case), {point["name"] for point in points if point["in_contact_boundary"]}
+    for probe in case.get("probe", []):
+        columns += probe_columns(probe, dimension, probe["name"] in on_contact_boundary, probe.get("group") in facets)
     return columns
 
 
@@ -64,9 +84,10 @@ class CaseTest(TestCase):
 
     def check_columns(self, history, summary):
         with open(CASE, "rb") as file:
-            asked_for = [probe["name"] for probe in tomllib.load(file).get("probe", [])]
-        self.assertEqual([probe["name"] for probe in summary["probes"]], asked_for)
-        self.assertEqual(history.names, documented_columns(summary["dimension"], summary["probes"]))
+            case = tomllib.load(file)
+        points = [probe["name"] for probe in case.get("probe", []) if "at" in probe]
+        self.assertEqual([probe["name"] for probe in summary["probes"]], points)
+        self.assertEqual(history.names, documented_columns(summary["dimension"], case, summary["probes"]))
 
     def check_rows(self, history, summary):
         with open(CASE, "rb") as file:

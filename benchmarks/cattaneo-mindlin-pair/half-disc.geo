@@ -1,0 +1,31 @@
+// The lower half of a disc of radius 1 that touches the line y = 0 at the origin; second-order triangles, of equal size where
+// it touches.
+// gmsh half-disc.geo -2 -format msh41 -o half-disc.msh
+DefineConstant[ cells = 48 ];
+radius = 1;
+reach = 0.03; // half the contact boundary, as an angle; contact reaches 0.02
+Point(1) = {-radius, radius, 0};
+Point(2) = {0, radius, 0};
+Point(3) = {radius, radius, 0};
+Point(4) = {-radius * Sin(reach), radius * (1 - Cos(reach)), 0};
+Point(5) = {radius * Sin(reach), radius * (1 - Cos(reach)), 0};
+Circle(1) = {1, 2, 4};
+Circle(2) = {4, 2, 5};
+Circle(3) = {5, 2, 3};
+Line(4) = {3, 2};
+Line(5) = {2, 1};
+Curve Loop(1) = {1, 2, 3, 4, 5};
+Plane Surface(1) = {1};
+Transfinite Curve {2} = cells + 1;
+fine = 2 * reach * radius / cells;
+Mesh.MeshSizeMin = 0;
+Mesh.MeshSizeMax = 1;
+Mesh.MeshSizeExtendFromBoundary = 0;
+Mesh.MeshSizeFromPoints = 0;
+Mesh.ElementOrder = 2;
+Field[1] = MathEval;
+Field[1].F = Sprintf("Min(0.15, %g + 0.25 * Sqrt(y * y + Max(0, Fabs(x) - %g)^2))", fine, reach);
+Background Field = 1;
+Physical Surface("body") = {1};
+Physical Curve("lower") = {2};
+Physical Curve("top") = {4, 5};
