@@ -14,6 +14,18 @@ constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
 /// Points that are farther outside of a facet than this, in reference coordinates, do not belong to it.
 constexpr double far_outside = 3.0;
 
+/// at −= A⁻¹ b with one or two equations.
+template <class SmallMatrix>
+void take_off_solution(const SmallMatrix& a, const SpaceVector& b, SpaceVector& at) {
+  if (b.size() == 1) {
+    at[0] -= b[0] / a(0, 0);
+    return;
+  }
+  const double determinant = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
+  at[0] -= (a(1, 1) * b[0] - a(0, 1) * b[1]) / determinant;
+  at[1] -= (a(0, 0) * b[1] - a(1, 0) * b[0]) / determinant;
+}
+
 void tabulate(const PolynomialShape& shape, const Points& local, Matrix& values) {
   values.resize(shape.node_count(), local.cols());
   for (Index q = 0; q < local.cols(); ++q) shape.values(local.col(q).data(), values.col(q).data());
@@ -32,15 +44,20 @@ void FacetMap::map_at(const PlaceInBlocks& place, const double* local, SmallMatr
                       SpaceVector& position) const {
   const PolynomialShape& shape = shapes_[place.block].geometry;
   const Index* const nodes = body_.mesh->facets[place.block].cell(place.local);
+  const Index count = shape.node_count(), d = body_.mesh->dimension, axes = d - 1;
   double values[PolynomialShape::most_nodes], gradients[2 * PolynomialShape::most_nodes];
   shape.gradients(local, values, gradients);
-  position.setZero();
-  jacobian.setZero();
-  for (Index k = 0; k < shape.node_count(); ++k) {
-    const auto at = body_.mesh->nodes.col(nodes[k]);
-    position += values[k] * at;
-    for (Index axis = 0; axis < jacobian.cols(); ++axis)
-      jacobian.col(axis) += gradients[axis * shape.node_count() + k] * at;
+  double sums[3][3] = {};  // x, then its derivatives
+  for (Index k = 0; k < count; ++k) {
+    const double* const at = body_.mesh->nodes.data() + nodes[k] * d;
+    for (Index i = 0; i < d; ++i) {
+      sums[0][i] += values[k] * at[i];
+      for (Index axis = 0; axis < axes; ++axis) sums[axis + 1][i] += gradients[axis * count + k] * at[i];
+    }
+  }
+  for (Index i = 0; i < d; ++i) {
+    position[i] = sums[0][i];
+    for (Index axis = 0; axis < axes; ++axis) jacobian(i, axis) = sums[axis + 1][i];
   }
 }
 
@@ -75,7 +92,7 @@ bool FacetMap::invert(Index facet, const Points& axes, const Points& plane, Poin
       is_there = is_there || residual.lpNorm<Eigen::Infinity>() <=
                                  rounding * (seen.lpNorm<Eigen::Infinity>() + position.lpNorm<Eigen::Infinity>());
       if (was_there) break;  // one more step has taken what digits there are
-      at -= seen.inverse() * residual;
+      take_off_solution(seen, residual, at);
       if (!(at.lpNorm<Eigen::Infinity>() <= far_outside)) return false;
     }
     if (!is_there) return false;
