@@ -42,10 +42,15 @@ struct ContactPair {
   // Against another group:
   std::string opposite_group = {};
   std::vector<Index> opposite_facets = {};
-  Vector pair_at = {};       ///< displacement of the group's body at which facets are paired; empty: none
-  bool closed_gaps = false;  ///< initial gaps below zero are taken for zero
+  Vector pair_at = {};           ///< displacement of the group's body at which facets are paired; empty: none
+  bool closed_gaps = false;      ///< initial gaps below zero are taken for zero
+  bool exchanged = false;        ///< the case names `opposite_group` first: reports give forces on its body
+  std::string side_reason = {};  ///< why `group` carries the multipliers; empty: the case says which one does
 
   [[nodiscard]] bool between_bodies() const { return obstacle == nullptr; }
+  /// The two groups in the order of the case.
+  [[nodiscard]] const std::string& first_group() const { return exchanged ? opposite_group : group; }
+  [[nodiscard]] const std::string& second_group() const { return exchanged ? group : opposite_group; }
   /// For messages: obstacle "floor", group "plate.top".
   [[nodiscard]] std::string opponent() const {
     return between_bodies() ? "group \"" + opposite_group + '"' : "obstacle \"" + obstacle_name + '"';
