@@ -144,10 +144,14 @@ void print_bodies_contact(const Case& input, const Model& model, std::size_t pai
   if (facing.points > 0 && facing.smallest_gap > 0.0 && flies_freely(input) &&
       is_free_along_normals(input, model, number)) {
     double meets = std::numeric_limits<double>::infinity();
-    const Vector velocity = contact.rows->gap_operator * model.initial.velocity;
     for (Index point = 0; point < contact.size(); ++point) {
       if (contact.pair[static_cast<std::size_t>(point)] != number) continue;
-      meets = std::min(meets, time_of_contact(contact.initial_gap[point], velocity[point], 0.0));
+      SpaceVector velocity = SpaceVector::Zero(contact.dimension);
+      contact.visit_nodes(point, [&](Index node, double weight) {
+        velocity += weight * model.initial.velocity.segment(node * contact.dimension, contact.dimension);
+      });
+      meets =
+          std::min(meets, time_of_contact(contact.initial_gap[point], contact.rows->normal(point).dot(velocity), 0.0));
     }
     text += "; the bodies" + meeting_text(meets, input, "would meet", "do not come nearer");
   }
