@@ -160,7 +160,8 @@ void print_bodies_contact(const Case& input, const Model& model, std::size_t pai
 }
 
 void print_contact(const Case& input, const Model& model, std::size_t pair) {
-  if (model.contact_pairs[pair].between_bodies()) return print_bodies_contact(input, model, pair);
+  if (model.contact_pairs[pair].has_two_sides()) return print_bodies_contact(input, model, pair);
+  if (model.contact_pairs[pair].tied) return;
   const ContactBoundary& contact = model.problem.contact;
   const int d = model.mesh.dimension;
   const ContactSection& section = input.contacts[pair];
@@ -226,7 +227,7 @@ void print_cell_sizes(const Mesh& mesh) {
 
 void print_facings(const Case& input, const Model& model) {
   for (std::size_t pair = 0; pair < input.contacts.size(); ++pair) {
-    if (model.contact_pairs[pair].between_bodies()) print_bodies_contact(input, model, pair);
+    if (model.contact_pairs[pair].has_two_sides()) print_bodies_contact(input, model, pair);
   }
 }
 

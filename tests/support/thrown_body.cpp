@@ -1,12 +1,16 @@
 #include "support/thrown_body.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "ricochet/case/names.hpp"
 #include "support/case_run.hpp"
 #include "support/paths.hpp"
+#include "support/two_bodies.hpp"
 
 namespace ricochet::test_support {
 
@@ -17,7 +21,36 @@ std::vector<ThrownBody> thrown_bodies() {
           {"disc of quadrilaterals", 2, 1, mesh_geometry("quads", disc + " Recombine Surface{1};", 0.3, 1)},
           {"curved disc of degree 2", 2, 2, mesh_geometry("disc2", disc, 0.5, 2)},
           {"ball of tetrahedra", 3, 1, mesh_geometry("ball", ball, 0.45, 1)},
-          {"curved ball of degree 2", 3, 2, mesh_geometry("ball2", ball, 0.7, 2)}};
+          {"curved ball of degree 2", 3, 2, mesh_geometry("ball2", ball, 0.7, 2)},
+          thrown_pair(2),
+          thrown_pair(3)};
+}
+
+ThrownBody thrown_pair(int dimension) {
+  const int up = dimension - 1;
+  const bool flat = dimension == 2;
+  StackedBoxes stack{flat ? CellShape::triangle : CellShape::hexahedron,
+                     flat ? CellShape::quadrilateral : CellShape::tetrahedron};
+  stack.lower_counts = flat ? std::vector{5, 4} : std::vector{3, 3, 4};
+  stack.upper_counts = flat ? std::vector{7, 4} : std::vector{3, 4, 4};
+  stack.lower_map = [up](const Vector& x) {
+    Vector y = x;
+    y[up] = 0.8 * x[up] - x[up] * (0.2 * std::pow(x[0] - 0.6, 2) + 0.05 * x[0]);
+    return y;
+  };
+  stack.upper_map = [up](const Vector& x) {
+    Vector y = x;
+    y[0] += 0.13;
+    y[up] = 0.82 + 0.7 * x[up] + (1.0 - x[up]) * 0.15 * std::pow(x[0] - 0.4, 2);
+    return y;
+  };
+  Mesh mesh = make_stack(stack);
+  for (Group& group : mesh.groups) {
+    if (group.name == (flat ? "upper.y0" : "upper.z0")) group.name = "contact";
+    if (group.name == (flat ? "lower.y1" : "lower.z1")) group.name = "opposite";
+  }
+  return {flat ? "two blocks" : "two bricks", dimension, 1, write_mesh(fmt::format("pair{}.msh", dimension), mesh),
+          "opposite"};
 }
 
 ThrownBody one_sided_block() {
@@ -43,12 +76,15 @@ std::string step_of(const std::string& time) {
 std::string thrown_case(const ThrownBody& body, const std::string& mass, const std::string& time,
                         const std::string& contact, const std::string& obstacle) {
   const bool flat = body.dimension == 2;
+  const std::string pair = "against = \"" + body.against + "\"\n[[motion]]\ngroup = \"lower.body\"\nvelocity = " +
+                           (flat ? "[0.1, 0.8]\nspin = 0.2\n" : "[0.1, -0.1, 0.8]\nspin = [0.1, 0.2, 0.1]\n");
   return "[mesh]\nfile = \"" + body.mesh + "\"\ndegree = " + std::to_string(body.degree) +
-         "\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nlambda = 30.0\nmu = 20.0\n"
+         "\n[[material]]\ngroup = \"all\"\ndensity = 1.0\nlambda = 30.0\nmu = 20.0\n"
          "[obstacle.plane]\ntype = \"plane\"\n" +
          (flat ? "point = [0.0, 0.0]\nnormal = [0.1, 1.0]\n"
                : "point = [0.0, 0.0, 0.0]\nnormal = [0.1, -0.05, 1.0]\n") +
-         obstacle + "[[contact]]\ngroup = \"contact\"\nobstacle = \"plane\"\n" + contact + "[load]\n" +
+         obstacle + "[[contact]]\ngroup = \"contact\"\n" +
+         (body.against.empty() ? "obstacle = \"plane\"\n" + contact : contact + pair) + "[load]\n" +
          (flat ? "gravity = [0.3, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*y\", \"-0.5+0.2*x\"]\n"
                : "gravity = [0.3, 0.1, -1.0]\n[initial]\nvelocity = [\"0.1-0.2*z\", \"0.1\", \"-0.5+0.2*x\"]\n") +
          "[mass]\ntype = \"" + mass + "\"\n[time]\n" + time + step_of(time) + "end = 1.5\n";

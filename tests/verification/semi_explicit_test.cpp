@@ -207,10 +207,11 @@ TEST(SemiExplicit, ConvergesToNewmarkWithTheSameMass) {
 }
 
 TEST(SemiExplicit, MovesAsNewmarkWithTheEquivalentMass) {
-  // The two masses differ by O(h²), as both do from the consistent one. (The balls have too few free nodes to compare.)
+  // The two masses differ by O(h²), as both do from the consistent one. (The balls and the blocks have too few free
+  // nodes to compare.)
   for (const char* contact : {"", "friction = 0.4\n"}) {
     for (const ThrownBody& body : thrown_bodies()) {
-      if (body.dimension == 3) continue;
+      if (body.dimension == 3 || !body.against.empty()) continue;
       CaseRun left(thrown_case(body, "equivalent-lumped", semi_explicit, contact), {"time.step=0.005"});
       CaseRun right(thrown_case(body, "equivalent", trapezoidal, contact), {"time.step=0.005"});
       const Comparison found = compare(left, right);

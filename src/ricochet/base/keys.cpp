@@ -36,6 +36,8 @@ std::string wanted(const Key& key) {
       return with_range("number", key.range) + (key.choices.empty() ? "" : ", or " + one_of(key.choices, true));
     case KeyType::integer:
       return key.choices.empty() ? with_range("integer", key.range) : one_of(key.choices, false);
+    case KeyType::flag:
+      return "true or false";
     case KeyType::vector:
       return "a vector of 2 or 3 numbers";
     case KeyType::axial:

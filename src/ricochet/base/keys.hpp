@@ -14,6 +14,7 @@ enum class KeyType {
   choice,      ///< one of `choices`
   number,      ///< finite, within `range`, or one of `choices`
   integer,     ///< within `range`, or one of `choices`
+  flag,        ///< true or false
   vector,      ///< 2 or 3 numbers
   axial,       ///< of a rotation: a number in two dimensions, 3 numbers in three
   formula,     ///< a number or an expression in `variables`

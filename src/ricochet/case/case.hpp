@@ -69,7 +69,8 @@ struct ContactSection {
   std::string multipliers = "nodal";
   std::string multipliers_on = "automatic";  ///< between bodies: "automatic", "group" or "against"
   bool closed_gaps = false;                  ///< initial_gap = "closed"
-  std::vector<double> pair_at;               ///< empty: where bodies start
+  bool tied = false;
+  std::vector<double> pair_at;  ///< empty: where bodies start
   bool allow_unstable_multipliers = false;
 };
 

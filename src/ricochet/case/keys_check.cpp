@@ -20,6 +20,11 @@ TomlNode default_node(const Key& key, const SourceLocation& location) {
   node.location = node.key_location = location;
   node.is_default = true;
   if (key.type == KeyType::table) return node;
+  if (key.type == KeyType::flag) {
+    node.kind = Kind::boolean;
+    node.boolean = *key.standard == "true";
+    return node;
+  }
   const std::string& value = *key.standard;
   const bool is_number = key.type == KeyType::number || key.type == KeyType::formula;
   node.kind = key.type == KeyType::integer ? Kind::integer : is_number ? Kind::real : Kind::text;

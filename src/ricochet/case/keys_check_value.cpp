@@ -158,6 +158,9 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
       return check_number(key, value, problems);
     case KeyType::integer:
       return check_integer(key, value, problems);
+    case KeyType::flag:
+      if (value.kind != Kind::boolean) refuse_type(key, value, problems);
+      return;
     case KeyType::vector:
       return check_vector(key, value, false, problems);
     case KeyType::axial:

@@ -136,6 +136,11 @@ Section contact_section() {
            .unit = "length",
            .doc = "Between bodies, the displacement of the body of `group`, relative to the other one, at which facets "
                   "that face each other are found: where the bodies will meet. Absent: where they start."},
+          {.name = "tied",
+           .type = KeyType::flag,
+           .standard = "false",
+           .doc = "Between bodies: the surfaces are glued together for good, also where their meshes do not match. "
+                  "Friction and multipliers have no part in it."},
           {.name = "sliding",
            .type = KeyType::choice,
            .standard = "small",

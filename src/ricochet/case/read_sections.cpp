@@ -74,7 +74,13 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
   contact.multipliers_on = reader.text("multipliers_on");
   contact.closed_gaps = reader.text("initial_gap") == "closed";
   contact.pair_at = reader.vector("pair_at");
-  for (const char* const key : {"multipliers_on", "initial_gap", "pair_at", "sliding"}) {
+  contact.tied = reader.flag("tied");
+  for (const char* const key : {"friction", "friction_bound", "multipliers", "initial_gap", "pair_at"}) {
+    if (!contact.tied || !reader.is_given(key)) continue;
+    reader.add_problem(key,
+                       fmt::format("\"{}\" is of surfaces that may part or slide; these are tied: leave it out", key));
+  }
+  for (const char* const key : {"multipliers_on", "initial_gap", "pair_at", "sliding", "tied"}) {
     if (!reader.is_given(key) || reader.is_given("against")) continue;
     reader.add_problem(key, fmt::format("\"{}\" is of contact between bodies; give \"against\", or leave it out", key));
   }

@@ -55,6 +55,8 @@ Json type_schema(const Key& key) {
       return or_choices(number_schema("number", key.range), key);
     case KeyType::integer:
       return integer_schema(key);
+    case KeyType::flag:
+      return {{"type", "boolean"}};
     case KeyType::vector:
       return vector_schema({{"type", "number"}});
     case KeyType::axial: {
@@ -88,7 +90,7 @@ Json type_schema(const Key& key) {
 
 Json default_value(const Key& key) {
   const bool is_number = key.type == KeyType::number || key.type == KeyType::integer || key.type == KeyType::formula;
-  return is_number ? Json::parse(*key.standard) : Json(*key.standard);
+  return is_number || key.type == KeyType::flag ? Json::parse(*key.standard) : Json(*key.standard);
 }
 
 Json key_schema(const Key& key) {

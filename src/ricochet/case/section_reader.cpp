@@ -55,6 +55,11 @@ std::optional<long> SectionReader::optional_integer(const std::string& name) con
   return node != nullptr ? std::optional<long>(node->integer) : std::nullopt;
 }
 
+bool SectionReader::flag(const std::string& name) const {
+  const TomlNode* node = usable(name);
+  return node != nullptr && node->boolean;
+}
+
 std::vector<double> SectionReader::vector(const std::string& name) const {
   std::vector<double> values;
   if (const TomlNode* node = usable(name)) {

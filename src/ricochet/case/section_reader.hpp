@@ -36,6 +36,7 @@ class SectionReader final : public ParameterCheck {
   [[nodiscard]] std::optional<double> optional_number(const std::string& name) const;
   [[nodiscard]] long integer(const std::string& name) const;
   [[nodiscard]] std::optional<long> optional_integer(const std::string& name) const;
+  [[nodiscard]] bool flag(const std::string& name) const;
   [[nodiscard]] std::vector<double> vector(const std::string& name) const;
   /// One number in two dimensions, three in three; empty where it is absent.
   [[nodiscard]] std::vector<double> axial(const std::string& name) const;

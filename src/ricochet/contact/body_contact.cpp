@@ -29,6 +29,9 @@ constexpr double least_cover = 1e-8;
 /// Length of the mean of unit normals below which there is no direction.
 constexpr double folded = 0.5;
 
+/// Of the height of cells: surfaces that overlap by no more touch, and their coordinates have been rounded.
+constexpr double rounding_of_files = 1e-6;
+
 /// Of the area around each node: the sum of area vectors, and of their lengths.
 struct AreaSum {
   Three vector = Three::Zero();
@@ -315,6 +318,9 @@ void BodyPairing::Implementation::transfer_pressure(const MultiplierSpace& space
 /// Gaps and their rounding, and what of the group faces.
 void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) const {
   const double size = extent(body.space->nodes);
+  double height = std::numeric_limits<double>::infinity();
+  for (const FacetSurface::Facet& facet : own.facets()) height = std::min(height, facet.height);
+  const auto closes = [&](double gap) { return gap < 0.0 && (pair.closed_gaps || gap > -rounding_of_files * height); };
   PairFacing& facing = result.facing;
   facing.points = static_cast<Index>(result.multipliers.size());
   for (std::size_t i = 0; i < result.multipliers.size(); ++i) {
@@ -339,10 +345,12 @@ void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) 
       facing.gap_rounding = point.gap_rounding;
     }
     facing.largest_gap = std::max(facing.largest_gap, point.gap);
-    if (pair.closed_gaps) point.gap = std::max(point.gap, 0.0);
+    if (!closes(point.gap)) continue;
+    if (point.gap < -point.gap_rounding) ++facing.closed;
+    point.gap = 0.0;
   }
   for (BodyContact::Node& node : result.nodes) {
-    if (pair.closed_gaps && node.gap < 0.0) node.gap = 0.0;
+    if (closes(node.gap)) node.gap = 0.0;
   }
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
     facing.area += own.facets()[k].area;

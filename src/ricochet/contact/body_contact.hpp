@@ -35,6 +35,7 @@ struct PairFacing {
   double area = 0.0, covered = 0.0;  ///< of the group that carries the multipliers, and of its part that faces
   double smallest_gap = std::numeric_limits<double>::infinity(), largest_gap = -smallest_gap;  ///< of points
   Vector deepest;             ///< the place of the smallest
+  Index closed = 0;           ///< points whose gap was below zero and is taken for zero
   double gap_rounding = 0.0;  ///< of the smallest
   double sharpest = 1.0;      ///< the shortest mean of the facets' unit normals around a multiplier: 1 where they agree
   Vector edge;                ///< where that is

@@ -73,7 +73,8 @@ bool BoundaryNodes::is_held(Index node, const Obstacle* obstacle) const {
 }
 
 int BoundaryNodes::first_pair(Index node, const Obstacle* obstacle) const {
-  return nodes_.at({node, obstacle}).first_pair;
+  const auto known = nodes_.find({node, obstacle});
+  return known != nodes_.end() ? known->second.first_pair : -1;
 }
 
 /// Conditions at a node may depend on one another: the step has one motion then, too. But where two surfaces are one

@@ -20,7 +20,7 @@ class BoundaryNodes {
   /// Whether supports hold the node along the obstacle's normal.
   [[nodiscard]] bool is_held(Index node, const Obstacle* obstacle) const;
   [[nodiscard]] Index held_count() const { return held_count_; }
-  /// The first pair of this obstacle that names the node.
+  /// The first pair of this obstacle that names the node; −1: none does.
   [[nodiscard]] int first_pair(Index node, const Obstacle* obstacle) const;
 
  private:

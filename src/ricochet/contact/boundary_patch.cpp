@@ -12,6 +12,7 @@ using Patches = std::vector<std::unique_ptr<BoundaryPatch>>;
 Patches collect_patches(const Body& body, const std::vector<ContactPair>& pairs) {
   Patches patches;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (pairs[k].tied) continue;
     const auto same = [&](const auto& patch) {
       return patch->obstacle == pairs[k].obstacle && patch->multipliers == pairs[k].multipliers;
     };
@@ -50,6 +51,30 @@ void make_body_patch(const Body& body, const ContactPair& pair, const FreeCompon
   facing = patch.bodies.facing;
 }
 
+/// Traces of tied nodes go on to those that they follow. A nodal force at a tied node is left out: its gap is a mean of
+/// those of the nodes that it follows, on the same surface.
+void follow_ties(const TiedNodes& tied, BoundaryPatch& patch) {
+  const bool nodal = !patch.space->has_functions();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
+    for (const auto* const nodes : {&patch.kept[i].trace, &patch.conditions[i].opposite}) {
+      for (const auto& [node, weight] : *nodes) {
+        if (tied.is_tied(node)) patch.tied_nodes.push_back(node);
+      }
+    }
+    if (nodal && tied.is_tied(patch.kept[i].node)) continue;
+    patch.kept[i].trace = tied.spread(patch.kept[i].trace);
+    patch.conditions[i].opposite = tied.spread(patch.conditions[i].opposite);
+    if (kept != i) {
+      patch.kept[kept] = std::move(patch.kept[i]);
+      patch.conditions[kept] = std::move(patch.conditions[i]);
+    }
+    ++kept;
+  }
+  patch.kept.resize(kept);
+  patch.conditions.resize(kept);
+}
+
 void number_points(const Patches& patches) {
   using Order = std::tuple<Index, int, std::size_t, std::size_t>;
   std::vector<Order> order;
@@ -81,6 +106,7 @@ Patches make_patches(const Body& body, const std::vector<ContactPair>& pairs, co
     } else {
       make_body_patch(body, pairs[first], is_free, *patch, facings[first]);
     }
+    if (body.tied != nullptr && !body.tied->empty()) follow_ties(*body.tied, *patch);
   }
   number_points(patches);
   return patches;

@@ -19,6 +19,7 @@ struct BoundaryPatch {
   std::vector<PointConditions> conditions;  ///< of each
   std::vector<int> numbers;                 ///< of the kept multipliers among all contact points
   BodyContact bodies;                       ///< of a pair of bodies; its multipliers are the kept ones
+  std::vector<Index> tied_nodes;            ///< that traces reached before they went to the nodes that these follow
 
   [[nodiscard]] int first_pair() const { return facets.parts.front().pair; }
   /// Obstacles whose gap is a linear function of the position, and bodies: rows do not change.

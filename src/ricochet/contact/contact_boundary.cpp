@@ -19,6 +19,7 @@ using Patches = std::vector<std::unique_ptr<BoundaryPatch>>;
 std::vector<Index> facets_of(const std::vector<ContactPair>& pairs) {
   std::vector<Index> result;
   for (const ContactPair& pair : pairs) {
+    if (pair.tied) continue;
     result.insert(result.end(), pair.facets.begin(), pair.facets.end());
     result.insert(result.end(), pair.opposite_facets.begin(), pair.opposite_facets.end());
   }
@@ -197,7 +198,8 @@ void follow_curved_obstacles(const Body& body, const Patches& patches, const std
 }  // namespace
 
 std::vector<Index> ContactBoundary::unique_nodes() const {
-  std::vector<Index> result = nodes;  // ascending already
+  std::vector<Index> result(trace.innerIndexPtr(), trace.innerIndexPtr() + trace.nonZeros());
+  std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }

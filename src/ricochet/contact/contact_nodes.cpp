@@ -25,6 +25,7 @@ class NodeTable {
     for (const Multiplier& multiplier : patch.kept) {
       for (const auto& [node, weight] : multiplier.trace) rows_[key(patch, node)] = {};
     }
+    for (const Index node : patch.tied_nodes) rows_[key(patch, node)] = {};
   }
 
   void fill(ContactBoundary& boundary) {
@@ -80,7 +81,8 @@ class NodeTable {
     const BodyContact::Node* between_bodies = nullptr;
   };
   [[nodiscard]] NodeKey key(const BoundaryPatch& patch, Index node) const {
-    return {node, patch.obstacle == nullptr ? patch.first_pair() : all_.first_pair(node, patch.obstacle), 0};
+    const int known = patch.obstacle == nullptr ? -1 : all_.first_pair(node, patch.obstacle);
+    return {node, known < 0 ? patch.first_pair() : known, 0};
   }
 
   const BoundaryNodes& all_;

@@ -6,6 +6,7 @@
 #include "ricochet/fem/displacement_space.hpp"
 #include "ricochet/fem/material.hpp"
 #include "ricochet/fem/node_graph.hpp"
+#include "ricochet/fem/tied_nodes.hpp"
 
 /// @file Assembly of the matrices and vectors of eq. (2) of the source, by quadrature over cells and facets.
 namespace ricochet {
@@ -17,6 +18,8 @@ struct Body {
   PlaneState plane = PlaneState::strain;  ///< of two-dimensional bodies
   std::vector<Material> materials;
   std::vector<int> cell_material;  ///< per cell, numbered through all blocks: index into materials
+  /// Nodes that follow others; null: none. Assembly knows nothing of them: matrices and loads are condensed afterwards.
+  const TiedNodes* tied = nullptr;
 };
 
 [[nodiscard]] inline bool is_plane_stress(const Body& body) {

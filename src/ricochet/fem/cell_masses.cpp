@@ -1,5 +1,7 @@
 #include "ricochet/fem/cell_masses.hpp"
 
+#include <algorithm>
+
 #include "ricochet/fem/element_matrices.hpp"
 
 namespace ricochet {
@@ -46,15 +48,52 @@ void CellMasses::for_each_inertia(const VisitInertia& visit) const {
         for (int i = 0; i <= j; ++i) mass(i, j) = mass(j, i) = pairs[static_cast<std::size_t>(pair_number(i, j))];
       }
       nodes.assign(cells.cell(cell), cells.cell(cell) + count);
-      visit(nodes, mass, weight_.empty() ? 1.0 : weight_[material]);
+      const double weight = weight_.empty() ? 1.0 : weight_[material];
+      if (!has_tied(nodes)) {
+        visit(nodes, mass, weight);
+        continue;
+      }
+      const std::vector<Index> followed = nodes_followed(nodes);
+      const Matrix spreading = spreading_of(nodes, followed);
+      const Matrix half = spreading.transpose() * mass * spreading;
+      visit(followed, 0.5 * (half + half.transpose()), weight);
     }
   }
 }
 
+bool CellMasses::has_tied(const std::vector<Index>& nodes) const {
+  return body_.tied != nullptr &&
+         std::any_of(nodes.begin(), nodes.end(), [this](Index node) { return body_.tied->is_tied(node); });
+}
+
+/// The nodes that the values at those of a cell come from.
+std::vector<Index> CellMasses::nodes_followed(const std::vector<Index>& nodes) const {
+  std::vector<Index> result;
+  for (const Index node : nodes) {
+    for (const auto& [other, weight] : body_.tied->spread({{node, 1.0}})) result.push_back(other);
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+/// T on a cell: its nodes × those followed.
+Matrix CellMasses::spreading_of(const std::vector<Index>& nodes, const std::vector<Index>& followed) const {
+  Matrix result = Matrix::Zero(static_cast<Index>(nodes.size()), static_cast<Index>(followed.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (const auto& [other, weight] : body_.tied->spread({{nodes[i], 1.0}}))
+      result(static_cast<Index>(i), std::lower_bound(followed.begin(), followed.end(), other) - followed.begin()) =
+          weight;
+  }
+  return result;
+}
+
 void CellMasses::for_each_cell(const std::function<void(const std::vector<Index>& nodes)>& visit) const {
   for (const CellBlock& cells : body_.space->cells) {
-    for (Index cell = 0; cell < cells.size(); ++cell)
-      visit({cells.cell(cell), cells.cell(cell) + cells.nodes_per_cell});
+    for (Index cell = 0; cell < cells.size(); ++cell) {
+      const std::vector<Index> nodes(cells.cell(cell), cells.cell(cell) + cells.nodes_per_cell);
+      visit(has_tied(nodes) ? nodes_followed(nodes) : nodes);
+    }
   }
 }
 

@@ -8,7 +8,8 @@
 /// @file The mass of single cells, for what needs more than their sum.
 namespace ricochet {
 
-/// ∫ wρ φ_i φ_j over one cell at a time, with w per material (empty: 1), as assemble_scalar_mass adds them. Keeps a
+/// ∫ wρ φ_i φ_j over one cell at a time, with w per material (empty: 1), as assemble_scalar_mass adds them. A cell with
+/// tied nodes has those that they follow in their place, and TᵀmT. Keeps a
 /// reference to the body. Not for two threads at once.
 class CellMasses {
  public:
@@ -29,6 +30,10 @@ class CellMasses {
   [[nodiscard]] int least_facet_nodes() const;
 
  private:
+  [[nodiscard]] bool has_tied(const std::vector<Index>& nodes) const;
+  [[nodiscard]] std::vector<Index> nodes_followed(const std::vector<Index>& nodes) const;
+  [[nodiscard]] Matrix spreading_of(const std::vector<Index>& nodes, const std::vector<Index>& followed) const;
+
   const Body& body_;
   std::vector<double> weight_;
   struct Rules;

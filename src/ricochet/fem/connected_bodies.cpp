@@ -37,6 +37,8 @@ ConnectedBodies find_connected_bodies(const DisplacementSpace& space) {
     const Index root = find_root(parent, nodes[0]);
     for (int k = 1; k < count; ++k) parent[static_cast<std::size_t>(find_root(parent, nodes[k]))] = root;
   });
+  for (const auto& [one, other] : space.glued)
+    parent[static_cast<std::size_t>(find_root(parent, one))] = find_root(parent, other);
   ConnectedBodies result;
   std::vector<int> of_root(parent.size(), -1);
   for_each_cell(space, [&](Index, const Index* nodes, int) {

@@ -5,7 +5,7 @@
 
 #include "ricochet/fem/assembly.hpp"
 
-/// @file The bodies of a mesh: sets of cells that hang together by nodes.
+/// @file The bodies of a mesh: sets of cells that hang together by nodes, or are tied.
 namespace ricochet {
 
 /// Bodies have the numbers 0, 1, … in the order of their first cells.

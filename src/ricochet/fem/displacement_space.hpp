@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "ricochet/mesh/mesh.hpp"
@@ -18,6 +19,8 @@ struct DisplacementSpace {
   /// For each node its number for people and files, from 0: in the order of the mesh file (of its vertices where the
   /// degree is 1), and after these the nodes that degree 2 adds to a straight mesh.
   std::vector<Index> number;
+  /// Pairs of nodes of different cells that belong to one body, since one of them is tied to the other.
+  std::vector<std::pair<Index, Index>> glued = {};
 
   [[nodiscard]] Index node_count() const { return nodes.cols(); }
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -150,6 +151,7 @@ void assign_materials(const Case& input, Model& model) {
 void add_supports(const Case& input, Model& model) {
   constexpr std::array<const char*, 3> axes{"x", "y", "z"};
   Supports& supports = model.problem.supports;
+  std::set<Index> tied;
   const int d = model.mesh.dimension;
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     const SupportSection& section = input.supports[i];
@@ -157,6 +159,10 @@ void add_supports(const Case& input, Model& model) {
     const Group& group = group_at(input, key, model.mesh, section.group, d - 1);
     for (const int component : section.components) {
       for (const Index node : facet_nodes(model.space, group.members)) {
+        if (model.tied.is_tied(node)) {
+          tied.insert(node);
+          continue;
+        }
         const Index dof = node * d + component;
         if (supports.add(dof, section.value) || supports.expression(dof) == section.value) continue;
         refuse(input, key,
@@ -167,6 +173,10 @@ void add_supports(const Case& input, Model& model) {
     }
   }
   supports.finish();
+  if (tied.empty()) return;
+  log::info(fmt::format("{} tied to another surface and {} it, not the support",
+                        counted(tied.size(), "supported node is", "supported nodes are"),
+                        tied.size() == 1 ? "follows" : "follow"));
 }
 
 void add_initial_conditions(const Case& input, Model& model) {
@@ -265,8 +275,10 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
         "rigid rotations, so angular momentum is kept only to the order h²; use mesh.degree = 2 or a straight mesh");
   }
   model->problem.dimension = model->mesh.dimension;
-  model->problem.nodes = model->space.nodes;
   assign_materials(input, *model);
+  collect_contacts(input, *model);
+  add_ties(input, *model);
+  model->problem.nodes = model->space.nodes;
   add_supports(input, *model);
   add_contacts(input, *model);
   double model_seconds = timer.restart();

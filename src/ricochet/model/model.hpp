@@ -22,6 +22,7 @@ struct Model {
   Body body;
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   std::vector<ContactPair> contact_pairs;
+  TiedNodes tied;                        ///< nodes of surfaces that are glued to others
   std::vector<PairFacing> pair_facings;  ///< of each; nothing of those with obstacles
   SemidiscreteProblem problem;
   std::string mass_built;  ///< the name of the construction; for "equivalent" the one that it chose

@@ -38,6 +38,7 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
   pair.friction = {section.friction, section.friction_bound};
   pair.multipliers = section.multipliers;
   pair.closed_gaps = section.closed_gaps;
+  pair.tied = section.tied;
   if (!section.pair_at.empty())
     pair.pair_at = Eigen::Map<const Vector>(section.pair_at.data(), static_cast<Index>(section.pair_at.size()));
   std::vector<Index> common;
@@ -60,8 +61,10 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
   }
   pair.side_reason = choice.reason;
   if (is_chosen) {
-    log::info(fmt::format("contact of \"{}\" against \"{}\": group \"{}\" carries the multipliers: {}", section.group,
-                          section.against, pair.group, choice.reason));
+    log::info(fmt::format("contact of \"{}\" against \"{}\": {}: {}", section.group, section.against,
+                          pair.tied ? "nodes of \"" + pair.group + "\" follow the other surface"
+                                    : "group \"" + pair.group + "\" carries the multipliers",
+                          choice.reason));
   }
   return pair;
 }
@@ -80,6 +83,10 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
     log::warning(fmt::format("{}: {} held by supports on both sides in the direction of contact: no contact {} there",
                              names_of_pair(pair), counted(facing.held, "multiplier is", "multipliers are"),
                              facing.held == 1 ? "point is" : "points are"));
+  }
+  if (facing.closed > 0) {
+    log::info(fmt::format("{} overlap by up to {:.3g} at {}, as meshes: there they are taken to touch",
+                          names_of_pair(pair), -facing.smallest_gap, counted(facing.closed, "contact point")));
   }
   if (facing.sharpest < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node) {
     log::warning(
@@ -102,7 +109,7 @@ void check_body_overlaps(const Case& input, const Model& model) {
   const ContactBoundary& contact = model.problem.contact;
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
-    if (!pair.between_bodies()) continue;
+    if (!pair.between_bodies() || pair.tied) continue;
     Index deepest = -1, inside = 0;
     for (Index i = 0; i < contact.size(); ++i) {
       if (contact.pair[static_cast<std::size_t>(i)] != static_cast<int>(number)) continue;

@@ -104,7 +104,7 @@ ContactPair obstacle_pair(const Case& input, std::size_t number, const Model& mo
 
 }  // namespace
 
-void add_contacts(const Case& input, Model& model) {
+void collect_contacts(const Case& input, Model& model) {
   std::map<std::string, const Obstacle*> by_name;
   for (const ObstacleSection& section : input.obstacles) {
     try {
@@ -119,9 +119,12 @@ void add_contacts(const Case& input, Model& model) {
     model.contact_pairs.push_back(between_bodies ? body_pair(input, i, model)
                                                  : obstacle_pair(input, i, model, by_name));
     model.problem.obstacles.push_back(model.contact_pairs.back().obstacle);
-    check_stability(input, i, model);
+    if (!model.contact_pairs.back().tied) check_stability(input, i, model);
   }
   check_overlap(input, model.contact_pairs);
+}
+
+void add_contacts(const Case& input, Model& model) {
   const int d = model.mesh.dimension;
   const auto is_free = [&](Index node, int component) {
     return !model.problem.supports.contains(node * d + component);
@@ -133,7 +136,7 @@ void add_contacts(const Case& input, Model& model) {
     refuse(input, "contact", problem.what());
   }
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
-    if (model.contact_pairs[i].between_bodies()) check_facing(input, i, model);
+    if (model.contact_pairs[i].between_bodies() && !model.contact_pairs[i].tied) check_facing(input, i, model);
   }
   model.problem.contact_stress = [&model] { return make_contact_stress(model.body, model.problem.contact); };
   warn_of_bounds_without_area(input, model.problem.contact);

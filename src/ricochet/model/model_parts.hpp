@@ -41,6 +41,10 @@ void complete_groups(const Case& input, Mesh& mesh);
 
 void assign_materials(const Case& input, Model& model);
 void add_supports(const Case& input, Model& model);
+/// Obstacles, and the groups of each contact.
+void collect_contacts(const Case& input, Model& model);
+/// Nodes that are tied; moves them onto the surface that they follow.
+void add_ties(const Case& input, Model& model);
 void add_contacts(const Case& input, Model& model);
 /// The groups of a contact between bodies; that which carries the multipliers is the pair's first.
 [[nodiscard]] ContactPair body_pair(const Case& input, std::size_t number, const Model& model);

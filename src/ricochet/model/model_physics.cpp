@@ -127,7 +127,10 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
 void assemble_operators(const Case& input, Model& model) {
   const NodeGraph graph = node_graph(model.space);
   const int d = model.mesh.dimension;
-  const SparseMatrix consistent = assemble_scalar_mass(model.body, graph);
+  const auto condensed = [&](SparseMatrix matrix, int components) {
+    return model.tied.empty() ? matrix : model.tied.condense(matrix, components);
+  };
+  const SparseMatrix consistent = condensed(assemble_scalar_mass(model.body, graph), 1);
   MassInput mass_input{&consistent, &model.space.nodes, model.problem.contact.unique_nodes(), &consistent};
   MassChoice choice;
   const auto with_cells = [&](const SparseMatrix& from, const std::vector<double>& weight, const auto& make) {
@@ -160,7 +163,7 @@ void assemble_operators(const Case& input, Model& model) {
     warn_of_heaped_inertia(input, choice.name, *choice.mass, consistent.diagonal());
   choice.mass.reset();
   model.problem.internal_force =
-      std::make_shared<LinearElasticity>(assemble_stiffness(model.body, graph), model.space.nodes);
+      std::make_shared<LinearElasticity>(condensed(assemble_stiffness(model.body, graph), d), model.space.nodes);
   std::vector<double> mass_damping, stiffness_damping;
   for (const Material& material : model.body.materials) {
     mass_damping.push_back(material.mass_damping);
@@ -170,10 +173,10 @@ void assemble_operators(const Case& input, Model& model) {
     return std::any_of(values.begin(), values.end(), [](double v) { return v > 0.0; });
   };
   if (any(mass_damping))
-    model.problem.damping =
-        expand_to_components(build(assemble_scalar_mass(model.body, graph, mass_damping), mass_damping), d);
+    model.problem.damping = expand_to_components(
+        build(condensed(assemble_scalar_mass(model.body, graph, mass_damping), 1), mass_damping), d);
   if (any(stiffness_damping)) {
-    const SparseMatrix part = assemble_stiffness(model.body, graph, stiffness_damping);
+    const SparseMatrix part = condensed(assemble_stiffness(model.body, graph, stiffness_damping), d);
     model.problem.damping = model.problem.has_damping() ? SparseMatrix(model.problem.damping + part) : part;
   }
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
@@ -245,11 +248,16 @@ void add_loads(const Case& input, Model& model) {
     loads.add_constant(weight);
   }
   const Body& body = model.body;
+  const TiedNodes& tied = model.tied;
   try {
     if (!input.load.body_force.empty()) {
       add_force(
-          input.load.body_force, [&body](const ForceDensity& f, Vector& load) { add_body_load(body, f, load); }, loads,
-          dofs);
+          input.load.body_force,
+          [&body, &tied, d](const ForceDensity& f, Vector& load) {
+            add_body_load(body, f, load);
+            tied.condense_load(load, d);
+          },
+          loads, dofs);
     }
   } catch (const Error& problem) {
     refuse(input, "load.body_force", problem.what());
@@ -260,7 +268,11 @@ void add_loads(const Case& input, Model& model) {
     try {
       add_force(
           input.tractions[i].value,
-          [&body, facets](const ForceDensity& f, Vector& load) { add_facet_load(body, facets, f, load); }, loads, dofs);
+          [&body, &tied, d, facets](const ForceDensity& f, Vector& load) {
+            add_facet_load(body, facets, f, load);
+            tied.condense_load(load, d);
+          },
+          loads, dofs);
     } catch (const Error& problem) {
       refuse(input, fmt::format("traction.{}.value", i), problem.what());
     }

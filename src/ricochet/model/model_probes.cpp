@@ -126,8 +126,14 @@ class ProbeMaker {
       refuse(input_, key + ".contact",
              fmt::format("there is no contact {}: the case has {} of them, numbered from 0", *section.contact, count));
     }
-    add(section, make_contact_sensor(section.name, model_.problem, static_cast<int>(*section.contact),
-                                     model_.contact_pairs[static_cast<std::size_t>(*section.contact)].exchanged));
+    const ContactPair& pair = model_.contact_pairs[static_cast<std::size_t>(*section.contact)];
+    if (pair.tied) {
+      refuse(input_, key + ".contact",
+             fmt::format("contact {} is tied: it has no contact points whose forces could be watched; use a probe with "
+                         "\"group\" for stresses near the surface",
+                         *section.contact));
+    }
+    add(section, make_contact_sensor(section.name, model_.problem, static_cast<int>(*section.contact), pair.exchanged));
   }
 
   const Case& input_;
@@ -157,7 +163,7 @@ void add_standing_columns(Model& model) {
   model.history_bodies = bodies_of_history(model);
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
-    if (!pair.between_bodies()) continue;
+    if (!pair.has_two_sides()) continue;
     model.sensors.push_back(make_pair_force_sensor(model.problem, static_cast<int>(number), pair.exchanged));
   }
 }

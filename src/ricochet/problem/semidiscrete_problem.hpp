@@ -27,6 +27,8 @@ struct SemidiscreteProblem {
   Loads loads;
   Supports supports;
   ContactBoundary contact;
+  /// Nodes that follow others: their rows of all matrices and loads are zero, and no stage solves for them. Null: none.
+  const TiedNodes* tied = nullptr;
   std::vector<const Obstacle*> obstacles;  ///< of each contact pair; null between bodies
   /// Makes the stress at the contact points, for the schemes that need it.
   std::function<ContactStress()> contact_stress;
@@ -39,6 +41,7 @@ struct SemidiscreteProblem {
   std::vector<Index> contact_dofs;
 
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
+  [[nodiscard]] bool is_tied_dof(Index dof) const { return tied != nullptr && tied->is_tied(dof / dimension); }
   [[nodiscard]] bool has_damping() const { return damping.cols() > 0; }
   [[nodiscard]] bool has_singular_mass() const { return !massless_dofs.empty(); }
   /// Null between bodies.

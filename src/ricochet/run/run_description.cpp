@@ -38,7 +38,7 @@ std::vector<ContactDescription> describe_contacts(const Case& input) {
 
 std::optional<FacingDescription> describe_facing(const Model& model, std::size_t contact) {
   const ContactPair& pair = model.contact_pairs[contact];
-  if (!pair.between_bodies()) return {};
+  if (!pair.has_two_sides()) return {};
   const PairFacing& facing = model.pair_facings[contact];
   FacingDescription result{pair.group, pair.side_reason, facing.points};
   result.covered = facing.area > 0.0 ? facing.covered / facing.area : 0.0;

@@ -42,7 +42,7 @@ std::vector<KeptNode> kept_nodes(const Body& body, const ContactBoundary& contac
   std::vector<KeptNode> result;
   for (std::size_t number = 0; number < pairs.size(); ++number) {
     const ContactPair& pair = pairs[number];
-    if (!pair.between_bodies()) continue;
+    if (!pair.has_two_sides()) continue;
     const FacetSizes own = facet_sizes(body, pair.facets), opposite = facet_sizes(body, pair.opposite_facets);
     const std::set<int> own_bodies = bodies_of(body, pair.facets, body_of_node);
     const std::set<int> opposite_bodies = bodies_of(body, pair.opposite_facets, body_of_node);
@@ -67,7 +67,7 @@ std::vector<KeptNode> kept_nodes(const Body& body, const ContactBoundary& contac
 Vector slip_limits(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs) {
   Vector result = Vector::Zero(contact.size());
   for (std::size_t number = 0; number < pairs.size(); ++number) {
-    if (!pairs[number].between_bodies()) continue;
+    if (!pairs[number].has_two_sides()) continue;
     const FacetSizes own = facet_sizes(body, pairs[number].facets),
                      opposite = facet_sizes(body, pairs[number].opposite_facets);
     for (Index point = 0; point < contact.size(); ++point) {

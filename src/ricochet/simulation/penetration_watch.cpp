@@ -178,7 +178,7 @@ std::vector<std::string> PenetrationWatch::contacts_between(int first, int secon
                        [&](Index node) { return bodies_.of_node[static_cast<std::size_t>(node)] == body; });
   };
   for (const ContactPair& pair : pairs_) {
-    if (!pair.between_bodies()) continue;
+    if (!pair.has_two_sides()) continue;
     if ((holds(pair.facets, first) && holds(pair.opposite_facets, second)) ||
         (holds(pair.facets, second) && holds(pair.opposite_facets, first)))
       result.push_back(fmt::format("\"{}\" and \"{}\"", pair.first_group(), pair.second_group()));

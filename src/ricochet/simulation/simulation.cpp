@@ -43,6 +43,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   }
   current_ = &make_level(control_ ? control_->level() : 0, options_);
   scheme_.start(problem_, state_, *this);
+  complete_tied();
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
 }
 
@@ -177,6 +178,13 @@ double Simulation::take_controlled_step() {
   }
 }
 
+/// Of no use to the equations: for those who look at the state.
+void Simulation::complete_tied() {
+  if (problem_.tied == nullptr) return;
+  for (Vector* const values : {&state_.displacement, &state_.velocity, &state_.acceleration})
+    problem_.tied->complete(*values, problem_.dimension);
+}
+
 void Simulation::advance() {
   double energy = 0.0;
   if (control_) {
@@ -184,6 +192,7 @@ void Simulation::advance() {
   } else {
     take_step();
   }
+  complete_tied();
   state_.step += 1;
   state_.time = control_ ? control_->time() : static_cast<double>(state_.step) * scheme_.step();
   account_->enter_step(increment_, state_);

@@ -59,6 +59,7 @@ class Simulation : private StageSolve {
   Level& make_level(int level, const StepSolverOptions& options);
   void use_level(int level);
   void take_step();
+  void complete_tied();
   /// Returns kinetic and elastic energy at its end.
   double take_controlled_step();
   Stage& stage(std::size_t number) override;

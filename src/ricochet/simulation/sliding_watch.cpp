@@ -18,7 +18,7 @@ SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem,
       normals_(problem.contact.rows ? problem.contact.rows->normals : Points()) {
   const ContactBoundary& contact = problem.contact;
   for (std::size_t number = 0; number < pairs.size(); ++number) {
-    if (!pairs[number].between_bodies()) continue;
+    if (!pairs[number].has_two_sides()) continue;
     Largest largest;
     largest.contact = static_cast<int>(number);
     if (pairs[number].pair_at.size() > 0) largest.pair_at.head(problem.dimension) = pairs[number].pair_at;

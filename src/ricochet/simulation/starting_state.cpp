@@ -100,7 +100,7 @@ bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vecto
   const Vector mass = problem.mass.diagonal();
   Vector acceleration = residual_force(problem, state.displacement, state.velocity);
   for (Index dof = 0; dof < mass.size(); ++dof) {
-    if (problem.is_massless[static_cast<std::size_t>(dof)] != 0) {
+    if (problem.is_massless[static_cast<std::size_t>(dof)] != 0 || problem.is_tied_dof(dof)) {
       acceleration[dof] = 0.0;
     } else if (mass[dof] > 0.0) {
       acceleration[dof] /= mass[dof];

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <string>
+
+/// @file Random bodies and cases.
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double between(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_()) / 4294967296.0);
+  }
+  double power(double low, double high) { return std::pow(10.0, between(low, high)); }
+  int integer(int low, int high) { return low + static_cast<int>(between(0.0, 1.0) * (high - low + 1)); }
+  bool chance(double part) { return between(0.0, 1.0) < part; }
+
+ private:
+  std::mt19937 engine_;  // the same numbers everywhere, unlike the library's distributions
+};
+
+/// A box of cells, a little distorted, as a mesh of Gmsh's format 2.2. Facets of the lower side are group "bottom", of
+/// the upper side "top"; the cells are "body".
+std::string box_mesh(Random& random, int d, bool simplices, const std::array<int, 3>& counts,
+                     const std::array<double, 3>& lengths);
+
+struct RandomCase {
+  std::string text, description;  ///< without [time] and [mass]
+  double step, end, friction, cell, crossings;
+  int steps;
+};
+
+std::string vector_text(int d, const std::array<double, 3>& of);
+
+/// A box against a plane or a sphere.
+RandomCase make_obstacle_case(unsigned seed, bool sphere, const std::filesystem::path& folder);
+/// A box against another one: meshes, sizes, stiffnesses and places that do not match.
+RandomCase make_pair_case(unsigned seed, const std::filesystem::path& folder);

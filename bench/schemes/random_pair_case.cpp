@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <vector>
+
+#include "random_case.hpp"
+
+namespace {
+
+struct Box {
+  std::array<int, 3> counts{};
+  std::array<double, 3> lengths{};
+  double cell = 1e300;
+};
+
+Box make_box(Random& random, int d, double size) {
+  Box box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.counts[k] = d == 2 ? random.integer(3, 9) : random.integer(3, 4);
+    box.lengths[k] = size * random.between(0.5, 1.5);
+    if (k < static_cast<std::size_t>(d)) box.cell = std::min(box.cell, box.lengths[k] / box.counts[k]);
+  }
+  return box;
+}
+
+}  // namespace
+
+RandomCase make_pair_case(unsigned seed, const std::filesystem::path& folder) {
+  Random random(seed);
+  RandomCase result;
+  const int d = random.chance(0.65) ? 2 : 3;
+  const auto up = static_cast<std::size_t>(d - 1);
+  const bool lower_simplices = random.chance(0.5), upper_simplices = random.chance(0.5);
+  const int degree = random.chance(d == 2 ? 0.4 : 0.2) ? 2 : 1;
+  const double size = random.power(-2.0, 0.0);
+  Box lower = make_box(random, d, size), upper = make_box(random, d, size * random.power(-0.5, 0.5));
+  const std::string lower_mesh = (folder / fmt::format("mesh_{}.msh", seed)).string(),
+                    upper_mesh = (folder / fmt::format("mesh_{}_upper.msh", seed)).string();
+  std::ofstream(lower_mesh) << box_mesh(random, d, lower_simplices, lower.counts, lower.lengths);
+  std::ofstream(upper_mesh) << box_mesh(random, d, upper_simplices, upper.counts, upper.lengths);
+  result.cell = std::min(lower.cell, upper.cell);
+
+  const double density = random.power(0.0, 6.0), young = random.power(3.0, 9.0);
+  const double ratio = random.power(-3.0, 3.0) * (random.chance(0.3) ? random.power(-3.0, 3.0) : 1.0);
+  const double heaviness = random.power(-1.0, 1.0);
+  const double wave = std::sqrt(young / density), crossing = result.cell / wave;
+  result.crossings = random.power(-1.0, 3.0);
+  result.step = result.crossings * crossing;
+  result.steps = random.integer(60, 120);
+  result.end = result.step * (result.steps - 0.5);
+  result.friction = random.chance(0.3) ? 0.0 : random.between(0.0, 0.9);
+
+  const double speed = wave * random.power(-5.0, -2.0), time = result.end;
+  const double gap = random.chance(0.3) ? 0.0 : speed * time * random.between(0.02, 0.3);
+  const bool on_floor = random.chance(0.4), damped = random.chance(0.25);
+  const double gravity = on_floor ? speed / time * random.between(0.0, 20.0) : 0.0;
+  std::array<double, 3> move{0.0, 0.0, 0.0}, velocity{0.0, 0.0, 0.0}, other{0.0, 0.0, 0.0}, pull{0.0, 0.0, 0.0},
+      normal{0.0, 0.0, 0.0};
+  for (std::size_t k = 0; k < up; ++k) {
+    // From hanging over one end to hanging over the other.
+    move[k] = random.between(-0.5 * upper.lengths[k], lower.lengths[k] - 0.5 * upper.lengths[k]);
+    velocity[k] = speed * random.between(-1.0, 1.0);
+  }
+  move[up] = lower.lengths[up] + gap;
+  velocity[up] = -speed * random.between(0.1, 1.0);
+  if (!on_floor) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) other[k] = 0.5 * speed * random.between(0.0, 1.0);
+  }
+  pull[up] = -gravity;
+  normal[up] = 1.0;
+  const double tilt = gap > 0.0 ? random.between(-20.0, 20.0) : 0.0;
+  const double rise = std::abs(std::sin(tilt * M_PI / 180.0)) * (upper.lengths[0] + upper.lengths[up]);
+  move[up] += rise;
+
+  const auto part = [&](const char* name, const std::string& mesh, const std::array<double, 3>& by,
+                        const std::array<double, 3>& with, double angle) {
+    return fmt::format("[part.{}]\nfile = \"{}\"\nturn = {{ angle = {:.9g}{} }}\nmove = {}\nvelocity = {}\n", name,
+                       mesh, angle, d == 3 ? ", axis = [0, 1, 0]" : "", vector_text(d, by), vector_text(d, with));
+  };
+  const auto material = [&](const char* name, double of_young, double of_density) {
+    std::string text =
+        fmt::format("[[material]]\ngroup = \"{}.all\"\ndensity = {:.9g}\nyoung = {:.9g}\npoisson = {:.9g}\n", name,
+                    of_density, of_young, random.between(0.0, 0.49));
+    if (damped) text += fmt::format("damping = {{ stiffness = {:.9g} }}\n", crossing * random.power(-1.0, 3.0));
+    return text;
+  };
+  std::string& text = result.text;
+  text = fmt::format("[mesh]\ndegree = {}\n", degree) + part("lower", lower_mesh, {}, other, 0.0) +
+         part("upper", upper_mesh, move, velocity, tilt) + material("lower", young, density) +
+         material("upper", young * ratio, density * heaviness);
+  constexpr std::array<const char*, 4> spaces{"p0", "p1", "dual", "nodal"};
+  constexpr std::array<const char*, 3> sides{"automatic", "group", "against"};
+  const std::string law = fmt::format("friction = {:.9g}\nmultipliers = \"{}\"\nunstable_multipliers = \"allow\"\n",
+                                      result.friction, spaces[static_cast<std::size_t>(random.integer(0, 3))]);
+  // Tilted, so that facets see each other where the bodies will meet.
+  text += fmt::format("[[contact]]\ngroup = \"upper.bottom\"\nagainst = \"lower.top\"\nmultipliers_on = \"{}\"\n",
+                      sides[static_cast<std::size_t>(random.integer(0, 2))]) +
+          law;
+  if (on_floor) {
+    text += "[obstacle.floor]\ntype = \"plane\"\npoint = " + vector_text(d, {0.0, 0.0, 0.0}) +
+            "\nnormal = " + vector_text(d, normal) + "\n[[contact]]\ngroup = \"lower.bottom\"\nobstacle = \"floor\"\n" +
+            law;
+  }
+  text += "[load]\ngravity = " + vector_text(d, pull) + "\n";
+  result.description = fmt::format("{}D degree {} {} on {} F {:.2f} stiffness {:.2g} crossings {:.3g}{}{}{}", d, degree,
+                                   upper_simplices ? "simplices" : "boxes", lower_simplices ? "simplices" : "boxes",
+                                   result.friction, ratio, result.crossings, on_floor ? " on-floor" : "",
+                                   tilt != 0.0 ? " tilted" : "", damped ? " damped" : "");
+  return result;
+}

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "ricochet/contact/body_contact.hpp"
+#include "ricochet/fem/tied_nodes.hpp"
+
+/// @file Two surfaces glued together: the nodes of one follow those of the other.
+namespace ricochet {
+
+struct TiedSurface {
+  std::vector<TiedNodes::Tie> ties;
+  PairFacing facing;
+  double farthest = 0.0;  ///< the largest distance between the surfaces at a tied node, over the height of its cell
+  Vector farthest_place;
+};
+
+/// With dual multipliers the mortar conditions C u_s = M̂ u_m are solved node by node where facets are covered whole:
+/// P = C⁻¹M̂ has few entries per node, and reproduces linear functions on flat surfaces. A node whose facets face
+/// nothing stays free.
+[[nodiscard]] TiedSurface tie_surfaces(const Body& body, const ContactPair& pair);
+
+/// Moves tied nodes to where they are on the other surface, Σ P X: then turns of both together have no strain (M. A.
+/// Puso, Int. J. Numer. Meth. Engng 59, 2004, 315–336). The nodes of the geometry go with those of the displacement.
+void move_tied_nodes(const TiedNodes& tied, Mesh& mesh, DisplacementSpace& space);
+
+}  // namespace ricochet

@@ -1,0 +1,87 @@
+#include "ricochet/fem/tied_nodes.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+TiedNodes::TiedNodes(std::vector<Tie> ties, Index node_count)
+    : ties_(std::move(ties)), tie_of_node_(static_cast<std::size_t>(node_count), -1) {
+  std::sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.node < b.node; });
+  for (std::size_t i = 0; i < ties_.size(); ++i)
+    tie_of_node_[static_cast<std::size_t>(ties_[i].node)] = static_cast<int>(i);
+  // Each round replaces what is tied itself; a chain is at most as long as there are contacts.
+  constexpr int longest_chain = 16;
+  for (int round = 0;; ++round) {
+    bool changed = false;
+    for (Tie& tie : ties_) {
+      const bool follows_tied = std::any_of(tie.weights.begin(), tie.weights.end(),
+                                            [this](const auto& entry) { return is_tied(entry.first); });
+      if (!follows_tied) continue;
+      tie.weights = spread(tie.weights);
+      changed = true;
+    }
+    if (!changed) return;
+    if (round == longest_chain) {
+      throw Error(
+          ErrorKind::invalid_input,
+          "tied surfaces follow each other in a circle: exchange \"group\" and \"against\" of one of them, with "
+          "multipliers_on = \"group\" in all");
+    }
+  }
+}
+
+TiedNodes::Weights TiedNodes::spread(const Weights& weights) const {
+  std::map<Index, double> sums;
+  for (const auto& [node, weight] : weights) {
+    if (!is_tied(node)) {
+      sums[node] += weight;
+      continue;
+    }
+    const Tie& tie = ties_[static_cast<std::size_t>(tie_of_node_[static_cast<std::size_t>(node)])];
+    for (const auto& [other, part] : tie.weights) sums[other] += weight * part;
+  }
+  return {sums.begin(), sums.end()};
+}
+
+SparseMatrix TiedNodes::condense(const SparseMatrix& matrix, int components) const {
+  const auto nodes = static_cast<Index>(tie_of_node_.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto enter = [&](Index row, Index column, double value) {
+    for (int k = 0; k < components; ++k)
+      entries.emplace_back(static_cast<int>(row * components + k), static_cast<int>(column * components + k), value);
+  };
+  for (Index node = 0; node < nodes; ++node) {
+    if (!is_tied(node)) enter(node, node, 1.0);
+  }
+  for (const Tie& tie : ties_) {
+    for (const auto& [other, weight] : tie.weights) enter(tie.node, other, weight);
+  }
+  SparseMatrix spreading(nodes * components, nodes * components);
+  spreading.setFromTriplets(entries.begin(), entries.end());
+  const SparseMatrix product = matrix * spreading;
+  const SparseMatrix condensed = spreading.transpose() * product;
+  const SparseMatrix transposed = condensed.transpose();
+  SparseMatrix result = 0.5 * (condensed + transposed);
+  result.makeCompressed();
+  return result;
+}
+
+void TiedNodes::condense_load(Vector& load, int d) const {
+  for (const Tie& tie : ties_) {
+    for (const auto& [node, weight] : tie.weights) load.segment(node * d, d) += weight * load.segment(tie.node * d, d);
+    load.segment(tie.node * d, d).setZero();
+  }
+}
+
+void TiedNodes::complete(Vector& values, int d) const {
+  for (const Tie& tie : ties_) {
+    values.segment(tie.node * d, d).setZero();
+    for (const auto& [node, weight] : tie.weights)
+      values.segment(tie.node * d, d) += weight * values.segment(node * d, d);
+  }
+}
+
+}  // namespace ricochet
