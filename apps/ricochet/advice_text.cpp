@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact_text.hpp"
 #include "number_text.hpp"
 #include "place_text.hpp"
 #include "ricochet/base/text.hpp"
@@ -15,6 +16,7 @@
 #include "ricochet/fem/stress.hpp"
 #include "ricochet/fem/wave_speed.hpp"
 #include "ricochet/mesh/derived_groups.hpp"
+#include "ricochet/run/run_description.hpp"
 #include "ricochet/simulation/rigid_bodies.hpp"
 
 namespace ricochet::program {
@@ -106,7 +108,60 @@ double time_of_contact(double gap, double velocity, double acceleration) {
   return acceleration < 0.0 ? -(velocity + root) / acceleration : never;
 }
 
+/// Whether nothing acts on bodies before they touch but gravity, so that it can be told when they do.
+bool flies_freely(const Case& input) {
+  return input.tractions.empty() && input.load.body_force.empty() && input.initial.displacement.empty() &&
+         !input.initial.static_equilibrium;
+}
+
+std::string meeting_text(double time, const Case& input, const std::string& would, const std::string& does_not) {
+  return std::isfinite(time) ? fmt::format(" {} at t = {:.4g} (the run ends at {:g})", would, time, input.time.end)
+                             : " " + does_not;
+}
+
+/// Whether no support holds a body along the direction of contact of one of the pair's points.
+bool is_free_along_normals(const Case& input, const Model& model, int pair) {
+  const ContactBoundary& contact = model.problem.contact;
+  std::array<bool, 3> held{};
+  for (const SupportSection& support : input.supports) {
+    for (const int component : support.components) held[static_cast<std::size_t>(component)] = true;
+  }
+  for (Index point = 0; point < contact.size(); ++point) {
+    if (contact.pair[static_cast<std::size_t>(point)] != pair) continue;
+    for (Index k = 0; k < contact.dimension; ++k) {
+      if (held[static_cast<std::size_t>(k)] && std::abs(contact.rows->normals(k, point)) > 1e-9) return false;
+    }
+  }
+  return true;
+}
+
+/// How two bodies face each other and, where they fly freely, when they would meet: gravity moves both alike.
+void print_bodies_contact(const Case& input, const Model& model, std::size_t pair) {
+  const ContactBoundary& contact = model.problem.contact;
+  const FacingDescription facing = *describe_facing(model, pair);
+  std::string text = facing_text(facing);
+  const auto number = static_cast<int>(pair);
+  if (facing.points > 0 && facing.smallest_gap > 0.0 && flies_freely(input) &&
+      is_free_along_normals(input, model, number)) {
+    double meets = std::numeric_limits<double>::infinity();
+    for (Index point = 0; point < contact.size(); ++point) {
+      if (contact.pair[static_cast<std::size_t>(point)] != number) continue;
+      SpaceVector velocity = SpaceVector::Zero(contact.dimension);
+      contact.visit_nodes(point, [&](Index node, double weight) {
+        velocity += weight * model.initial.velocity.segment(node * contact.dimension, contact.dimension);
+      });
+      meets =
+          std::min(meets, time_of_contact(contact.initial_gap[point], contact.rows->normal(point).dot(velocity), 0.0));
+    }
+    text += "; the bodies" + meeting_text(meets, input, "would meet", "do not come nearer");
+  }
+  const ContactSection& section = input.contacts[pair];
+  fmt::print("  \"{}\" against \"{}\": {}\n", section.group, section.against, text);
+}
+
 void print_contact(const Case& input, const Model& model, std::size_t pair) {
+  if (model.contact_pairs[pair].has_two_sides()) return print_bodies_contact(input, model, pair);
+  if (model.contact_pairs[pair].tied) return;
   const ContactBoundary& contact = model.problem.contact;
   const int d = model.mesh.dimension;
   const ContactSection& section = input.contacts[pair];
@@ -130,13 +185,8 @@ void print_contact(const Case& input, const Model& model, std::size_t pair) {
   }
   if (!std::isfinite(nearest)) return;
   fmt::print("  \"{}\" {} \"{}\" at its nearest node", section.group, gap_text(nearest, rounding), section.obstacle);
-  const bool falls_freely = input.supports.empty() && input.tractions.empty() && input.load.body_force.empty() &&
-                            input.initial.displacement.empty() && !input.initial.static_equilibrium;
-  if (falls_freely && nearest > rounding) {
-    fmt::print("{}", std::isfinite(meets) ? fmt::format(" and would reach it at t = {:.4g} (the run ends at {:g})",
-                                                        meets, input.time.end)
-                                          : " and does not come nearer");
-  }
+  if (input.supports.empty() && flies_freely(input) && nearest > rounding)
+    fmt::print("{}", meeting_text(meets, input, "and would reach it", "and does not come nearer"));
   fmt::print("\n");
 }
 
@@ -173,6 +223,12 @@ void print_cell_sizes(const Mesh& mesh) {
   std::sort(heights.begin(), heights.end());
   fmt::print("  heights of cells: smallest {:.4g}, median {:.4g}, largest {:.4g}\n", heights.front(),
              heights[heights.size() / 2], heights.back());
+}
+
+void print_facings(const Case& input, const Model& model) {
+  for (std::size_t pair = 0; pair < input.contacts.size(); ++pair) {
+    if (model.contact_pairs[pair].has_two_sides()) print_bodies_contact(input, model, pair);
+  }
 }
 
 void print_advice(const Case& input, const Model& model) {

@@ -11,5 +11,8 @@ void print_groups(const Mesh& mesh);
 void print_cell_sizes(const Mesh& mesh);
 /// Place, masses, wave speeds, times that waves take, a step to begin with, and when bodies meet obstacles.
 void print_advice(const Case& input, const Model& model);
+/// A line for each contact between bodies: which group carries the multipliers, how much of it faces the other one, and
+/// when the bodies would meet.
+void print_facings(const Case& input, const Model& model);
 
 }  // namespace ricochet::program

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "advice_text.hpp"
 #include "commands.hpp"
 #include "place_text.hpp"
 #include "ricochet/base/error.hpp"
@@ -140,6 +141,7 @@ int validate(const ValidateArguments& arguments) {
              counted(model.problem.supports.size(), "supported dof"),
              input.time.adaptive ? steps_text(input.time) : counted(step_count(input.time), "step"));
   print_place(input, model);
+  print_facings(input, model);
   if (!starts) {
     fmt::print(
         "{}: not checked: the start of the run (whether its operators can be factorized, and its initial state), "

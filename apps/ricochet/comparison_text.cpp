@@ -28,8 +28,10 @@ double force_variation(const RunSummary& s) {
   const auto probe = std::find_if(s.probes.begin(), s.probes.end(), [](const Probe& p) { return p.contact_node >= 0; });
   if (probe != s.probes.end()) return s.digest(probe->name + ".reaction_normal").total_variation;
   double variation = 0.0;
-  for (const char* axis : {"x", "y", "z"})
-    variation = std::max(variation, s.digest(fmt::format("contact_force_{}", axis)).total_variation);
+  for (const std::string& column : s.columns) {
+    if (column.starts_with("contact_force_") || column.starts_with("pair_force."))
+      variation = std::max(variation, s.digest(column).total_variation);
+  }
   return variation;
 }
 

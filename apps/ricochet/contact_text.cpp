@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "number_text.hpp"
 #include "ricochet/base/text.hpp"
 
 namespace ricochet::program {
@@ -28,10 +29,20 @@ std::string motion_text(const ContactDescription& c) {
 
 }  // namespace
 
+std::string facing_text(const FacingDescription& facing) {
+  std::string gaps = "the gaps are closed";
+  if (facing.smallest_gap != 0.0 || facing.largest_gap != 0.0)
+    gaps = fmt::format("gaps from {:.4g} to {:.4g}", facing.smallest_gap, facing.largest_gap);
+  return fmt::format("\"{}\" carries the multipliers{}; {} on {} of its area, {}", facing.multipliers_on,
+                     facing.reason.empty() ? ", as the case says" : ": " + facing.reason,
+                     counted(facing.points, "contact point"), percent(facing.covered), gaps);
+}
+
 void print_contacts(const std::vector<ContactDescription>& contacts) {
   for (const ContactDescription& c : contacts) {
-    fmt::print("  contact of \"{}\" with \"{}\"{}: {}, {} multipliers\n", c.group, c.opponent, motion_text(c),
-               law_text(c), c.multipliers);
+    fmt::print("  contact of \"{}\" {} \"{}\"{}: {}, {} multipliers\n", c.group, c.between_bodies ? "against" : "with",
+               c.opponent, motion_text(c), law_text(c), c.multipliers);
+    if (c.facing) fmt::print("    {}\n", facing_text(*c.facing));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "number_text.hpp"
 #include "ricochet/base/text.hpp"
@@ -37,15 +38,49 @@ std::string spin_text(const Eigen::Vector3d& spin, int dimension, double least) 
 constexpr double rounding_of_spin = 1e-6;
 
 /// Empty where the body does not spin.
-std::string spins_text(const Impact& impact, const RunSummary& summary) {
-  if (!impact.ended) return "";
-  const double largest = std::max(impact.before.spin.norm(), impact.after.spin.norm());
-  const double speed = std::max(impact.before.velocity.norm(), impact.after.velocity.norm());
-  const double radius = radius_of(summary.bodies[static_cast<std::size_t>(impact.body)]);
+std::string spins_text(int body, const RigidMotionState& before, const RigidMotionState& after,
+                       const RunSummary& summary) {
+  const double largest = std::max(before.spin.norm(), after.spin.norm());
+  const double speed = std::max(before.velocity.norm(), after.velocity.norm());
+  const double radius = radius_of(summary.bodies[static_cast<std::size_t>(body)]);
   if (!(largest * radius > rounding_of_spin * speed)) return "";
   const double least = rounding_of_spin * std::max(largest, speed / radius);
-  return fmt::format(", spin {} before and {} after", spin_text(impact.before.spin, summary.dimension, least),
-                     spin_text(impact.after.spin, summary.dimension, least));
+  return fmt::format("{} before and {} after", spin_text(before.spin, summary.dimension, least),
+                     spin_text(after.spin, summary.dimension, least));
+}
+
+std::string body_text(int number, const RunSummary& summary) {
+  const std::string& name = summary.bodies[static_cast<std::size_t>(number)].name;
+  return name.empty() ? fmt::format("body {}", number) : name;
+}
+
+std::string spins_text(const Impact& impact, const RunSummary& summary) {
+  if (!impact.ended) return "";
+  const std::string own = spins_text(impact.body, impact.before, impact.after, summary);
+  if (!impact.other) return own.empty() ? "" : ", spin " + own;
+  const std::string others = spins_text(impact.other->number, impact.other->before, impact.other->after, summary);
+  std::string text;
+  if (!own.empty()) text += fmt::format(", spin of {} {}", body_text(impact.body, summary), own);
+  if (!others.empty()) text += fmt::format(", spin of {} {}", body_text(impact.other->number, summary), others);
+  return text;
+}
+
+/// bodies "one" and "two".
+std::string bodies_text(const Impact& impact, const RunSummary& summary) {
+  constexpr std::string_view prefix = "body ";
+  const std::string one = body_text(impact.body, summary), two = body_text(impact.other->number, summary);
+  const auto is_simple = [&](const std::string& name) {
+    return name.starts_with(prefix) && name.find(" and ") == std::string::npos;
+  };
+  if (!is_simple(one) || !is_simple(two)) return fmt::format("{} on {}", one, two);
+  return fmt::format("bodies {} and {}", one.substr(prefix.size()), two.substr(prefix.size()));
+}
+
+/// "bodies "one" and "two" ", "body "left" on "floor" ", and the obstacle alone where there is one body.
+std::string parties_text(const Impact& impact, const RunSummary& summary) {
+  if (impact.other) return bodies_text(impact, summary) + " ";
+  const std::string on = fmt::format("on \"{}\" ", impact.obstacle);
+  return summary.bodies.size() > 1 ? body_text(impact.body, summary) + " " + on : on;
 }
 
 /// That of the normal parts of the contact forces, and of all of them where friction makes another number of it.
@@ -64,11 +99,6 @@ std::string resolution_text(const Impact& impact) {
   return points + ": the contact zone is too coarse to trust the largest force and the duration; refine the mesh there";
 }
 
-std::string body_text(int number, const RunSummary& summary) {
-  const std::string& name = summary.bodies[static_cast<std::size_t>(number)].name;
-  return name.empty() ? fmt::format("body {}", number) : name;
-}
-
 /// Of a run in which cells turn too far: whether they had when this impact ended.
 std::string rotation_text(std::size_t impact, const RunSummary& summary) {
   if (!summary.rotation || !std::isfinite(summary.rotation->time_beyond)) return "";
@@ -82,16 +112,15 @@ std::string rotation_text(std::size_t impact, const RunSummary& summary) {
 std::string restitution_error_text(const Impact& impact) {
   const RestitutionError error = restitution_error(impact);
   if (!error.is_large) return "";
-  return fmt::format(" (inexact: of the energy of the approach the method {} {}, where the body {} {})",
+  return fmt::format(" (inexact: of the energy of the approach the method {} {}, where {} {} {})",
                      error.by_method < 0.0 ? "lost" : "created", percent(std::abs(error.by_method)),
-                     error.by_impact < 0.0 ? "gained" : "lost", percent(std::abs(error.by_impact)));
+                     impact.other ? "the bodies" : "the body", error.by_impact < 0.0 ? "gained" : "lost",
+                     percent(std::abs(error.by_impact)));
 }
 
 std::string impact_text(std::size_t number, const RunSummary& summary) {
   const Impact& impact = summary.impacts[number];
-  std::string text;
-  if (summary.bodies.size() > 1) text += body_text(impact.body, summary) + " ";
-  text += fmt::format("on \"{}\" ", impact.obstacle);
+  std::string text = parties_text(impact, summary);
   if (!impact.first_place.empty()) text += fmt::format("first at {} ", place_text(impact.first_place, summary));
   text += fmt::format("from t = {:.6g}", impact.begin);
   if (impact.from_start) text += " (the start)";
@@ -101,8 +130,9 @@ std::string impact_text(std::size_t number, const RunSummary& summary) {
     text += ", not ended";
   }
   if (const auto restitution = impact.restitution()) {
-    text += fmt::format(", restitution {:.4g}{}{}", *restitution,
-                        *restitution < 0.0 ? " (its centre still goes towards the obstacle after the last force)" : "",
+    const char* const inward = impact.other ? " (their centres still come nearer after the last force)"
+                                            : " (its centre still goes towards the obstacle after the last force)";
+    text += fmt::format(", restitution {:.4g}{}{}", *restitution, *restitution < 0.0 ? inward : "",
                         restitution_error_text(impact));
   } else if (impact.ended) {
     text += fmt::format(", no restitution ({})", why_no_restitution(impact));

@@ -12,8 +12,28 @@ namespace {
 std::string found_text(const UnwatchedPenetration& p) {
   const std::string what = p.obstacle.empty() ? fmt::format("{} and {} overlap", p.bodies[0], p.bodies[1])
                                               : fmt::format("{} in \"{}\"", p.bodies[0], p.obstacle);
-  return fmt::format("\n  PENETRATION WITHOUT CONTACT: {}, {:.3g} deep at t = {:.6g} at ({:.4g})", what, p.depth,
-                     p.time, fmt::join(p.place, ", "));
+  const std::string kind =
+      p.contact.empty() ? "PENETRATION WITHOUT CONTACT"
+                        : fmt::format("PENETRATION AT THE CONTACT of \"{}\" and \"{}\"", p.contact[0], p.contact[1]);
+  return fmt::format("\n  {}: {}, {:.3g} deep at t = {:.6g} at ({:.4g})", kind, what, p.depth, p.time,
+                     fmt::join(p.place, ", "));
+}
+
+/// Of its limit; less is none.
+constexpr double rounding_of_slip = 1e-6;
+
+/// Of a contact that was pressed somewhere.
+std::string sliding_text(const PairSliding& pair, const RunSummary& s) {
+  if (!(pair.slip > rounding_of_slip * pair.limit)) return "";
+  if (pair.contact < 0 || pair.contact >= static_cast<int>(s.contacts.size())) return "";
+  const ContactDescription& contact = s.contacts[static_cast<std::size_t>(pair.contact)];
+  std::string text = fmt::format("\n  \"{}\" and \"{}\" slid along each other by up to {:.3g} while pressed",
+                                 contact.group, contact.opponent, pair.slip);
+  if (pair.is_beyond()) {
+    text += fmt::format(" (BEYOND SMALL SLIDING from t = {:.6g}: more than half of the smaller facet, {:.3g})",
+                        pair.time_beyond, pair.limit);
+  }
+  return text;
 }
 
 /// Since when cells have turned too far. What comes after the last impact does not change what it came to.
@@ -39,6 +59,7 @@ std::string deformation_text(const RunSummary& s) {
   for (const UnwatchedPenetration& found : s.penetration.found) text += found_text(found);
   for (const ContactBeyondRim& rim : s.penetration.rims)
     text += fmt::format("\n  the contact of \"{}\" with \"{}\" goes on beyond its group", rim.group, rim.obstacle);
+  for (const PairSliding& pair : s.sliding) text += sliding_text(pair, s);
   return text;
 }
 

@@ -13,6 +13,7 @@
 #include "ricochet/simulation/impacts.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
 #include "ricochet/simulation/penetration_watch.hpp"
+#include "ricochet/simulation/sliding_watch.hpp"
 #include "support/case_run.hpp"
 #include "support/grid_matrix.hpp"
 #include "support/thrown_body.hpp"
@@ -126,12 +127,14 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
       overrides.push_back("time.end=3.0");
       const std::string motion = GetParam().moving ? motion_of_obstacle(bodies[body].dimension) : "";
       CaseRun run(thrown_case(bodies[body], GetParam().mass, GetParam().time, GetParam().contact, motion), overrides);
-      HistoryRecorder recorder(run.problem(), *run.model().rotation, run.model().sensors);
+      HistoryRecorder recorder(run.problem(), *run.model().rotation, run.model().sensors, run.model().history_bodies);
       const ConnectedBodies connected = find_connected_bodies(run.model().space);
-      ImpactRecorder impacts(run.problem(), run.scheme(), run.state(), {"plane"}, connected.of_node, {0.1});
+      ImpactRecorder impacts(run.problem(), run.scheme(), run.state(), run.model().contact_pairs, connected.of_node,
+                             {0.1});
       PeakStress peak(run.model().body, 1e30);
       PenetrationWatch watch(run.model().body, run.problem(), run.model().contact_pairs,
                              {{"floor", run.model().obstacles.front().get()}});
+      SlidingWatch sliding(run.model().body, run.problem(), run.model().contact_pairs);
       std::vector<ContactStatus> status;
       long same = 0;
       Tally apart, in_contact;
@@ -142,6 +145,7 @@ TEST_P(StepAllocations, AreNoneUnlessTheContactGrows) {
         impacts.enter_step(run.state(), run.simulation().account().of_method(run.state()));
         peak.enter(run.state(), false);
         watch.look(run.state());
+        sliding.look(run.state());
         const long count = allocation_count() - before;
         same = run.state().contact_status == status ? same + 1 : 0;
         status = run.state().contact_status;

@@ -30,11 +30,10 @@ using test_support::ThrownBody;
 const std::string trapezoidal = "scheme = \"newmark\"\npreset = \"trapezoidal\"\n";
 
 ImpactRecorder make_recorder(CaseRun& run) {
-  std::vector<std::string> obstacles;
-  for (const ContactPair& pair : run.model().contact_pairs) obstacles.push_back(pair.obstacle_name);
   const ConnectedBodies bodies = find_connected_bodies(run.model().space);
-  return {run.problem(), run.scheme(),   run.state(),
-          obstacles,     bodies.of_node, wave_crossing_times(run.model().body, bodies)};
+  return {run.problem(),  run.scheme(),
+          run.state(),    run.model().contact_pairs,
+          bodies.of_node, wave_crossing_times(run.model().body, bodies)};
 }
 
 double of_method(CaseRun& run) {

@@ -35,6 +35,8 @@ export function columnName(column: string): string {
     max_rotation: "largest rotation",
     load_potential: "load potential",
   };
+  const pair = /^pair_force\.(\d+)_([xyz])$/.exec(column);
+  if (pair) return `between bodies, contact ${pair[1]}, ${pair[2]}`;
   const at = column.indexOf(".");
   const probe = at < 0 ? "" : column.slice(0, at);
   const rest = at < 0 ? column : column.slice(at + 1);

@@ -61,8 +61,8 @@ Section probe_section() {
            .type = KeyType::integer,
            .unit = "1",
            .range = nonnegative,
-           .doc = "Number of an entry of [[contact]], from 0. Columns: its force on the body NAME.force_x …, its "
-                  "centre of "
+           .doc = "Number of an entry of [[contact]], from 0. Columns: its force on the body NAME.force_x …, between "
+                  "bodies on that of its \"group\", its centre of "
                   "pressure NAME.centre_x … (0 while it is open) and its area in contact NAME.area (a length in 2D)."},
           {.name = "every",
            .type = KeyType::integer,

@@ -232,7 +232,8 @@ ProbeSection read_probe(const SectionReader& reader, Case& result) {
   };
   only_with("within", "from");
   only_with("about", "boundary");
-  const std::vector<std::string> columns = history_column_names();
+  std::vector<std::string> columns = history_column_names();
+  for (const char* name : {"momentum", "pair_force"}) columns.emplace_back(name);  // of bodies and pairs, before a dot
   if (reader.is_usable("name") && !is_plain_name(probe.name)) {
     reader.add_problem("name", fmt::format("the name \"{}\" can only have letters, digits, _ and -", probe.name));
   } else if (std::find(columns.begin(), columns.end(), probe.name) != columns.end()) {

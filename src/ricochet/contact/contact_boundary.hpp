@@ -42,11 +42,18 @@ struct ContactPair {
   // Against another group:
   std::string opposite_group = {};
   std::vector<Index> opposite_facets = {};
-  Vector pair_at = {};       ///< displacement of the group's body at which facets are paired; empty: none
-  bool closed_gaps = false;  ///< initial gaps below zero are taken for zero
-  bool tied = false;         ///< glued (tied_surfaces.hpp): there are no contact points
+  Vector pair_at = {};           ///< displacement of the group's body at which facets are paired; empty: none
+  bool closed_gaps = false;      ///< initial gaps below zero are taken for zero
+  bool tied = false;             ///< glued (tied_surfaces.hpp): there are no contact points
+  bool exchanged = false;        ///< the case names `opposite_group` first: reports give forces on its body
+  std::string side_reason = {};  ///< why `group` carries the multipliers; empty: the case says which one does
 
   [[nodiscard]] bool between_bodies() const { return obstacle == nullptr; }
+  /// Between bodies, and with contact points.
+  [[nodiscard]] bool has_two_sides() const { return between_bodies() && !tied; }
+  /// The two groups in the order of the case.
+  [[nodiscard]] const std::string& first_group() const { return exchanged ? opposite_group : group; }
+  [[nodiscard]] const std::string& second_group() const { return exchanged ? group : opposite_group; }
   /// For messages: obstacle "floor", group "plate.top".
   [[nodiscard]] std::string opponent() const {
     return between_bodies() ? "group \"" + opposite_group + '"' : "obstacle \"" + obstacle_name + '"';

@@ -54,15 +54,32 @@ Json probes_to_json(const RunSummary& summary) {
 Json contacts_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (const ContactDescription& c : summary.contacts) {
-    result.push_back({{"group", c.group},
-                      {c.between_bodies ? "against" : "obstacle", c.opponent},
-                      {"multipliers", c.multipliers},
-                      {"friction", c.friction},
-                      {"friction_bound", c.friction_bound},
-                      {"obstacle_velocity", c.obstacle_velocity},
-                      {"obstacle_rotation_rate", c.obstacle_rotation_rate}});
+    Json entry = {{"group", c.group},
+                  {c.between_bodies ? "against" : "obstacle", c.opponent},
+                  {"multipliers", c.multipliers},
+                  {"friction", c.friction},
+                  {"friction_bound", c.friction_bound},
+                  {"obstacle_velocity", c.obstacle_velocity},
+                  {"obstacle_rotation_rate", c.obstacle_rotation_rate}};
+    if (c.facing) {
+      entry["facing"] = {{"multipliers_on", c.facing->multipliers_on},
+                         {"reason", c.facing->reason},
+                         {"contact_points", c.facing->points},
+                         {"covered", Json::number(c.facing->covered)},
+                         {"smallest_gap", Json::number(c.facing->smallest_gap)},
+                         {"largest_gap", Json::number(c.facing->largest_gap)}};
+    }
+    result.push_back(std::move(entry));
   }
   return result;
+}
+
+std::optional<FacingDescription> facing_from(const Json& contact) {
+  if (!contact.contains("facing")) return {};
+  const Json& facing = contact.at("facing");
+  return FacingDescription{facing.at("multipliers_on"),           facing.at("reason"),
+                           facing.at("contact_points"),           facing.at("covered").to_number(),
+                           facing.at("smallest_gap").to_number(), facing.at("largest_gap").to_number()};
 }
 
 Json checks_to_json(const RunSummary& summary) {
@@ -116,8 +133,8 @@ double RunSummary::delay_of(const std::string& column) const {
   if (adaptive) return 0.0;  // fractions of steps of many lengths
   if (column.ends_with("_energy") || column == "load_potential" || column.starts_with("momentum"))
     return energy_instant * step;
-  const bool is_force = column.starts_with("contact_force") || column.find(".reaction") != std::string::npos ||
-                        column.find(".pressure") != std::string::npos;
+  const bool is_force = column.starts_with("contact_force") || column.starts_with("pair_force.") ||
+                        column.find(".reaction") != std::string::npos || column.find(".pressure") != std::string::npos;
   return is_force ? force_instant * step : 0.0;
 }
 
@@ -297,7 +314,8 @@ RunSummary read_summary(const std::string& path) {
       const bool between_bodies = contact.contains("against");
       s.contacts.push_back({contact.at("group"), contact.at(between_bodies ? "against" : "obstacle"),
                             contact.at("multipliers"), contact.at("friction"), contact.at("friction_bound"),
-                            contact.at("obstacle_velocity"), contact.at("obstacle_rotation_rate"), between_bodies});
+                            contact.at("obstacle_velocity"), contact.at("obstacle_rotation_rate"), between_bodies,
+                            facing_from(contact)});
     }
     for (const auto& probe : json.at("probes")) {
       s.probes.push_back({probe.at("name"), probe.at("node"), probe.at("distance"),

@@ -13,6 +13,7 @@
 #include "ricochet/simulation/peak_stress_result.hpp"
 #include "ricochet/simulation/penetration_report.hpp"
 #include "ricochet/simulation/probe.hpp"
+#include "ricochet/simulation/sliding_report.hpp"
 #include "ricochet/simulation/step_counts.hpp"
 
 /// @file summary.json: what ran, sizes, timings, extrema, warnings.
@@ -43,6 +44,15 @@ struct CheckResult {
   double largest = 0.0;  ///< what was missing, relative
 };
 
+/// How the two groups of a contact between bodies face each other at the start.
+struct FacingDescription {
+  std::string multipliers_on;  ///< the group that carries the multipliers
+  std::string reason;          ///< why that one; empty: the case says so
+  long points = 0;
+  double covered = 0.0;  ///< part of that group's area that faces the other one
+  double smallest_gap = 0.0, largest_gap = 0.0;
+};
+
 /// A [[contact]] entry as it ran.
 struct ContactDescription {
   std::string group, opponent, multipliers;  ///< the opponent: an obstacle, or a group of another body
@@ -50,6 +60,7 @@ struct ContactDescription {
   std::vector<double> obstacle_velocity = {};  ///< empty: at rest
   double obstacle_rotation_rate = 0.0;
   bool between_bodies = false;
+  std::optional<FacingDescription> facing = {};  ///< none: an obstacle, or it is not known
 };
 
 /// A body of the mesh, and how long its contact must be lost for an impact to have ended.
@@ -145,6 +156,7 @@ struct RunSummary {
   std::optional<MethodEnergy> method_energy = {};  ///< none: results of a version that did not tell
   std::optional<ActingReactions> reactions = {};   ///< none: the scheme has no choice, or likewise
   std::optional<RotationReport> rotation = {};     ///< none: results of a version that did not tell
+  std::vector<PairSliding> sliding = {};           ///< of each contact between bodies
   PenetrationReport penetration = {};  ///< where no contact is; what the contact points do is a column of the history
   std::vector<std::string> warnings;
   std::vector<ExpectationResult> expectations;

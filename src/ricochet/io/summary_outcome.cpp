@@ -53,52 +53,76 @@ Json bodies_to_json(const RunSummary& summary) {
   return result;
 }
 
+/// The other body of an impact of two.
+Json other_to_json(const Impact& impact, int dimension) {
+  const OtherBody& other = *impact.other;
+  const auto if_ended = [&](const Json& value) { return impact.ended ? value : Json(); };
+  return {{"body", other.number},
+          {"other_impulse", if_ended(components(impact.other_impulse_on_other(), dimension))},
+          {"velocity_before", components(other.before.velocity, dimension)},
+          {"velocity_after", if_ended(components(other.after.velocity, dimension))},
+          {"spin_before", turning(other.before.spin, dimension)},
+          {"spin_after", if_ended(turning(other.after.spin, dimension))},
+          {"kinetic_energy_before", Json::number(other.before.kinetic_energy)},
+          {"kinetic_energy_after", if_ended(Json::number(other.after.kinetic_energy))},
+          {"rigid_kinetic_energy_before", Json::number(other.before.rigid_kinetic_energy)},
+          {"rigid_kinetic_energy_after", if_ended(Json::number(other.after.rigid_kinetic_energy))}};
+}
+
+/// After / before, of both bodies where there are two.
+Json kinetic_energy_ratio(const Impact& impact) {
+  const double before = impact.before.kinetic_energy + (impact.other ? impact.other->before.kinetic_energy : 0.0);
+  const double after = impact.after.kinetic_energy + (impact.other ? impact.other->after.kinetic_energy : 0.0);
+  return impact.ended && before > 0.0 ? Json::number(after / before) : Json();
+}
+
 Json impact_to_json(const Impact& impact, int dimension) {
   // What is not known yet, or does not exist, is null.
   const auto if_ended = [&](const Json& value) { return impact.ended ? value : Json(); };
+  const auto of_obstacle = [&](const Json& value) { return impact.other ? Json() : value; };
   const std::optional<double> restitution = impact.restitution();
-  return {{"body", impact.body},
-          {"obstacle", impact.obstacle},
-          {"begin", Json::number(impact.begin)},
-          {"end", if_ended(Json::number(impact.end))},
-          {"duration", Json::number(impact.end - impact.begin)},
-          {"ended", impact.ended},
-          {"from_start", impact.from_start},
-          {"from_inside", impact.from_inside},
-          {"intervals", impact.intervals},
-          {"contact_time", Json::number(impact.contact_time)},
-          {"impulse", components(impact.impulse, dimension)},
-          {"normal", components(impact.normal(), dimension)},
-          {"normal_impulse", Json::number(impact.normal_impulse.norm())},
-          {"other_impulse", if_ended(components(impact.other_impulse(), dimension))},
-          {"largest_force", Json::number(impact.largest_force)},
-          {"largest_force_time", Json::number(impact.largest_force_time)},
-          {"mean_force", Json::number(impact.mean_force())},
-          {"contact_points", impact.contact_points},
-          {"all_contact_points", impact.all_contact_points},
-          {"coarse", impact.is_coarse()},
-          {"first_place", numbers(impact.first_place)},
-          {"restitution", restitution ? Json::number(*restitution) : Json()},
-          {"restitution_inexact", restitution_error(impact).is_large},
-          {"method_energy", impact.method_energy ? Json::number(*impact.method_energy) : Json()},
-          {"why_no_restitution", restitution ? Json() : Json(why_no_restitution(impact))},
-          {"normal_velocity_before", Json::number(impact.normal_velocity_before())},
-          {"normal_velocity_after", if_ended(Json::number(impact.normal_velocity_after()))},
-          {"obstacle_normal_velocity", Json::number(impact.obstacle_velocity)},
-          {"obstacle_sliding_velocity", components(impact.obstacle_sliding, dimension)},
-          {"tangential_velocity_before", components(impact.tangential_velocity_before(), dimension)},
-          {"tangential_velocity_after", if_ended(components(impact.tangential_velocity_after(), dimension))},
-          {"velocity_before", components(impact.before.velocity, dimension)},
-          {"velocity_after", if_ended(components(impact.after.velocity, dimension))},
-          {"spin_before", turning(impact.before.spin, dimension)},
-          {"spin_after", if_ended(turning(impact.after.spin, dimension))},
-          {"kinetic_energy_before", Json::number(impact.before.kinetic_energy)},
-          {"kinetic_energy_after", if_ended(Json::number(impact.after.kinetic_energy))},
-          {"rigid_kinetic_energy_before", Json::number(impact.before.rigid_kinetic_energy)},
-          {"rigid_kinetic_energy_after", if_ended(Json::number(impact.after.rigid_kinetic_energy))},
-          {"kinetic_energy_ratio", impact.ended && impact.before.kinetic_energy > 0.0
-                                       ? Json::number(impact.after.kinetic_energy / impact.before.kinetic_energy)
-                                       : Json()}};
+  Json result = {{"body", impact.body},
+                 {"obstacle", of_obstacle(impact.obstacle)},
+                 {"begin", Json::number(impact.begin)},
+                 {"end", if_ended(Json::number(impact.end))},
+                 {"duration", Json::number(impact.end - impact.begin)},
+                 {"ended", impact.ended},
+                 {"from_start", impact.from_start},
+                 {"from_inside", impact.from_inside},
+                 {"intervals", impact.intervals},
+                 {"contact_time", Json::number(impact.contact_time)},
+                 {"impulse", components(impact.impulse, dimension)},
+                 {"normal", components(impact.normal(), dimension)},
+                 {"normal_impulse", Json::number(impact.normal_impulse.norm())},
+                 {"other_impulse", if_ended(components(impact.other_impulse(), dimension))},
+                 {"largest_force", Json::number(impact.largest_force)},
+                 {"largest_force_time", Json::number(impact.largest_force_time)},
+                 {"mean_force", Json::number(impact.mean_force())},
+                 {"contact_points", impact.contact_points},
+                 {"all_contact_points", impact.all_contact_points},
+                 {"coarse", impact.is_coarse()},
+                 {"first_place", numbers(impact.first_place)},
+                 {"restitution", restitution ? Json::number(*restitution) : Json()},
+                 {"restitution_inexact", restitution_error(impact).is_large},
+                 {"method_energy", impact.method_energy ? Json::number(*impact.method_energy) : Json()},
+                 {"why_no_restitution", restitution ? Json() : Json(why_no_restitution(impact))},
+                 {"normal_velocity_before", Json::number(impact.normal_velocity_before())},
+                 {"normal_velocity_after", if_ended(Json::number(impact.normal_velocity_after()))},
+                 {"obstacle_normal_velocity", of_obstacle(Json::number(impact.obstacle_velocity))},
+                 {"obstacle_sliding_velocity", of_obstacle(components(impact.obstacle_sliding, dimension))},
+                 {"tangential_velocity_before", components(impact.tangential_velocity_before(), dimension)},
+                 {"tangential_velocity_after", if_ended(components(impact.tangential_velocity_after(), dimension))},
+                 {"velocity_before", components(impact.before.velocity, dimension)},
+                 {"velocity_after", if_ended(components(impact.after.velocity, dimension))},
+                 {"spin_before", turning(impact.before.spin, dimension)},
+                 {"spin_after", if_ended(turning(impact.after.spin, dimension))},
+                 {"kinetic_energy_before", Json::number(impact.before.kinetic_energy)},
+                 {"kinetic_energy_after", if_ended(Json::number(impact.after.kinetic_energy))},
+                 {"rigid_kinetic_energy_before", Json::number(impact.before.rigid_kinetic_energy)},
+                 {"rigid_kinetic_energy_after", if_ended(Json::number(impact.after.rigid_kinetic_energy))},
+                 {"kinetic_energy_ratio", kinetic_energy_ratio(impact)}};
+  if (impact.other) result["against"] = other_to_json(impact, dimension);
+  return result;
 }
 
 Json impacts_to_json(const RunSummary& summary) {
@@ -115,7 +139,8 @@ Json found_to_json(const UnwatchedPenetration& p) {
           {"time", Json::number(p.time)},
           {"place", numbers(p.place)},
           {"first_time", Json::number(p.first_time)},
-          {"groups", p.groups}};
+          {"groups", p.groups},
+          {"contact", p.contact.empty() ? Json() : Json(p.contact)}};
 }
 
 /// The deepest first, by itself, so that it can be named by its path (summary.unwatched_penetration.depth); then all.
@@ -137,6 +162,19 @@ Json penetration_to_json(const PenetrationReport& report) {
           {"relative_depth", Json::number(deepest != nullptr ? deepest->relative_depth : 0.0)},
           {"found", found},
           {"contact_beyond_rim", rims}};
+}
+
+Json sliding_to_json(const RunSummary& summary) {
+  Json result = Json::array();
+  for (const PairSliding& pair : summary.sliding) {
+    result.push_back({{"contact", pair.contact},
+                      {"slip", Json::number(pair.slip)},
+                      {"limit", Json::number(pair.limit)},
+                      {"time", Json::number(pair.time)},
+                      {"place", numbers(pair.place)},
+                      {"time_beyond", std::isfinite(pair.time_beyond) ? Json::number(pair.time_beyond) : Json()}});
+  }
+  return result;
 }
 
 Json rotation_to_json(const RunSummary& summary) {
@@ -174,10 +212,27 @@ RigidMotionState motion_from(const Json& impact, const std::string& when) {
           impact.at("kinetic_energy_" + when).to_number(), impact.at("rigid_kinetic_energy_" + when).to_number()};
 }
 
+double mass_of(int body, const std::vector<BodyDescription>& bodies, const std::string& path) {
+  if (body < 0 || body >= static_cast<int>(bodies.size()))
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: not a summary of a run: an impact is of body {}, which it does not list", path, body));
+  return bodies[static_cast<std::size_t>(body)].rigid.mass;
+}
+
+OtherBody other_from(const Json& json, bool ended, const std::vector<BodyDescription>& bodies,
+                     const std::string& path) {
+  OtherBody other;
+  other.number = json.at("body");
+  other.mass = mass_of(other.number, bodies, path);
+  other.before = motion_from(json, "before");
+  if (ended) other.after = motion_from(json, "after");
+  return other;
+}
+
 Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies, const std::string& path) {
   Impact impact;
   impact.body = json.at("body");
-  impact.obstacle = json.at("obstacle");
+  if (json.at("obstacle").is_string()) impact.obstacle = json.at("obstacle");
   impact.begin = json.at("begin").to_number();
   impact.end = impact.begin + json.at("duration").to_number();
   impact.ended = json.at("ended");
@@ -194,13 +249,13 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies,
   impact.first_place = to_numbers(json.value("first_place", Json::array()));
   const Json method_energy = json.value("method_energy", Json());
   if (method_energy.is_number() || method_energy.is_string()) impact.method_energy = method_energy.to_number();
-  impact.obstacle_velocity = json.at("obstacle_normal_velocity").to_number();
-  impact.obstacle_sliding = vector_from(json.value("obstacle_sliding_velocity", Json::array()));
-  if (impact.body < 0 || impact.body >= static_cast<int>(bodies.size()))
-    throw Error(
-        ErrorKind::invalid_input,
-        fmt::format("{}: not a summary of a run: an impact is of body {}, which it does not list", path, impact.body));
-  impact.mass = bodies[static_cast<std::size_t>(impact.body)].rigid.mass;
+  impact.mass = mass_of(impact.body, bodies, path);
+  if (json.contains("against")) {
+    impact.other = other_from(json.at("against"), impact.ended, bodies, path);
+  } else {
+    impact.obstacle_velocity = json.at("obstacle_normal_velocity").to_number();
+    impact.obstacle_sliding = vector_from(json.value("obstacle_sliding_velocity", Json::array()));
+  }
   impact.before = motion_from(json, "before");
   if (impact.ended) impact.after = motion_from(json, "after");
   return impact;
@@ -222,14 +277,32 @@ BodyDescription body_from(const Json& json) {
 PenetrationReport penetration_from(const Json& json) {
   PenetrationReport report{json.at("checked"), json.at("looks_at_obstacles"), json.at("looks_at_bodies")};
   for (const Json& p : json.at("found")) {
-    report.found.push_back({p.at("obstacle").is_string() ? p.at("obstacle").get<std::string>() : "", p.at("bodies"),
-                            p.at("depth").to_number(), p.at("relative_depth").to_number(), p.at("time").to_number(),
-                            to_numbers(p.at("place")), p.at("first_time").to_number(), p.at("groups")});
+    report.found.push_back({p.at("obstacle").is_string() ? p.at("obstacle").get<std::string>() : "",
+                            p.at("bodies"),
+                            p.at("depth").to_number(),
+                            p.at("relative_depth").to_number(),
+                            p.at("time").to_number(),
+                            to_numbers(p.at("place")),
+                            p.at("first_time").to_number(),
+                            p.at("groups"),
+                            {}});
+    if (p.contains("contact") && p.at("contact").is_array()) report.found.back().contact = p.at("contact");
   }
   for (const Json& rim : json.at("contact_beyond_rim"))
     report.rims.push_back({rim.at("group"), rim.at("obstacle"), rim.at("time").to_number(), to_numbers(rim.at("place")),
                            rim.at("groups")});
   return report;
+}
+
+PairSliding sliding_from(const Json& json) {
+  PairSliding pair;
+  pair.contact = json.at("contact");
+  pair.slip = json.at("slip").to_number();
+  pair.limit = json.at("limit").to_number();
+  pair.time = json.at("time").to_number();
+  pair.place = to_numbers(json.at("place"));
+  if (json.at("time_beyond").is_number()) pair.time_beyond = json.at("time_beyond").to_number();
+  return pair;
 }
 
 RotationReport rotation_from(const Json& json) {
@@ -261,6 +334,7 @@ Json outcome_to_json(const RunSummary& summary) {
           {"bodies", bodies_to_json(summary)},
           {"impacts", impacts_to_json(summary)},
           {"impacts_left_out", summary.impacts_left_out},
+          {"sliding", sliding_to_json(summary)},
           {"rotation", rotation_to_json(summary)},
           {"peak_stress", peak_stress_to_json(summary)}};
 }
@@ -270,6 +344,7 @@ void read_outcome(const Json& json, const std::string& path, RunSummary& summary
   for (const Json& body : json.value("bodies", Json::array())) summary.bodies.push_back(body_from(body));
   for (const Json& impact : json.value("impacts", Json::array()))
     summary.impacts.push_back(impact_from(impact, summary.bodies, path));
+  for (const Json& pair : json.value("sliding", Json::array())) summary.sliding.push_back(sliding_from(pair));
   summary.impacts_left_out = json.value("impacts_left_out", 0L);
   if (json.contains("rotation") && json.at("rotation").is_object())
     summary.rotation = rotation_from(json.at("rotation"));

@@ -289,6 +289,7 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   add_motions(input, *model);
   check_body_overlaps(input, *model);
   check_obstacles(input, *model);
+  add_standing_columns(*model);
   add_probes(input, *model);
   model->rotation = std::make_unique<RotationGauge>(model->body);
   model_seconds += timer.restart();

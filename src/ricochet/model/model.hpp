@@ -30,6 +30,7 @@ struct Model {
   bool contains_rotations = true;                ///< false: degree 1 on curved cells
   std::vector<Probe> probes;                     ///< the nodes that are watched, those of segments too
   std::vector<std::shared_ptr<Sensor>> sensors;  ///< with a column in history.csv
+  HistoryBodies history_bodies;                  ///< with columns of their own
   /// Those with a file of their own, by the steps between its rows.
   std::map<long, std::vector<std::shared_ptr<Sensor>>> sampled_sensors;
   std::unique_ptr<RotationGauge> rotation;

@@ -57,7 +57,9 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
     std::swap(pair.group, pair.opposite_group);
     std::swap(pair.facets, pair.opposite_facets);
     if (pair.pair_at.size() > 0) pair.pair_at = -pair.pair_at;
+    pair.exchanged = true;
   }
+  pair.side_reason = choice.reason;
   if (is_chosen) {
     log::info(fmt::format("contact of \"{}\" against \"{}\": {}: {}", section.group, section.against,
                           pair.tied ? "nodes of \"" + pair.group + "\" follow the other surface"

@@ -59,6 +59,8 @@ void add_initial_conditions(const Case& input, Model& model);
 void check_motions(const Case& input, int dimension);
 /// Adds them to the velocity at the start. Refuses two that move one node.
 void add_motions(const Case& input, Model& model);
+/// Columns of history.csv that follow from the bodies and their contacts.
+void add_standing_columns(Model& model);
 void add_probes(const Case& input, Model& model);
 /// Refuses, or warns of, obstacles that gaps to cannot be found for, or that points and steps may miss.
 void check_obstacles(const Case& input, const Model& model);

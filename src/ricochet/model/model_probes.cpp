@@ -4,6 +4,8 @@
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/case/keys.hpp"
+#include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/model/model_parts.hpp"
 
 /// @file What [[probe]] asks for.
@@ -13,6 +15,8 @@ namespace {
 
 /// Part of the body's size up to which a node lies on a segment.
 constexpr double on_segment = 1e-6;
+/// Of more bodies than these momenta have no columns: rows would be about nothing else.
+constexpr int most_bodies = 20;
 
 class ProbeMaker {
  public:
@@ -122,20 +126,47 @@ class ProbeMaker {
       refuse(input_, key + ".contact",
              fmt::format("there is no contact {}: the case has {} of them, numbered from 0", *section.contact, count));
     }
-    if (model_.contact_pairs[static_cast<std::size_t>(*section.contact)].tied) {
+    const ContactPair& pair = model_.contact_pairs[static_cast<std::size_t>(*section.contact)];
+    if (pair.tied) {
       refuse(input_, key + ".contact",
              fmt::format("contact {} is tied: it has no contact points whose forces could be watched; use a probe with "
                          "\"group\" for stresses near the surface",
                          *section.contact));
     }
-    add(section, make_contact_sensor(section.name, model_.problem, static_cast<int>(*section.contact)));
+    add(section, make_contact_sensor(section.name, model_.problem, static_cast<int>(*section.contact), pair.exchanged));
   }
 
   const Case& input_;
   Model& model_;
 };
 
+/// What stands in names of columns: the body's name where it has one that can, else its number.
+std::string label_of(const std::string& name, int number) {
+  const std::optional<std::string_view> inner = between(name, "body \"", "\"");
+  return inner && is_plain_name(*inner) ? std::string(*inner) : std::to_string(number);
+}
+
+HistoryBodies bodies_of_history(const Model& model) {
+  ConnectedBodies bodies = find_connected_bodies(model.space);
+  if (bodies.count < 2 || bodies.count > most_bodies) return {};
+  HistoryBodies result;
+  const std::vector<std::string> names = names_of_bodies(model.mesh, bodies);
+  for (int body = 0; body < bodies.count; ++body)
+    result.labels.push_back(label_of(names[static_cast<std::size_t>(body)], body));
+  result.of_node = std::move(bodies.of_node);
+  return result;
+}
+
 }  // namespace
+
+void add_standing_columns(Model& model) {
+  model.history_bodies = bodies_of_history(model);
+  for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
+    const ContactPair& pair = model.contact_pairs[number];
+    if (!pair.has_two_sides()) continue;
+    model.sensors.push_back(make_pair_force_sensor(model.problem, static_cast<int>(number), pair.exchanged));
+  }
+}
 
 void add_probes(const Case& input, Model& model) {
   ProbeMaker maker(input, model);

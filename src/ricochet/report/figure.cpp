@@ -65,6 +65,16 @@ std::string largest_component(const RunData& run, const std::string& vector) {
   return best;
 }
 
+/// Of the force on obstacles, or between two bodies where that changes more.
+std::string force_component(const RunData& run) {
+  std::string best = largest_component(run, "contact_force");
+  for (std::size_t i = 0; i < run.summary.contacts.size(); ++i) {
+    const std::string pair = largest_component(run, fmt::format("pair_force.{}", i));
+    if (!pair.empty() && spread(run.column(pair)) > spread(run.column(best))) best = pair;
+  }
+  return best;
+}
+
 std::string in_words(std::string column) {
   std::replace(column.begin(), column.end(), '_', ' ');
   if (const std::size_t dot = column.find('.'); dot != std::string::npos) column.replace(dot, 1, ": ");
@@ -74,7 +84,7 @@ std::string in_words(std::string column) {
 Quantity quantity_of(const std::string& what, const RunData& run) {
   if (what == "energy") return {"total_energy", "total energy", true};
   if (what == "force" || what == "momentum") {
-    const std::string column = largest_component(run, what == "force" ? "contact_force" : "momentum");
+    const std::string column = what == "force" ? force_component(run) : largest_component(run, "momentum");
     return {column, in_words(column), what == "force"};
   }
   if (what == "pressure") {

@@ -1,7 +1,8 @@
 #include "ricochet/report/judgement.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -82,13 +83,36 @@ void judge_energy(const RunData& run, Judgement& result) {
   result.energy_residual = largest_magnitude(run.column("energy_residual"));
 }
 
-constexpr std::array force_columns{"contact_force_x", "contact_force_y", "contact_force_z"};
+/// Of a vector.
+std::vector<std::string> components_of(const RunData& run, const std::string& name) {
+  std::vector<std::string> result;
+  for (const char* const axis : {"_x", "_y", "_z"}) {
+    if (run.has_column(name + axis)) result.push_back(name + axis);
+  }
+  return result;
+}
+
+double largest_magnitude(const RunData& run, const std::vector<std::string>& columns) {
+  double result = 0.0;
+  for (const std::string& column : columns) result = std::max(result, largest_magnitude(run.column(column)));
+  return result;
+}
+
+/// The force that is judged: that on obstacles, or between two bodies where that is larger.
+std::vector<std::string> force_columns(const RunData& run) {
+  std::vector<std::string> best = components_of(run, "contact_force");
+  for (std::size_t i = 0; i < run.summary.contacts.size(); ++i) {
+    const std::vector<std::string> pair = components_of(run, fmt::format("pair_force.{}", i));
+    if (largest_magnitude(run, pair) > largest_magnitude(run, best)) best = pair;
+  }
+  return best;
+}
 
 /// The component of the resultant in which most happens.
 std::string resultant_column(const RunData& run) {
-  std::string best = force_columns.front();
-  for (const char* column : force_columns) {
-    if (run.has_column(column) && largest_magnitude(run.column(column)) > largest_magnitude(run.column(best)))
+  std::string best = "contact_force_x";
+  for (const std::string& column : force_columns(run)) {
+    if (!run.has_column(best) || largest_magnitude(run.column(column)) > largest_magnitude(run.column(best)))
       best = column;
   }
   return best;
@@ -112,14 +136,13 @@ Variation variation_of(const std::vector<double>& force) {
 }
 
 void judge_force(const RunData& run, Judgement& result) {
+  const std::vector<std::string> columns = force_columns(run);
   result.force = resultant_column(run);
   const std::vector<double>& force = run.column(result.force);
   const std::vector<double>& times = run.times_of(result.force);
   for (std::size_t i = 0; i < force.size(); ++i) {
     double length = 0.0;
-    for (const char* column : force_columns) {
-      if (run.has_column(column)) length = std::hypot(length, run.column(column)[i]);
-    }
+    for (const std::string& column : columns) length = std::hypot(length, run.column(column)[i]);
     if (!(length > result.force_largest)) continue;
     result.force_largest = length;
     result.force_largest_at = times[i];
@@ -162,9 +185,7 @@ Judgement judge(const RunData& run) {
   judge_energy(run, result);
   judge_force(run, result);
   std::vector<std::string> forces{result.force};
-  for (const char* column : force_columns) {
-    if (run.has_column(column)) forces.emplace_back(column);
-  }
+  for (const std::string& column : force_columns(run)) forces.push_back(column);
   if (!result.node_force.empty()) forces.push_back(result.node_force);
   result.force_broken_at = broken_at(run, forces);
   result.penetration_broken_at = broken_at(run, {"max_penetration"});

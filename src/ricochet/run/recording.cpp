@@ -29,11 +29,9 @@ HistoryWriter open_history(const std::string& path, const std::vector<std::strin
 }
 
 ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, const State& state) {
-  std::vector<std::string> obstacles;
-  for (const ContactPair& pair : model.contact_pairs) obstacles.push_back(pair.obstacle_name);
   ConnectedBodies bodies = find_connected_bodies(model.space);
   std::vector<double> separation = wave_crossing_times(model.body, bodies);
-  ImpactRecorder impacts(model.problem, scheme, state, std::move(obstacles), std::move(bodies.of_node),
+  ImpactRecorder impacts(model.problem, scheme, state, model.contact_pairs, std::move(bodies.of_node),
                          std::move(separation));
   if (!model.initial.static_equilibrium)
     impacts.begin_inside(points_inside(model.problem, model.initial.displacement).points);
@@ -106,7 +104,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
                      const std::string& directory, long steps, std::size_t factor_entries, const Snapshot* snapshot)
     : fields_(input, steps, model.problem.dof_count(), snapshot),
       results_(fields_.any() ? open_results(input.output, model, directory, snapshot) : nullptr),
-      recorder_(model.problem, *model.rotation, model.sensors),
+      recorder_(model.problem, *model.rotation, model.sensors, model.history_bodies),
       history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot, "history")),
       checks_(input, model, scheme, state, recorder_.columns(), snapshot),
       model_(model),
@@ -114,6 +112,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       impacts_(make_impact_recorder(model, scheme, state)),
       peak_stress_(model.body, step_work(model.body, factor_entries)),
       penetration_(make_penetration_watch(input, model)),
+      sliding_(model.body, model.problem, model.contact_pairs),
       rotation_(model.body, column_index(recorder_.columns(), "max_rotation")),
       method_(scheme.acting_reactions(model.problem)),
       history_every_(input.output.history_every.value_or(scheme.history_every())) {
@@ -128,6 +127,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   impacts_.load(*snapshot, "impacts");
   peak_stress_.load(*snapshot, "peak_stress");
   penetration_.load(*snapshot, "penetration");
+  sliding_.load(*snapshot, "sliding");
   rotation_.load(*snapshot, "rotation");
   method_.load(*snapshot, "method");
 }
@@ -145,6 +145,7 @@ void Recording::record(const State& state, EnergyAccount& account) {
   if (state.step % history_every_ == 0) write_row(state, account);
   const Timer watch_timer;
   penetration_.look(state);
+  sliding_.look(state);
   watch_seconds_ += watch_timer.seconds();
   for (Sampled& sampled : sampled_) {
     if (state.step % sampled.every == 0) sampled.file.write(sampled.recorder.row(state));
@@ -205,6 +206,7 @@ void Recording::save(Snapshot& snapshot) {
   impacts_.save(snapshot, "impacts");
   peak_stress_.save(snapshot, "peak_stress");
   penetration_.save(snapshot, "penetration");
+  sliding_.save(snapshot, "sliding");
   rotation_.save(snapshot, "rotation");
   method_.save(snapshot, "method");
 }
@@ -220,6 +222,7 @@ void Recording::describe(RunSummary& summary) const {
   summary.impacts = impacts_.impacts();
   summary.impacts_left_out = impacts_.left_out();
   summary.penetration = penetration_.report();
+  summary.sliding = sliding_.report();
   summary.rotation = RotationReport{rotation_limit, rotation_.time_beyond_limit(), {}};
   for (const Impact& impact : summary.impacts)
     summary.rotation->until_impact_end.push_back(rotation_.largest_until(impact.end));

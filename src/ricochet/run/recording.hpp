@@ -13,6 +13,7 @@
 #include "ricochet/simulation/impacts.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
 #include "ricochet/simulation/penetration_watch.hpp"
+#include "ricochet/simulation/sliding_watch.hpp"
 
 /// @file Everything that is written while a run goes on: history and fields.
 namespace ricochet {
@@ -87,6 +88,7 @@ class Recording {
   ImpactRecorder impacts_;
   PeakStress peak_stress_;
   PenetrationWatch penetration_;
+  SlidingWatch sliding_;
   RotationWatch rotation_;
   MethodWatch method_;
   long history_every_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "ricochet/linear_algebra/library_versions.hpp"
@@ -31,6 +32,20 @@ std::vector<ContactDescription> describe_contacts(const Case& input) {
     result.push_back({contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound,
                       of_obstacle.has("velocity") ? of_obstacle.vector("velocity") : std::vector<double>(),
                       of_obstacle.has("rotation_rate") ? of_obstacle.number("rotation_rate") : 0.0, false});
+  }
+  return result;
+}
+
+std::optional<FacingDescription> describe_facing(const Model& model, std::size_t contact) {
+  const ContactPair& pair = model.contact_pairs[contact];
+  if (!pair.has_two_sides()) return {};
+  const PairFacing& facing = model.pair_facings[contact];
+  FacingDescription result{pair.group, pair.side_reason, facing.points};
+  result.covered = facing.area > 0.0 ? facing.covered / facing.area : 0.0;
+  const auto without_rounding = [&](double gap) { return std::abs(gap) <= facing.gap_rounding ? 0.0 : gap; };
+  if (facing.points > 0) {
+    result.smallest_gap = without_rounding(facing.smallest_gap);
+    result.largest_gap = without_rounding(facing.largest_gap);
   }
   return result;
 }
@@ -67,6 +82,7 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.energy_instant = scheme.energy_instant();
   summary.force_instant = scheme.force_instant();
   summary.contacts = describe_contacts(input);
+  for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
   summary.probes = model.probes;
   for (Probe& probe : summary.probes) {
     const Vector at = model.space.nodes.col(probe.node);

@@ -19,7 +19,7 @@ constexpr double resolution_of_found = 4.0;
 
 BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cells,
                      const std::vector<CellFacet>& boundary, const ConnectedBodies& bodies,
-                     const std::vector<double>& size)
+                     const std::vector<double>& size, const std::vector<KeptNode>& kept)
     : positions_(positions) {
   if (bodies.count < 2) return;
   std::vector<std::vector<CellFacet>> facets(static_cast<std::size_t>(bodies.count));
@@ -36,13 +36,33 @@ BodyWatch::BodyWatch(const Points& positions, const std::vector<CellBlock>& cell
     nodes_.insert(nodes_.end(), nodes.begin(), nodes.end());
   }
   seen_.setZero(static_cast<Index>(nodes_.size()) * positions.rows());
+  take_kept(kept, bodies);
 }
 
-void BodyWatch::look(const Vector& displacement, double time, bool now) {
+void BodyWatch::take_kept(const std::vector<KeptNode>& kept, const ConnectedBodies& bodies) {
+  for (const KeptNode& one : kept) {
+    const int of = bodies.of_node[static_cast<std::size_t>(one.node)];
+    const std::vector<Index>& nodes = surfaces_[static_cast<std::size_t>(of)].nodes();
+    const auto at = std::lower_bound(nodes.begin(), nodes.end(), one.node);
+    if (at == nodes.end() || *at != one.node) continue;
+    std::vector<Kept>& list = kept_[{of, one.other}];
+    list.resize(nodes.size());
+    Kept& entry = list[static_cast<std::size_t>(at - nodes.begin())];
+    if (one.allowance > entry.allowance) entry = {one.allowance, one.contact, one.entry};
+  }
+}
+
+/// Gaps of nodes that face nothing are no numbers.
+double BodyWatch::Kept::depth_allowed(const Vector& gap) const {
+  return allowance + (gap[entry] < 0.0 ? -gap[entry] : 0.0);
+}
+
+void BodyWatch::look(const Vector& displacement, double time, bool now, const NodeGaps& gaps) {
   if (surfaces_.empty()) return;
   const bool due = looks_ == 0 || is_due(displacement);
   if (!due && !now) return;
   for (BodySurface& surface : surfaces_) surface.move(positions_, displacement);
+  gap_ = kept_.empty() ? nullptr : &gaps();
   double apart = std::numeric_limits<double>::infinity();
   const int count = static_cast<int>(surfaces_.size());
   for (int first = 0; first < count; ++first) {
@@ -86,6 +106,7 @@ double BodyWatch::look_at_nodes(int of, int inside, double time) {
   const BodySurface& other = surfaces_[static_cast<std::size_t>(inside)];
   const double size = std::min(size_[static_cast<std::size_t>(of)], size_[static_cast<std::size_t>(inside)]);
   double apart = std::numeric_limits<double>::infinity();
+  const auto kept = kept_.find({of, inside});
   for (std::size_t i = 0; i < own.nodes().size(); ++i) {
     const Eigen::Vector3d& position = own.positions()[i];
     double distance = other.box().exteriorDistance(position);
@@ -93,7 +114,15 @@ double BodyWatch::look_at_nodes(int of, int inside, double time) {
     apart = std::min(apart, std::abs(distance));
     const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * position.lpNorm<Eigen::Infinity>();
     if (-distance <= std::max(rounding_of_depth * size, rounding)) continue;
-    pair_of(std::min(of, inside), std::max(of, inside)).deepest.enter(own.nodes()[i], -distance, time, position);
+    const Kept here = kept != kept_.end() ? kept->second[i] : Kept{};
+    if (here.contact >= 0 && -distance <= here.depth_allowed(*gap_)) continue;
+    BodyPair& pair = pair_of(std::min(of, inside), std::max(of, inside));
+    if (here.contact < 0) {
+      pair.deepest.enter(own.nodes()[i], -distance, time, position);
+    } else if (-distance > pair.at_contact.depth) {
+      pair.at_contact.enter(own.nodes()[i], -distance, time, position);
+      pair.contact = here.contact;
+    }
   }
   return apart;
 }
@@ -107,16 +136,16 @@ BodyPair& BodyWatch::pair_of(int first, int second) {
   for (BodyPair& pair : pairs_) {
     if (pair.first == first && pair.second == second) return pair;
   }
-  pairs_.push_back({first, second, {}});
+  pairs_.push_back({first, second, {}, {}, -1});
   return pairs_.back();
 }
 
 void BodyWatch::save(Snapshot& snapshot, const std::string& name) const {
-  constexpr Index numbers = 2 + DeepestPoint::numbers;
+  constexpr Index numbers = 3 + 2 * DeepestPoint::numbers;
   Vector pairs(numbers * static_cast<Index>(pairs_.size()));
   for (std::size_t i = 0; i < pairs_.size(); ++i)
-    pairs.segment<numbers>(numbers * static_cast<Index>(i)) << pairs_[i].first, pairs_[i].second,
-        pairs_[i].deepest.to_numbers();
+    pairs.segment<numbers>(numbers * static_cast<Index>(i)) << pairs_[i].first, pairs_[i].second, pairs_[i].contact,
+        pairs_[i].deepest.to_numbers(), pairs_[i].at_contact.to_numbers();
   snapshot.save(name + ".pairs", pairs);
   snapshot.save(name + ".seen", seen_);
   snapshot.save(name + ".free_way", free_way_);
@@ -124,12 +153,14 @@ void BodyWatch::save(Snapshot& snapshot, const std::string& name) const {
 }
 
 void BodyWatch::load(const Snapshot& snapshot, const std::string& name) {
-  constexpr Index numbers = 2 + DeepestPoint::numbers;
+  constexpr Index numbers = 3 + 2 * DeepestPoint::numbers;
   const Vector& pairs = snapshot.reals(name + ".pairs");
   pairs_.clear();
   for (Index i = 0; i + numbers <= pairs.size(); i += numbers)
     pairs_.push_back({static_cast<int>(pairs[i]), static_cast<int>(pairs[i + 1]),
-                      DeepestPoint::from_numbers(pairs.segment<DeepestPoint::numbers>(i + 2))});
+                      DeepestPoint::from_numbers(pairs.segment<DeepestPoint::numbers>(i + 3)),
+                      DeepestPoint::from_numbers(pairs.segment<DeepestPoint::numbers>(i + 3 + DeepestPoint::numbers)),
+                      static_cast<int>(pairs[i + 2])});
   seen_ = snapshot.reals(name + ".seen", seen_.size());
   free_way_ = snapshot.real(name + ".free_way");
   looks_ = snapshot.integer(name + ".looks");

@@ -60,8 +60,10 @@ Columns HistoryRecorder::standard_columns(int dimension) {
   return columns;
 }
 
-Columns HistoryRecorder::columns_of(int dimension, const std::vector<std::shared_ptr<Sensor>>& sensors) {
+Columns HistoryRecorder::columns_of(int dimension, const std::vector<std::shared_ptr<Sensor>>& sensors,
+                                    const HistoryBodies& bodies) {
   Columns columns = standard_columns(dimension);
+  for (const std::string& label : bodies.labels) add_vector_columns(columns, "momentum." + label, dimension);
   for (const auto& sensor : sensors) {
     for (const Column& column : sensor->columns()) columns.push_back(column);
   }
@@ -69,13 +71,15 @@ Columns HistoryRecorder::columns_of(int dimension, const std::vector<std::shared
 }
 
 HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
-                                 std::vector<std::shared_ptr<Sensor>> sensors)
+                                 std::vector<std::shared_ptr<Sensor>> sensors, HistoryBodies bodies)
     : problem_(problem),
       rotation_(rotation),
       observer_(problem),
       sensors_(std::move(sensors)),
-      columns_(names_of(columns_of(problem.dimension, sensors_))),
-      reductions_(reductions_of(columns_of(problem.dimension, sensors_))) {
+      bodies_(std::move(bodies)),
+      body_momentum_(bodies_.labels.size() * static_cast<std::size_t>(problem.dimension)),
+      columns_(names_of(columns_of(problem.dimension, sensors_, bodies_))),
+      reductions_(reductions_of(columns_of(problem.dimension, sensors_, bodies_))) {
   row_.reserve(columns_.size());
   weigh_nodes();
 }
@@ -103,6 +107,7 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
   add_momentum(account.velocity(state));
   const Observation observation = observer_.observe(state);
   add_contact_state(observation);
+  row_.insert(row_.end(), body_momentum_.begin(), body_momentum_.end());
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
   problem_.ranks->reduce(row_, reductions_);
   return row_;
@@ -125,6 +130,18 @@ void HistoryRecorder::add_momentum(const Vector& velocity) {
   // The order of the columns.
   append(sum.linear.head(problem_.dimension), row_);
   append(problem_.dimension == 2 ? sum.angular.tail(1) : sum.angular.head(3), row_);
+  if (!bodies_.labels.empty()) sum_of_bodies(values);
+}
+
+void HistoryRecorder::sum_of_bodies(const Vector& values) {
+  const auto d = static_cast<std::size_t>(problem_.dimension);
+  std::fill(body_momentum_.begin(), body_momentum_.end(), 0.0);
+  for (Index node = 0; node < node_weight_.size(); ++node) {
+    double* const own =
+        body_momentum_.data() + d * static_cast<std::size_t>(bodies_.of_node[static_cast<std::size_t>(node)]);
+    for (std::size_t k = 0; k < d; ++k)
+      own[k] += node_weight_[node] * values[node * problem_.dimension + static_cast<Index>(k)];
+  }
 }
 
 void HistoryRecorder::add_contact_state(const Observation& observation) {

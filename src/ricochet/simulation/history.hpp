@@ -44,15 +44,22 @@ class SensorRecorder {
 /// The place of a column that must be there; throws std::logic_error where it is not.
 [[nodiscard]] std::size_t column_index(const std::vector<std::string>& columns, const std::string& name);
 
+/// The bodies of a mesh that have columns of their own; none where there is one body.
+struct HistoryBodies {
+  std::vector<std::string> labels = {};  ///< momentum.LABEL_x
+  std::vector<int> of_node = {};
+};
+
 class HistoryRecorder {
  public:
   HistoryRecorder(const SemidiscreteProblem& problem, const RotationGauge& rotation,
-                  std::vector<std::shared_ptr<Sensor>> sensors = {});
+                  std::vector<std::shared_ptr<Sensor>> sensors = {}, HistoryBodies bodies = {});
 
   /// Names of the columns, in the order of a row.
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
   /// The same of a history that is yet to come.
-  [[nodiscard]] static Columns columns_of(int dimension, const std::vector<std::shared_ptr<Sensor>>& sensors);
+  [[nodiscard]] static Columns columns_of(int dimension, const std::vector<std::shared_ptr<Sensor>>& sensors,
+                                          const HistoryBodies& bodies = {});
   /// The standard columns alone (no sensors), for a body of this dimension: names that a probe cannot have.
   [[nodiscard]] static Columns standard_columns(int dimension);
   /// The row of a state. The reference stays valid until the next call.
@@ -62,12 +69,15 @@ class HistoryRecorder {
   void weigh_nodes();
   void add_contact_force(const State& state);
   void add_momentum(const Vector& velocity);
+  void sum_of_bodies(const Vector& values);
   void add_contact_state(const Observation& observation);
 
   const SemidiscreteProblem& problem_;
   const RotationGauge& rotation_;
   Observer observer_;
   std::vector<std::shared_ptr<Sensor>> sensors_;
+  HistoryBodies bodies_;
+  std::vector<double> body_momentum_;  ///< d of each
   std::vector<std::string> columns_;
   std::vector<Reduction> reductions_;
   std::vector<double> row_;

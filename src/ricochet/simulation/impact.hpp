@@ -9,10 +9,18 @@
 /// @file What one impact came to. When there is one, and of which instants its numbers are: impacts.hpp.
 namespace ricochet {
 
+/// The other body of an impact of two.
+struct OtherBody {
+  int number = 0;
+  double mass = 0.0;
+  RigidMotionState before, after;  ///< `after`: zero where it has not ended
+};
+
 struct Impact {
   int body = 0;
-  std::string obstacle;
-  double begin = 0.0, end = 0.0;  ///< where it has not ended: so far
+  std::string obstacle;            ///< empty where two bodies met
+  std::optional<OtherBody> other;  ///< which takes the opposite of the impulse
+  double begin = 0.0, end = 0.0;   ///< where it has not ended: so far
   bool ended = true;
   bool from_start = false;                                   ///< in contact when the run begins
   bool from_inside = false;                                  ///< begins with the run, as the body starts inside
@@ -22,7 +30,7 @@ struct Impact {
   Eigen::Vector3d normal_impulse = Eigen::Vector3d::Zero();  ///< of their normal parts
   double largest_force = 0.0, largest_force_time = 0.0;      ///< size of the resultant
   long contact_points = 0;                                   ///< most that carried a force at once; 0: not known
-  long all_contact_points = 0;                               ///< of this body with this obstacle
+  long all_contact_points = 0;                               ///< of this body with this obstacle or body
   std::vector<double> first_place = {};                      ///< reference position of the first contact, if known
   double obstacle_velocity = 0.0;                            ///< along the normal, mean over the normal impulse
   /// Of the obstacle's material across its normal, likewise.
@@ -33,12 +41,15 @@ struct Impact {
   /// taken it away. Of older results it is not known.
   std::optional<double> method_energy = {};
 
-  /// Mean direction of the normal impulse, out of the obstacle; zero without one.
+  /// Mean direction of the normal impulse, out of the obstacle or the other body; zero without one.
   [[nodiscard]] Eigen::Vector3d normal() const;
-  /// Of the centre of mass along the normal, relative to the obstacle; negative: it comes nearer.
+  /// Of the centre of mass along the normal, relative to the obstacle or to the other body's; negative: it comes
+  /// nearer.
   [[nodiscard]] double normal_velocity_before() const;
   [[nodiscard]] double normal_velocity_after() const;
-  /// Of the centre of mass, across the normal; not relative to the obstacle.
+  /// The mass m for which ½ m v² is the energy of that approach: the body's, of two bodies m₁m₂/(m₁ + m₂).
+  [[nodiscard]] double approach_mass() const;
+  /// Of the centre of mass, across the normal; not relative to the obstacle or the other body.
   [[nodiscard]] Eigen::Vector3d tangential_velocity_before() const;
   [[nodiscard]] Eigen::Vector3d tangential_velocity_after() const;
   /// −(normal velocity after)/(normal velocity before), where that says something of the impact: restitution.hpp.
@@ -50,8 +61,10 @@ struct Impact {
   [[nodiscard]] bool is_coarse() const {
     return contact_points >= 1 && contact_points <= 3 && contact_points < all_contact_points;
   }
-  /// Of loads, supports, damping and other obstacles, in the same steps.
+  /// On the body, of loads, supports, damping and all other contacts, in the same steps.
   [[nodiscard]] Eigen::Vector3d other_impulse() const;
+  /// The same on the other body; zero where there is none.
+  [[nodiscard]] Eigen::Vector3d other_impulse_on_other() const;
 };
 
 }  // namespace ricochet

@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/simulation/restitution.hpp"
 #include "ricochet/simulation/sensor.hpp"
 
 namespace ricochet {
@@ -43,72 +42,20 @@ void from_numbers(const Vector& numbers, std::vector<Structure>& values) {
 
 }  // namespace
 
-Eigen::Vector3d Impact::normal() const {
-  const double size = normal_impulse.norm();
-  return size > 0.0 ? Eigen::Vector3d(normal_impulse / size) : Eigen::Vector3d::Zero();
-}
-
-double Impact::normal_velocity_before() const {
-  return before.velocity.dot(normal()) - obstacle_velocity;
-}
-
-double Impact::normal_velocity_after() const {
-  return after.velocity.dot(normal()) - obstacle_velocity;
-}
-
-Eigen::Vector3d Impact::tangential_velocity_before() const {
-  return before.velocity - before.velocity.dot(normal()) * normal();
-}
-
-Eigen::Vector3d Impact::tangential_velocity_after() const {
-  return after.velocity - after.velocity.dot(normal()) * normal();
-}
-
-std::optional<double> Impact::restitution() const {
-  if (!why_no_restitution(*this).empty()) return {};
-  return normal_velocity_after() / -normal_velocity_before();
-}
-
-Eigen::Vector3d Impact::other_impulse() const {
-  return ended ? Eigen::Vector3d(mass * (after.velocity - before.velocity) - impulse) : Eigen::Vector3d::Zero();
-}
-
 ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
-                               std::vector<std::string> obstacles, std::vector<int> body_of_node,
+                               const std::vector<ContactPair>& pairs, std::vector<int> body_of_node,
                                std::vector<double> separation)
     : problem_(problem),
       scheme_(scheme),
       rigid_(problem, std::move(body_of_node), static_cast<int>(separation.size())),
       separation_(std::move(separation)) {
-  find_places(obstacles);
+  find_places(pairs);
   open_.assign(places_.size(), Interval{});
   for (std::size_t place = 0; place < places_.size(); ++place) open_[place].place = static_cast<double>(place);
   filed_.reserve(most_impacts);
   current_.resize(places_.size());
   find_forces(state.forces, state.obstacle_increment, previous_);
   take_velocity(state, velocity_before_);
-}
-
-void ImpactRecorder::find_places(const std::vector<std::string>& obstacles) {
-  const ContactBoundary& contact = problem_.contact;
-  for (Index point = 0; point < contact.size(); ++point) {
-    const int body = rigid_.body_of_node(contact.first_own_node(point));
-    const std::string& obstacle = obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];
-    const auto found = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
-      return place.body == body && place.obstacle == obstacle;
-    });
-    place_of_point_.push_back(static_cast<int>(found - places_.begin()));
-    if (found == places_.end()) {
-      places_.push_back({body, obstacle, 1, false});
-    } else {
-      ++found->points;
-    }
-  }
-}
-
-void ImpactRecorder::begin_inside(const std::vector<Index>& points) {
-  for (const Index point : points)
-    places_[static_cast<std::size_t>(place_of_point_[static_cast<std::size_t>(point)])].begins_inside = true;
 }
 
 /// The velocity that momenta are accounted for with.
@@ -124,18 +71,18 @@ void ImpactRecorder::find_forces(const StepForces& acting, const ObstacleMotion&
                                  std::vector<Force>& forces) const {
   forces.assign(places_.size(), Force{});
   const int d = problem_.dimension;
-  for (Index point = 0; point < problem_.contact.size(); ++point) {
+  for (const auto& [point, place, part] : parts_) {
     if (!carries_acting_force(acting, point)) continue;
-    Force& force = forces[static_cast<std::size_t>(place_of_point_[static_cast<std::size_t>(point)])];
-    const double pressing = acting.acting_normal()[point];
-    const SpaceVector own = acting_contact_force(acting, point);
+    Force& force = forces[place];
+    const double pressing = std::abs(part) * acting.acting_normal()[point];
+    const SpaceVector own = part * acting_contact_force(acting, point);
     ++force.points;
     if (const double size = own.norm(); force.leading < 0 || size > force.leading_size) {
       force.leading = point;
       force.leading_size = size;
     }
     force.all.head(d) += own;
-    force.normal.head(d) += pressing * acting.rows->normal(point);
+    force.normal.head(d) += part * acting.acting_normal()[point] * acting.rows->normal(point);
     force.pressing += pressing;
     if (travel.normal.size() == 0) continue;
     force.travel += pressing * travel.normal[point];
@@ -207,13 +154,21 @@ void ImpactRecorder::enter_place(std::size_t place, double instant) {
   take_largest(interval, current, instant);
 }
 
-const RigidMotionState& ImpactRecorder::motion_at(const Interval& interval) const {
-  return (*motion_)[static_cast<std::size_t>(places_[static_cast<std::size_t>(interval.place)].body)];
+/// At the beginning of the step.
+ImpactRecorder::Motion ImpactRecorder::motion_of(int body) const {
+  const RigidMotionState& now = (*motion_)[static_cast<std::size_t>(body)];
+  return {numbers_of(now.velocity), numbers_of(now.spin), now.kinetic_energy, now.rigid_kinetic_energy};
+}
+
+double ImpactRecorder::separation_at(const Interval& interval) const {
+  const Place& place = places_[static_cast<std::size_t>(interval.place)];
+  return std::max(separation(place.body), place.other < 0 ? 0.0 : separation(place.other));
 }
 
 void ImpactRecorder::let_go(Interval& interval) const {
-  const RigidMotionState& now = motion_at(interval);
-  interval.after = {numbers_of(now.velocity), numbers_of(now.spin), now.kinetic_energy, now.rigid_kinetic_energy};
+  const Place& place = places_[static_cast<std::size_t>(interval.place)];
+  interval.after = motion_of(place.body);
+  if (place.other >= 0) interval.other_after = motion_of(place.other);
   interval.method_after = method_energy_;  // letting go costs energy, too
   interval.phase = apart;
 }
@@ -223,12 +178,11 @@ void ImpactRecorder::touch(Interval& interval, const Acting& acting, double inst
   const bool acts_before = acting.previous != nullptr;
   // Only at the start does a force act before the first instant of the steps.
   const double time = acts_before ? 0.0 : std::max(0.0, instant - 0.5 * h);
-  const int body = places_[static_cast<std::size_t>(interval.place)].body;
-  if (interval.phase == apart && time - interval.end < std::max(2.0 * h, separation(body))) {
+  if (interval.phase == apart && time - interval.end < std::max(2.0 * h, separation_at(interval))) {
     interval.intervals += 1.0;
   } else {
     if (interval.phase == apart) file(interval);
-    begin(interval, time, acting.first(), motion_at(interval));
+    begin(interval, time, acting.first());
   }
   interval.phase = touching;
   if (!acts_before) return;
@@ -269,7 +223,7 @@ ImpactRecorder::Three ImpactRecorder::place_of(Index point) const {
   return numbers_of(place / sum);
 }
 
-void ImpactRecorder::begin(Interval& interval, double time, const Force& first, const RigidMotionState& motion) const {
+void ImpactRecorder::begin(Interval& interval, double time, const Force& first) const {
   const double place = interval.place;
   interval = {};
   interval.place = place;
@@ -280,8 +234,9 @@ void ImpactRecorder::begin(Interval& interval, double time, const Force& first, 
   interval.from_inside = in_first_step && places_[static_cast<std::size_t>(place)].begins_inside ? 1.0 : 0.0;
   interval.intervals = 1.0;
   interval.first_place = place_of(first.leading);
-  interval.before = {numbers_of(motion.velocity), numbers_of(motion.spin), motion.kinetic_energy,
-                     motion.rigid_kinetic_energy};
+  const Place& at = places_[static_cast<std::size_t>(interval.place)];
+  interval.before = motion_of(at.body);
+  if (at.other >= 0) interval.other_before = motion_of(at.other);
   interval.method_before = method_before_;
 }
 
@@ -323,6 +278,11 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
   result.mass = rigid_.bodies()[static_cast<std::size_t>(place.body)].mass;
   result.before = motion(interval.before);
   if (result.ended) result.after = motion(interval.after);
+  if (place.other >= 0) {
+    result.other = OtherBody{
+        place.other, rigid_.bodies()[static_cast<std::size_t>(place.other)].mass, motion(interval.other_before), {}};
+    if (result.ended) result.other->after = motion(interval.other_after);
+  }
   result.method_energy = (result.ended ? interval.method_after : method_before_) - interval.method_before;
   return result;
 }

@@ -8,16 +8,22 @@
 #include "ricochet/simulation/impact.hpp"
 #include "ricochet/simulation/rigid_bodies.hpp"
 
-/// @file Impacts: what a body's collisions with an obstacle come to, told from the forces of every step.
+/// @file Impacts: what the collisions of a body with an obstacle, or of two bodies, come to, told from the forces of
+/// every step.
 ///
-/// A body is in contact with an obstacle at an instant of the scheme's forces when one of its contact points there
-/// carries a force, and in a step when a force with a weight in it (WorkRule) does. An impact is a maximal run of such
-/// steps. Contact that is lost for less than wave_crossing_times (or two steps) and comes back is still the same
-/// impact: its far side has not heard yet that it left.
+/// A body is in contact with an obstacle or a body at an instant of the scheme's forces when one of its contact points
+/// there carries a force, and in a step when a force with a weight in it (WorkRule) does. An impact is a maximal run of
+/// such steps. Contact that is lost for less than wave_crossing_times (or two steps) and comes back is still the same
+/// impact: its far side has not heard yet that it left. Of two bodies the longer one's time counts.
+///
+/// Of a point between bodies the part Σ t_ij over the nodes j of a body acts on that body, so that impulses balance
+/// momenta to rounding where a multiplier faces two bodies, too. The first of two bodies is that of the `group` of
+/// their first contact, as the case names it.
 ///
 /// It begins half a step before the first instant with a force and ends half a step after the last one. `before` and
 /// `after` are the states (at the scheme's instant of energies) at the ends of its steps, so that
-/// m (v_after − v_before) = impulse + that of loads, supports and damping in the same steps, to rounding.
+/// m (v_after − v_before) = impulse + that of loads, supports and damping in the same steps, to rounding; the impulse
+/// on the other body is the opposite.
 namespace ricochet {
 
 class ImpactRecorder {
@@ -25,15 +31,15 @@ class ImpactRecorder {
   /// Impacts that are kept; later ones are counted.
   static constexpr std::size_t most_impacts = 1000;
 
-  /// Opens on a starting state. `obstacles`: the name of each contact pair's; `separation`: per body, how long contact
-  /// must be lost for an impact to have ended.
+  /// Opens on a starting state. `pairs`: those of the problem's contact boundary; `separation`: per body, how long
+  /// contact must be lost for an impact to have ended.
   ImpactRecorder(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
-                 std::vector<std::string> obstacles, std::vector<int> body_of_node, std::vector<double> separation);
+                 const std::vector<ContactPair>& pairs, std::vector<int> body_of_node, std::vector<double> separation);
   void save(Snapshot& snapshot, const std::string& name) const;
   /// Of a recorder that was saved at the state this one was opened on.
   void load(const Snapshot& snapshot, const std::string& name);
 
-  /// These contact points are inside their obstacle when the run begins.
+  /// These contact points are inside their obstacle, or the opposite body, when the run begins.
   void begin_inside(const std::vector<Index>& points);
   /// Enters a step with the forces at its end (in the state), and what the discretization of time has put into the
   /// bodies since the start (EnergyAccount::of_method). Allocates nothing.
@@ -64,13 +70,15 @@ class ImpactRecorder {
     double most_points;
     Three first_place;
     Motion before, after;
+    Motion other_before, other_after;  ///< of the other body
     double method_before, method_after;
   };
   /// Of an interval: numbers, too.
   static constexpr double no_contact = 0.0, touching = 1.0, apart = 2.0;
-  /// A body and an obstacle that can touch.
+  /// A body, and an obstacle or another body, that can touch.
   struct Place {
     int body;
+    int other;  ///< another body; −1: an obstacle
     std::string obstacle;
     long points;
     bool begins_inside = false;
@@ -96,17 +104,26 @@ class ImpactRecorder {
       return previous != nullptr ? *previous : current != nullptr ? *current : *other;
     }
   };
-  void find_places(const std::vector<std::string>& obstacles);
+  /// What of a point's force acts at a place: on its body.
+  struct PointPart {
+    Index point;
+    std::size_t place;
+    double part;
+  };
+  class BodyOrder;
+  void find_places(const std::vector<ContactPair>& pairs);
+  void add_part(Index point, int body, int other, const std::string& obstacle, double part);
   void find_forces(const StepForces& acting, const ObstacleMotion& travel, std::vector<Force>& forces) const;
   void find_other_forces();
   [[nodiscard]] Acting acting_in(std::size_t place) const;
   void take_velocity(const State& state, Vector& velocity);
   void enter_place(std::size_t place, double instant);
-  [[nodiscard]] const RigidMotionState& motion_at(const Interval& interval) const;
+  [[nodiscard]] Motion motion_of(int body) const;
+  [[nodiscard]] double separation_at(const Interval& interval) const;
   void let_go(Interval& interval) const;
   void touch(Interval& interval, const Acting& acting, double instant);
   void add_impulses(Interval& interval, std::size_t place) const;
-  void begin(Interval& interval, double time, const Force& first, const RigidMotionState& motion) const;
+  void begin(Interval& interval, double time, const Force& first) const;
   [[nodiscard]] Three place_of(Index point) const;
   static void take_largest(Interval& interval, const Force& force, double instant);
   void file(const Interval& interval);
@@ -117,7 +134,7 @@ class ImpactRecorder {
   RigidBodies rigid_;
   std::vector<double> separation_;
   std::vector<Place> places_;
-  std::vector<int> place_of_point_;
+  std::vector<PointPart> parts_;  ///< by points
   std::vector<Force> previous_, current_;
   /// Of Scheme::other_parts.
   struct OtherForces {

@@ -16,6 +16,8 @@ struct UnwatchedPenetration {
   std::vector<double> place;        ///< of the node, at that time
   double first_time = 0.0;          ///< when it was found
   std::vector<std::string> groups;  ///< boundary groups of the mesh that the node belongs to
+  /// The two groups of the contact that keeps the node out, which is deeper than that allows; empty: there is none.
+  std::vector<std::string> contact = {};
 };
 
 /// A contact that goes on beyond its group.

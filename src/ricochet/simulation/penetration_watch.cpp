@@ -1,9 +1,11 @@
 #include "ricochet/simulation/penetration_watch.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 
@@ -78,7 +80,9 @@ PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& 
       name_of_body_(names_of_bodies(*body.mesh, bodies_)),
       size_(sizes_at_nodes(size_of_body_, bodies_)),
       obstacles_(problem, body.space->cells, boundary, obstacles_of(obstacles), size_),
-      body_watch_(problem.nodes, body.space->cells, boundary, bodies_, size_),
+      body_watch_(problem.nodes, body.space->cells, boundary, bodies_, size_,
+                  kept_nodes(body, problem.contact, pairs, bodies_.of_node)),
+      problem_(problem),
       told_obstacle_(obstacles.size(), 0) {
   for (const Group& group : body.mesh->groups) {
     if (group.dimension == body.mesh->dimension - 1)
@@ -90,12 +94,19 @@ void PenetrationWatch::look(const State& state) {
   if (looks_ == 0) obstacles_.look_at_start(state);
   ++looks_;
   obstacles_.look(state);
-  body_watch_.look(state.displacement, state.time, false);
+  look_at_bodies(state, false);
   tell();
 }
 
+void PenetrationWatch::look_at_bodies(const State& state, bool now) {
+  body_watch_.look(state.displacement, state.time, now, [&]() -> const Vector& {
+    problem_.node_gaps(state.displacement, state.time, node_gap_);
+    return node_gap_;
+  });
+}
+
 void PenetrationWatch::look_at_end(const State& state) {
-  body_watch_.look(state.displacement, state.time, true);
+  look_at_bodies(state, true);
   tell();
 }
 
@@ -116,13 +127,63 @@ void PenetrationWatch::tell() {
                     when(rim.time), rim.group, rim.obstacle, coordinates(rim.place),
                     rim.groups.empty() ? "" : fmt::format(" ({})", join_names(rim.groups))));
   }
-  for (; told_pairs_ < body_watch_.pairs().size(); ++told_pairs_) {
-    const UnwatchedPenetration p = of_pair(body_watch_.pairs()[told_pairs_]);
-    log::warning(
-        fmt::format("{} {} and {} overlap by {} at {}: nothing keeps bodies apart from one another, they go "
-                    "through each other; {}",
-                    when(p.time), p.bodies[0], p.bodies[1], depth_text(p), coordinates(p.place), see_summary));
+  tell_bodies();
+}
+
+void PenetrationWatch::tell_bodies() {
+  const std::vector<BodyPair>& pairs = body_watch_.pairs();
+  told_pairs_.resize(pairs.size(), 0);
+  told_contacts_.resize(pairs.size(), 0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (told_pairs_[i] == 0 && pairs[i].deepest.found()) {
+      told_pairs_[i] = 1;
+      tell_of(pairs[i]);
+    }
+    if (told_contacts_[i] == 0 && pairs[i].at_contact.found()) {
+      told_contacts_[i] = 1;
+      tell_at_contact(pairs[i]);
+    }
   }
+}
+
+void PenetrationWatch::tell_of(const BodyPair& pair) const {
+  const UnwatchedPenetration p = of_pair(pair);
+  const std::vector<std::string> contacts = contacts_between(pair.first, pair.second);
+  const std::string why =
+      contacts.empty()
+          ? "no [[contact]] keeps these bodies apart, they go through each other"
+          : fmt::format(
+                "the contact of {} does not reach so far, or its groups did not face each other there; extend "
+                "the groups, or pair them with pair_at where they meet",
+                fmt::join(contacts, ", "));
+  log::warning(fmt::format("{} {} and {} overlap by {} at {}: {}; {}", when(p.time), p.bodies[0], p.bodies[1],
+                           depth_text(p), coordinates(p.place), why, see_summary));
+}
+
+void PenetrationWatch::tell_at_contact(const BodyPair& pair) const {
+  const UnwatchedPenetration p = at_contact(pair);
+  log::warning(
+      fmt::format("{} {} and {} overlap by {} at {}, more than half a facet, though the contact of \"{}\" and \"{}\" "
+                  "keeps that node out: the facets that faced each other at the start no longer do, as the bodies have "
+                  "slid along or past each other; pair them with pair_at where they meet, or let them move less; {}",
+                  when(p.time), p.bodies[0], p.bodies[1], depth_text(p), coordinates(p.place), p.contact[0],
+                  p.contact[1], see_summary));
+}
+
+std::vector<std::string> PenetrationWatch::contacts_between(int first, int second) const {
+  std::vector<std::string> result;
+  const auto holds = [&](const std::vector<Index>& facets, int body) {
+    const std::vector<Index> nodes = facet_nodes(*body_.space, facets);
+    return std::any_of(nodes.begin(), nodes.end(),
+                       [&](Index node) { return bodies_.of_node[static_cast<std::size_t>(node)] == body; });
+  };
+  for (const ContactPair& pair : pairs_) {
+    if (!pair.has_two_sides()) continue;
+    if ((holds(pair.facets, first) && holds(pair.opposite_facets, second)) ||
+        (holds(pair.facets, second) && holds(pair.opposite_facets, first)))
+      result.push_back(fmt::format("\"{}\" and \"{}\"", pair.first_group(), pair.second_group()));
+  }
+  return result;
 }
 
 std::string PenetrationWatch::advice(std::size_t obstacle) const {
@@ -192,6 +253,13 @@ UnwatchedPenetration PenetrationWatch::of_pair(const BodyPair& pair) const {
   return describe(pair.deepest, {pair.first, pair.second});
 }
 
+UnwatchedPenetration PenetrationWatch::at_contact(const BodyPair& pair) const {
+  UnwatchedPenetration result = describe(pair.at_contact, {pair.first, pair.second});
+  const ContactPair& contact = pairs_[static_cast<std::size_t>(pair.contact)];
+  result.contact = {contact.first_group(), contact.second_group()};
+  return result;
+}
+
 ContactBeyondRim PenetrationWatch::beyond(const RimContact& rim) const {
   const ContactPair& pair = pairs_[static_cast<std::size_t>(rim.pair)];
   std::vector<std::string> groups = groups_of(rim.node);
@@ -204,7 +272,10 @@ PenetrationReport PenetrationWatch::report() const {
   for (std::size_t k = 0; k < named_.size(); ++k) {
     if (obstacles_.deepest()[k].found()) result.found.push_back(in_obstacle(k));
   }
-  for (const BodyPair& pair : body_watch_.pairs()) result.found.push_back(of_pair(pair));
+  for (const BodyPair& pair : body_watch_.pairs()) {
+    if (pair.deepest.found()) result.found.push_back(of_pair(pair));
+    if (pair.at_contact.found()) result.found.push_back(at_contact(pair));
+  }
   for (const RimContact& rim : obstacles_.rims()) result.rims.push_back(beyond(rim));
   return result;
 }
@@ -222,7 +293,14 @@ void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
   // What was found was told at once.
   for (std::size_t k = 0; k < told_obstacle_.size(); ++k) told_obstacle_[k] = obstacles_.deepest()[k].found() ? 1 : 0;
   told_rims_ = obstacles_.rims().size();
-  told_pairs_ = body_watch_.pairs().size();
+  told_pairs_.clear();
+  told_contacts_.clear();
+  for (const BodyPair& pair : body_watch_.pairs()) {
+    if (pair.at_contact.found() && (pair.contact < 0 || pair.contact >= static_cast<int>(pairs_.size())))
+      throw Error(ErrorKind::invalid_input, "the checkpoint's record of penetration is damaged");
+    told_pairs_.push_back(pair.deepest.found() ? 1 : 0);
+    told_contacts_.push_back(pair.at_contact.found() ? 1 : 0);
+  }
 }
 
 }  // namespace ricochet

@@ -48,10 +48,17 @@ class PenetrationWatch {
   [[nodiscard]] UnwatchedPenetration describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const;
   [[nodiscard]] UnwatchedPenetration in_obstacle(std::size_t obstacle) const;
   [[nodiscard]] UnwatchedPenetration of_pair(const BodyPair& pair) const;
+  [[nodiscard]] UnwatchedPenetration at_contact(const BodyPair& pair) const;
+  /// Of the contacts between two bodies, for messages.
+  [[nodiscard]] std::vector<std::string> contacts_between(int first, int second) const;
+  void tell_of(const BodyPair& pair) const;
+  void tell_at_contact(const BodyPair& pair) const;
   [[nodiscard]] ContactBeyondRim beyond(const RimContact& rim) const;
   /// What to do about a node that no contact keeps out of an obstacle.
   [[nodiscard]] std::string advice(std::size_t obstacle) const;
+  void look_at_bodies(const State& state, bool now);
   void tell();
+  void tell_bodies();
 
   const Body& body_;
   const std::vector<ContactPair>& pairs_;
@@ -62,11 +69,14 @@ class PenetrationWatch {
   std::vector<double> size_;  ///< of its body, per node
   ObstacleWatch obstacles_;
   BodyWatch body_watch_;
+  const SemidiscreteProblem& problem_;
+  Vector node_gap_;
   std::vector<BoundaryGroup> boundary_groups_;
   long looks_ = 0;
   // What was told.
   std::vector<char> told_obstacle_;
-  std::size_t told_rims_ = 0, told_pairs_ = 0;
+  std::size_t told_rims_ = 0;
+  std::vector<char> told_pairs_, told_contacts_;  ///< of the pairs of bodies
 };
 
 }  // namespace ricochet

@@ -13,19 +13,63 @@ constexpr double rounding_of_velocity = 1e-9;
 constexpr double slowest_beside_sliding = 0.01, slowest_beside_others = 0.1;
 }  // namespace
 
+namespace {
+
+/// Twice the energy of spin and vibrations over the mass: the square of their speed.
+double squared_speed_of_others(double mass, const RigidMotionState& motion) {
+  const double energy = motion.kinetic_energy - 0.5 * mass * motion.velocity.squaredNorm();
+  return std::max(0.0, 2.0 * energy / mass);
+}
+
+/// Of spin and vibrations, of both bodies where there are two.
+double speed_of_others(const Impact& impact) {
+  double squared = squared_speed_of_others(impact.mass, impact.before);
+  if (impact.other) squared += squared_speed_of_others(impact.other->mass, impact.other->before);
+  return std::sqrt(squared);
+}
+
+/// Across the normal, against the obstacle or the other body.
+double sliding_speed(const Impact& impact) {
+  Eigen::Vector3d sliding = impact.tangential_velocity_before() - impact.obstacle_sliding;
+  if (impact.other) {
+    const Eigen::Vector3d& others = impact.other->before.velocity;
+    sliding -= others - others.dot(impact.normal()) * impact.normal();
+  }
+  return sliding.norm();
+}
+
+/// Along the normal, of one body against the other where there are two: what pulls both alike makes none.
+double velocity_by_other_forces(const Impact& impact) {
+  Eigen::Vector3d velocity = impact.other_impulse() / impact.mass;
+  if (impact.other) velocity -= impact.other_impulse_on_other() / impact.other->mass;
+  return std::abs(velocity.dot(impact.normal()));
+}
+
+}  // namespace
+
 std::string why_no_restitution(const Impact& impact) {
-  if (!impact.ended) return "the body still touches";
-  if (impact.from_inside) return "the body began inside the obstacle, which pushed it out";
+  const bool two = impact.other.has_value();
+  if (!impact.ended) return two ? "the bodies still touch" : "the body still touches";
+  if (impact.from_inside) {
+    return two ? "the bodies overlapped at the start, and were pushed apart"
+               : "the body began inside the obstacle, which pushed it out";
+  }
+  const std::string came = two ? "the bodies came nearer " : "the body came nearer ";
   const double approach = -impact.normal_velocity_before();
-  if (!(approach > rounding_of_velocity * impact.normal_impulse.norm() / impact.mass))
-    return "the body did not come nearer";
-  if (approach < slowest_beside_sliding * (impact.tangential_velocity_before() - impact.obstacle_sliding).norm())
-    return "the body came nearer at less than 1 % of the speed at which it slid along the obstacle";
-  const double energy = impact.before.kinetic_energy - 0.5 * impact.mass * impact.before.velocity.squaredNorm();
-  if (approach < slowest_beside_others * std::sqrt(std::max(0.0, 2.0 * energy / impact.mass)))
-    return "the body came nearer at less than 10 % of the speed of its spin and vibrations";
-  if (approach < slowest_beside_others * std::abs(impact.other_impulse().dot(impact.normal())) / impact.mass)
-    return "the body came nearer at less than 10 % of the velocity that other forces gave it during the impact";
+  if (!(approach > rounding_of_velocity * impact.normal_impulse.norm() / impact.approach_mass()))
+    return two ? "the bodies did not come nearer" : "the body did not come nearer";
+  if (approach < slowest_beside_sliding * sliding_speed(impact)) {
+    return came + (two ? "at less than 1 % of the speed at which they slid along each other"
+                       : "at less than 1 % of the speed at which it slid along the obstacle");
+  }
+  if (approach < slowest_beside_others * speed_of_others(impact)) {
+    return came + (two ? "at less than 10 % of the speed of their spins and vibrations"
+                       : "at less than 10 % of the speed of its spin and vibrations");
+  }
+  if (approach < slowest_beside_others * velocity_by_other_forces(impact)) {
+    return came + (two ? "at less than 10 % of the velocity that other forces gave them during the impact"
+                       : "at less than 10 % of the velocity that other forces gave it during the impact");
+  }
   return {};
 }
 
@@ -36,7 +80,7 @@ RestitutionError restitution_error(const Impact& impact) {
   if (!restitution || !impact.method_energy) return {};
   const double velocity = impact.normal_velocity_before();
   RestitutionError result;
-  result.by_method = *impact.method_energy / (0.5 * impact.mass * velocity * velocity);
+  result.by_method = *impact.method_energy / (0.5 * impact.approach_mass() * velocity * velocity);
   result.by_impact = 1.0 - *restitution * *restitution;
   result.is_large = std::abs(result.by_method) > std::max(visible, large_beside_impact * std::abs(result.by_impact));
   return result;

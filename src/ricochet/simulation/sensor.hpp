@@ -47,11 +47,17 @@ class Sensor {
                                                               const std::vector<Index>& facets,
                                                               const Ranks& ranks = one_rank());
 
-/// Resultant of a contact (an index of [[contact]]): force on the body, centre of pressure Σ r_N X / Σ r_N with the
+/// Resultant of a contact (an index of [[contact]]): force on the body, which between bodies is that of the contact's
+/// first group in the case; centre of pressure Σ r_N X / Σ r_N with the
 /// reference positions X (0 where open), as the moments of boundaries take them, and area of the points that are
 /// pressed (in 2D a length).
+/// `exchanged`: ContactPair::exchanged.
 [[nodiscard]] std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem,
-                                                          int contact);
+                                                          int contact, bool exchanged = false);
+
+/// The force of a contact between bodies alone, in the columns pair_force.N_x … of contact N.
+[[nodiscard]] std::unique_ptr<Sensor> make_pair_force_sensor(const SemidiscreteProblem& problem, int contact,
+                                                             bool exchanged);
 
 // For those who write sensors:
 

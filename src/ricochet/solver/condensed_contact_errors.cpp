@@ -19,12 +19,14 @@ void CondensedContact::throw_contradiction(const std::vector<Index>& contradicti
     return "(" + text + ")";
   };
   std::set<std::string> places, contacts;
+  bool between_bodies = false;
   for (const Index candidate : contradiction) {
     const Index point = candidates_.points()[static_cast<std::size_t>(candidate)];
     Vector at = Vector::Zero(problem_.dimension);
     problem_.contact.visit_own_nodes(point,
                                      [&](Index node, double weight) { at += weight * problem_.nodes.col(node); });
     places.insert(as_text(at));
+    between_bodies = between_bodies || problem_.contact.between_bodies(point);
     contacts.insert(fmt::format("contact.{} (normal {})", problem_.contact.pair[static_cast<std::size_t>(point)],
                                 as_text(rows_->normals.col(point))));
   }
@@ -33,12 +35,24 @@ void CondensedContact::throw_contradiction(const std::vector<Index>& contradicti
   const std::size_t more = some.size() > shown ? some.size() - shown : 0;
   some.resize(some.size() - more);
   const bool one = contacts.size() == 1;
+  const std::string where =
+      fmt::format("{}{}", fmt::join(some, ", "), more > 0 ? fmt::format(" and {} more places", more) : "");
+  if (between_bodies) {
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("no motion meets the conditions of contact: at {} (reference position) bodies would have to "
+                    "be outside of what they touch by {}{}; {}",
+                    where, fmt::join(contacts, ", "),
+                    one ? " and where supports hold them" : " at once, and it leaves them no room",
+                    one ? "change the supports"
+                        : "leave more room between them, change the supports or the motion of obstacles, or remove one "
+                          "of these contacts"));
+  }
   throw Error(
       ErrorKind::invalid_input,
-      fmt::format("no motion meets the conditions of contact: the body at {}{} (reference position) would have to be "
+      fmt::format("no motion meets the conditions of contact: the body at {} (reference position) would have to be "
                   "outside of the {} of {} at once{}; {}",
-                  fmt::join(some, ", "), more > 0 ? fmt::format(" and {} more places", more) : "",
-                  one ? "obstacle" : "obstacles", fmt::join(contacts, ", "),
+                  where, one ? "obstacle" : "obstacles", fmt::join(contacts, ", "),
                   one ? " and where supports hold it" : ", and they leave it no room",
                   one ? "change the supports or the obstacle's motion"
                       : "leave more room between them, end their motion earlier, or remove one of these contacts"));

@@ -104,6 +104,12 @@ std::vector<ComparedQuantity> usual_compared(const HistoryTable& table) {
   std::vector<ComparedQuantity> result{find_compared("kinetic_energy", table)};
   if (const auto force = components_of("contact_force", table); !force.empty())
     result.push_back({"contact_force", force});
+  const std::string first = "_x";
+  for (const std::string& column : table.names) {
+    if (!column.starts_with("pair_force.") || !column.ends_with(first)) continue;
+    const std::string pair = column.substr(0, column.size() - first.size());
+    result.push_back({pair, components_of(pair, table)});
+  }
   const std::string suffix = ".displacement_x";
   for (const std::string& column : table.names) {
     if (!column.ends_with(suffix)) continue;

@@ -102,6 +102,65 @@ TEST_F(SummaryTest, ReadsWhatAnOverflowingRunHasWritten) {
   EXPECT_EQ(back.peak_stress->element, 8);
 }
 
+TEST_F(SummaryTest, KeepsBothBodiesOfAnImpact) {
+  RunSummary summary;
+  summary.bodies.push_back({{}, 0.1, "body \"one\""});
+  summary.bodies.push_back({{}, 0.2, "body \"two\""});
+  summary.bodies[0].rigid.mass = 2.0;
+  summary.bodies[1].rigid.mass = 3.0;
+  Impact impact;
+  impact.mass = 2.0;
+  impact.before.velocity = {1.0, 0.0, 0.0};
+  impact.after.velocity = {-0.5, 0.0, 0.0};
+  impact.impulse = impact.normal_impulse = {-3.0, 0.0, 0.0};
+  impact.other = OtherBody{1, 3.0, {}, {}};
+  impact.other->before = {{0.25, 0.5, 0.0}, {0.0, 0.0, 7.0}, 11.0, 10.0};
+  impact.other->after = {{1.25, 0.5, 0.0}, {0.0, 0.0, 8.0}, 13.0, 12.0};
+  summary.impacts.push_back(impact);
+  summary.impacts.push_back(impact);
+  summary.impacts[1].other.reset();
+  summary.impacts[1].obstacle = "floor";
+  const RunSummary back = read_back(summary);
+  ASSERT_EQ(back.impacts.size(), 2U);
+  EXPECT_EQ(back.impacts[0].obstacle, "");
+  ASSERT_TRUE(back.impacts[0].other.has_value());
+  const OtherBody& other = *back.impacts[0].other;
+  EXPECT_EQ(other.number, 1);
+  EXPECT_EQ(other.mass, 3.0);
+  EXPECT_EQ(other.before.velocity, impact.other->before.velocity);
+  EXPECT_EQ(other.after.spin, impact.other->after.spin);
+  EXPECT_EQ(other.after.kinetic_energy, 13.0);
+  EXPECT_EQ(other.before.rigid_kinetic_energy, 10.0);
+  EXPECT_EQ(back.impacts[0].normal_velocity_before(), impact.normal_velocity_before());
+  EXPECT_EQ(back.impacts[1].obstacle, "floor");
+  EXPECT_FALSE(back.impacts[1].other.has_value());
+  summary.impacts[0].other->number = 2;
+  EXPECT_THROW((void)read_back(summary), Error);
+}
+
+TEST_F(SummaryTest, KeepsHowBodiesFaceAndSlide) {
+  RunSummary summary;
+  summary.contacts.push_back({"a", "b", "p1", 0.0, 0.0, {}, 0.0, true, FacingDescription{"b", "it is softer", 7}});
+  summary.contacts[0].facing->covered = 0.5;
+  summary.contacts[0].facing->largest_gap = 0.25;
+  summary.contacts.push_back({"c", "floor", "nodal"});
+  summary.sliding.push_back({0, 0.25, 0.125, 1.5, {2.0, 3.0}, 0.75});
+  summary.sliding.push_back({1, 0.0625, 0.125, 1.5, {2.0, 3.0}});
+  const RunSummary back = read_back(summary);
+  ASSERT_TRUE(back.contacts.at(0).facing.has_value());
+  EXPECT_EQ(back.contacts[0].facing->multipliers_on, "b");
+  EXPECT_EQ(back.contacts[0].facing->reason, "it is softer");
+  EXPECT_EQ(back.contacts[0].facing->points, 7);
+  EXPECT_EQ(back.contacts[0].facing->covered, 0.5);
+  EXPECT_EQ(back.contacts[0].facing->largest_gap, 0.25);
+  EXPECT_FALSE(back.contacts.at(1).facing.has_value());
+  ASSERT_EQ(back.sliding.size(), 2U);
+  EXPECT_TRUE(back.sliding[0].is_beyond());
+  EXPECT_EQ(back.sliding[0].time_beyond, 0.75);
+  EXPECT_EQ(back.sliding[0].place, (std::vector<double>{2.0, 3.0}));
+  EXPECT_EQ(back.sliding[1].time_beyond, INFINITY);
+}
+
 TEST_F(SummaryTest, KnowsInWhichImpactsCellsHadTurnedTooFar) {
   RunSummary summary;
   EXPECT_TRUE(summary.small_strain_holds_in_impacts());

@@ -45,7 +45,21 @@ struct TwoSquares {
     ++bodies.count;
   }
 
-  [[nodiscard]] BodyWatch watch() const { return {positions, cells, boundary_facets(cells), bodies, size}; }
+  [[nodiscard]] BodyWatch watch(const std::vector<KeptNode>& kept = {}) const {
+    return {positions, cells, boundary_facets(cells), bodies, size, kept};
+  }
+  /// Those of both squares that come upon each other, as nodes of a contact with these allowances.
+  [[nodiscard]] std::vector<KeptNode> facing_nodes(double of_lower, double of_upper) const {
+    std::vector<KeptNode> result;
+    for (Index node = 0; node < positions.cols(); ++node) {
+      const auto entry = static_cast<Index>(result.size());
+      const double y = positions(1, node);
+      const bool is_upper = bodies.of_node[static_cast<std::size_t>(node)] == 1;
+      if (is_upper ? y < 1.25 : y > 0.95)
+        result.push_back({node, is_upper ? 0 : 1, 7, entry, is_upper ? of_upper : of_lower});
+    }
+    return result;
+  }
   /// The second one displaced.
   [[nodiscard]] Vector displacement(double x, double y) const {
     Vector result = Vector::Zero(2 * positions.cols());
@@ -104,6 +118,46 @@ TEST(BodyWatch, SeesAnOverlapOfTheStart) {
   watch.look(squares.displacement(0.0, -0.3), 0.0, false);
   ASSERT_EQ(watch.pairs().size(), 1U);
   EXPECT_NEAR(watch.pairs()[0].deepest.depth, 0.1, 1e-14);
+}
+
+/// Conditions between bodies hold in the mean over facets; what is deeper than that allows and than the contact sees is
+/// wrong of its pairing.
+TEST(BodyWatch, LetsNodesOfAContactBeInsideByTheirAllowance) {
+  const TwoSquares squares;
+  Vector gap = Vector::Constant(100, std::nan(""));
+  const auto gaps = [&]() -> const Vector& { return gap; };
+  BodyWatch watch = squares.watch(squares.facing_nodes(0.05, 0.06));
+  watch.look(squares.displacement(0.0, -0.2 - 0.049), 0.25, true, gaps);
+  EXPECT_TRUE(watch.pairs().empty());
+  watch.look(squares.displacement(0.0, -0.2 - 0.055), 0.5, true, gaps);
+  ASSERT_EQ(watch.pairs().size(), 1U);
+  EXPECT_FALSE(watch.pairs()[0].deepest.found());
+  EXPECT_EQ(watch.pairs()[0].contact, 7);
+  EXPECT_NEAR(watch.pairs()[0].at_contact.depth, 0.055, 1e-12);
+  EXPECT_NEAR(watch.pairs()[0].at_contact.place[1], 1.0, 1e-12) << "a node of the lower one";
+  // What the contact itself knows of needs no telling.
+  gap.setConstant(-0.04);
+  BodyWatch knowing = squares.watch(squares.facing_nodes(0.05, 0.05));
+  knowing.look(squares.displacement(0.0, -0.2 - 0.089), 0.25, true, gaps);
+  EXPECT_TRUE(knowing.pairs().empty());
+  knowing.look(squares.displacement(0.0, -0.2 - 0.091), 0.5, true, gaps);
+  ASSERT_EQ(knowing.pairs().size(), 1U);
+  EXPECT_NEAR(knowing.pairs()[0].at_contact.depth, 0.091, 1e-12);
+  // All others are looked at as before: here the second row of the upper square.
+  EXPECT_FALSE(knowing.pairs()[0].deepest.found());
+  gap.setConstant(-1.0);
+  knowing.look(squares.displacement(0.0, -0.2 - 0.11), 0.75, true, gaps);
+  EXPECT_NEAR(knowing.pairs()[0].deepest.depth, 0.01, 1e-12);
+  EXPECT_NEAR(knowing.pairs()[0].at_contact.depth, 0.091, 1e-12);
+  // Both are kept where a run goes on.
+  Snapshot snapshot;
+  knowing.save(snapshot, "bodies");
+  BodyWatch resumed = squares.watch(squares.facing_nodes(0.05, 0.05));
+  resumed.load(snapshot, "bodies");
+  ASSERT_EQ(resumed.pairs().size(), 1U);
+  EXPECT_EQ(resumed.pairs()[0].contact, 7);
+  EXPECT_EQ(resumed.pairs()[0].at_contact.to_numbers(), knowing.pairs()[0].at_contact.to_numbers());
+  EXPECT_EQ(resumed.pairs()[0].deepest.to_numbers(), knowing.pairs()[0].deepest.to_numbers());
 }
 
 TEST(BodyWatch, GoesOnWhereItWasSaved) {

@@ -87,6 +87,72 @@ TEST(Restitution, LooksAtSlidingOnTheObstacle) {
   expect_none(dropped, "along the obstacle");
 }
 
+/// Two bodies: that of `impact`, and one of mass 1 that goes up from below at 1, and down at 0.5 after it: they part at
+/// half the speed at which they came.
+Impact impact_of_two() {
+  Impact result = impact(0.0, 1.0);
+  result.after.velocity = {0.0, 0.5, 0.0};
+  result.other = OtherBody{1, 1.0, {}, {}};
+  result.other->before.velocity = {0.0, 1.0, 0.0};
+  result.other->after.velocity = {0.0, -0.5, 0.0};
+  result.other->before.kinetic_energy = result.other->before.rigid_kinetic_energy = 0.5;
+  // Of the impulse 2 · 1.5 = 3 on the first body the second has got 1.5, and other forces have done the rest.
+  result.impulse = result.normal_impulse = {0.0, 3.0, 0.0};
+  return result;
+}
+
+TEST(Restitution, OfTwoBodiesIsThatOfTheirVelocityAgainstEachOther) {
+  Impact two = impact_of_two();
+  EXPECT_NEAR(two.normal_velocity_before(), -2.0, 1e-15);
+  EXPECT_NEAR(two.normal_velocity_after(), 1.0, 1e-15);
+  EXPECT_NEAR(two.approach_mass(), 2.0 / 3.0, 1e-15);
+  ASSERT_TRUE(two.restitution().has_value()) << why_no_restitution(two);
+  EXPECT_NEAR(*two.restitution(), 0.5, 1e-15);
+  EXPECT_NEAR(two.other_impulse().norm(), 0.0, 1e-15);
+  EXPECT_NEAR((two.other_impulse_on_other() - Eigen::Vector3d(0.0, 1.5, 0.0)).norm(), 0.0, 1e-15);
+  // Seen from a train all is the same.
+  for (RigidMotionState* motion : {&two.before, &two.after, &two.other->before, &two.other->after})
+    motion->velocity += Eigen::Vector3d(100.0, -100.0, 7.0);
+  two.before.kinetic_energy = 0.5 * two.mass * two.before.velocity.squaredNorm();
+  two.other->before.kinetic_energy = 0.5 * two.other->before.velocity.squaredNorm();
+  ASSERT_TRUE(two.restitution().has_value()) << why_no_restitution(two);
+  EXPECT_NEAR(*two.restitution(), 0.5, 1e-13);
+  // The energy of the approach is ½ · 2/3 · 2² = 4/3, of which 3/4 is lost.
+  two.method_energy = -0.99 / 10.0;
+  EXPECT_FALSE(restitution_error(two).is_large);
+  two.method_energy = -1.01 / 10.0;
+  EXPECT_TRUE(restitution_error(two).is_large);
+  EXPECT_NEAR(restitution_error(two).by_method, -0.101 / (4.0 / 3.0), 1e-13);
+}
+
+TEST(Restitution, OfTwoBodiesIsNoneWhereOtherThingsMakeTheVelocityAfter) {
+  Impact stays = impact_of_two();
+  stays.ended = false;
+  expect_none(stays, "the bodies still touch");
+  Impact overlapped = impact_of_two();
+  overlapped.from_inside = true;
+  expect_none(overlapped, "overlapped");
+  Impact follows = impact_of_two();
+  follows.other->before.velocity = {0.0, -2.0, 0.0};
+  follows.other->before.kinetic_energy = 2.0;
+  expect_none(follows, "did not come nearer");
+  Impact vibrates = impact_of_two();
+  vibrates.other->before.kinetic_energy += 0.5 * 30.0 * 30.0;
+  expect_none(vibrates, "spins and vibrations");
+  Impact slides = impact_of_two();
+  slides.other->before.velocity[0] = 300.0;
+  slides.other->before.kinetic_energy = 0.5 * slides.other->before.velocity.squaredNorm();
+  expect_none(slides, "slid along each other");
+  // Gravity gives both the same velocity, and none of it to one against the other.
+  Impact falls = impact_of_two();
+  falls.impulse = falls.normal_impulse = {0.0, 1.5, 0.0};
+  falls.after.velocity += Eigen::Vector3d(0.0, -0.75 - 100.0, 0.0);
+  falls.other->after.velocity += Eigen::Vector3d(0.0, -100.0, 0.0);
+  EXPECT_EQ(why_no_restitution(falls), "");
+  falls.other->after.velocity[1] -= 100.0;
+  expect_none(falls, "other forces gave them");
+}
+
 /// At an approach of 1 the energy of a body of mass 2 is 1, and of a restitution of 0.5 the body has lost 0.75.
 TEST(Restitution, IsInexactWhereTheMethodDidATenthOfIt) {
   Impact lossy = impact(3.0, 1.0);

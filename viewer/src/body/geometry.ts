@@ -144,3 +144,23 @@ export class OutwardNormals {
     }
   }
 }
+
+/** Of each triangle the number of its body, by the order of first triangles; null where there is one body. */
+export function bodiesOf(body: Body): Float32Array | null {
+  const root = Int32Array.from({ length: body.corners.reduce((most, node) => Math.max(most, node), -1) + 1 }, (_, node) => node);
+  const find = (node: number): number => {
+    while (root[node] !== node) node = root[node] = root[root[node]];
+    return node;
+  };
+  for (let t = 0; t < body.triangles; ++t) {
+    const first = find(body.corners[3 * t]);
+    for (const k of [1, 2]) root[find(body.corners[3 * t + k])] = first;
+  }
+  const numbers = new Map<number, number>();
+  const result = Float32Array.from({ length: body.triangles }, (_, t) => {
+    const own = find(body.corners[3 * t]);
+    if (!numbers.has(own)) numbers.set(own, numbers.size);
+    return numbers.get(own)!;
+  });
+  return numbers.size > 1 ? result : null;
+}

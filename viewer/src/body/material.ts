@@ -20,7 +20,7 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
       logarithmic: { value: false },
       cuts: { value: false },
       cut: { value: new three.Vector4() }, // what is above w along xyz, at the start, is cut off
-      kind: { value: 0 }, // 0 plain, 1 numbers, 2 statuses
+      kind: { value: 0 }, // 0 plain, 1 numbers, 2 statuses, 3 numbers of bodies
       plain: { value: new three.Color() },
       line: { value: new three.Color() },
       lines: { value: 0 }, // how dark the edges of cells are
@@ -71,6 +71,8 @@ export function bodyMaterial(shaded: boolean): three.ShaderMaterial {
           float value = place.x > place.y ? (place.x > place.z ? corners.x : corners.z)
                                           : (place.y > place.z ? corners.y : corners.z);
           if (value == value) c = statuses[int(clamp(value + 1.5, 0.0, 4.0))];
+        } else if (kind == 3) {
+          c = mix(plain, line, 0.22 * mod(corners.x, 3.0)); // three shades: neighbours can be told apart
         }
         if (shaded) {
           vec3 normal = normalize(cross(dFdx(view), dFdy(view)));

@@ -5,7 +5,7 @@ import { indexAt, type Body, type Run } from "../data/run";
 import type { Store } from "../store";
 import { colourRange, joinRanges, type ColourRange } from "../maps/colour_range";
 import { contactQuantity, fieldAt, fieldRange, type FieldValues } from "./fields";
-import { boxOf, boxOverTime, diagonal, outlineOf, OutwardNormals, placeNodes, referencePositions, type Box } from "./geometry";
+import { bodiesOf, boxOf, boxOverTime, diagonal, outlineOf, OutwardNormals, placeNodes, referencePositions, type Box } from "./geometry";
 import { bodyMaterial } from "./material";
 import { ObstacleView } from "./obstacles";
 import { PeakMarker } from "./peak";
@@ -31,6 +31,8 @@ export class BodyView {
   readonly peak: PeakMarker | null;
   private cut: Cut | null = null;
   private readonly body: Body;
+  /** Of each triangle, the number of its body; null: there is one. */
+  private readonly bodies: Float32Array | null;
   private readonly reference: Float32Array;
   private readonly positions: Float32Array;
   private readonly outlineSides: Int32Array;
@@ -49,6 +51,7 @@ export class BodyView {
     private readonly store: Store,
   ) {
     const body = (this.body = run.body!);
+    this.bodies = bodiesOf(body);
     this.reference = referencePositions(body);
     this.positions = new Float32Array(this.reference.length);
     this.box = boxOverTime(body, this.reference);
@@ -130,18 +133,32 @@ export class BodyView {
       const { axis, at, sign } = this.cut;
       (uniforms.cut.value as three.Vector4).fromArray([0, 0, 0, sign * at]).setComponent(axis, sign);
     }
-    uniforms.kind.value = !this.values ? 0 : this.values.isStatus ? 2 : 1;
+    uniforms.kind.value = !this.values ? (this.bodies ? 3 : 0) : this.values.isStatus ? 2 : 1;
     if (this.section) this.section.mesh.material.uniforms.kind.value = this.section.values ? 1 : 0;
-    if (!this.values) return;
+    if (!this.values) {
+      if (this.bodies) this.setValues((t) => [this.bodies![t], this.bodies![t], this.bodies![t]]);
+      return;
+    }
     this.values_ = this.values.values;
+    const { onNodes, values } = this.values;
+    this.setValues((t) => {
+      const cell = body.triangleCells[t];
+      return [values[onNodes ? body.corners[3 * t] : cell], values[onNodes ? body.corners[3 * t + 1] : cell], values[onNodes ? body.corners[3 * t + 2] : cell]];
+    });
+    this.chooseRange();
+    for (const { uniforms: own } of this.materials) {
+      own.low.value = this.range?.low ?? 0;
+      own.high.value = this.range?.high ?? 1;
+      own.logarithmic.value = this.range?.logarithmic ?? false;
+    }
+  }
+
+  /** Of the corners of each triangle. */
+  private setValues(of: (triangle: number) => [number, number, number]): void {
     const target = this.mesh.geometry.attributes.values as three.BufferAttribute;
     const array = target.array as Float32Array;
-    const { onNodes, values } = this.values;
-    for (let t = 0; t < body.triangles; ++t) {
-      const cell = body.triangleCells[t];
-      const a = values[onNodes ? body.corners[3 * t] : cell];
-      const b = values[onNodes ? body.corners[3 * t + 1] : cell];
-      const c = values[onNodes ? body.corners[3 * t + 2] : cell];
+    for (let t = 0; t < this.body.triangles; ++t) {
+      const [a, b, c] = of(t);
       for (let at = 9 * t; at < 9 * t + 9; at += 3) {
         array[at] = a;
         array[at + 1] = b;
@@ -149,12 +166,6 @@ export class BodyView {
       }
     }
     target.needsUpdate = true;
-    this.chooseRange();
-    for (const { uniforms: own } of this.materials) {
-      own.low.value = this.range?.low ?? 0;
-      own.high.value = this.range?.high ?? 1;
-      own.logarithmic.value = this.range?.logarithmic ?? false;
-    }
   }
 
   private get materials(): three.ShaderMaterial[] {

@@ -47,9 +47,9 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
 
   const force = runs[0].data.judgement.force;
   const oneForce = runs.every((run) => run.data.judgement.force === force);
-  const forces = [...(oneForce ? [] : ["@force"]), ...present([force, ...matching(/^contact_force_/), ...matching(/\.(reaction_|pressure$|force_)/)])];
-  const momenta = matching(/^(angular_)?momentum_/);
-  const probes = all.filter((name) => name.includes("."));
+  const forces = [...(oneForce ? [] : ["@force"]), ...present([force, ...matching(/^contact_force_/), ...matching(/^pair_force\./), ...matching(/\.(reaction_|pressure$|force_)/)])];
+  const momenta = matching(/^(angular_)?momentum[_.]/);
+  const probes = all.filter((name) => name.includes(".") && !/^(pair_force|momentum)\./.test(name));
   const list: ChartDefinition[] = [
     {
       id: "energy",
@@ -64,7 +64,7 @@ export function chartDefinitions(runs: Run[]): ChartDefinition[] {
     {
       id: "force",
       title: "Contact force",
-      note: "On the body, of all contacts together. A force that jumps from step to step is the scheme's, not the body's.",
+      note: `${force.startsWith("pair_force.") ? "Between two bodies: on that of the contact's group." : "On the body, of all contacts together."} A force that jumps from step to step is the scheme's, not the body's.`,
       columns: [...new Set(forces)],
       shown: [oneForce ? force : "@force"],
       fromZero: true,

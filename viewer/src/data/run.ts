@@ -112,16 +112,17 @@ export class Run {
     return this.history.get(this.own(name)) ?? new Float64Array(0);
   }
 
-  /** Length of the contact force on the body, of all contacts together, in the rows of the history. */
+  /** Length of the contact force that is judged: of all obstacles together, or between two bodies; in the rows of the history. */
   get resultant(): Float64Array {
-    this.resultant_ ??= lengths(["x", "y", "z"].map((axis) => this.history.get(`contact_force_${axis}`)).filter((column) => column !== undefined));
+    const vector = this.own("@force").replace(/_[xyz]$/, "");
+    this.resultant_ ??= lengths(["x", "y", "z"].map((axis) => this.history.get(`${vector}_${axis}`)).filter((column) => column !== undefined));
     return this.resultant_;
   }
   private resultant_: Float64Array | undefined;
 
   /** At the row nearest to a time. */
   resultantAt(time: number): number {
-    return this.resultant[indexAt(this.timesOf("contact_force_x"), time)] ?? NaN;
+    return this.resultant[indexAt(this.timesOf("@force"), time)] ?? NaN;
   }
 
   /** When the contact force is largest, at the scheme's own instant. */
@@ -135,8 +136,8 @@ export class Run {
 
   private shiftOf(column: string): number {
     if (this.summary.adaptive_steps) return 0; // parts of steps of many lengths
-    const energy = /_energy$|^load_potential$|^momentum_|^angular_momentum_/.test(column);
-    const force = /(^|\.)(contact_force|reaction|pressure)/.test(column);
+    const energy = /_energy$|^load_potential$|^momentum[_.]|^angular_momentum_/.test(column);
+    const force = /(^|\.)(contact_force|pair_force|reaction|pressure)/.test(column);
     const instant = energy ? this.summary.instants.energy : force ? this.summary.instants.force : "";
     return Number(/t ([+-][\d.]+) time_step/.exec(instant)?.[1] ?? 0);
   }

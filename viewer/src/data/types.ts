@@ -115,9 +115,21 @@ export interface Expectation {
 export type Value = number | string | null;
 
 /** A body's collision with an obstacle; see docs/results.md. */
+/** The other body of an impact of two. */
+export interface OtherBody {
+  body: number;
+  velocity_before: Value[];
+  velocity_after: Value[] | null;
+  spin_before: Value | Value[];
+  spin_after: Value | Value[];
+  kinetic_energy_before: Value;
+}
+
 export interface Impact {
   body: number;
-  obstacle: string;
+  /** null where two bodies met. */
+  obstacle: string | null;
+  against?: OtherBody;
   begin: number;
   end: number | null;
   duration: number;

@@ -8,6 +8,11 @@ import { restitutionRemark } from "./restitution";
 
 /** What came of a run: its impacts and its largest stress. */
 
+const bodyName = (run: Run, number: number) => run.summary.bodies[number]?.name ?? `body ${number}`;
+
+/** The obstacle, or the other body. */
+const opponent = (run: Run, { obstacle, against }: Impact): string => (against ? bodyName(run, against.body) : obstacle ?? "");
+
 /** In space its size. */
 export function spin(value: Value | Value[]): number {
   return Array.isArray(value) ? Math.hypot(...value.map(toNumber)) : toNumber(value);
@@ -16,7 +21,7 @@ export function spin(value: Value | Value[]): number {
 const place = (peak: PeakStress, dimension: number) => `(${peak.place.slice(0, dimension).map((x) => number(x, 3)).join(", ")})`;
 
 /** It turns by more than a ten-thousandth of a radian while it touches: what is less says nothing. */
-const turns = ({ spin_before, spin_after, duration }: Impact) => Math.max(Math.abs(spin(spin_before)), Math.abs(spin(spin_after))) * duration > 1e-4;
+const turns = ({ spin_before, spin_after }: Pick<Impact, "spin_before" | "spin_after">, { duration }: Impact) => Math.max(Math.abs(spin(spin_before)), Math.abs(spin(spin_after))) * duration > 1e-4;
 
 /** That of the normal parts of the contact forces, and of all of them where friction makes another number of it. */
 function impulseWords({ impulse, normal_impulse }: Impact): string {
@@ -36,14 +41,15 @@ const coarseZone = "The contact zone is too coarse to trust the largest force an
 const pointWords = ({ contact_points: carrying, all_contact_points: all }: Impact): string => (carrying ? `${carrying} of ${all}` : "");
 
 /** All but the restitution. */
-export function impactWords(impact: Impact): string {
+export function impactWords(run: Run, impact: Impact): string {
   const parts: string[] = [];
   if (!impact.ended) parts.push("still touches at the end");
   parts.push(`${impact.ended ? "lasts" : "so far"} ${number(impact.duration, 3)}`, impulseWords(impact), `force up to ${number(impact.largest_force, 3)}`);
-  if (impact.ended && turns(impact)) {
-    const spins = [spin(impact.spin_before), spin(impact.spin_after)];
+  const bodies: Pick<Impact, "body" | "spin_before" | "spin_after">[] = [impact, ...(impact.against ? [impact.against] : [])];
+  for (const body of bodies.filter((each) => impact.ended && turns(each, impact))) {
+    const spins = [spin(body.spin_before), spin(body.spin_after)];
     const least = 1e-6 * Math.max(...spins.map(Math.abs)); // below is rounding
-    parts.push(`spin ${spins.map((value) => (Math.abs(value) < least ? "0" : number(value, 3))).join(" → ")}`);
+    parts.push(`spin ${impact.against ? `of ${bodyName(run, body.body)} ` : ""}${spins.map((value) => (Math.abs(value) < least ? "0" : number(value, 3))).join(" → ")}`);
   }
   return parts.join(", ");
 }
@@ -65,8 +71,8 @@ export function outcomeElements(run: Run, show: { time: (time: number) => void; 
   impacts.slice(0, mostOnCard).forEach((impact, i) => {
     const name = impacts.length > 1 ? `Impact ${i + 1}` : "Impact";
     const when = `t = ${number(impact.begin, 4)}${impact.from_start ? " (from the start)" : ""}`;
-    result.push(el("dt", {}, name), el("dd.outcome", { title: `On ${impact.obstacle}, from ${when}: docs/results.md says how impacts are told apart` },
-      el("button.link", { type: "button", onclick: () => show.time(impact.largest_force_time) }, when), ": ", ...restitutionParts(run, impact), impactWords(impact),
+    result.push(el("dt", {}, name), el("dd.outcome", { title: `${impact.against ? `${bodyName(run, impact.body)} and ${opponent(run, impact)}` : `On ${opponent(run, impact)}`}, from ${when}: docs/results.md says how impacts are told apart` },
+      el("button.link", { type: "button", onclick: () => show.time(impact.largest_force_time) }, when), ": ", ...restitutionParts(run, impact), impactWords(run, impact),
       ...(impact.coarse ? [" ", el("strong.fair", { title: coarseZone }, markElement("fair"), `(only ${pointWords(impact)} contact points at once: too coarse)`)] : [])));
   });
   const more = impacts.length - mostOnCard + leftOut;
@@ -80,7 +86,7 @@ export function outcomeElements(run: Run, show: { time: (time: number) => void; 
 }
 
 const columns: [string, (impact: Impact, run: Run) => string | HTMLElement][] = [
-  ["obstacle", ({ obstacle }) => obstacle],
+  ["obstacle or other body", (impact, run) => opponent(run, impact)],
   ["body", ({ body }, run) => run.summary.bodies[body]?.name ?? String(body)],
   ["begin", ({ begin, from_start }) => `${number(begin, 5)}${from_start ? " (start)" : ""}`],
   ["duration", ({ duration, ended }) => `${number(duration, 4)}${ended ? "" : " so far"}`],

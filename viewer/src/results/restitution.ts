@@ -19,17 +19,24 @@ const acts = (run: Run, work: string): boolean => {
   return Math.max(Math.abs(low), Math.abs(high)) > 0;
 };
 
+/** The mass that the energy of the approach is reckoned with: of two bodies m₁m₂/(m₁ + m₂). */
+function approachMass(run: Run, { body, against }: Impact): number {
+  const mass = toNumber(run.summary.bodies[body]?.mass);
+  const other = against ? toNumber(run.summary.bodies[against.body]?.mass) : Infinity;
+  return Number.isFinite(other) ? (mass * other) / (mass + other) : mass;
+}
+
 const squared = (vector: Impact["tangential_velocity_before"]) => (vector ?? []).map(toNumber).reduce((sum, v) => sum + v * v, 0);
 
 /** Whether the body leaves faster than all energy allows that it has when it arrives. */
 function exceedsEnergy(run: Run, impact: Impact): boolean {
-  const mass = toNumber(run.summary.bodies[impact.body]?.mass);
+  const mass = approachMass(run, impact);
   const at = (column: string, time: number) => run.column(column)[indexAt(run.timesOf(column), time)] ?? NaN;
   const end = impact.end ?? impact.begin;
-  let available = toNumber(impact.kinetic_energy_before) + at("elastic_energy", impact.begin)
+  let available = toNumber(impact.kinetic_energy_before) + toNumber(impact.against?.kinetic_energy_before ?? 0) + at("elastic_energy", impact.begin)
     + Math.max(at("load_potential", impact.begin) - at("load_potential", end), 0);
   // Without friction nothing turns the motion along the obstacle into one away from it.
-  if (run.summary.contacts.every(({ friction, friction_bound }) => !(friction > 0) && !(friction_bound > 0)))
+  if (!impact.against && run.summary.contacts.every(({ friction, friction_bound }) => !(friction > 0) && !(friction_bound > 0)))
     available -= 0.5 * mass * Math.min(squared(impact.tangential_velocity_before), squared(impact.tangential_velocity_after));
   return 0.5 * mass * toNumber(impact.normal_velocity_after) ** 2 > (1 + tolerance) * available;
 }
@@ -49,7 +56,7 @@ const muchEnergy = 0.1;
 /** Where the method has changed the energy by much of what the body lost. */
 function inexact(run: Run, impact: Impact): RestitutionRemark | null {
   if (!impact.restitution_inexact) return null;
-  const approach = 0.5 * toNumber(run.summary.bodies[impact.body]?.mass) * toNumber(impact.normal_velocity_before) ** 2;
+  const approach = 0.5 * approachMass(run, impact) * toNumber(impact.normal_velocity_before) ** 2;
   const method = toNumber(impact.method_energy ?? null) / approach;
   const body = 1 - toNumber(impact.restitution) ** 2;
   const share = (part: number) => `${number(100 * Math.abs(part), 2)} %`;

@@ -50,7 +50,7 @@ export function runTable(store: Store, runs: Run[]): HTMLElement {
     const remarks = [status !== "done" && status, warnings.length > 0 && `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}`].filter((each) => each !== false);
     const row = el("tr.card", {}, el("td", {}, button), ...parameters.map(({ texts }) => el("td", {}, texts[i])),
       impacts && restitutionCell(run), el("td", {}, largestForce(run)), stress && stressCell(run), ...cells,
-      impacts && el("td", {}, run.summary.impacts[0] ? impactWords(run.summary.impacts[0]) : "–"),
+      impacts && el("td", {}, run.summary.impacts[0] ? impactWords(run, run.summary.impacts[0]) : "–"),
       el("td", {}, remarks.length > 0 && el("a.warned", { href: "#messages" }, remarks.join(", "))));
     row.addEventListener("pointerenter", () => store.setHighlight(run.number));
     row.addEventListener("pointerleave", () => store.setHighlight(null));

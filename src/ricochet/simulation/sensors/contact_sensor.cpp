@@ -4,14 +4,56 @@ namespace ricochet {
 
 namespace {
 
+std::vector<Index> points_of(const ContactBoundary& boundary, int contact) {
+  std::vector<Index> result;
+  for (Index point = 0; point < boundary.size(); ++point) {
+    if (boundary.pair[static_cast<std::size_t>(point)] == contact) result.push_back(point);
+  }
+  return result;
+}
+
+/// On the body of the contact's first group: rows have the force on that which carries the multipliers.
+SpaceVector force_on_first(const State& state, const std::vector<Index>& points, bool exchanged, Index dimension) {
+  SpaceVector force = SpaceVector::Zero(dimension);
+  for (const Index point : points) {
+    if (carries_force(state.forces, point)) force += contact_force(state.forces, point);
+  }
+  if (exchanged) force = -force;
+  return force;
+}
+
+class PairForceSensor final : public Sensor {
+ public:
+  PairForceSensor(const SemidiscreteProblem& problem, int contact, bool exchanged)
+      : name_("pair_force." + std::to_string(contact)),
+        problem_(problem),
+        points_(points_of(problem.contact, contact)),
+        exchanged_(exchanged) {}
+
+  [[nodiscard]] Columns columns() const override {
+    Columns columns;
+    add_vector_columns(columns, name_, problem_.dimension);
+    return columns;
+  }
+
+  void observe(const Observation& observation, std::vector<double>& row) override {
+    append(force_on_first(observation.state, points_, exchanged_, problem_.dimension), row);
+  }
+
+ private:
+  std::string name_;
+  const SemidiscreteProblem& problem_;
+  std::vector<Index> points_;
+  bool exchanged_;
+};
+
 class ContactSensor final : public Sensor {
  public:
-  ContactSensor(std::string name, const SemidiscreteProblem& problem, int contact)
-      : name_(std::move(name)), problem_(problem) {
-    for (Index point = 0; point < problem.contact.size(); ++point) {
-      if (problem.contact.pair[static_cast<std::size_t>(point)] == contact) points_.push_back(point);
-    }
-  }
+  ContactSensor(std::string name, const SemidiscreteProblem& problem, int contact, bool exchanged)
+      : name_(std::move(name)),
+        problem_(problem),
+        points_(points_of(problem.contact, contact)),
+        exchanged_(exchanged) {}
 
   [[nodiscard]] Columns columns() const override {
     Columns columns;
@@ -25,10 +67,10 @@ class ContactSensor final : public Sensor {
     const Index d = problem_.dimension;
     const ContactBoundary& contact = problem_.contact;
     const State& state = observation.state;
-    SpaceVector force = SpaceVector::Zero(d), centre = SpaceVector::Zero(d);
+    const SpaceVector force = force_on_first(state, points_, exchanged_, d);
+    SpaceVector centre = SpaceVector::Zero(d);
     double pressing = 0.0, area = 0.0;
     for (const Index point : points_) {
-      if (carries_force(state.forces, point)) force += contact_force(state.forces, point);
       const double normal = state.forces.normal_reaction[point];
       if (!(normal > 0.0)) continue;
       pressing += normal;
@@ -49,12 +91,18 @@ class ContactSensor final : public Sensor {
   std::string name_;
   const SemidiscreteProblem& problem_;
   std::vector<Index> points_;
+  bool exchanged_;
 };
 
 }  // namespace
 
-std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem, int contact) {
-  return std::make_unique<ContactSensor>(name, problem, contact);
+std::unique_ptr<Sensor> make_contact_sensor(const std::string& name, const SemidiscreteProblem& problem, int contact,
+                                            bool exchanged) {
+  return std::make_unique<ContactSensor>(name, problem, contact, exchanged);
+}
+
+std::unique_ptr<Sensor> make_pair_force_sensor(const SemidiscreteProblem& problem, int contact, bool exchanged) {
+  return std::make_unique<PairForceSensor>(problem, contact, exchanged);
 }
 
 }  // namespace ricochet

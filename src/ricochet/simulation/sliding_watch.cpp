@@ -1,0 +1,129 @@
+#include "ricochet/simulation/sliding_watch.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/simulation/facet_sizes.hpp"
+
+namespace ricochet {
+
+SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs)
+    : problem_(problem),
+      pairs_(pairs),
+      limit_(slip_limits(body, problem.contact, pairs)),
+      normals_(problem.contact.rows ? problem.contact.rows->normals : Points()) {
+  const ContactBoundary& contact = problem.contact;
+  for (std::size_t number = 0; number < pairs.size(); ++number) {
+    if (!pairs[number].has_two_sides()) continue;
+    Largest largest;
+    largest.contact = static_cast<int>(number);
+    if (pairs[number].pair_at.size() > 0) largest.pair_at.head(problem.dimension) = pairs[number].pair_at;
+    for (Index point = 0; point < contact.size(); ++point) {
+      if (contact.pair[static_cast<std::size_t>(point)] != largest.contact) continue;
+      points_.push_back(point);
+      at_.push_back(largest_.size());
+    }
+    largest_.push_back(largest);
+  }
+}
+
+/// Of the means of both sides: across the normal of the start.
+double SlidingWatch::slip_of(Index point, const Eigen::Vector3d& pair_at, const Vector& displacement) const {
+  const Index d = problem_.dimension;
+  Eigen::Vector3d moved = -pair_at, normal = Eigen::Vector3d::Zero();
+  problem_.contact.visit_nodes(point, [&](Index node, double weight) {
+    for (Index k = 0; k < d; ++k) moved[k] += weight * displacement[node * d + k];
+  });
+  for (Index k = 0; k < d; ++k) normal[k] = normals_(k, point);
+  return (moved - moved.dot(normal) * normal).norm();
+}
+
+void SlidingWatch::look(const State& state) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Index point = points_[i];
+    if (!(state.forces.normal_reaction[point] > 0.0)) continue;
+    Largest& largest = largest_[at_[i]];
+    const double slip = slip_of(point, largest.pair_at, state.displacement);
+    if (!(slip > largest.ratio * limit_[point])) continue;
+    largest.ratio = slip / limit_[point];
+    largest.slip = slip;
+    largest.limit = limit_[point];
+    largest.time = state.time;
+    largest.point = point;
+  }
+  for (Largest& largest : largest_) {
+    if (largest.is_beyond || !(largest.ratio > 1.0)) continue;
+    largest.is_beyond = true;
+    largest.time_beyond = largest.time;
+    tell(largest);
+  }
+}
+
+std::vector<double> SlidingWatch::place_of(Index point) const {
+  Vector place = Vector::Zero(problem_.dimension);
+  if (point >= 0)
+    problem_.contact.visit_own_nodes(point,
+                                     [&](Index node, double weight) { place += weight * problem_.nodes.col(node); });
+  return {place.data(), place.data() + place.size()};
+}
+
+void SlidingWatch::tell(const Largest& largest) const {
+  const ContactPair& pair = pairs_[static_cast<std::size_t>(largest.contact)];
+  log::warning(fmt::format(
+      "at t = {:.6g} the bodies of \"{}\" and \"{}\" have slid along each other by {:.3g} at ({:.4g}) (reference "
+      "position), more than half of the smaller facet there ({:.3g}): a contact between bodies keeps the facets "
+      "together that faced each other {}, and from here on its pressures act at other places than those that touch; "
+      "large sliding is not supported yet: limit the motion, give that surface larger facets, or pair the bodies with "
+      "pair_at where they are pressed",
+      largest.time, pair.first_group(), pair.second_group(), largest.slip, fmt::join(place_of(largest.point), ", "),
+      largest.limit, pair.pair_at.size() > 0 ? "at pair_at" : "at the start"));
+}
+
+std::vector<PairSliding> SlidingWatch::report() const {
+  std::vector<PairSliding> result;
+  for (const Largest& largest : largest_) {
+    PairSliding pair;
+    pair.contact = largest.contact;
+    pair.slip = largest.slip;
+    pair.limit = largest.limit;
+    pair.time = largest.time;
+    if (largest.point >= 0) pair.place = place_of(largest.point);
+    if (largest.is_beyond) pair.time_beyond = largest.time_beyond;
+    result.push_back(pair);
+  }
+  return result;
+}
+
+void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
+  Vector numbers(7 * static_cast<Index>(largest_.size()));
+  for (std::size_t i = 0; i < largest_.size(); ++i) {
+    const Largest& largest = largest_[i];
+    numbers.segment<7>(7 * static_cast<Index>(i)) << largest.ratio, largest.slip, largest.limit, largest.time,
+        largest.time_beyond, static_cast<double>(largest.point), largest.is_beyond ? 1.0 : 0.0;
+  }
+  snapshot.save(name, numbers);
+}
+
+void SlidingWatch::load(const Snapshot& snapshot, const std::string& name) {
+  const Vector& numbers = snapshot.reals(name, 7 * static_cast<Index>(largest_.size()));
+  for (std::size_t i = 0; i < largest_.size(); ++i) {
+    const auto of = numbers.segment<7>(7 * static_cast<Index>(i));
+    const bool fits = of.allFinite() && of[5] >= -1.0 && of[5] < static_cast<double>(problem_.contact.size()) &&
+                      of[5] == std::floor(of[5]) && (of[6] == 0.0 || of[6] == 1.0);
+    if (!fits) throw Error(ErrorKind::invalid_input, "the checkpoint's record of sliding is damaged");
+    Largest& largest = largest_[i];
+    largest.ratio = of[0];
+    largest.slip = of[1];
+    largest.limit = of[2];
+    largest.time = of[3];
+    largest.time_beyond = of[4];
+    largest.point = static_cast<Index>(of[5]);
+    largest.is_beyond = of[6] != 0.0;
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/base/snapshot.hpp"
+#include "ricochet/contact/contact_boundary.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/state.hpp"
+#include "ricochet/simulation/sliding_report.hpp"
+
+/// @file Slip between bodies beyond what their pairing allows: facets that faced each other at the start are taken to
+/// face each other for the whole run.
+namespace ricochet {
+
+class SlidingWatch {
+ public:
+  /// Keeps references to problem and pairs.
+  SlidingWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// After every step, and of the starting state: looks at the points between bodies that are pressed. Warns, once, of
+  /// each contact whose slip exceeds its limit. Allocates nothing where there is nothing to tell.
+  void look(const State& state);
+  /// Of each contact between bodies.
+  [[nodiscard]] std::vector<PairSliding> report() const;
+
+ private:
+  /// Of a contact between bodies.
+  struct Largest {
+    int contact = 0;
+    Eigen::Vector3d pair_at = Eigen::Vector3d::Zero();  ///< slip is measured from there
+    double ratio = 0.0, slip = 0.0, limit = 0.0, time = 0.0, time_beyond = 0.0;
+    Index point = -1;
+    bool is_beyond = false;
+  };
+  [[nodiscard]] double slip_of(Index point, const Eigen::Vector3d& pair_at, const Vector& displacement) const;
+  [[nodiscard]] std::vector<double> place_of(Index point) const;
+  void tell(const Largest& largest) const;
+
+  const SemidiscreteProblem& problem_;
+  const std::vector<ContactPair>& pairs_;
+  Vector limit_;                 ///< per point
+  Points normals_;               ///< at the start
+  std::vector<Index> points_;    ///< between bodies
+  std::vector<std::size_t> at_;  ///< of these: in largest_
+  std::vector<Largest> largest_;
+};
+
+}  // namespace ricochet
