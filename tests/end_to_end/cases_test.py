@@ -48,6 +48,13 @@ def documented_columns(dimension, case, points):
     columns += vector_columns("contact_force", dimension) + vector_columns("momentum", dimension)
     columns += ["angular_momentum_z"] if dimension == 2 else vector_columns("angular_momentum", 3)
     columns += ["max_rotation", "active_contacts", "sticking", "slipping", "max_penetration", "iterations"]
+    bodies = list(case.get("part", {}))
+    if len(bodies) > 1:
+        for body in bodies:
+            columns += vector_columns(f"momentum.{body}", dimension)
+    for number, contact in enumerate(case.get("contact", [])):
+        if "against" in contact and not contact.get("tied", False):
+            columns += vector_columns(f"pair_force.{number}", dimension)
     facets, on_contact_boundary = boundary_groups(case), {point["name"] for point in points if point["in_contact_boundary"]}
     for probe in case.get("probe", []):
         columns += probe_columns(probe, dimension, probe["name"] in on_contact_boundary, probe.get("group") in facets)
