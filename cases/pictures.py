@@ -3,7 +3,7 @@
 closed forms. From the repository root, with python3-matplotlib installed:
 
     /usr/bin/python3 cases/pictures.py [puck disc rod bar ball hertz layer incline dragged conveyor oblique ball-spin bowl bars-pair cradle
-        balls ball-block stack]
+        balls ball-block stack tied]
 """
 import csv
 import subprocess
@@ -337,6 +337,20 @@ def bars_pair():
     save(figure, "cases/bars-pair/bars-pair.png")
 
 
+def tied():
+    history = run("tied/tied", "tied")
+    figure, (force, velocity) = plt.subplots(1, 2, figsize=(11, 3.6))
+    steps(force, [0, 0.05, 2.05, 3], [0, 1, 0], label="closed form")
+    force.plot(history["time"], history["wall.force_x"] / 0.1 / 0.01, linewidth=1, label="computed")
+    velocity.plot([0, 0.05, 2.05, 3], [-1, -1, 1, 1], label="closed form", **EXACT)
+    velocity.plot(history["time"], history["all.velocity_average_x"] / 0.01, linewidth=1.3, label="computed")
+    force.set(xlabel="time", title="pressure on the wall / ρcV")
+    velocity.set(xlabel="time", title="velocity of the centre of mass / V")
+    force.legend(loc="upper right")
+    velocity.legend(loc="lower right")
+    save(figure, "cases/tied/tied.png")
+
+
 def cradle():
     history = run("cradle/cradle", "cradle")
     figure, (force, velocity) = plt.subplots(1, 2, figsize=(11, 3.8))
@@ -472,6 +486,6 @@ def hertz_pressure():
 if __name__ == "__main__":
     known = {"puck": puck, "disc": disc, "rod": rod, "bar": bar, "ball": ball, "hertz": hertz_pressure, "layer": layer, "incline": incline, "dragged": dragged,
              "conveyor": conveyor, "oblique": oblique, "ball-spin": ball_spin, "bowl": bowl,
-             "bars-pair": bars_pair, "cradle": cradle, "balls": balls, "ball-block": ball_block, "stack": stack}
+             "bars-pair": bars_pair, "cradle": cradle, "balls": balls, "ball-block": ball_block, "stack": stack, "tied": tied}
     for wanted in sys.argv[1:] or known:
         known[wanted]()
