@@ -49,7 +49,8 @@ def documented_columns(dimension, case, points):
     columns += ["angular_momentum_z"] if dimension == 2 else vector_columns("angular_momentum", 3)
     columns += ["max_rotation", "active_contacts", "sticking", "slipping", "max_penetration", "iterations"]
     bodies = list(case.get("part", {}))
-    if len(bodies) > 1:
+    tied = any(contact.get("tied", False) for contact in case.get("contact", []))  # the cases that have ties are one body
+    if len(bodies) > 1 and not tied:
         for body in bodies:
             columns += vector_columns(f"momentum.{body}", dimension)
     for number, contact in enumerate(case.get("contact", [])):
