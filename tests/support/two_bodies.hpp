@@ -9,13 +9,11 @@
 /// @file Two bodies in one mesh, made in memory.
 namespace ricochet::test_support {
 
-/// The meshes beside each other, sharing no node. Groups are called "lower.y1", "upper.y0", …
-[[nodiscard]] Mesh join_meshes(const Mesh& lower, const Mesh& upper);
-
 /// The mesh as text of Gmsh's format 2.2, written to a file of this name in the tests' temporary directory; its path.
 [[nodiscard]] std::string write_mesh(const std::string& name, const Mesh& mesh);
 
 /// A box on another one: the side where the last coordinate is largest below, smallest above.
+/// Groups are called "lower.y1", "upper.y0", …
 struct StackedBoxes {
   CellShape lower_shape = CellShape::triangle, upper_shape = CellShape::triangle;
   std::vector<int> lower_counts = {}, upper_counts = {};

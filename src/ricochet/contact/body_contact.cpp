@@ -151,22 +151,14 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
     }
     return directions;
   }
-  std::map<Index, AreaSum> sums;
+  // On a flat surface all facets and multipliers have the very same one.
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
     if (!faces(k)) continue;
-    const PlaceInBlocks place = locate_facet(*body.space, own.facets()[k].number);
-    const CellBlock& block = body.space->facets[place.block];
-    for (int i = 0; i < block.nodes_per_cell; ++i) {
-      const Index node = block.cell(place.local)[i];
-      AreaSum& sum = sums[node];
-      sum.vector += own.facets()[k].area_vector;
-      sum.size += own.facets()[k].area;
-      // On a flat surface all facets and multipliers have the very same one.
-      const auto known = directions.find(node);
-      if (known == directions.end()) directions[node] = -normal_of(k);
-    }
+    for (const Index node : facet_nodes(*body.space, {own.facets()[k].number}))
+      directions.try_emplace(node, -normal_of(k));
   }
-  for (const auto& [node, sum] : sums) {
+  const std::set<Index> own_facing(facing.begin(), facing.end());
+  for (const auto& [node, sum] : areas_around_nodes(body, own, &own_facing)) {
     const double agreement = sum.vector.norm() / sum.size;
     if (agreement < found.sharpest) {
       found.sharpest = agreement;

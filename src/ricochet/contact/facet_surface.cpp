@@ -54,7 +54,7 @@ Three area_vector(const std::array<Three, 3>& corners, bool plane) {
 
 FacetSurface::FacetSurface(const Body& body, const std::vector<Index>& facets, const std::vector<double>& cell_height,
                            const Vector& shift)
-    : nodes_(facet_nodes(*body.space, facets)), shift_(shift.size() > 0 ? shift : Vector::Zero(body.mesh->dimension)) {
+    : shift_(shift.size() > 0 ? shift : Vector::Zero(body.mesh->dimension)) {
   const std::vector<std::vector<Index>> cells = cells_of_facets(*body.mesh, facets);
   for (std::size_t k = 0; k < facets.size(); ++k) {
     add_facet(body, facets[k], cells[k].front());

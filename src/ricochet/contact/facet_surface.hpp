@@ -38,8 +38,6 @@ class FacetSurface {
   [[nodiscard]] const std::vector<Facet>& facets() const { return facets_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   [[nodiscard]] const BoxTree& tree() const { return tree_; }
-  /// The nodes of the displacement's space on these facets, ascending.
-  [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
   /// The least height of the cells behind the facets around a node.
   [[nodiscard]] double height_at(Index node) const { return node_height_.at(node); }
   [[nodiscard]] const Vector& shift() const { return shift_; }
@@ -49,7 +47,6 @@ class FacetSurface {
 
   std::vector<Facet> facets_;
   std::vector<Piece> pieces_;
-  std::vector<Index> nodes_;
   std::map<Index, double> node_height_;
   Vector shift_;
   BoxTree tree_;  ///< of the pieces

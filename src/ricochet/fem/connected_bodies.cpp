@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "ricochet/base/text.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
 #include "ricochet/fem/wave_speed.hpp"
+#include "ricochet/mesh/disjoint_sets.hpp"
 
 namespace ricochet {
 
@@ -21,34 +21,25 @@ void for_each_cell(const DisplacementSpace& space, const Visit& visit) {
   }
 }
 
-/// The representative of a node's set; paths are halved on the way.
-Index find_root(std::vector<Index>& parent, Index node) {
-  const auto at = [&](Index i) -> Index& { return parent[static_cast<std::size_t>(i)]; };
-  while (at(node) != node) node = at(node) = at(at(node));
-  return node;
-}
-
 }  // namespace
 
 ConnectedBodies find_connected_bodies(const DisplacementSpace& space) {
-  std::vector<Index> parent(static_cast<std::size_t>(space.node_count()));
-  std::iota(parent.begin(), parent.end(), Index{0});
+  DisjointSets sets(space.node_count());
   for_each_cell(space, [&](Index, const Index* nodes, int count) {
-    const Index root = find_root(parent, nodes[0]);
-    for (int k = 1; k < count; ++k) parent[static_cast<std::size_t>(find_root(parent, nodes[k]))] = root;
+    for (int k = 1; k < count; ++k) sets.join(nodes[0], nodes[k]);
   });
-  for (const auto& [one, other] : space.glued)
-    parent[static_cast<std::size_t>(find_root(parent, one))] = find_root(parent, other);
+  for (const auto& [one, other] : space.glued) sets.join(one, other);
   ConnectedBodies result;
-  std::vector<int> of_root(parent.size(), -1);
+  const auto count = static_cast<std::size_t>(space.node_count());
+  std::vector<int> of_root(count, -1);
   for_each_cell(space, [&](Index, const Index* nodes, int) {
-    int& body = of_root[static_cast<std::size_t>(find_root(parent, nodes[0]))];
+    int& body = of_root[static_cast<std::size_t>(sets.root(nodes[0]))];
     if (body < 0) body = result.count++;
     result.of_cell.push_back(body);
   });
-  result.of_node.reserve(parent.size());
+  result.of_node.reserve(count);
   for (Index node = 0; node < space.node_count(); ++node)
-    result.of_node.push_back(of_root[static_cast<std::size_t>(find_root(parent, node))]);
+    result.of_node.push_back(of_root[static_cast<std::size_t>(sets.root(node))]);
   return result;
 }
 

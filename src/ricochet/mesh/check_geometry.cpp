@@ -2,15 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/mesh/boundary_facets.hpp"
 #include "ricochet/mesh/build_mesh.hpp"
+#include "ricochet/mesh/disjoint_sets.hpp"
 #include "ricochet/mesh/offenders.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 
@@ -254,28 +253,15 @@ class NodeGrid {
   std::vector<Index> next_;
 };
 
-/// Per node the least node of all that hang together with it by cells.
-std::vector<Index> bodies_of_nodes(const Mesh& mesh) {
-  std::vector<Index> parent(static_cast<std::size_t>(mesh.node_count()));
-  std::iota(parent.begin(), parent.end(), Index{0});
-  const auto root = [&](Index node) {
-    while (parent[static_cast<std::size_t>(node)] != node) {
-      Index& up = parent[static_cast<std::size_t>(node)];
-      up = parent[static_cast<std::size_t>(up)];
-      node = up;
-    }
-    return node;
-  };
+/// Nodes that hang together by cells.
+DisjointSets bodies_of(const Mesh& mesh) {
+  DisjointSets bodies(mesh.node_count());
   for (const CellBlock& block : mesh.cells) {
     for (Index cell = 0; cell < block.size(); ++cell) {
-      for (int k = 1; k < block.nodes_per_cell; ++k) {
-        const Index one = root(block.cell(cell)[0]), other = root(block.cell(cell)[k]);
-        parent[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
-      }
+      for (int k = 1; k < block.nodes_per_cell; ++k) bodies.join(block.cell(cell)[0], block.cell(cell)[k]);
     }
   }
-  for (Index node = 0; node < mesh.node_count(); ++node) parent[static_cast<std::size_t>(node)] = root(node);
-  return parent;
+  return bodies;
 }
 
 }  // namespace
@@ -286,13 +272,13 @@ void orient_cells(Mesh& mesh) {
 
 void check_coincident_nodes(const Mesh& mesh, bool bodies_may_touch) {
   NodeGrid grid(mesh.nodes);
-  const std::vector<Index> body = bodies_may_touch ? bodies_of_nodes(mesh) : std::vector<Index>();
+  DisjointSets bodies = bodies_may_touch ? bodies_of(mesh) : DisjointSets(0);
   Index count = 0;
   std::string pairs;
   for (Index node = 0; node < mesh.node_count(); ++node) {
     const Index other = grid.find_and_enter(node);
     if (other < 0) continue;
-    if (bodies_may_touch && body[static_cast<std::size_t>(node)] != body[static_cast<std::size_t>(other)]) continue;
+    if (bodies_may_touch && bodies.root(node) != bodies.root(other)) continue;
     if (++count > 5) continue;
     pairs += fmt::format("{}{} and {}", count == 1 ? "" : ", ", mesh.node_tags[static_cast<std::size_t>(other)],
                          mesh.node_tags[static_cast<std::size_t>(node)]);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+/// @file Things that hang together.
+namespace ricochet {
+
+/// Sets of the numbers 0, 1, …, each alone at first, which are joined two by two. The least number of a set stands for
+/// it.
+class DisjointSets {
+ public:
+  explicit DisjointSets(Index count) : parent_(static_cast<std::size_t>(count)) {
+    std::iota(parent_.begin(), parent_.end(), Index{0});
+  }
+  /// What stands for the set of a number; paths are halved on the way.
+  [[nodiscard]] Index root(Index number) {
+    const auto parent = [this](Index i) -> Index& { return parent_[static_cast<std::size_t>(i)]; };
+    while (parent(number) != number) number = parent(number) = parent(parent(number));
+    return number;
+  }
+  void join(Index one, Index other) {
+    const Index a = root(one), b = root(other);
+    parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+}  // namespace ricochet
