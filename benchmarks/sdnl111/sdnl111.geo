@@ -1,7 +1,7 @@
-// Two bars, 1 m long and 2 cm high, with a gap of 10 um between them: square cells of 1/200 m along them.
-// gmsh sdnl111.geo -2 -format msh41 -o sdnl111.msh        (1608 nodes)
-DefineConstant[ along = 200 ];
-DefineConstant[ across = 4 ];
+// Two bars, 1 m long and 2 cm high, with a gap of 10 um between them: cells of 1/400 m along them.
+// gmsh sdnl111.geo -2 -format msh41 -o sdnl111.msh        (2005 nodes)
+DefineConstant[ along = 400 ];
+DefineConstant[ across = 2 ];
 length = 1;
 height = 0.02;
 gap = 1e-5;
