@@ -109,13 +109,4 @@ double* stored_entry(SparseMatrix& matrix, Index row, Index column) {
   return at != end && *at == row ? matrix.valuePtr() + (at - matrix.innerIndexPtr()) : nullptr;
 }
 
-bool is_diagonal(const SparseMatrix& matrix) {
-  for (Index column = 0; column < matrix.cols(); ++column) {
-    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
-      if (entry.row() != column && entry.value() != 0.0) return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace ricochet

@@ -22,7 +22,4 @@ namespace ricochet {
 /// Where an entry is stored; null where it is not. Searches the column.
 [[nodiscard]] double* stored_entry(SparseMatrix& matrix, Index row, Index column);
 
-/// True when no entry off the diagonal is stored but zeros.
-[[nodiscard]] bool is_diagonal(const SparseMatrix& matrix);
-
 }  // namespace ricochet

@@ -173,12 +173,13 @@ void assemble_operators(const Case& input, Model& model) {
     return std::any_of(values.begin(), values.end(), [](double v) { return v > 0.0; });
   };
   if (any(mass_damping))
-    model.problem.damping = expand_to_components(
-        build(condensed(assemble_scalar_mass(model.body, graph, mass_damping), 1), mass_damping), d);
-  if (any(stiffness_damping)) {
-    const SparseMatrix part = condensed(assemble_stiffness(model.body, graph, stiffness_damping), d);
-    model.problem.damping = model.problem.has_damping() ? SparseMatrix(model.problem.damping + part) : part;
-  }
+    model.problem.damping.set_mass_part(
+        expand_to_components(build(condensed(assemble_scalar_mass(model.body, graph, mass_damping), 1), mass_damping),
+                             d),
+        model.space.nodes);
+  if (any(stiffness_damping))
+    model.problem.damping.set_stiffness_part(condensed(assemble_stiffness(model.body, graph, stiffness_damping), d),
+                                             model.space.nodes);
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
   if (input.time.adaptive) {

@@ -8,6 +8,7 @@
 #include "ricochet/contact/contact_boundary.hpp"
 #include "ricochet/contact/contact_stress.hpp"
 #include "ricochet/linear_algebra/node_matrix.hpp"
+#include "ricochet/problem/damping.hpp"
 #include "ricochet/problem/internal_force.hpp"
 #include "ricochet/problem/loads.hpp"
 
@@ -20,9 +21,9 @@ namespace ricochet {
 
 struct SemidiscreteProblem {
   int dimension = 2;
-  Points nodes;          ///< reference positions, d × nodes
-  NodeMatrix mass;       ///< M, or M₀ of an equivalent mass
-  SparseMatrix damping;  ///< C of Rayleigh's form; empty (0 × 0) when there is none
+  Points nodes;     ///< reference positions, d × nodes
+  NodeMatrix mass;  ///< M, or M₀ of an equivalent mass
+  Damping damping;
   std::shared_ptr<const InternalForce> internal_force;
   Loads loads;
   Supports supports;
@@ -42,7 +43,7 @@ struct SemidiscreteProblem {
 
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
   [[nodiscard]] bool is_tied_dof(Index dof) const { return tied != nullptr && tied->is_tied(dof / dimension); }
-  [[nodiscard]] bool has_damping() const { return damping.cols() > 0; }
+  [[nodiscard]] bool has_damping() const { return !damping.is_absent(); }
   [[nodiscard]] bool has_singular_mass() const { return !massless_dofs.empty(); }
   /// Null between bodies.
   [[nodiscard]] const Obstacle* obstacle_of_point(Index point) const {

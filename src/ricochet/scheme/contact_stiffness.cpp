@@ -13,7 +13,7 @@ void ContactStiffness::analyse(const SemidiscreteProblem& problem, double stiffn
     }
   };
   if (stiffness != 0.0) add(problem.internal_force->tangent(), stiffness);
-  if (damping != 0.0 && problem.has_damping()) add(problem.damping, damping);
+  if (damping != 0.0 && problem.has_damping()) add(problem.damping.matrix(), damping);
   rows_.resize(static_cast<Index>(problem.contact_dofs.size()), problem.dof_count());
   rows_.setFromTriplets(entries.begin(), entries.end());
 }

@@ -14,14 +14,20 @@ void StepEquations::balance(const SemidiscreteProblem& problem, double time, con
 void StepEquations::balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
                             Stage& stage) {
   balance(problem, time, base, stage);
-  if (problem.has_damping()) stage.right_hand_side.noalias() -= problem.damping * velocity;
+  resist(problem, velocity, stage);
 }
 
 void StepEquations::balance_with(const SemidiscreteProblem& problem, const Vector& load, const Vector& base,
                                  const Vector& velocity, Stage& stage) {
   problem.internal_force->evaluate(base, force_);
   stage.right_hand_side = load - force_;
-  if (problem.has_damping()) stage.right_hand_side.noalias() -= problem.damping * velocity;
+  resist(problem, velocity, stage);
+}
+
+void StepEquations::resist(const SemidiscreteProblem& problem, const Vector& velocity, Stage& stage) {
+  if (!problem.has_damping()) return;
+  problem.damping.evaluate(velocity, damping_force_);
+  stage.right_hand_side -= damping_force_;
 }
 
 void StepEquations::observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement) {
@@ -80,7 +86,9 @@ void StepEquations::take_part(const SemidiscreteProblem& problem, const Stage& s
 void StepEquations::take_loads(const SemidiscreteProblem& problem, const Vector& motion, double rate,
                                StepForces& forces) const {
   if (problem.loads.varies()) problem.loads.varying(time_, forces.varying_load);
-  if (problem.has_damping()) forces.damping_force.noalias() = problem.damping * motion * rate;
+  if (!problem.has_damping()) return;
+  problem.damping.evaluate(motion, forces.damping_force);
+  forces.damping_force *= rate;
 }
 
 void StepEquations::take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,

@@ -73,12 +73,14 @@ class StepEquations {
                  const Vector& motion, double rate, StepPart& part) const;
 
  private:
+  /// Takes the damping force C v from the right-hand side.
+  void resist(const SemidiscreteProblem& problem, const Vector& velocity, Stage& stage);
   void take_loads(const SemidiscreteProblem& problem, const Vector& motion, double rate, StepForces& forces) const;
   void take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
                       ObstacleMotion& travel) const;
 
   double time_ = 0.0;
-  Vector force_, middle_, rate_;
+  Vector force_, damping_force_, middle_, rate_;
   ObstacleMotion obstacle_velocity_, impact_;
 };
 

@@ -13,7 +13,10 @@ Vector residual_force(const SemidiscreteProblem& problem, const Vector& displace
   problem.loads.total(0.0, load);
   problem.internal_force->evaluate(displacement, internal);
   load -= internal;
-  if (problem.has_damping() && velocity.size() > 0) load -= problem.damping * velocity;
+  if (!problem.has_damping() || velocity.size() == 0) return load;
+  Vector damping;
+  problem.damping.evaluate(velocity, damping);
+  load -= damping;
   return load;
 }
 

@@ -220,7 +220,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   find_acceleration(problem, support_acceleration, pressed, step, options, state);
   find_support_reaction(problem, state);
   if (problem.loads.varies()) problem.loads.varying(0.0, state.forces.varying_load);
-  if (problem.has_damping()) state.forces.damping_force = problem.damping * state.velocity;
+  if (problem.has_damping()) problem.damping.evaluate(state.velocity, state.forces.damping_force);
   return state;
 }
 

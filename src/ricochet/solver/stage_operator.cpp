@@ -21,7 +21,7 @@ SparseMatrix combine_operator(const SemidiscreteProblem& problem, const Operator
   };
   add(coefficients.stiffness, [&] { return problem.internal_force->tangent(displacement); });
   add(coefficients.mass, [&] { return problem.mass.whole(); });
-  if (problem.has_damping()) add(coefficients.damping, [&] { return problem.damping; });
+  if (problem.has_damping()) add(coefficients.damping, [&] { return problem.damping.matrix(); });
   return result;
 }
 

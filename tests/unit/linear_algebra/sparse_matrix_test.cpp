@@ -47,15 +47,5 @@ TEST(SparseMatrix, SumsHaveTheEntriesOfBoth) {
   }
 }
 
-TEST(SparseMatrix, ZerosOffTheDiagonalAreDiagonal) {
-  Matrix dense = Matrix::Identity(4, 4);
-  SparseMatrix matrix = dense.sparseView();
-  EXPECT_TRUE(is_diagonal(matrix));
-  matrix.insert(1, 3) = 0.0;
-  EXPECT_TRUE(is_diagonal(matrix));
-  matrix.coeffRef(1, 3) = 1e-300;
-  EXPECT_FALSE(is_diagonal(matrix));
-}
-
 }  // namespace
 }  // namespace ricochet

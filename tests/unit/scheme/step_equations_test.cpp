@@ -33,7 +33,7 @@ TEST_F(StepEquationsTest, BalanceTheForcesAtTheBase) {
   EXPECT_LE((stage_.right_hand_side - (load - internal)).norm(), 1e-15 * size);
   ASSERT_TRUE(problem_.has_damping());
   equations_.balance(problem_, time, base_, velocity_, stage_);
-  const Vector damping = problem_.damping * velocity_;
+  const Vector damping = problem_.damping.matrix() * velocity_;
   EXPECT_GT(damping.norm(), 0.0);
   EXPECT_LE((stage_.right_hand_side - (load - internal - damping)).norm(), 1e-15 * (size + damping.norm()));
 }

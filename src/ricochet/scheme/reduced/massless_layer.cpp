@@ -177,7 +177,9 @@ void MasslessLayer::take_forces(const SemidiscreteProblem& problem, const Stage&
                                 const Vector& increment, State& state) {
   equations_.take_contact(stage, solution, step_, state);
   if (problem.loads.varies()) state.forces.varying_load = next_varying_;
-  if (problem.has_damping()) state.forces.damping_force.noalias() = problem.damping * increment * (1.0 / step_);
+  if (!problem.has_damping()) return;
+  problem.damping.evaluate(increment, state.forces.damping_force);
+  state.forces.damping_force *= 1.0 / step_;
 }
 
 MasslessLayer::LayerWork MasslessLayer::layer_work(const SemidiscreteProblem& problem, const ContactRows& rows,

@@ -7,7 +7,7 @@ namespace ricochet {
 
 void ExplicitMotion::analyse(const SemidiscreteProblem& problem, double step) {
   mass_ = problem.mass.diagonal();
-  damping_ = problem.has_damping() ? Vector(problem.damping.diagonal()) : Vector();
+  damping_ = problem.has_damping() ? Vector(problem.damping.matrix().diagonal()) : Vector();
   inverse_mass_ = mass_;
   if (problem.has_damping()) inverse_mass_ += (0.5 * step) * damping_;
   for (const Index dof : problem.supports.dofs()) inverse_mass_[dof] = 0.0;

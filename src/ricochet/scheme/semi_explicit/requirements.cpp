@@ -25,7 +25,7 @@ void require_semi_explicit(const SemidiscreteProblem& problem, const std::string
                             "is that of their own equilibrium, contact included; {}",
                             scheme, advice));
   }
-  if (problem.has_damping() && !is_diagonal(problem.damping)) {
+  if (problem.damping.has_stiffness_part()) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("scheme \"{}\" takes no damping proportional to the stiffness: it would make the stable "
                             "step shorter and need a second product with K; set material damping.stiffness = 0 "
