@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ricochet/base/memory.hpp"
+#include "ricochet/linear_algebra/graph_components.hpp"
 #include "ricochet/solver/step_estimate.hpp"
 
 namespace ricochet {
@@ -28,21 +29,55 @@ Vector row_sums(const NodeMatrix& mass) {
   return result;
 }
 
-/// The displacement that shears the body in the plane of two axes: along each what the position is along the other,
-/// from the centre of mass.
-Vector shear(const SemidiscreteProblem& problem, const Vector& inertia, int a, int b) {
+/// The displacement that shears each body in the plane of two axes: along each what the position is along the other,
+/// from the body's centre of mass.
+Vector shear(const SemidiscreteProblem& problem, const std::vector<std::vector<Index>>& bodies, const Vector& inertia,
+             int a, int b) {
   const int d = problem.dimension;
   Vector result = Vector::Zero(problem.dof_count());
-  Eigen::Vector2d moment = Eigen::Vector2d::Zero();
-  double mass = 0.0;
-  for (Index node = 0; node < problem.nodes.cols(); ++node) {
-    moment += inertia[node * d] * Eigen::Vector2d(problem.nodes(a, node), problem.nodes(b, node));
-    mass += inertia[node * d];
+  for (const std::vector<Index>& body : bodies) {
+    Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+    double mass = 0.0;
+    for (const Index node : body) {
+      moment += inertia[node * d] * Eigen::Vector2d(problem.nodes(a, node), problem.nodes(b, node));
+      mass += inertia[node * d];
+    }
+    if (mass > 0.0) moment /= mass;
+    for (const Index node : body) {
+      result[node * d + a] = problem.nodes(b, node) - moment[1];
+      result[node * d + b] = problem.nodes(a, node) - moment[0];
+    }
   }
-  if (mass > 0.0) moment /= mass;
-  for (Index node = 0; node < problem.nodes.cols(); ++node) {
-    result[node * d + a] = problem.nodes(b, node) - moment[1];
-    result[node * d + b] = problem.nodes(a, node) - moment[0];
+  return result;
+}
+
+/// Σ x·y over the dofs of a body's nodes.
+double product_in(const std::vector<Index>& body, int d, const Vector& x, const Vector& y) {
+  double sum = 0.0;
+  for (const Index node : body) sum += x.segment(node * d, d).dot(y.segment(node * d, d));
+  return sum;
+}
+
+/// The largest ratio uᵀDu/uᵀAu of the shears u of a body, over the bodies: D is A's diagonal, without what M has off
+/// its own.
+double softness(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                const SparseMatrix& stiffness) {
+  const int d = problem.dimension;
+  const std::vector<std::vector<Index>> bodies = graph_components(stiffness, d);
+  const Vector inertia = row_sums(problem.mass);
+  const Vector diagonal = coefficients.mass * inertia + coefficients.stiffness * stiffness.diagonal();
+  double result = 0.0;
+  Vector elastic, inertial;
+  for (int axis = 0; axis < (d == 2 ? 1 : 3); ++axis) {
+    const Vector along = shear(problem, bodies, inertia, axis, (axis + 1) % d);
+    problem.internal_force->evaluate(along, elastic);
+    problem.mass.multiply(along, inertial);
+    const Vector force = coefficients.mass * inertial + coefficients.stiffness * elastic;
+    const Vector nodal = diagonal.cwiseProduct(along);
+    for (const std::vector<Index>& body : bodies) {
+      const double energy = product_in(body, d, along, force);
+      if (energy > 0.0) result = std::max(result, product_in(body, d, along, nodal) / energy);
+    }
   }
   return result;
 }
@@ -70,18 +105,9 @@ IterationEstimate estimate_iterations(const SemidiscreteProblem& problem, const 
                                       double tolerance) {
   const int d = problem.dimension;
   const SparseMatrix stiffness = problem.internal_force->tangent();
-  const Vector inertia = row_sums(problem.mass), diagonal = stiffness.diagonal();
   // Of A beside its diagonal blocks: as of the matrix of a simplex, at most the number of its nodes.
   const double largest_eigenvalue = d + 1.0;
-  double condition = 1.0;
-  for (int axis = 0; axis < (d == 2 ? 1 : 3); ++axis) {
-    const Vector along = shear(problem, inertia, axis, (axis + 1) % d);
-    const auto size_by = [&](const Vector& weights) { return along.cwiseAbs2().dot(weights); };
-    const double diagonal_part = coefficients.mass * size_by(inertia) + coefficients.stiffness * size_by(diagonal);
-    const double energy = coefficients.mass * problem.mass.form(along) +
-                          coefficients.stiffness * 2.0 * problem.internal_force->energy(along);
-    if (energy > 0.0) condition = std::max(condition, largest_eigenvalue * diagonal_part / energy);
-  }
+  const double condition = std::max(1.0, largest_eigenvalue * softness(problem, coefficients, stiffness));
   const auto nodes = static_cast<double>(problem.nodes.cols());
   const double blocks = 0.5 * (static_cast<double>(stiffness.nonZeros()) / (d * d) + nodes);
   IterationEstimate result;

@@ -1,6 +1,7 @@
 #include "ricochet/solver/step_estimate.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "ricochet/base/timer.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
@@ -16,9 +17,14 @@ constexpr Index sampled_points = 100;
 
 /// Of the elimination tree of a matrix in the order of its factor: per row the length of the path to the root, which is
 /// the number of entries of a column of L⁻¹. Liu's algorithm with compressed paths.
-std::vector<int> path_lengths(const SparseMatrix& matrix, const SparseCholesky& factor) {
+struct PathsToRoots {
+  std::vector<int> length, root;
+};
+
+PathsToRoots find_paths(const SparseMatrix& matrix, const SparseCholesky& factor) {
   const auto count = static_cast<std::size_t>(matrix.cols());
-  std::vector<int> parent(count, -1), ancestor(count, -1), length(count, 1);
+  std::vector<int> parent(count, -1), ancestor(count, -1);
+  PathsToRoots paths{std::vector<int>(count, 1), std::vector<int>(count)};
   for (std::size_t place = 0; place < count; ++place) {
     for (SparseMatrix::InnerIterator entry(matrix, factor.permutation()[place]); entry; ++entry) {
       auto row = static_cast<int>(factor.place(entry.row()));
@@ -31,27 +37,33 @@ std::vector<int> path_lengths(const SparseMatrix& matrix, const SparseCholesky& 
     }
   }
   for (std::size_t place = count; place-- > 0;) {
-    if (parent[place] >= 0) length[place] = length[static_cast<std::size_t>(parent[place])] + 1;
+    const auto above = static_cast<std::size_t>(std::max(parent[place], 0));
+    if (parent[place] >= 0) paths.length[place] = paths.length[above] + 1;
+    paths.root[place] = parent[place] >= 0 ? paths.root[above] : static_cast<int>(place);
   }
-  return length;
+  return paths;
 }
 
-/// Mean over some contact points, evenly spread over their numbers, of rows × the longest path of their unknowns.
+/// Mean over some contact points, evenly spread over their numbers, of rows × the longest path of their unknowns in
+/// each tree: there is a tree for each body.
 double column_entries(const SemidiscreteProblem& problem, const AnalysedOperator& analysed,
                       const std::vector<int>& number, const SparseMatrix& matrix) {
   const Index points = problem.contact.size();
   if (points == 0 || analysed.dofs.empty()) return 0.0;
-  const std::vector<int> length = path_lengths(matrix, analysed.factor);
+  const PathsToRoots paths = find_paths(matrix, analysed.factor);
   const double rows = problem.contact.has_friction() ? static_cast<double>(problem.dimension) : 1.0;
   const Index samples = std::min(points, sampled_points);
   double sum = 0.0;
   for (Index k = 0; k < samples; ++k) {
-    int longest = 0;
+    std::map<int, int> longest;
     problem.contact.rows->visit_normal(k * points / samples, [&](Index dof, double) {
       const int unknown = number[static_cast<std::size_t>(dof)];
-      if (unknown >= 0) longest = std::max(longest, length[static_cast<std::size_t>(analysed.factor.place(unknown))]);
+      if (unknown < 0) return;
+      const auto place = static_cast<std::size_t>(analysed.factor.place(unknown));
+      int& of_tree = longest[paths.root[place]];
+      of_tree = std::max(of_tree, paths.length[place]);
     });
-    sum += rows * longest;
+    for (const auto& [root, length] : longest) sum += rows * length;
   }
   return sum / static_cast<double>(samples);
 }
