@@ -1,6 +1,7 @@
 #include "ricochet/contact/boundary_patch.hpp"
 
 #include <algorithm>
+#include <map>
 #include <tuple>
 
 namespace ricochet {
@@ -45,34 +46,73 @@ void make_body_patch(const Body& body, const ContactPair& pair, const FreeCompon
   const BodyPairing pairing(body, pair);
   patch.facets.parts.front().facets = pairing.facing_facets();
   patch.space = make_multiplier_space(patch.multipliers, patch.facets);
-  if (!pairing.facing_facets().empty()) patch.bodies = pairing.make(*patch.space, is_free);
-  patch.kept = patch.bodies.multipliers;
-  patch.conditions = patch.bodies.conditions;
-  facing = patch.bodies.facing;
+  if (pairing.facing_facets().empty()) return;
+  BodyContact bodies = pairing.make(*patch.space, is_free);
+  patch.kept = std::move(bodies.multipliers);
+  patch.conditions = std::move(bodies.conditions);
+  patch.nodes = std::move(bodies.nodes);
+  patch.opposite_recovery = std::move(bodies.opposite_recovery);
+  facing = bodies.facing;
 }
 
-/// Traces of tied nodes go on to those that they follow. A nodal force at a tied node is left out: its gap is a mean of
-/// those of the nodes that it follows, on the same surface.
-void follow_ties(const TiedNodes& tied, BoundaryPatch& patch) {
-  const bool nodal = !patch.space->has_functions();
-  std::size_t kept = 0;
+/// Nodal forces at tied nodes are left out: a tied node's gap is a mean of those of the nodes that it follows, on the
+/// same surface. These get its share of the area, D' = D + Pᵀ D_s, and with it of the force, so that a uniform pressure
+/// p still has the forces p D' and is recovered from them: of r' at the nodes that stay, a node had D/D' r', and a tied
+/// one Σ P D_s/D' r'. Nodes that it follows inside the seam carry no contact.
+void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
+  std::vector<Multiplier> kept;
+  std::vector<PointConditions> conditions;
+  std::map<Index, int> number;
   for (std::size_t i = 0; i < patch.kept.size(); ++i) {
-    for (const auto* const nodes : {&patch.kept[i].trace, &patch.conditions[i].opposite}) {
-      for (const auto& [node, weight] : *nodes) {
-        if (tied.is_tied(node)) patch.tied_nodes.push_back(node);
+    if (tied.is_tied(patch.kept[i].node)) continue;
+    number[patch.kept[i].node] = static_cast<int>(kept.size());
+    kept.push_back(patch.kept[i]);
+    conditions.push_back(patch.conditions[i]);
+  }
+  std::vector<TiedNodes::Weights> areas(patch.kept.size());  // of each: (multiplier that stays, area that goes there)
+  for (std::size_t i = 0; i < patch.kept.size(); ++i) {
+    const Multiplier& multiplier = patch.kept[i];
+    double known = 0.0;
+    for (const auto& [node, weight] : tied.spread({{multiplier.node, 1.0}})) {
+      const auto at = number.find(node);
+      if (at == number.end()) continue;
+      areas[i].emplace_back(at->second, weight * multiplier.weight);
+      known += weight;
+    }
+    if (!tied.is_tied(multiplier.node)) continue;
+    for (auto& [to, area] : areas[i]) {
+      area = known > 0.0 ? area / known : 0.0;
+      kept[static_cast<std::size_t>(to)].weight += area;
+    }
+  }
+  const auto hand_on = [&](std::vector<Eigen::Triplet<double>>& recovery) {
+    std::vector<Eigen::Triplet<double>> result;
+    for (const auto& entry : recovery) {
+      for (const auto& [to, area] : areas[static_cast<std::size_t>(entry.col())]) {
+        const double whole = kept[static_cast<std::size_t>(to)].weight;
+        const double part = whole != 0.0 ? area / whole : 1.0;
+        result.emplace_back(entry.row(), static_cast<int>(to), part * entry.value());
       }
     }
-    if (nodal && tied.is_tied(patch.kept[i].node)) continue;
-    patch.kept[i].trace = tied.spread(patch.kept[i].trace);
-    patch.conditions[i].opposite = tied.spread(patch.conditions[i].opposite);
-    if (kept != i) {
-      patch.kept[kept] = std::move(patch.kept[i]);
-      patch.conditions[kept] = std::move(patch.conditions[i]);
-    }
-    ++kept;
+    recovery = std::move(result);
+  };
+  hand_on(patch.recovery);
+  hand_on(patch.opposite_recovery);
+  patch.kept = std::move(kept);
+  patch.conditions = std::move(conditions);
+}
+
+/// Traces act on nodes that are not tied. Where points are, and what is recovered at nodes, stays as it is.
+void follow_ties(const TiedNodes& tied, BoundaryPatch& patch) {
+  if (!patch.space->has_functions()) leave_out_tied_forces(tied, patch);
+  for (PointConditions& conditions : patch.conditions) conditions.opposite = tied.spread(conditions.opposite);
+  for (const Multiplier& multiplier : patch.kept) patch.free_traces.push_back(tied.spread(multiplier.trace));
+}
+
+void find_reached_nodes(BoundaryPatch& patch) {
+  for (const Multiplier& multiplier : patch.kept) {
+    for (const auto& [node, weight] : multiplier.trace) patch.reached.push_back(node);
   }
-  patch.kept.resize(kept);
-  patch.conditions.resize(kept);
 }
 
 void number_points(const Patches& patches) {
@@ -99,6 +139,7 @@ Patches make_patches(const Body& body, const std::vector<ContactPair>& pairs, co
                      const FreeComponent& is_free, std::vector<PairFacing>& facings) {
   Patches patches = collect_patches(body, pairs);
   facings.assign(pairs.size(), {});
+  const TiedNodes none;
   for (const auto& patch : patches) {
     const auto first = static_cast<std::size_t>(patch->first_pair());
     if (patch->obstacle != nullptr) {
@@ -106,7 +147,9 @@ Patches make_patches(const Body& body, const std::vector<ContactPair>& pairs, co
     } else {
       make_body_patch(body, pairs[first], is_free, *patch, facings[first]);
     }
-    if (body.tied != nullptr && !body.tied->empty()) follow_ties(*body.tied, *patch);
+    if (!patch->kept.empty()) patch->recovery = patch->space->pressure_recovery(patch->kept);
+    find_reached_nodes(*patch);
+    follow_ties(body.tied != nullptr ? *body.tied : none, *patch);
   }
   number_points(patches);
   return patches;

@@ -5,6 +5,7 @@
 
 #include "ricochet/contact/body_contact.hpp"
 #include "ricochet/contact/boundary_nodes.hpp"
+#include "ricochet/fem/tied_nodes.hpp"
 
 /// @file What a contact boundary is put together from. Not part of the public interface.
 namespace ricochet {
@@ -17,9 +18,13 @@ struct BoundaryPatch {
   std::unique_ptr<MultiplierSpace> space;
   std::vector<Multiplier> kept;
   std::vector<PointConditions> conditions;  ///< of each
-  std::vector<int> numbers;                 ///< of the kept multipliers among all contact points
-  BodyContact bodies;                       ///< of a pair of bodies; its multipliers are the kept ones
-  std::vector<Index> tied_nodes;            ///< that traces reached before they went to the nodes that these follow
+  /// Of each: its trace, on nodes that are not tied.
+  std::vector<TiedNodes::Weights> free_traces;
+  std::vector<int> numbers;              ///< of the kept multipliers among all contact points
+  std::vector<BodyContact::Node> nodes;  ///< of a pair of bodies: those of both sides
+  std::vector<Index> reached;            ///< nodes that traces reach, tied ones, too
+  /// Pressures at the nodes of the group, and of the other side: entries (node, kept multiplier, value).
+  std::vector<Eigen::Triplet<double>> recovery, opposite_recovery;
 
   [[nodiscard]] int first_pair() const { return facets.parts.front().pair; }
   /// Obstacles whose gap is a linear function of the position, and bodies: rows do not change.

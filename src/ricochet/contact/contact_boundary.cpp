@@ -42,12 +42,12 @@ void resize(ContactBoundary& boundary, ContactRows& rows, Index count) {
 }
 
 /// The node whose supports decide along which tangents there is friction; between bodies it may be of either.
-Index freest_node(const Multiplier& multiplier, const PointConditions& conditions, int dimension,
-                  const FreeComponent& is_free) {
+Index freest_node(const Multiplier& multiplier, const TiedNodes::Weights& trace, const PointConditions& conditions,
+                  int dimension, const FreeComponent& is_free) {
   if (multiplier.node >= 0 && conditions.opposite.empty()) return multiplier.node;
   Index freest = -1;
   int most = -1;
-  for (const auto* const nodes : {&multiplier.trace, &conditions.opposite}) {
+  for (const auto* const nodes : {&trace, &conditions.opposite}) {
     for (const auto& [node, weight] : *nodes) {
       int free = 0;
       for (int k = 0; k < dimension; ++k) free += is_free(node, k) ? 1 : 0;
@@ -101,12 +101,10 @@ class Operators {
  public:
   explicit Operators(int dimension) : d_(dimension) {}
 
-  void add(int point, const Multiplier& multiplier, const PointConditions& conditions, const ContactTangents& tangents,
-           bool is_flat) {
-    for (const auto& [node, weight] : multiplier.trace) {
-      own_.emplace_back(point, static_cast<int>(node), weight);
-      add_node(point, node, weight, conditions.normal, tangents, is_flat);
-    }
+  void add(int point, const Multiplier& multiplier, const TiedNodes::Weights& free_trace,
+           const PointConditions& conditions, const ContactTangents& tangents, bool is_flat) {
+    for (const auto& [node, weight] : multiplier.trace) own_.emplace_back(point, static_cast<int>(node), weight);
+    for (const auto& [node, weight] : free_trace) add_node(point, node, weight, conditions.normal, tangents, is_flat);
     for (const auto& [node, weight] : conditions.opposite)
       add_node(point, node, -weight, conditions.normal, tangents, is_flat);
   }
@@ -148,7 +146,8 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
     const PointConditions& conditions = patch.conditions[i];
     const int number = patch.numbers[i];
     const ContactTangents tangents =
-        tangents_at(freest_node(multiplier, conditions, boundary.dimension, is_free), conditions.normal, is_free);
+        tangents_at(freest_node(multiplier, patch.free_traces[i], conditions, boundary.dimension, is_free),
+                    conditions.normal, is_free);
     boundary.pair[static_cast<std::size_t>(number)] = multiplier.pair;
     boundary.initial_gap[number] = conditions.gap;
     rows.gap_rounding[number] = conditions.gap_rounding;
@@ -160,7 +159,7 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
     }
     boundary.weights[number] = multiplier.weight;
     boundary.net[number] = patch.obstacle != nullptr ? 1.0 : 0.0;
-    operators.add(number, multiplier, conditions, tangents, patch.is_flat());
+    operators.add(number, multiplier, patch.free_traces[i], conditions, tangents, patch.is_flat());
   }
 }
 
@@ -171,7 +170,8 @@ void follow_curved_obstacles(const Body& body, const Patches& patches, const std
   for (const auto& patch : patches) {
     if (patch->is_flat()) continue;
     for (std::size_t i = 0; i < patch->kept.size(); ++i) {
-      const Index node = freest_node(patch->kept[i], patch->conditions[i], boundary.dimension, is_free);
+      const Index node =
+          freest_node(patch->kept[i], patch->free_traces[i], patch->conditions[i], boundary.dimension, is_free);
       CurvedContactData::Point point{patch->numbers[i], patch->obstacle, {}};
       for (int k = 0; k < boundary.dimension; ++k) point.is_free[static_cast<std::size_t>(k)] = is_free(node, k);
       data.points.push_back(point);

@@ -20,7 +20,7 @@
 /// Back to the source: λ̃_N^i = −r_N,i and U·N_i = −(g_i − g₀,i) where the obstacle's normal is −N_i.
 namespace ricochet {
 
-/// Friction between a body and an obstacle.
+/// Friction of a contact pair.
 struct FrictionLaw {
   double coefficient = 0.0;  ///< F of Coulomb's law |r_T| ≤ F r_N
   /// A stress, 0: none. With a coefficient the friction is at most min(F r_N, bound × area); without one it is Tresca's
@@ -54,9 +54,11 @@ struct ContactPair {
   /// The two groups in the order of the case.
   [[nodiscard]] const std::string& first_group() const { return exchanged ? opposite_group : group; }
   [[nodiscard]] const std::string& second_group() const { return exchanged ? group : opposite_group; }
-  /// For messages: obstacle "floor", group "plate.top".
-  [[nodiscard]] std::string opponent() const {
-    return between_bodies() ? "group \"" + opposite_group + '"' : "obstacle \"" + obstacle_name + '"';
+  /// For messages: what a node of the group touches, or between bodies one of the opposite group: obstacle "floor",
+  /// group "plate.top".
+  [[nodiscard]] std::string opponent(bool of_opposite_group = false) const {
+    if (!between_bodies()) return "obstacle \"" + obstacle_name + '"';
+    return "group \"" + (of_opposite_group ? group : opposite_group) + '"';
   }
 };
 

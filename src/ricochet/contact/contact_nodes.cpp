@@ -18,14 +18,11 @@ class NodeTable {
 
   void add(const BoundaryPatch& patch) {
     if (patch.obstacle == nullptr) {
-      for (const BodyContact::Node& node : patch.bodies.nodes)
+      for (const BodyContact::Node& node : patch.nodes)
         rows_[{node.node, patch.first_pair(), static_cast<char>(node.own ? 0 : 1)}] = {0, &node};
       return;
     }
-    for (const Multiplier& multiplier : patch.kept) {
-      for (const auto& [node, weight] : multiplier.trace) rows_[key(patch, node)] = {};
-    }
-    for (const Index node : patch.tied_nodes) rows_[key(patch, node)] = {};
+    for (const Index node : patch.reached) rows_[key(patch, node)] = {};
   }
 
   void fill(ContactBoundary& boundary) {
@@ -59,7 +56,6 @@ class NodeTable {
 
   /// Points that are anchored at nodes, and pressures.
   void recover(const BoundaryPatch& patch, ContactBoundary& boundary, std::vector<Eigen::Triplet<double>>& recovery) {
-    if (patch.kept.empty()) return;
     for (std::size_t i = 0; i < patch.kept.size(); ++i) {
       const Index node = patch.kept[i].node;
       if (node < 0) continue;
@@ -71,8 +67,8 @@ class NodeTable {
       if (row == rows_.end()) return;  // no multiplier in use reaches the node
       recovery.emplace_back(row->second.number, patch.numbers[static_cast<std::size_t>(entry.col())], entry.value());
     };
-    for (const auto& entry : patch.space->pressure_recovery(patch.kept)) add(key(patch, entry.row()), entry);
-    for (const auto& entry : patch.bodies.opposite_recovery) add({entry.row(), patch.first_pair(), 1}, entry);
+    for (const auto& entry : patch.recovery) add(key(patch, entry.row()), entry);
+    for (const auto& entry : patch.opposite_recovery) add({entry.row(), patch.first_pair(), 1}, entry);
   }
 
  private:

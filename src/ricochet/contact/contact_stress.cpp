@@ -67,6 +67,14 @@ class StressRows {
     Vector shares = Vector::Zero(boundary_.size());
     result.stiffness.setZero(boundary_.size());
     std::vector<Eigen::Triplet<double>> entries;
+    const auto enter = [&](Index point, Index node, Index component, double value) {
+      if (body_.tied == nullptr || !body_.tied->is_tied(node)) {
+        entries.emplace_back(point, node * d + component, value);
+        return;
+      }
+      for (const auto& [other, weight] : body_.tied->spread({{node, value}}))
+        entries.emplace_back(point, other * d + component, weight);
+    };
     for (const auto& [cell, all] : of_cells) {
       const PlaceInBlocks place = locate_cell(*body_.space, cell);
       const Index* nodes = body_.space->cells[place.block].cell(place.local);
@@ -74,8 +82,7 @@ class StressRows {
       for (const Share& each : all) {
         shares[each.point] += std::abs(each.share);
         result.stiffness[each.point] = std::max(result.stiffness[each.point], largest);
-        for (Index b = 0; b < each.row.size(); ++b)
-          entries.emplace_back(each.point, nodes[b / d] * d + b % d, each.share * each.row[b]);
+        for (Index b = 0; b < each.row.size(); ++b) enter(each.point, nodes[b / d], b % d, each.share * each.row[b]);
       }
     }
     result.stiffness.array() *= shares.array();

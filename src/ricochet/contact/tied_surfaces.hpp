@@ -9,17 +9,20 @@ namespace ricochet {
 struct TiedSurface {
   std::vector<TiedNodes::Tie> ties;
   PairFacing facing;
-  double farthest = 0.0;  ///< the largest distance between the surfaces at a tied node, over the height of its cell
+  /// The largest distance between the surfaces at a tied node, over the height of the cell behind it, and where.
+  double farthest_in_heights = 0.0;
   Vector farthest_place;
 };
 
 /// With dual multipliers the mortar conditions C u_s = M̂ u_m are solved node by node where facets are covered whole:
-/// P = C⁻¹M̂ has few entries per node, and reproduces linear functions on flat surfaces. A node whose facets face
-/// nothing stays free.
+/// P = C⁻¹M̂ has few entries per node, and reproduces linear functions on flat surfaces. A node that does not face the
+/// other surface stays free. Throws Error(invalid_input) where facets fold around a node, or P has no sense.
 [[nodiscard]] TiedSurface tie_surfaces(const Body& body, const ContactPair& pair);
 
 /// Moves tied nodes to where they are on the other surface, Σ P X: then turns of both together have no strain (M. A.
 /// Puso, Int. J. Numer. Meth. Engng 59, 2004, 315–336). The nodes of the geometry go with those of the displacement.
-void move_tied_nodes(const TiedNodes& tied, Mesh& mesh, DisplacementSpace& space);
+/// Returns the largest distance of a tied node from the place of the geometry that it had, over the size of its facet:
+/// beyond rounding (a curved surface, and a geometry of lower degree than the displacement) turns do have strain.
+[[nodiscard]] double move_tied_nodes(const TiedNodes& tied, Mesh& mesh, DisplacementSpace& space);
 
 }  // namespace ricochet

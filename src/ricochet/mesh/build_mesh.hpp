@@ -71,6 +71,10 @@ void keep_used_nodes(const RawMesh& raw, double scale, Mesh& mesh);
 /// none of those turned round may overlap a neighbour: such a mesh is folded.
 void orient_cells(Mesh& mesh);
 
+/// Throws Error(invalid_input) that names the cells whose Jacobian is not positive throughout, after `what` (such as
+/// "nodes were moved") has changed the nodes.
+void require_positive_cells(const Mesh& mesh, const std::string& what);
+
 /// No two nodes may be at the same place, or none of one body.
 void check_coincident_nodes(const Mesh& mesh, bool bodies_may_touch);
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/mesh/boundary_facets.hpp"
@@ -191,6 +192,19 @@ void orient_cells_of_dimension(Mesh& mesh) {
   }
 }
 
+template <int Dimension>
+Offenders cells_not_positive(const Mesh& mesh) {
+  Offenders result;
+  for (const CellBlock& block : mesh.cells) {
+    const std::vector<Matrix> gradients = gradients_at_nodes(block.shape, mesh.degree);
+    for (Index i = 0; i < block.size(); ++i) {
+      const Orientation found = orientation<Dimension>(mesh.nodes, block.cell(i), gradients);
+      if (found.flat || found.negative) result.add(block.tags[static_cast<std::size_t>(i)]);
+    }
+  }
+  return result;
+}
+
 /// A hash of boxes a few tolerances wide. Only distances decide, so boxes that share a bucket cost time and nothing
 /// else.
 class NodeGrid {
@@ -268,6 +282,13 @@ DisjointSets bodies_of(const Mesh& mesh) {
 
 void orient_cells(Mesh& mesh) {
   mesh.dimension == 2 ? orient_cells_of_dimension<2>(mesh) : orient_cells_of_dimension<3>(mesh);
+}
+
+void require_positive_cells(const Mesh& mesh, const std::string& what) {
+  const Offenders found = mesh.dimension == 2 ? cells_not_positive<2>(mesh) : cells_not_positive<3>(mesh);
+  if (!found.any()) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{} so far that cells are turned inside out: {}", what, found.text("element")));
 }
 
 void check_coincident_nodes(const Mesh& mesh, bool bodies_may_touch) {

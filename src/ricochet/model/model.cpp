@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "ricochet/base/error.hpp"
@@ -148,10 +149,38 @@ void assign_materials(const Case& input, Model& model) {
   }
 }
 
+/// Supports at tied nodes are left out: these follow the other surface, which is supported there, too, or is not.
+void tell_of_supports_at_ties(const Model& model, const std::set<Index>& dofs) {
+  const int d = model.mesh.dimension;
+  std::set<Index> follow, lost;
+  for (const TiedNodes::Tie& tie : model.tied.ties()) {
+    for (int k = 0; k < d; ++k) {
+      if (!dofs.contains(tie.node * d + k)) continue;
+      const bool held = std::all_of(tie.weights.begin(), tie.weights.end(), [&](const auto& entry) {
+        return std::abs(entry.second) < 1e-12 || model.problem.supports.contains(entry.first * d + k);
+      });
+      (held ? follow : lost).insert(tie.node);
+    }
+  }
+  if (!follow.empty()) {
+    log::info(fmt::format("{} tied to another surface, which is supported there, and {} it",
+                          counted(follow.size(), "supported node is", "supported nodes are"),
+                          follow.size() == 1 ? "follows" : "follow"));
+  }
+  if (lost.empty()) return;
+  const Vector at = model.space.nodes.col(*lost.begin());
+  log::warning(
+      fmt::format("{} tied to another surface that is not supported there, and {} it: the support does not hold "
+                  "there, first at ({:.6g}); support the nodes of the other surface, or let that one follow "
+                  "(multipliers_on)",
+                  counted(lost.size(), "supported node is", "supported nodes are"),
+                  lost.size() == 1 ? "follows" : "follow", fmt::join(at, ", ")));
+}
+
 void add_supports(const Case& input, Model& model) {
   constexpr std::array<const char*, 3> axes{"x", "y", "z"};
   Supports& supports = model.problem.supports;
-  std::set<Index> tied;
+  std::set<Index> tied;  // dofs
   const int d = model.mesh.dimension;
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     const SupportSection& section = input.supports[i];
@@ -160,7 +189,7 @@ void add_supports(const Case& input, Model& model) {
     for (const int component : section.components) {
       for (const Index node : facet_nodes(model.space, group.members)) {
         if (model.tied.is_tied(node)) {
-          tied.insert(node);
+          tied.insert(node * d + component);
           continue;
         }
         const Index dof = node * d + component;
@@ -173,10 +202,7 @@ void add_supports(const Case& input, Model& model) {
     }
   }
   supports.finish();
-  if (tied.empty()) return;
-  log::info(fmt::format("{} tied to another surface and {} it, not the support",
-                        counted(tied.size(), "supported node is", "supported nodes are"),
-                        tied.size() == 1 ? "follows" : "follow"));
+  tell_of_supports_at_ties(model, tied);
 }
 
 void add_initial_conditions(const Case& input, Model& model) {

@@ -44,11 +44,11 @@ class ProbeMaker {
     const auto entries = std::count(nodes.begin(), nodes.end(), node);
     if (entries > 0) probe.contact_node = std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
     if (entries > 1) {
-      const auto pair =
-          static_cast<std::size_t>(model_.problem.contact.node_pair[static_cast<std::size_t>(probe.contact_node)]);
-      log::warning(
-          fmt::format("probe \"{}\" is at a node of {} contacts: its gap, pressure and reaction are those with {}",
-                      name, entries, model_.contact_pairs[pair].opponent()));
+      const auto first = static_cast<std::size_t>(probe.contact_node);
+      const auto pair = static_cast<std::size_t>(model_.problem.contact.node_pair[first]);
+      log::warning(fmt::format(
+          "probe \"{}\" is at a node of {} contacts: its gap, pressure and reaction are those with {}", name, entries,
+          model_.contact_pairs[pair].opponent(model_.problem.contact.is_opposite[first] != 0)));
     }
     add(section, make_point_sensor(model_.problem, probe));
     model_.probes.push_back(probe);

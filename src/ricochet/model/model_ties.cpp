@@ -7,6 +7,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/contact/tied_surfaces.hpp"
+#include "ricochet/mesh/build_mesh.hpp"
 #include "ricochet/model/model_parts.hpp"
 
 /// @file [[contact]] with tied = true.
@@ -27,18 +28,18 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
                        "facet of \"{}\"; check which groups they are and where the bodies lie",
                        pair.group, pair.opposite_group, pair.group, pair.opposite_group));
   }
-  if (surface.farthest > farthest_apart) {
-    refuse(
-        input, key,
-        fmt::format("groups \"{}\" and \"{}\" are too far apart to be tied: by {:.3g} heights of a cell at ({:.6g}); "
-                    "move the bodies until the surfaces touch, or tie only what touches",
-                    pair.group, pair.opposite_group, surface.farthest, fmt::join(surface.farthest_place, ", ")));
+  if (surface.farthest_in_heights > farthest_apart) {
+    refuse(input, key,
+           fmt::format(
+               "groups \"{}\" and \"{}\" are too far apart to be tied: by {:.3g} heights of a cell at ({:.6g}); "
+               "move the bodies until the surfaces touch, or tie only what touches",
+               pair.group, pair.opposite_group, surface.farthest_in_heights, fmt::join(surface.farthest_place, ", ")));
   }
-  if (surface.farthest > moved) {
+  if (surface.farthest_in_heights > moved) {
     log::info(
         fmt::format("nodes of \"{}\" move by up to {:.2g} heights of a cell onto the surface of \"{}\", so that "
                     "turns have no strain",
-                    pair.group, surface.farthest, pair.opposite_group));
+                    pair.group, surface.farthest_in_heights, pair.opposite_group));
   }
   if (surface.facing.uncovered > 0) {
     log::warning(fmt::format("tied groups \"{}\" and \"{}\": {} the other surface and {} free", pair.group,
@@ -46,6 +47,25 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
                              counted(surface.facing.uncovered, "node does not face", "nodes do not face"),
                              surface.facing.uncovered == 1 ? "stays" : "stay"));
   }
+}
+
+void move_nodes(const Case& input, Model& model) {
+  const double off = move_tied_nodes(model.tied, model.mesh, model.space);
+  try {
+    gmsh::require_positive_cells(model.mesh,
+                                 "the nodes of tied surfaces, which are moved onto the other surface, move");
+  } catch (const Error& problem) {
+    refuse(input, "contact",
+           fmt::format("{}; mesh the surfaces so that they touch, or let the other one follow (multipliers_on)",
+                       problem.what()));
+  }
+  if (off <= moved) return;
+  model.contains_rotations = false;
+  log::warning(
+      fmt::format("tied surfaces are curved, and the displacement has nodes that the mesh does not have: these lie "
+                  "off the mesh's edges by {:.2g} of a facet where they follow the other surface, so turns have "
+                  "strain there; make the mesh of order {}",
+                  off, input.mesh.degree));
 }
 
 }  // namespace
@@ -83,9 +103,10 @@ void add_ties(const Case& input, Model& model) {
   } catch (const Error& problem) {
     refuse(input, "contact", problem.what());
   }
-  move_tied_nodes(model.tied, model.mesh, model.space);
-  for (const TiedNodes::Tie& tie : model.tied.ties())
-    model.space.glued.emplace_back(tie.node, tie.weights.front().first);
+  move_nodes(input, model);
+  for (const TiedNodes::Tie& tie : model.tied.ties()) {
+    for (const auto& [node, weight] : tie.weights) model.space.glued.emplace_back(tie.node, node);
+  }
   model.body.tied = model.problem.tied = &model.tied;
 }
 

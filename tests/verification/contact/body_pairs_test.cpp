@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/error.hpp"
+#include "support/case_run.hpp"
+#include "support/two_bodies.hpp"
+
+/// @file Pairs of bodies as a case file names them: which are refused, and that either side may carry the multipliers.
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+
+/// Two blocks of triangles, the upper one `lift` above the lower one; `bulge` rounds both surfaces.
+std::string write_blocks(int refinement, double lift, double bulge = 0.0) {
+  test_support::StackedBoxes stack;
+  stack.lower_counts = {5 * refinement, 4 * refinement};
+  stack.upper_counts = {7 * refinement, 4 * refinement};
+  const auto rounded = [bulge](double x) { return bulge * (std::cos(2.0 * (x - 0.5)) - 1.0); };
+  stack.lower_map = [rounded](const Vector& x) { return Vector(Eigen::Vector2d(x[0], x[1] * (1.0 + rounded(x[0])))); };
+  stack.upper_map = [=](const Vector& x) {
+    return Vector(Eigen::Vector2d(x[0], 1.0 + lift + x[1] - (1.0 - x[1]) * rounded(x[0])));
+  };
+  return test_support::write_mesh(fmt::format("pairs{}_{}_{}.msh", refinement, lift, bulge),
+                                  test_support::make_stack(stack));
+}
+
+std::string case_of(const std::string& mesh, const std::string& contacts, const std::string& end = "0.02") {
+  return "[mesh]\nfile = \"" + mesh + "\"\n[[material]]\ngroup = \"all\"\ndensity = 1.0\nlambda = 30.0\nmu = 20.0\n" +
+         contacts + "[[motion]]\ngroup = \"upper.body\"\nvelocity = [0.0, -0.5]\n[time]\nstep = 0.01\nend = " + end +
+         "\n";
+}
+
+std::string pair_of(const std::string& group, const std::string& against, const std::string& more = "") {
+  return "[[contact]]\ngroup = \"" + group + "\"\nagainst = \"" + against + "\"\n" + more;
+}
+
+void expect_refusal(const std::string& toml, const std::vector<std::string>& parts) {
+  try {
+    const CaseRun run(toml);
+    FAIL() << "no error that says " << parts.front();
+  } catch (const Error& problem) {
+    EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+    for (const std::string& part : parts)
+      EXPECT_NE(std::string(problem.what()).find(part), std::string::npos) << problem.what();
+  }
+}
+
+TEST(BodyPairs, RefuseBodiesThatOverlap) {
+  const std::string overlap = write_blocks(1, -0.05);
+  expect_refusal(case_of(overlap, pair_of("upper.y0", "lower.y1")),
+                 {"overlap at the start", "the deepest by 0.05 at ("});
+  // Closed gaps and a press fit are asked for.
+  const CaseRun closed(case_of(overlap, pair_of("upper.y0", "lower.y1", "initial_gap = \"closed\"\n")));
+  EXPECT_EQ(closed.problem().contact.initial_gap.minCoeff(), 0.0);
+}
+
+TEST(BodyPairs, RefuseGroupsThatNeverFaceEachOther) {
+  const std::string mesh = write_blocks(1, 0.1);
+  expect_refusal(case_of(mesh, pair_of("upper.y1", "lower.y1")), {"do not face each other", "pair_at"});
+  expect_refusal(case_of(mesh, pair_of("upper.y1", "lower.y0", "tied = true\n")), {"can be tied"});
+}
+
+TEST(BodyPairs, RefuseTheSameFacetsOnBothSides) {
+  const std::string mesh = write_blocks(1, 0.1);
+  expect_refusal(case_of(mesh, pair_of("upper.y0", "upper.y0")), {"share 7 facets", "cannot be on both sides"});
+  expect_refusal(case_of(mesh, pair_of("upper.y0", "boundary")), {"share 7 facets"});
+}
+
+TEST(BodyPairs, RefuseANodeThatIsTiedTwice) {
+  const std::string mesh = write_blocks(1, 0.0), tied = "tied = true\nmultipliers_on = \"group\"\n";
+  expect_refusal(case_of(mesh, pair_of("upper.y0", "lower.y1", tied) + pair_of("upper.y0", "lower.y1", tied)),
+                 {"is tied already, by contact 0", "cannot follow two surfaces"});
+}
+
+TEST(BodyPairs, RefuseSurfacesTooFarApartToBeTied) {
+  expect_refusal(case_of(write_blocks(1, 0.3), pair_of("upper.y0", "lower.y1", "tied = true\n")), {"too far apart"});
+}
+
+/// The impulse that the upper body gets.
+double impulse(int refinement, const std::string& side) {
+  CaseRun run(case_of(write_blocks(refinement, 0.02, 0.1),
+                      pair_of("upper.y0", "lower.y1", "multipliers_on = \"" + side + "\"\n"), "1.5"));
+  const auto momentum = [&] {
+    const SemidiscreteProblem& problem = run.problem();
+    Vector motion;
+    problem.mass.multiply(run.state().velocity, motion);
+    double sum = 0.0;
+    for (Index node = 0; node < problem.nodes.cols(); ++node) {
+      if (problem.nodes(1, node) > 1.0) sum += motion[2 * node + 1];
+    }
+    return sum;
+  };
+  const double before = momentum();
+  run.run([] {}, false);
+  return momentum() - before;
+}
+
+/// Which side carries the multipliers is a choice of the discretization: it matters less than the mesh does.
+TEST(BodyPairs, ExchangeSidesWithinTheDiscretizationError) {
+  const double coarse = impulse(1, "group"), exchanged = impulse(1, "against"), fine = impulse(4, "group");
+  EXPECT_GT(fine, 0.3) << "the bodies met and parted";
+  EXPECT_NE(coarse, exchanged);
+  EXPECT_LT(std::abs(coarse - exchanged), std::abs(coarse - fine)) << coarse << ' ' << exchanged << ' ' << fine;
+  EXPECT_LT(std::abs(impulse(2, "group") - impulse(2, "against")), 0.5 * std::abs(coarse - exchanged));
+}
+
+}  // namespace
+}  // namespace ricochet

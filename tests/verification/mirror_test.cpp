@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "ricochet/mesh/merge_parts.hpp"
+#include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
+#include "support/two_bodies.hpp"
+
+/// @file A body that meets its mirror image moves as if it met the plane between them without friction: the relative
+/// motion is twice that of the body, W is twice as large, the forces are the same.
+namespace ricochet {
+namespace {
+
+using test_support::Discretization;
+
+struct MirroredBody {
+  CellShape shape;
+  std::vector<int> counts;
+  int degree;
+};
+
+/// Blocks with a curved side towards the plane, 0.01 away from it.
+PointMap block_above(int up) {
+  return [up](const Vector& x) {
+    Vector y = x;
+    y[up] = 0.01 + 0.7 * x[up] + (1.0 - x[up]) * 0.15 * std::pow(x[0] - 0.4, 2);
+    return y;
+  };
+}
+
+/// The mesh alone, or with its mirror image. Boxes of one shape are distorted alike, so images match node by node.
+std::string write_blocks(const MirroredBody& body, bool with_image) {
+  const int up = dimension(body.shape) - 1;
+  test_support::StackedBoxes stack{body.shape, body.shape, body.counts, body.counts};
+  stack.upper_map = block_above(up);
+  stack.lower_map = [up, above = stack.upper_map](const Vector& x) {
+    Vector y = above(x);
+    y[up] = -y[up];
+    return y;
+  };
+  const std::string name = fmt::format("mirror{}{}.msh", up, with_image ? "pair" : "");
+  if (with_image) return test_support::write_mesh(name, test_support::make_stack(stack));
+  return test_support::write_mesh(
+      name,
+      merge_parts(
+          {{"upper", test_support::make_box_mesh({body.shape, body.counts, 1, stack.distortion, stack.upper_map})}}));
+}
+
+std::string case_text(const MirroredBody& body, const std::string& mesh, bool with_image,
+                      const Discretization& discretization) {
+  const bool flat = dimension(body.shape) == 2;
+  const std::string face = flat ? "y0" : "z0";
+  // Bodies do not slip on each other, however rough they are.
+  const std::string rough = with_image && test_support::takes_friction(discretization.scheme) ? "friction = 0.4\n" : "";
+  const std::string plane = "[obstacle.plane]\ntype = \"plane\"\n" +
+                            std::string(flat ? "point = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
+                                             : "point = [0.0, 0.0, 0.0]\nnormal = [0.0, 0.0, 1.0]\n");
+  const auto motion = [&](const char* group, int sign) {
+    return fmt::format("[[motion]]\ngroup = \"{}\"\n{}", group,
+                       flat ? fmt::format("velocity = [0.1, {}]\nspin = {}\n", -0.5 * sign, 0.1 * sign)
+                            : fmt::format("velocity = [0.1, 0.05, {}]\nspin = [{}, {}, 0.0]\n", -0.5 * sign, 0.1 * sign,
+                                          -0.05 * sign));
+  };
+  const bool is_explicit = test_support::time_of(discretization.scheme).find("explicit") != std::string::npos ||
+                           discretization.scheme == "cd-lagrange" || discretization.scheme == "taylor-flanagan";
+  return fmt::format(
+      "[mesh]\nfile = \"{}\"\ndegree = {}\n[[material]]\ngroup = \"all\"\ndensity = 1.0\nlambda = 30.0\nmu = 20.0\n"
+      "{}[[contact]]\ngroup = \"upper.{}\"\n{}\nmultipliers = \"{}\"\nunstable_multipliers = \"allow\"\n{}{}{}[mass]\n"
+      "type = \"{}\"\n[time]\n{}step = {}\nend = {}\n",
+      mesh, body.degree, with_image ? "" : plane, face,
+      with_image ? fmt::format("against = \"lower.{}\"\nmultipliers_on = \"group\"", face) : "obstacle = \"plane\"",
+      discretization.multipliers, rough, motion("upper.body", 1), with_image ? motion("lower.body", -1) : "",
+      discretization.mass, test_support::time_of(discretization.scheme), is_explicit ? 0.002 : 0.01,
+      is_explicit ? 0.4 : 0.8);
+}
+
+/// Where each node of one set of points is in another one that contains them.
+std::vector<Index> find_nodes(const Points& points, const Points& among) {
+  const auto key = [](const auto& x) { return std::vector<double>(x.begin(), x.end()); };
+  std::map<std::vector<double>, Index> place;
+  for (Index i = 0; i < among.cols(); ++i) place[key(among.col(i))] = i;
+  std::vector<Index> result;
+  for (Index i = 0; i < points.cols(); ++i) result.push_back(place.at(key(points.col(i))));
+  return result;
+}
+
+/// The largest difference beside the largest value, of displacements and of forces, over all steps.
+struct Difference {
+  double displacement = 0.0, force = 0.0;
+  double largest_displacement = 0.0, largest_force = 0.0;
+};
+
+Difference compare(test_support::CaseRun& alone, test_support::CaseRun& pair) {
+  const int d = alone.problem().dimension;
+  const std::vector<Index> place = find_nodes(alone.problem().nodes, pair.problem().nodes);
+  Difference result;
+  std::vector<Vector> displacements;
+  std::vector<double> forces;
+  alone.run([&] {
+    displacements.push_back(alone.state().displacement);
+    forces.push_back(alone.state().forces.normal_reaction.sum());
+  });
+  std::size_t step = 0;
+  pair.run([&] {
+    if (step >= displacements.size()) return;
+    const Vector& expected = displacements[step];
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      const Vector difference =
+          pair.state().displacement.segment(place[i] * d, d) - expected.segment(static_cast<Index>(i) * d, d);
+      result.displacement = std::max(result.displacement, difference.lpNorm<Eigen::Infinity>());
+    }
+    result.force = std::max(result.force, std::abs(pair.state().forces.normal_reaction.sum() - forces[step]));
+    result.largest_displacement = std::max(result.largest_displacement, expected.lpNorm<Eigen::Infinity>());
+    result.largest_force = std::max(result.largest_force, forces[step]);
+    ++step;
+  });
+  EXPECT_EQ(step, displacements.size());
+  return result;
+}
+
+TEST(MirroredBodies, MoveAsOneAgainstThePlaneBetweenThem) {
+  int compared = 0;
+  for (const MirroredBody& body :
+       {MirroredBody{CellShape::triangle, {5, 4}, 1}, MirroredBody{CellShape::quadrilateral, {4, 3}, 2},
+        MirroredBody{CellShape::tetrahedron, {3, 2, 2}, 1}, MirroredBody{CellShape::hexahedron, {2, 3, 2}, 1}}) {
+    const std::string one = write_blocks(body, false), two = write_blocks(body, true);
+    for (const Discretization& discretization : test_support::all_discretizations()) {
+      if (!discretization.is_possible()) continue;
+      const std::string label = fmt::format("{} degree {}", discretization.label(), body.degree);
+      test_support::CaseRun alone(case_text(body, one, false, discretization));
+      test_support::CaseRun pair(case_text(body, two, true, discretization));
+      const Difference found = compare(alone, pair);
+      EXPECT_GT(found.largest_force, 0.0) << label;
+      EXPECT_LE(found.displacement, 1e-10 * found.largest_displacement) << label;
+      EXPECT_LE(found.force, 1e-10 * found.largest_force) << label;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 400);
+}
+
+}  // namespace
+}  // namespace ricochet
