@@ -24,6 +24,21 @@ Box make_box(Random& random, int d, double size) {
   return box;
 }
 
+/// The corner of a box from the origin on that is lowest after a turn in the plane of x and the last axis: where it is
+/// along both.
+std::array<double, 2> lowest_corner(const Box& box, int d, double degrees) {
+  const double angle = degrees * M_PI / 180.0, sign = d == 2 ? 1.0 : -1.0;
+  std::array<double, 2> lowest{0.0, 1e300};
+  for (const double x : {0.0, box.lengths[0]}) {
+    for (const double y : {0.0, box.lengths[static_cast<std::size_t>(d - 1)]}) {
+      const std::array<double, 2> turned{x * std::cos(angle) - sign * y * std::sin(angle),
+                                         sign * x * std::sin(angle) + y * std::cos(angle)};
+      if (turned[1] < lowest[1]) lowest = turned;
+    }
+  }
+  return lowest;
+}
+
 }  // namespace
 
 RandomCase make_pair_case(unsigned seed, const std::filesystem::path& folder) {
@@ -52,26 +67,27 @@ RandomCase make_pair_case(unsigned seed, const std::filesystem::path& folder) {
   result.friction = random.chance(0.3) ? 0.0 : random.between(0.0, 0.9);
 
   const double speed = wave * random.power(-5.0, -2.0), time = result.end;
-  const double gap = random.chance(0.3) ? 0.0 : speed * time * random.between(0.02, 0.3);
   const bool on_floor = random.chance(0.4), damped = random.chance(0.25);
   const double gravity = on_floor ? speed / time * random.between(0.0, 20.0) : 0.0;
   std::array<double, 3> move{0.0, 0.0, 0.0}, velocity{0.0, 0.0, 0.0}, other{0.0, 0.0, 0.0}, pull{0.0, 0.0, 0.0},
       normal{0.0, 0.0, 0.0};
-  for (std::size_t k = 0; k < up; ++k) {
-    // From hanging over one end to hanging over the other.
-    move[k] = random.between(-0.5 * upper.lengths[k], lower.lengths[k] - 0.5 * upper.lengths[k]);
-    velocity[k] = speed * random.between(-1.0, 1.0);
-  }
-  move[up] = lower.lengths[up] + gap;
   velocity[up] = -speed * random.between(0.1, 1.0);
   if (!on_floor) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) other[k] = 0.5 * speed * random.between(0.0, 1.0);
   }
+  // They meet within the first half of the run. Tilted bodies meet at a corner, which is above the other body.
+  const double gap = random.chance(0.3) ? 0.0 : (other[up] - velocity[up]) * time * random.between(0.02, 0.5);
+  const double tilt = gap > 0.0 ? random.between(-20.0, 20.0) : 0.0;
+  const std::array<double, 2> lowest = lowest_corner(upper, d, tilt);
+  for (std::size_t k = 0; k < up; ++k) {
+    // From hanging over one end to hanging over the other.
+    const double place = random.between(0.0, 1.0), overhang = 0.5 * upper.lengths[k];
+    move[k] = tilt != 0.0 && k == 0 ? place * lower.lengths[0] - lowest[0] : place * lower.lengths[k] - overhang;
+    velocity[k] = speed * random.between(-1.0, 1.0);
+  }
+  move[up] = lower.lengths[up] + gap - lowest[1];
   pull[up] = -gravity;
   normal[up] = 1.0;
-  const double tilt = gap > 0.0 ? random.between(-20.0, 20.0) : 0.0;
-  const double rise = std::abs(std::sin(tilt * M_PI / 180.0)) * (upper.lengths[0] + upper.lengths[up]);
-  move[up] += rise;
 
   const auto part = [&](const char* name, const std::string& mesh, const std::array<double, 3>& by,
                         const std::array<double, 3>& with, double angle) {
