@@ -1,3 +1,4 @@
+import { bodiesOf } from "./body/geometry";
 import { cutOf } from "./body/section_view";
 import { Stage, type View } from "./body/stage";
 import { fieldNames } from "./body/fields";
@@ -150,8 +151,9 @@ function bodySection(store: Store, stage: Stage, runs: Run[]): HTMLElement {
     (value) => store.set("scale", value as ColourScale, "body"));
   colours.control.id = "scale";
   store.on("body", () => (colours.control.value = store.scale));
+  const several = runs.some((run) => run.body !== null && bodiesOf(run.body) !== null);
   return el("section.panel", { id: "bodies" },
-    el("header", {}, el("h3", {}, "The body"),
+    el("header", {}, el("h3", {}, several ? "The bodies" : "The body"),
       el("div.tools", {}, field.element, colours.element,
         el("label.control", { title: "Deformation relative to the mean displacement, which is never scaled" }, el("span", {}, "deformation"), scale, scaleText),
         toggleButton(store, "showForces", "pressures", "Contact pressures as bars (key p)"),

@@ -2,7 +2,7 @@
 import { execFileSync } from "node:child_process";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
-import { ballRun, closeBrowser, discRuns, folder, frictionRun, open, report, settle, source, studyRuns } from "./support.mjs";
+import { ballRun, closeBrowser, discRuns, folder, frictionRun, open, pairRun, report, settle, source, studyRuns } from "./support.mjs";
 
 const figures = join(source, "docs/figures");
 const frames = join(folder, "frames");
@@ -42,6 +42,14 @@ await picture(ball, "report-contact-zone.png", { width: 1300, height: 560 }, () 
   store.set("showMesh", true, "body");
   stage.look("contact");
   document.querySelector("#bodies").scrollIntoView();
+});
+await picture(report("pair", pairRun()), "report-pair.png", { width: 1300, height: 1235 }, () => {
+  const { store, stage } = window.ricochet;
+  store.setTime(6e-5);
+  store.set("field", "velocity", "body");
+  store.set("showMesh", true, "body");
+  stage.look("front");
+  window.scrollTo(0, 0);
 });
 await picture(report("study", ...studyRuns()), "report-study.png", { width: 1300, height: 1000 }, () => {
   const { results } = window.ricochet;

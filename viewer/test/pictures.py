@@ -13,7 +13,7 @@ def save(image, name):
     print(f"docs/figures/{name}: {(figures / name).stat().st_size / 1e3:.0f} kB")
 
 
-for name in ("report-disc.png", "report-friction-dark.png", "report-ball.png", "report-contact-zone.png", "report-study.png"):
+for name in ("report-disc.png", "report-friction-dark.png", "report-ball.png", "report-contact-zone.png", "report-pair.png", "report-study.png"):
     save(Image.open(taken / name), name)
 light, dark = (Image.open(taken / f"phone-{theme}.png") for theme in ("light", "dark"))
 both = Image.new("RGB", (light.width + dark.width + 20, light.height), "white")

@@ -43,6 +43,8 @@ export function discRuns() {
 
 /** A disc thrown obliquely: its nodes slip, stick and slip again. */
 export const frictionRun = () => simulate("cases/oblique/oblique.toml", "oblique", { "output.fields_every": 2 });
+/** A ball on a block: two bodies, and the pressure on both. */
+export const pairRun = () => simulate("cases/ball-block/ball-block.toml", "pair", { "output.fields_every": 6 });
 export const ballRun = () => simulate("cases/ball/ball.toml", "ball", { "output.fields_every": 8 });
 
 /** A puck of two stiffnesses that strikes a wall at six speeds. */
