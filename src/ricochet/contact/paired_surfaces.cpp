@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ricochet/fem/mesh_measures.hpp"
-
 namespace ricochet {
 
 namespace {
@@ -53,8 +51,8 @@ std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface
 PairedSurfaces::PairedSurfaces(const Body& of_body, const ContactPair& pair)
     : body(of_body),
       map(of_body),
-      own(of_body, pair.facets, cell_heights(*of_body.mesh), pair.pair_at),
-      opposite(of_body, pair.opposite_facets, cell_heights(*of_body.mesh)),
+      own(of_body, pair.facets, pair.pair_at),
+      opposite(of_body, pair.opposite_facets),
       finder(map, own, opposite, segment_degree(of_body)),
       back(map, opposite, own, segment_degree(of_body)) {}
 

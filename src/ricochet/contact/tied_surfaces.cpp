@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "ricochet/fem/mesh_measures.hpp"
+#include "ricochet/contact/facet_surface.hpp"
 
 namespace ricochet {
 
@@ -77,7 +77,7 @@ TiedSurface tie_surfaces(const Body& body, const ContactPair& pair) {
   const BodyContact contact = pairing.make(*space, [](Index, int) { return true; });
   result.facing = contact.facing;
   result.ties = solve_ties(contact);
-  const FacetSurface own(body, pair.facets, cell_heights(*body.mesh));
+  const FacetSurface own(body, pair.facets);
   for (const TiedNodes::Tie& tie : result.ties) {
     Vector apart = body.space->nodes.col(tie.node);
     for (const auto& [node, weight] : tie.weights) apart -= weight * body.space->nodes.col(node);
