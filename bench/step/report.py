@@ -43,6 +43,15 @@ def ratio_table(records):
     return table(head, rows)
 
 
+def pairing_table(records):
+    rows = []
+    for record in records:
+        run = record["run"]
+        rows.append([record["case"], str(run["dofs"]), str(run["points"]), str(run["steps"]), f"{run['total']:.3g}", f"{run['model']:.3g}",
+                     f"**{100.0 * run['model'] / run['total']:.1f} %**"])
+    return table(["", "dofs", "contact points", "steps", "run, s", "pairing and the rest of the model, s", "of the run"], rows)
+
+
 def memory_table(records):
     rows = []
     for record in records:
@@ -207,6 +216,10 @@ def report(everything, docs):
     parts = {"machine": machine(everything)}
     if "ratios" in everything:
         parts["ratios"], parts["memory"] = ratio_table(everything["ratios"]), memory_table(everything["ratios"])
+    if "pairs" in everything:
+        parts["pairs"] = ratio_table(everything["pairs"])
+    if "pairing" in everything:
+        parts["pairing"] = pairing_table(everything["pairing"])
     if "explicit" in everything:
         parts["explicit"] = explicit_table(everything["explicit"])
     if "peer" in everything:
