@@ -10,11 +10,6 @@ double power(double x, int exponent) {
   return exponent == 0 ? 1.0 : exponent == 1 ? x : x * x;
 }
 
-/// Of x^exponent.
-double slope(double x, int exponent) {
-  return exponent == 0 ? 0.0 : exponent == 1 ? 1.0 : 2.0 * x;
-}
-
 }  // namespace
 
 /// The monomials of the space of the shape functions, and what each shape function has of them: it is 1 at its node.
@@ -37,35 +32,15 @@ void PolynomialShape::monomials(const double* point, double* terms) const {
     terms[t] = power(point[0], powers_[t][0]) * (dimension_ == 2 ? power(point[1], powers_[t][1]) : 1.0);
 }
 
-void PolynomialShape::derivatives(const double* point, int axis, double* terms) const {
-  for (int t = 0; t < terms_; ++t) {
-    terms[t] = slope(point[axis], powers_[t][axis]);
-    if (dimension_ == 2) terms[t] *= power(point[1 - axis], powers_[t][1 - axis]);
-  }
-}
-
-/// A product with few entries, written out: Eigen's is made for larger ones.
-void PolynomialShape::combine(const double* terms, double* result) const {
-  const auto count = static_cast<int>(coefficients_.rows());
-  const double* coefficient = coefficients_.data();
-  for (int i = 0; i < count; ++i) result[i] = 0.0;
-  for (int t = 0; t < terms_; ++t) {
-    for (int i = 0; i < count; ++i) result[i] += *coefficient++ * terms[t];
-  }
-}
-
+/// The product has few entries and is written out: Eigen's is made for larger ones.
 void PolynomialShape::values(const double* point, double* values) const {
   double terms[most_nodes];
   monomials(point, terms);
-  combine(terms, values);
-}
-
-void PolynomialShape::gradients(const double* point, double* values, double* gradients) const {
-  double terms[most_nodes];
-  this->values(point, values);
-  for (int axis = 0; axis < dimension_; ++axis) {
-    derivatives(point, axis, terms);
-    combine(terms, gradients + axis * node_count());
+  const auto count = static_cast<int>(coefficients_.rows());
+  const double* coefficient = coefficients_.data();
+  for (int i = 0; i < count; ++i) values[i] = 0.0;
+  for (int t = 0; t < terms_; ++t) {
+    for (int i = 0; i < count; ++i) values[i] += *coefficient++ * terms[t];
   }
 }
 

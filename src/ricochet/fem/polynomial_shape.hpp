@@ -17,14 +17,10 @@ class PolynomialShape {
   [[nodiscard]] Index node_count() const { return coefficients_.rows(); }
   /// Per node; `point` has one or two coordinates, `values` room for all nodes.
   void values(const double* point, double* values) const;
-  /// Per node: values, and derivatives along the axes, one axis after the other.
-  void gradients(const double* point, double* values, double* gradients) const;
 
  private:
   friend class PolynomialMap;
-  void combine(const double* terms, double* result) const;
   void monomials(const double* point, double* terms) const;
-  void derivatives(const double* point, int axis, double* terms) const;
 
   int dimension_;
   int terms_ = 0;
@@ -37,6 +33,7 @@ class PolynomialMap {
  public:
   /// x_k in the columns; components and nodes that a cell does not have count for nothing.
   using NodePlaces = Eigen::Matrix<double, 3, PolynomialShape::most_nodes>;
+  /// Keeps a reference to the shape.
   PolynomialMap(const PolynomialShape& shape, const NodePlaces& places);
 
   struct Place {
