@@ -1,4 +1,4 @@
-"""The disc and the ball that benchmarks let fall: their meshes and case files."""
+"""The disc and the ball that benchmarks let fall, onto a floor or onto another one: their meshes and case files."""
 
 import pathlib
 import subprocess
@@ -32,4 +32,21 @@ def case(directory, body, mass="equivalent", friction=0.0, method="direct", time
         f'[[contact]]\ngroup = "lower"\nobstacle = "floor"\nfriction = {friction}\n[load]\ngravity = [{zeros}, -9.81]\n'
         f'[initial]\ndisplacement = [{zeros}, {-down!r}]\nvelocity = [{", ".join([repr(sliding)] + ["0.0"] * (dimension - 2))}, -1.0]\n'
         f'[mass]\ntype = "{mass}"\n[time]\n{time}[output]\n{output}{solver}')
+    return path
+
+
+def pair_case(directory, pair, friction=0.0):
+    """The path of a case file: two of them, of unlike cells, of which one strikes the other, which is free, at step 20. They leave each other
+    at about step 110. The scheme is the default one."""
+    name, dimension, size, other = pair
+    below = [0.0] * (dimension - 1)
+    path = directory / f"two-{name}s-{size:g}-{friction:g}.toml"
+    turn = "{ angle = 180 }" if dimension == 2 else "{ axis = [1, 0, 0], angle = 180 }"
+    path.write_text(
+        f'[part.upper]\nfile = "{mesh(directory, name, dimension, size)}"\nmove = {below + [-0.06]}\n'
+        f'velocity = {[2.0 if friction > 0.0 else 0.0] + below[1:] + [-4.0]}\n'
+        f'[part.lower]\nfile = "{mesh(directory, name, dimension, other)}"\nturn = {turn}\nmove = {below + [0.06]}\n'
+        f'[[material]]\ngroup = "all"\ndensity = 1.0\nlambda = 1e4\nmu = 5e3\n'
+        f'[[contact]]\ngroup = "upper.lower"\nagainst = "lower.lower"\nfriction = {friction}\n[mass]\ntype = "equivalent"\n'
+        f'[time]\nstep = {STEP}\nend = {STEP * STEPS}\n[output]\nfields_every = 0\n[solver]\nmethod = "direct"\n')
     return path

@@ -43,6 +43,12 @@ def ratio_table(records):
     return table(head, rows)
 
 
+def pairing_table(records):
+    rows = [[record["case"], str(record["dofs"]), str(record["contact_points"]), str(record["steps"]), f"{record['run_s']:.3g}", f"{record['pairing_s']:.2g}",
+             f"**{100.0 * record['pairing_s'] / record['run_s']:.1f} %**"] for record in records]
+    return table(["", "dofs", "contact points", "steps", "run, s", "pairing, s", "pairing / run"], rows)
+
+
 def memory_table(records):
     rows = []
     for record in records:
@@ -207,6 +213,10 @@ def report(everything, docs):
     parts = {"machine": machine(everything)}
     if "ratios" in everything:
         parts["ratios"], parts["memory"] = ratio_table(everything["ratios"]), memory_table(everything["ratios"])
+    if "pairs" in everything:
+        parts["pairs"] = ratio_table(everything["pairs"])
+    if "pairing" in everything:
+        parts["pairing"] = pairing_table(everything["pairing"])
     if "explicit" in everything:
         parts["explicit"] = explicit_table(everything["explicit"])
     if "peer" in everything:

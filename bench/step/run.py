@@ -10,10 +10,11 @@ docs/performance.md.
 import argparse
 import json
 import pathlib
+import statistics
 import subprocess
 import sys
 
-from bodies import STEP, STEPS, case, mesh
+from bodies import STEP, STEPS, case, mesh, pair_case
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
@@ -21,6 +22,10 @@ from page import blas_kernels, with_kernels
 
 # (name, dimension, size of cells): about 18,000, 74,000 and 200,000 dofs in 2D, 12,000 and 100,000 in 3D.
 RATIO_BODIES = [("disc", 2, 0.0202), ("disc", 2, 0.0101), ("disc", 2, 0.00605), ("ball", 3, 0.101), ("ball", 3, 0.0475)]
+# (name, dimension, sizes of the cells of the two): about 36,000 dofs each in 2D, 6,000 and 50,000 each in 3D.
+PAIRS = [("disc", 2, 0.0141, 0.0145), ("ball", 3, 0.126, 0.13), ("ball", 3, 0.0588, 0.0602)]
+# Of bodies against bodies, under cases/, and the pair of balls above.
+PAIRING_CASES = ["balls/balls", "balls/unequal", "ball-block/ball-block", "stack/stack", "bars-pair/pair", "tied/tied"]
 PEER_BODIES = [("disc", 2, 0.0202), ("disc", 2, 0.0101), ("ball", 3, 0.101)]
 SCALING_BODIES = ([("disc", 2, size) for size in (0.09, 0.05, 0.0275, 0.0155, 0.0086, 0.0048, 0.0027)]
                   + [("ball", 3, size) for size in (0.25, 0.165, 0.107, 0.072, 0.0475, 0.032, 0.0212)])
@@ -62,6 +67,33 @@ def measure_ratios(arguments, directory):
             record = ours(arguments, path)
             record["memory"] = ours(arguments, path, "--alone", "--steps", 3)["peak_mb"]
             records.append(dict(record, body=body, friction=friction))
+    return records
+
+
+def measure_pairs(arguments, directory):
+    return [dict(ours(arguments, pair_case(directory, pair, friction)), body=(f"two {pair[0]}s", pair[1], pair[2]), friction=friction)
+            for pair in PAIRS for friction in (0.0, 0.3)]
+
+
+def measure_pairing(arguments, directory):
+    """The pairing of surfaces, and the whole run: both of processors, medians of three."""
+    root, records = HERE.parents[1], []
+    paths = [(name, root / "cases" / f"{name}.toml") for name in PAIRING_CASES]
+    paths += [(f"two {pair[0]}s", pair_case(directory, pair)) for pair in PAIRS]
+    out = directory / "pairing-run"
+    for name, path in paths:
+        seconds, pairing = [], []
+        for _ in range(3):
+            record = ours(arguments, path, "--alone", "--steps", 2)
+            pairing.append(record["pairing_s"])
+            result = subprocess.run([str(arguments.build / "ricochet"), "run", str(path), "-o", str(out), "--force", "--quiet", "--threads", "1"],
+                                    capture_output=True, text=True)
+            summary = json.loads((out / "summary.json").read_text())
+            if "processor_seconds" not in summary:
+                sys.exit(f"{path}: {result.stderr.strip()}")
+            seconds.append(summary["processor_seconds"])
+        records.append({"case": name, "libraries": record["libraries"], "dofs": record["dofs"], "contact_points": record["contact_points"],
+                        "steps": summary["steps"], "pairing_s": statistics.median(pairing), "run_s": statistics.median(seconds)})
     return records
 
 
@@ -114,7 +146,7 @@ def measure_explicit(arguments, directory):
     return records
 
 
-PARTS = {"ratios": measure_ratios, "explicit": measure_explicit, "peer": measure_peer, "scaling": measure_scaling, "threads": measure_threads, "factor": measure_factor}
+PARTS = {"ratios": measure_ratios, "pairs": measure_pairs, "pairing": measure_pairing, "explicit": measure_explicit, "peer": measure_peer, "scaling": measure_scaling, "threads": measure_threads, "factor": measure_factor}
 
 
 def main():

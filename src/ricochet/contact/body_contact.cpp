@@ -5,22 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/contact/contact_directions.hpp"
-#include "ricochet/contact/pair_integration.hpp"
+#include "ricochet/contact/pair_nodes.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
-#include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
 
 namespace {
 
 using Three = Eigen::Vector3d;
-using Weights = std::vector<std::pair<Index, double>>;
 
 /// Directions that agree to this are one: those of a flat surface.
 constexpr double same_direction = 1e-13;
@@ -28,75 +25,24 @@ constexpr double same_direction = 1e-13;
 constexpr double least_cover = 1e-8;
 /// Length of the mean of unit normals below which there is no direction.
 constexpr double folded = 0.5;
-
 /// Of the height of cells: surfaces that overlap by no more touch, and their coordinates have been rounded.
 constexpr double rounding_of_files = 1e-6;
-
-/// Of the area around each node: the sum of area vectors, and of their lengths.
-struct AreaSum {
-  Three vector = Three::Zero();
-  double size = 0.0;
-};
-
-/// Degree of the rule on segments. On straight simplices products of two shape functions are polynomials of the place.
-/// On quadrilaterals they are rational functions, and the rule is exact to nine digits (body_contact_test.cpp). On
-/// curved facets areas are those of the flat pieces anyway, to the order of the geometry.
-int segment_degree(const Body& body) {
-  const bool simplices = std::all_of(body.mesh->facets.begin(), body.mesh->facets.end(),
-                                     [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
-  if (!simplices) return 2 * body.space->degree + 8;
-  return 2 * body.space->degree + (body.mesh->degree == 1 ? 0 : 2);
-}
-
-/// `only`: facets that count; null: all.
-std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface& surface,
-                                            const std::set<Index>* only = nullptr) {
-  std::map<Index, AreaSum> result;
-  for (const FacetSurface::Facet& facet : surface.facets()) {
-    if (only != nullptr && !only->contains(facet.number)) continue;
-    const PlaceInBlocks place = locate_facet(*body.space, facet.number);
-    const CellBlock& block = body.space->facets[place.block];
-    for (int k = 0; k < block.nodes_per_cell; ++k) {
-      AreaSum& sum = result[block.cell(place.local)[k]];
-      sum.vector += facet.area_vector;
-      sum.size += facet.area;
-    }
-  }
-  return result;
-}
-
-/// Sums as fractions of the weight; what vanishes to rounding is an exact zero.
-Weights fractions(const std::map<Index, double>& sums, double weight) {
-  double largest = 0.0;
-  for (const auto& [node, value] : sums) largest = std::max(largest, std::abs(value));
-  Weights result;
-  for (const auto& [node, value] : sums) {
-    const bool vanishes = std::abs(value) <= 64.0 * std::numeric_limits<double>::epsilon() * largest;
-    result.emplace_back(node, vanishes ? 0.0 : value / weight);
-  }
-  return result;
-}
 
 }  // namespace
 
 struct BodyPairing::Implementation {
   const Body& body;
   const ContactPair& pair;
-  FacetMap map;
-  FacetSurface own, opposite;
-  SegmentFinder finder, back;         ///< from the own surface to the opposite one, and from there to the own one
+  PairedSurfaces surfaces;
+  const FacetMap& map = surfaces.map;
+  const FacetSurface &own = surfaces.own, &opposite = surfaces.opposite;
+  const SegmentFinder& finder = surfaces.finder;
   std::vector<Three> normals;         ///< per own facet
   std::vector<FacetSegments> direct;  ///< per own facet, along its own normal
   std::vector<Index> facing;
 
-  Implementation(const Body& of_body, const ContactPair& of_pair, const std::vector<double>& heights)
-      : body(of_body),
-        pair(of_pair),
-        map(of_body),
-        own(of_body, of_pair.facets, heights, of_pair.pair_at),
-        opposite(of_body, of_pair.opposite_facets, heights),
-        finder(map, own, opposite, segment_degree(of_body)),
-        back(map, opposite, own, segment_degree(of_body)) {
+  Implementation(const Body& of_body, const ContactPair& of_pair)
+      : body(of_body), pair(of_pair), surfaces(of_body, of_pair) {
     for (std::size_t k = 0; k < own.facets().size(); ++k) {
       normals.push_back(known_normal(own.facets()[k].area_vector.normalized()));
       direct.push_back(finder.find(static_cast<int>(k), -normal_of(k)));
@@ -114,11 +60,6 @@ struct BodyPairing::Implementation {
     return normal;
   }
   [[nodiscard]] bool faces(std::size_t facet) const { return !direct[facet].segments.empty(); }
-  [[nodiscard]] Three position(Index node) const {
-    Three result = Three::Zero();
-    result.head(body.mesh->dimension) = body.space->nodes.col(node);
-    return result;
-  }
   [[nodiscard]] Vector in_mesh(const Three& values) const { return values.head(body.mesh->dimension); }
 
   AnchorDirections find_directions(bool at_facets, PairFacing& found) const;
@@ -129,9 +70,6 @@ struct BodyPairing::Implementation {
   void take_nodes_as_points(const MultiplierSpace& space, const AnchorDirections& directions,
                             BodyContact& result) const;
   void leave_out_held(const FreeComponent& is_free, BodyContact& result) const;
-  void find_nodes(const AnchorDirections& own_directions, BodyContact& result) const;
-  [[nodiscard]] BodyContact::Node node_facing(Index node, bool is_own, const Three& direction) const;
-  void transfer_pressure(const MultiplierSpace& space, BodyContact& result) const;
   void summarize(bool has_gaps, BodyContact& result) const;
 };
 
@@ -162,7 +100,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
     const double agreement = sum.vector.norm() / sum.size;
     if (agreement < found.sharpest) {
       found.sharpest = agreement;
-      found.edge = in_mesh(position(node));
+      found.edge = in_mesh(surfaces.position(node));
     }
     const Three mean = -sum.vector.normalized();
     if ((mean - directions[node]).norm() > same_direction) directions[node] = mean;
@@ -175,7 +113,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
                             pair.group, fmt::join(found.edge, ", "), pair.opposite_group));
   }
   for (auto& [node, direction] : directions) {
-    Three at = position(node);
+    Three at = surfaces.position(node);
     at.head(body.mesh->dimension) += own.shift();
     direction = middle_direction(at, direction, own.height_at(node), faced);
   }
@@ -235,7 +173,7 @@ void BodyPairing::Implementation::take_nodes_as_points(const MultiplierSpace& sp
                                                        BodyContact& result) const {
   constexpr double at_node = 1e-6;
   for (Multiplier multiplier : space.multipliers()) {
-    const BodyContact::Node facing = node_facing(multiplier.node, true, directions.at(multiplier.node));
+    const BodyContact::Node facing = surfaces.node_facing(multiplier.node, true, directions.at(multiplier.node));
     if (facing.opposite.empty()) {
       ++result.facing.uncovered;
       continue;
@@ -255,7 +193,7 @@ void BodyPairing::Implementation::leave_out_held(const FreeComponent& is_free, B
     const auto is_held = [&](const auto& entry) {
       return !has_free_part(entry.first, result.conditions[i].normal, is_free);
     };
-    const Weights &own_nodes = result.multipliers[i].trace, &opposite_nodes = result.conditions[i].opposite;
+    const NodeWeights &own_nodes = result.multipliers[i].trace, &opposite_nodes = result.conditions[i].opposite;
     if (std::all_of(own_nodes.begin(), own_nodes.end(), is_held) &&
         std::all_of(opposite_nodes.begin(), opposite_nodes.end(), is_held)) {
       ++result.facing.held;
@@ -271,89 +209,6 @@ void BodyPairing::Implementation::leave_out_held(const FreeComponent& is_free, B
   result.conditions.resize(kept);
 }
 
-BodyContact::Node BodyPairing::Implementation::node_facing(Index node, bool is_own, const Three& direction) const {
-  const FacetSurface& surface = is_own ? own : opposite;
-  Three at = position(node);
-  at.head(body.mesh->dimension) += surface.shift();
-  BodyContact::Node result{node, is_own, in_mesh(direction), std::numeric_limits<double>::quiet_NaN(), {}};
-  const double height = surface.height_at(node);
-  const SegmentFinder::Hit hit = (is_own ? finder : back).find_point(at, direction, 0.5 * height);
-  if (hit.facet < 0) return result;
-  Matrix values;
-  map.displacement(hit.facet, hit.local, values);
-  const PlaceInBlocks place = locate_facet(*body.space, hit.facet);
-  const Index* const nodes = body.space->facets[place.block].cell(place.local);
-  Vector seen = body.space->nodes.col(node);
-  std::map<Index, double> sums;
-  for (Index k = 0; k < values.rows(); ++k) sums[nodes[k]] += values(k, 0);
-  result.opposite = fractions(sums, 1.0);
-  for (const auto& [other, weight] : result.opposite) seen -= weight * body.space->nodes.col(other);
-  result.gap = result.normal.dot(seen);
-  return result;
-}
-
-/// The nodes that the points reach, each with the gap that is seen from it.
-void BodyPairing::Implementation::find_nodes(const AnchorDirections& own_directions, BodyContact& result) const {
-  std::set<Index> own_nodes, opposite_nodes;
-  for (std::size_t i = 0; i < result.multipliers.size(); ++i) {
-    for (const auto& [node, weight] : result.multipliers[i].trace) own_nodes.insert(node);
-    for (const auto& [node, weight] : result.conditions[i].opposite) opposite_nodes.insert(node);
-  }
-  const std::map<Index, AreaSum> own_areas = areas_around_nodes(body, own);
-  const std::map<Index, AreaSum> opposite_areas = areas_around_nodes(body, opposite);
-  const bool at_nodes = anchor_of(pair.multipliers) == MultiplierAnchor::node;
-  for (const Index node : own_nodes) {
-    const auto known = own_directions.find(node);
-    const bool is_anchor = at_nodes && known != own_directions.end();
-    result.nodes.push_back(
-        node_facing(node, true, is_anchor ? known->second : Three(-own_areas.at(node).vector.normalized())));
-  }
-  for (const Index node : opposite_nodes)
-    result.nodes.push_back(node_facing(node, false, -opposite_areas.at(node).vector.normalized()));
-}
-
-/// Pressures of own vertices come from the space; those of opposite vertices are means of them, and those of nodes
-/// between vertices are the means of these.
-void BodyPairing::Implementation::transfer_pressure(const MultiplierSpace& space, BodyContact& result) const {
-  std::map<Index, std::map<int, double>> own_rows, rows;
-  for (const auto& entry : space.pressure_recovery(result.multipliers))
-    own_rows[entry.row()][entry.col()] += entry.value();
-  PressureTransfer transfer(body, map);
-  for (std::size_t k = 0; k < own.facets().size(); ++k) {
-    if (faces(k)) transfer.add_facet(own.facets()[k].number, direct[k]);
-  }
-  for (const auto& [vertex, weights] : transfer.weights()) {
-    for (const auto& [own_vertex, weight] : weights) {
-      const auto row = own_rows.find(own_vertex);
-      if (row == own_rows.end()) continue;
-      for (const auto& [number, value] : row->second) rows[vertex][number] += weight * value;
-    }
-  }
-  std::map<Index, std::map<int, double>> middles;
-  for (const FacetSurface::Facet& facet : opposite.facets()) {
-    const PlaceInBlocks place = locate_facet(*body.space, facet.number);
-    const CellBlock& block = body.space->facets[place.block];
-    const auto& vertices_of = node_vertices(block.shape, body.space->degree);
-    for (std::size_t k = 0; k < vertices_of.size(); ++k) {
-      const Index node = block.cell(place.local)[k];
-      if (vertices_of[k].size() == 1 || middles.contains(node)) continue;
-      std::vector<const std::map<int, double>*> known;
-      for (const int v : vertices_of[k]) {
-        const auto row = rows.find(block.cell(place.local)[v]);
-        if (row != rows.end()) known.push_back(&row->second);
-      }
-      for (const auto* row : known) {
-        for (const auto& [number, value] : *row) middles[node][number] += value / static_cast<double>(known.size());
-      }
-    }
-  }
-  rows.merge(middles);
-  for (const auto& [node, row] : rows) {
-    for (const auto& [number, value] : row)
-      result.opposite_recovery.emplace_back(static_cast<int>(node), number, value);
-  }
-}
-
 /// Gaps and their rounding, and what of the group faces.
 void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) const {
   const double size = extent(body.space->nodes);
@@ -366,7 +221,7 @@ void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) 
     PointConditions& point = result.conditions[i];
     Vector apart = Vector::Zero(body.mesh->dimension), place = apart;
     double lengths = 0.0;
-    const auto add = [&](const Weights& weights, double sign) {
+    const auto add = [&](const NodeWeights& weights, double sign) {
       for (const auto& [node, weight] : weights) {
         const Vector at = body.space->nodes.col(node);
         apart += sign * weight * at;
@@ -398,7 +253,7 @@ void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) 
 }
 
 BodyPairing::BodyPairing(const Body& body, const ContactPair& pair)
-    : implementation_(std::make_unique<Implementation>(body, pair, cell_heights(*body.mesh))) {}
+    : implementation_(std::make_unique<Implementation>(body, pair)) {}
 
 BodyPairing::~BodyPairing() = default;
 
@@ -417,8 +272,8 @@ BodyContact BodyPairing::make(const MultiplierSpace& space, const FreeComponent&
     own.take_nodes_as_points(space, directions, result);
   }
   own.leave_out_held(is_free, result);
-  own.find_nodes(directions, result);
-  own.transfer_pressure(space, result);
+  result.nodes = nodes_of_points(own.surfaces, at_facets ? AnchorDirections{} : directions, result);
+  result.opposite_recovery = opposite_pressure(own.surfaces, own.direct, space, result.multipliers);
   own.summarize(space.has_functions() && own.body.mesh->degree > own.body.space->degree, result);
   return result;
 }

@@ -7,8 +7,6 @@
 #include <map>
 
 #include "ricochet/contact/facet_surface.hpp"
-#include "ricochet/fem/exterior_facets.hpp"
-#include "ricochet/fem/mesh_measures.hpp"
 
 namespace ricochet {
 
@@ -56,15 +54,14 @@ double curvature_of(const Body& body, const FacetSurface& surface) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-Side measure(const Body& body, const std::vector<Index>& facets, const std::vector<double>& heights) {
-  const FacetSurface surface(body, facets, heights);
-  const std::vector<std::vector<Index>> cells = cells_of_facets(*body.mesh, facets);
+Side measure(const Body& body, const std::vector<Index>& facets) {
+  const FacetSurface surface(body, facets);
   Side side;
   double area = 0.0;
   for (std::size_t k = 0; k < surface.facets().size(); ++k) {
     const FacetSurface::Facet& facet = surface.facets()[k];
     side.size += facet.size / body.space->degree;
-    const IsotropicElasticity law = linear_law(body, material_of(body, cells[k].front()));
+    const IsotropicElasticity law = linear_law(body, material_of(body, surface.cells()[k]));
     side.stiffness += facet.area * law.mu * (3.0 * law.lambda + 2.0 * law.mu) / (law.lambda + law.mu);
     area += facet.area;
   }
@@ -77,8 +74,7 @@ Side measure(const Body& body, const std::vector<Index>& facets, const std::vect
 }  // namespace
 
 SideChoice choose_side(const Body& body, const ContactPair& pair) {
-  const std::vector<double> heights = cell_heights(*body.mesh);
-  const Side one = measure(body, pair.facets, heights), other = measure(body, pair.opposite_facets, heights);
+  const Side one = measure(body, pair.facets), other = measure(body, pair.opposite_facets);
   const auto differ = [](double a, double b) { return std::max(a, b) > alike * std::min(a, b); };
   const auto choice = [](bool opposite, const char* what, double own, double others) {
     return SideChoice{

@@ -204,14 +204,6 @@ std::vector<Index> ContactBoundary::unique_nodes() const {
   return result;
 }
 
-Index ContactBoundary::first_opposite_node(Index point) const {
-  Index first = -1;
-  visit_nodes(point, [&](Index node, double) {
-    if (first < 0 && own_trace.coeff(point, node) == 0.0) first = node;
-  });
-  return first;
-}
-
 ContactBoundary make_contact_boundary(const Body& body, const std::vector<ContactPair>& pairs,
                                       const FreeComponent& is_free, Index* held_nodes,
                                       std::vector<PairFacing>* facings) {

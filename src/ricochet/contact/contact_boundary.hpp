@@ -123,8 +123,6 @@ struct ContactBoundary {
     return SparseRowMatrix::InnerIterator(own_trace, point).col();
   }
   [[nodiscard]] bool between_bodies(Index point) const { return net[point] == 0.0; }
-  /// Of the bodies that touch the first node of the other one; −1 at obstacles.
-  [[nodiscard]] Index first_opposite_node(Index point) const;
   /// Calls visit(point, value) for the points that the pressure at an entry of `nodes` comes from.
   template <class Visit>
   void visit_recovery(Index entry, const Visit& visit) const {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "ricochet/fem/exterior_facets.hpp"
+#include "ricochet/fem/mesh_measures.hpp"
 #include "ricochet/mesh/flat_pieces.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 
@@ -20,14 +21,6 @@ Three in_space(const Points& positions, Index node) {
   Three result = Three::Zero();
   result.head(positions.rows()) = positions.col(node);
   return result;
-}
-
-double largest_distance(const std::vector<Three>& corners) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) largest = std::max(largest, (corners[i] - corners[k]).norm());
-  }
-  return largest;
 }
 
 /// A facet of second order whose nodes lie where those of a straight one would has the pieces of that one.
@@ -52,13 +45,13 @@ Three area_vector(const std::array<Three, 3>& corners, bool plane) {
 
 }  // namespace
 
-FacetSurface::FacetSurface(const Body& body, const std::vector<Index>& facets, const std::vector<double>& cell_height,
-                           const Vector& shift)
+FacetSurface::FacetSurface(const Body& body, const std::vector<Index>& facets, const Vector& shift)
     : shift_(shift.size() > 0 ? shift : Vector::Zero(body.mesh->dimension)) {
-  const std::vector<std::vector<Index>> cells = cells_of_facets(*body.mesh, facets);
+  for (const std::vector<Index>& cells : cells_of_facets(*body.mesh, facets)) cells_.push_back(cells.front());
+  const std::vector<double> heights = cell_heights(*body.mesh, cells_);
   for (std::size_t k = 0; k < facets.size(); ++k) {
-    add_facet(body, facets[k], cells[k].front());
-    const double height = facets_.back().height = cell_height[static_cast<std::size_t>(cells[k].front())];
+    add_facet(body, facets[k], cells_[k]);
+    const double height = facets_.back().height = heights[k];
     const PlaceInBlocks place = locate_facet(*body.space, facets[k]);
     const CellBlock& block = body.space->facets[place.block];
     for (int i = 0; i < block.nodes_per_cell; ++i) {
@@ -87,7 +80,7 @@ void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
   for (int k = 0; k < block.nodes_per_cell; ++k)
     nodes.push_back(in_space(mesh.nodes, block.cell(place.local)[k]) + moved);
   Facet facet{number, static_cast<int>(pieces_.size())};
-  facet.size = largest_distance({nodes.begin(), nodes.begin() + vertex_count(block.shape)});
+  facet.size = facet_diameter(mesh, number);
   const bool as_straight = mesh.degree == 1 || is_straight(block.shape, nodes, facet.size);
   BoxTree::Box box;
   for (const FlatPiece& local : flat_pieces(block.shape, as_straight ? 1 : 2)) {

@@ -31,13 +31,14 @@ class FacetSurface {
   };
 
   /// `facets`: numbered through all blocks, ascending. They are seen where they are displaced by `shift` (d; empty: not
-  /// at all). `cell_height` is per cell (cell_heights).
-  FacetSurface(const Body& body, const std::vector<Index>& facets, const std::vector<double>& cell_height,
-               const Vector& shift = {});
+  /// at all).
+  FacetSurface(const Body& body, const std::vector<Index>& facets, const Vector& shift = {});
 
   [[nodiscard]] const std::vector<Facet>& facets() const { return facets_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   [[nodiscard]] const BoxTree& tree() const { return tree_; }
+  /// Behind each of the facets, numbered through all blocks.
+  [[nodiscard]] const std::vector<Index>& cells() const { return cells_; }
   /// The least height of the cells behind the facets around a node.
   [[nodiscard]] double height_at(Index node) const { return node_height_.at(node); }
   [[nodiscard]] const Vector& shift() const { return shift_; }
@@ -46,6 +47,7 @@ class FacetSurface {
   void add_facet(const Body& body, Index facet, Index cell);
 
   std::vector<Facet> facets_;
+  std::vector<Index> cells_;
   std::vector<Piece> pieces_;
   std::map<Index, double> node_height_;
   Vector shift_;

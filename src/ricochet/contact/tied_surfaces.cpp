@@ -9,7 +9,7 @@
 #include <set>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/fem/mesh_measures.hpp"
+#include "ricochet/contact/facet_surface.hpp"
 #include "ricochet/fem/reference_element.hpp"
 
 namespace ricochet {
@@ -137,7 +137,7 @@ TiedSurface tie_surfaces(const Body& body, const ContactPair& pair) {
   leave_out_overhanging(contact);
   result.facing = contact.facing;
   result.ties = solve_ties(contact);
-  const FacetSurface own(body, pair.facets, cell_heights(*body.mesh));
+  const FacetSurface own(body, pair.facets);
   for (const TiedNodes::Tie& tie : result.ties) {
     Vector apart = body.space->nodes.col(tie.node);
     for (const auto& [node, weight] : tie.weights) apart -= weight * body.space->nodes.col(node);

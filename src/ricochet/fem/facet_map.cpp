@@ -1,34 +1,49 @@
 #include "ricochet/fem/facet_map.hpp"
 
-#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace ricochet {
 
 namespace {
 
 constexpr int most_iterations = 30;
-/// Of the facet's size: what is left when points are where they should be.
-constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
+/// In reference coordinates: Newton's method squares the error, and what a step of this size leaves is below rounding.
+constexpr double settled = 1e-9;
 /// Points that are farther outside of a facet than this, in reference coordinates, do not belong to it.
 constexpr double far_outside = 3.0;
 
-/// at −= A⁻¹ b with one or two equations.
-template <class SmallMatrix>
-void take_off_solution(const SmallMatrix& a, const SpaceVector& b, SpaceVector& at) {
-  if (b.size() == 1) {
-    at[0] -= b[0] / a(0, 0);
-    return;
+/// Of a facet that is seen in a plane, which has one axis or two: from `at` to the reference coordinates of a place.
+bool find_local(const PolynomialMap& seen, const Eigen::Ref<const Vector>& wanted, Eigen::Vector2d& at) {
+  for (int k = 0; k < most_iterations; ++k) {
+    const PolynomialMap::Place here = seen.evaluate(at.data());
+    const auto& [along, across] = here.slopes;
+    Eigen::Vector2d step = Eigen::Vector2d::Zero();
+    if (wanted.size() == 1) {
+      step[0] = (here.at[0] - wanted[0]) / along[0];
+    } else {
+      const double a = here.at[0] - wanted[0], b = here.at[1] - wanted[1];
+      step = Eigen::Vector2d(across[1] * a - across[0] * b, along[0] * b - along[1] * a) /
+             (along[0] * across[1] - across[0] * along[1]);
+    }
+    at -= step;
+    if (!(at.lpNorm<Eigen::Infinity>() <= far_outside)) return false;
+    if (step.lpNorm<Eigen::Infinity>() <= settled) return true;
   }
-  const double determinant = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
-  at[0] -= (a(1, 1) * b[0] - a(0, 1) * b[1]) / determinant;
-  at[1] -= (a(0, 0) * b[1] - a(1, 0) * b[0]) / determinant;
+  return false;
 }
 
 void tabulate(const PolynomialShape& shape, const Points& local, Matrix& values) {
   values.resize(shape.node_count(), local.cols());
   for (Index q = 0; q < local.cols(); ++q) shape.values(local.col(q).data(), values.col(q).data());
+}
+
+/// Of a facet over that of its projection: axes in the columns, the second zero in two dimensions.
+double area_ratio(const PolynomialMap::Place& at, const Eigen::Matrix<double, 3, 2>& axes, bool is_segment) {
+  const auto& [along, across] = at.slopes;
+  if (is_segment) return along.norm() / std::abs(axes.col(0).dot(along));
+  const Eigen::Vector2d a = axes.transpose() * along, b = axes.transpose() * across;
+  return along.cross(across).norm() / std::abs(a[0] * b[1] - a[1] * b[0]);
 }
 
 }  // namespace
@@ -40,70 +55,47 @@ FacetMap::FacetMap(const Body& body) : body_(body) {
   }
 }
 
-void FacetMap::map_at(const PlaceInBlocks& place, const double* local, SmallMatrix& jacobian,
-                      SpaceVector& position) const {
+PolynomialMap FacetMap::geometry(const PlaceInBlocks& place) const {
   const PolynomialShape& shape = shapes_[place.block].geometry;
   const Index* const nodes = body_.mesh->facets[place.block].cell(place.local);
-  const Index count = shape.node_count(), d = body_.mesh->dimension, axes = d - 1;
-  double values[PolynomialShape::most_nodes], gradients[2 * PolynomialShape::most_nodes];
-  shape.gradients(local, values, gradients);
-  double sums[3][3] = {};  // x, then its derivatives
-  for (Index k = 0; k < count; ++k) {
-    const double* const at = body_.mesh->nodes.data() + nodes[k] * d;
-    for (Index i = 0; i < d; ++i) {
-      sums[0][i] += values[k] * at[i];
-      for (Index axis = 0; axis < axes; ++axis) sums[axis + 1][i] += gradients[axis * count + k] * at[i];
-    }
-  }
-  for (Index i = 0; i < d; ++i) {
-    position[i] = sums[0][i];
-    for (Index axis = 0; axis < axes; ++axis) jacobian(i, axis) = sums[axis + 1][i];
-  }
+  PolynomialMap::NodePlaces places = PolynomialMap::NodePlaces::Zero();
+  for (Index k = 0; k < shape.node_count(); ++k)
+    places.col(k).head(body_.mesh->dimension) = body_.mesh->nodes.col(nodes[k]);
+  return {shape, places};
 }
 
 void FacetMap::positions(Index facet, const Points& local, Points& result) const {
-  const PlaceInBlocks place = locate_facet(*body_.space, facet);
-  const PolynomialShape& shape = shapes_[place.block].geometry;
-  const Index* const nodes = body_.mesh->facets[place.block].cell(place.local);
-  double values[PolynomialShape::most_nodes];
-  result.setZero(body_.mesh->dimension, local.cols());
-  for (Index q = 0; q < local.cols(); ++q) {
-    shape.values(local.col(q).data(), values);
-    for (Index k = 0; k < shape.node_count(); ++k) result.col(q) += values[k] * body_.mesh->nodes.col(nodes[k]);
-  }
+  const PolynomialMap map = geometry(locate_facet(*body_.space, facet));
+  const Index d = body_.mesh->dimension;
+  result.resize(d, local.cols());
+  for (Index q = 0; q < local.cols(); ++q) result.col(q) = map.evaluate(local.col(q).data()).at.head(d);
 }
 
 bool FacetMap::invert(Index facet, const Points& axes, const Points& plane, Points& local) const {
   const PlaceInBlocks place = locate_facet(*body_.space, facet);
-  const Index d = axes.rows();
-  const Vector centre = reference_centre(body_.mesh->facets[place.block].shape);
-  local.resize(d - 1, plane.cols());
-  SmallMatrix jacobian(d, d - 1), seen(d - 1, d - 1);
-  SpaceVector position(d), at(d - 1), residual(d - 1);
+  const CellBlock& block = body_.mesh->facets[place.block];
+  const Index* const nodes = block.cell(place.local);
+  PolynomialMap::NodePlaces places = PolynomialMap::NodePlaces::Zero();
+  for (Index k = 0; k < block.nodes_per_cell; ++k)
+    places.col(k).head(axes.cols()) = axes.transpose() * body_.mesh->nodes.col(nodes[k]);
+  const PolynomialMap seen(shapes_[place.block].geometry, places);
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  centre.head(axes.cols()) = reference_centre(block.shape);
+  Eigen::Vector2d at = centre;
+  local.resize(axes.cols(), plane.cols());
   for (Index q = 0; q < plane.cols(); ++q) {
-    at = centre;
-    bool is_there = false;
-    for (int k = 0; k < most_iterations; ++k) {
-      map_at(place, at.data(), jacobian, position);
-      seen.noalias() = axes.transpose() * jacobian;
-      residual.noalias() = axes.transpose() * position;
-      residual -= plane.col(q);
-      const bool was_there = is_there;
-      is_there = is_there || residual.lpNorm<Eigen::Infinity>() <=
-                                 rounding * (seen.lpNorm<Eigen::Infinity>() + position.lpNorm<Eigen::Infinity>());
-      if (was_there) break;  // one more step has taken what digits there are
-      take_off_solution(seen, residual, at);
-      if (!(at.lpNorm<Eigen::Infinity>() <= far_outside)) return false;
+    if (!find_local(seen, plane.col(q), at)) {
+      at = centre;
+      if (!find_local(seen, plane.col(q), at)) return false;
     }
-    if (!is_there) return false;
-    local.col(q) = at;
+    local.col(q) = at.head(axes.cols());
   }
   return true;
 }
 
 void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, FacetPoints& points) const {
   const PlaceInBlocks place = locate_facet(*body_.space, facet);
-  const Index d = axes.rows();
+  const Index d = axes.rows(), count = points.local.cols();
   tabulate(shapes_[place.block].displacement, points.local, points.displacement);
   tabulate(shapes_[place.block].hats, points.local, points.hats);
   FacetQuadrature& result = points.quadrature;
@@ -112,15 +104,15 @@ void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, 
   result.nodes = body_.space->facets[place.block].cell(place.local);
   result.displacement = &points.displacement;
   result.hats = &points.hats;
-  result.positions.resize(d, points.local.cols());
-  result.measure.resize(points.local.cols());
-  SmallMatrix jacobian(d, d - 1);
-  SpaceVector position(d);
-  for (Index q = 0; q < points.local.cols(); ++q) {
-    map_at(place, points.local.col(q).data(), jacobian, position);
-    result.positions.col(q) = position;
-    const double area = d == 2 ? facet_measure<2>(jacobian) : facet_measure<3>(jacobian);
-    result.measure[q] = weights[q] * area / std::abs((axes.transpose() * jacobian).determinant());
+  result.positions.resize(d, count);
+  result.measure.resize(count);
+  Eigen::Matrix<double, 3, 2> all_axes = Eigen::Matrix<double, 3, 2>::Zero();
+  all_axes.topLeftCorner(d, d - 1) = axes;
+  const PolynomialMap map = geometry(place);
+  for (Index q = 0; q < count; ++q) {
+    const PolynomialMap::Place at = map.evaluate(points.local.col(q).data());
+    result.positions.col(q) = at.at.head(d);
+    result.measure[q] = weights[q] * area_ratio(at, all_axes, d == 2);
   }
 }
 

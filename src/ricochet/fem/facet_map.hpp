@@ -1,6 +1,5 @@
 #pragma once
 
-#include "ricochet/base/space_vector.hpp"
 #include "ricochet/fem/facet_integration.hpp"
 #include "ricochet/fem/polynomial_shape.hpp"
 
@@ -24,7 +23,7 @@ class FacetMap {
   void positions(Index facet, const Points& local, Points& result) const;
   /// The reference coordinates ξ at which axesᵀ x(ξ) = y: those of the points of a facet that are seen at `plane`,
   /// (d−1) × points, along the direction that the axes, d × (d−1), are perpendicular to. Newton's method from the
-  /// facet's centre; false where it finds none, since the facet is seen edge-on.
+  /// last point's, or from the facet's centre; false where it finds none, since the facet is seen edge-on.
   [[nodiscard]] bool invert(Index facet, const Points& axes, const Points& plane, Points& local) const;
   /// Shape functions at points.local. `weights` are areas in the plane of the axes, from which the measures on the
   /// facet come: the area of the facet over that of its projection.
@@ -34,12 +33,10 @@ class FacetMap {
   void hats(Index facet, const Points& local, Matrix& values) const;
 
  private:
-  using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 2>;
   struct Shapes {
     PolynomialShape geometry, displacement, hats;
   };
-  /// ∂x/∂ξ at a point, d × (d−1), and x there.
-  void map_at(const PlaceInBlocks& place, const double* local, SmallMatrix& jacobian, SpaceVector& position) const;
+  [[nodiscard]] PolynomialMap geometry(const PlaceInBlocks& place) const;
 
   const Body& body_;
   std::vector<Shapes> shapes_;  ///< per block of facets

@@ -160,24 +160,59 @@ double facet_size(const Mesh& mesh, CellShape shape, const Index* cell, const st
   return shape == CellShape::triangle ? first : first + 0.5 * (at(1) - at(3)).cross(at(2) - at(3)).norm();
 }
 
+/// One cell after the other, with the rules of all blocks made once.
+class CellHeights {
+ public:
+  explicit CellHeights(const Mesh& mesh) : mesh_(mesh) {
+    for (const CellBlock& block : mesh.cells) {
+      rules_.emplace_back(block.shape, mesh.degree, mesh.degree,
+                          product_quadrature_degree(block.shape, mesh.degree, 1));
+    }
+  }
+  [[nodiscard]] double of(const PlaceInBlocks& place) const {
+    const CellBlock& block = mesh_.cells[place.block];
+    const CellShape shape = facet_shape(block.shape);
+    const bool is_simplex = block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
+    double largest = 0.0;
+    for (const std::vector<int>& vertices : facet_nodes(block.shape, 1))
+      largest = std::max(largest, facet_size(mesh_, shape, block.cell(place.local), vertices));
+    const double size = integrate(mesh_, rules_[place.block], block, place.local).size;
+    return (is_simplex ? mesh_.dimension : 1.0) * size / largest;
+  }
+
+ private:
+  const Mesh& mesh_;
+  std::vector<BlockIntegration> rules_;
+};
+
 }  // namespace
 
 std::vector<double> cell_heights(const Mesh& mesh) {
+  const CellHeights height(mesh);
   std::vector<double> heights;
-  for (const CellBlock& block : mesh.cells) {
-    const BlockIntegration rule(block.shape, mesh.degree, mesh.degree,
-                                product_quadrature_degree(block.shape, mesh.degree, 1));
-    const CellShape shape = facet_shape(block.shape);
-    const bool is_simplex = block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
-    for (Index cell = 0; cell < block.size(); ++cell) {
-      double largest = 0.0;
-      for (const std::vector<int>& vertices : facet_nodes(block.shape, 1))
-        largest = std::max(largest, facet_size(mesh, shape, block.cell(cell), vertices));
-      const double size = integrate(mesh, rule, block, cell).size;
-      heights.push_back((is_simplex ? mesh.dimension : 1.0) * size / largest);
-    }
+  for (std::size_t b = 0; b < mesh.cells.size(); ++b) {
+    for (Index cell = 0; cell < mesh.cells[b].size(); ++cell) heights.push_back(height.of({b, cell}));
   }
   return heights;
+}
+
+std::vector<double> cell_heights(const Mesh& mesh, const std::vector<Index>& cells) {
+  const CellHeights height(mesh);
+  std::vector<double> heights;
+  for (const Index cell : cells) heights.push_back(height.of(place_in_blocks(mesh.cells, cell)));
+  return heights;
+}
+
+double facet_diameter(const Mesh& mesh, Index facet) {
+  const PlaceInBlocks place = place_in_blocks(mesh.facets, facet);
+  const CellBlock& block = mesh.facets[place.block];
+  const Index* const nodes = block.cell(place.local);
+  double largest = 0.0;
+  for (int i = 0; i < vertex_count(block.shape); ++i) {
+    for (int k = 0; k < i; ++k)
+      largest = std::max(largest, (mesh.nodes.col(nodes[i]) - mesh.nodes.col(nodes[k])).norm());
+  }
+  return largest;
 }
 
 }  // namespace ricochet

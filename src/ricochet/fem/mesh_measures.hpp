@@ -25,5 +25,10 @@ struct MeshMeasure {
 /// Per cell, numbered through all blocks: its smallest height, as if it were straight: d V/A of a simplex with the
 /// largest facet's area A, V/A of other cells.
 [[nodiscard]] std::vector<double> cell_heights(const Mesh& mesh);
+/// Of these cells alone, in their order.
+[[nodiscard]] std::vector<double> cell_heights(const Mesh& mesh, const std::vector<Index>& cells);
+
+/// The longest distance between vertices of a facet, numbered through all blocks.
+[[nodiscard]] double facet_diameter(const Mesh& mesh, Index facet);
 
 }  // namespace ricochet

@@ -10,11 +10,6 @@ double power(double x, int exponent) {
   return exponent == 0 ? 1.0 : exponent == 1 ? x : x * x;
 }
 
-/// Of x^exponent.
-double slope(double x, int exponent) {
-  return exponent == 0 ? 0.0 : exponent == 1 ? 1.0 : 2.0 * x;
-}
-
 }  // namespace
 
 /// The monomials of the space of the shape functions, and what each shape function has of them: it is 1 at its node.
@@ -37,36 +32,40 @@ void PolynomialShape::monomials(const double* point, double* terms) const {
     terms[t] = power(point[0], powers_[t][0]) * (dimension_ == 2 ? power(point[1], powers_[t][1]) : 1.0);
 }
 
-void PolynomialShape::derivatives(const double* point, int axis, double* terms) const {
-  for (int t = 0; t < terms_; ++t) {
-    terms[t] = slope(point[axis], powers_[t][axis]);
-    if (dimension_ == 2) terms[t] *= power(point[1 - axis], powers_[t][1 - axis]);
-  }
-}
-
-/// A product with few entries, written out: Eigen's is made for larger ones.
-void PolynomialShape::combine(const double* terms, double* result) const {
-  const auto count = static_cast<int>(coefficients_.rows());
-  const double* coefficient = coefficients_.data();
-  for (int i = 0; i < count; ++i) result[i] = 0.0;
-  for (int t = 0; t < terms_; ++t) {
-    for (int i = 0; i < count; ++i) result[i] += *coefficient++ * terms[t];
-  }
-}
-
+/// The product has few entries and is written out: Eigen's is made for larger ones.
 void PolynomialShape::values(const double* point, double* values) const {
   double terms[most_nodes];
   monomials(point, terms);
-  combine(terms, values);
+  const auto count = static_cast<int>(coefficients_.rows());
+  const double* coefficient = coefficients_.data();
+  for (int i = 0; i < count; ++i) values[i] = 0.0;
+  for (int t = 0; t < terms_; ++t) {
+    for (int i = 0; i < count; ++i) values[i] += *coefficient++ * terms[t];
+  }
 }
 
-void PolynomialShape::gradients(const double* point, double* values, double* gradients) const {
-  double terms[most_nodes];
-  this->values(point, values);
-  for (int axis = 0; axis < dimension_; ++axis) {
-    derivatives(point, axis, terms);
-    combine(terms, gradients + axis * node_count());
+PolynomialMap::PolynomialMap(const PolynomialShape& shape, const NodePlaces& places)
+    : shape_(shape), origin_(places.col(0)) {
+  for (int t = 0; t < shape.terms_; ++t) {
+    Eigen::Vector3d& sum = coefficients_[static_cast<std::size_t>(t)];
+    sum.setZero();
+    for (Index k = 1; k < shape.node_count(); ++k) sum += shape.coefficients_(k, t) * (places.col(k) - origin_);
   }
+}
+
+PolynomialMap::Place PolynomialMap::evaluate(const double* point) const {
+  const double x = point[0], y = shape_.dimension_ == 2 ? point[1] : 0.0;
+  const double of_x[3] = {1.0, x, x * x}, of_y[3] = {1.0, y, y * y};
+  const double slope_x[3] = {0.0, 1.0, 2.0 * x}, slope_y[3] = {0.0, 1.0, 2.0 * y};
+  Place result{origin_, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}};
+  for (int t = 0; t < shape_.terms_; ++t) {
+    const int i = shape_.powers_[t][0], j = shape_.powers_[t][1];
+    const Eigen::Vector3d& coefficient = coefficients_[static_cast<std::size_t>(t)];
+    result.at += of_x[i] * of_y[j] * coefficient;
+    result.slopes[0] += slope_x[i] * of_y[j] * coefficient;
+    result.slopes[1] += of_x[i] * slope_y[j] * coefficient;
+  }
+  return result;
 }
 
 }  // namespace ricochet

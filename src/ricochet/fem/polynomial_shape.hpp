@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "ricochet/fem/reference_element.hpp"
 
 /// @file Shape functions at any point of a cell, one point at a time.
@@ -15,18 +17,36 @@ class PolynomialShape {
   [[nodiscard]] Index node_count() const { return coefficients_.rows(); }
   /// Per node; `point` has one or two coordinates, `values` room for all nodes.
   void values(const double* point, double* values) const;
-  /// Per node: values, and derivatives along the axes, one axis after the other.
-  void gradients(const double* point, double* values, double* gradients) const;
 
  private:
-  void combine(const double* terms, double* result) const;
+  friend class PolynomialMap;
   void monomials(const double* point, double* terms) const;
-  void derivatives(const double* point, int axis, double* terms) const;
 
   int dimension_;
   int terms_ = 0;
   int powers_[most_nodes][2] = {};
   Matrix coefficients_;  ///< nodes × monomials
+};
+
+/// x(ξ) = Σ_k x_k φ_k(ξ) of one cell, as polynomials: for those who ask where a cell is at many of its points.
+class PolynomialMap {
+ public:
+  /// x_k in the columns; components and nodes that a cell does not have count for nothing.
+  using NodePlaces = Eigen::Matrix<double, 3, PolynomialShape::most_nodes>;
+  /// Keeps a reference to the shape.
+  PolynomialMap(const PolynomialShape& shape, const NodePlaces& places);
+
+  struct Place {
+    Eigen::Vector3d at;                     ///< x
+    std::array<Eigen::Vector3d, 2> slopes;  ///< ∂x/∂ξ along the axes; zero along one that the cell does not have
+  };
+  /// `point` has one or two coordinates.
+  [[nodiscard]] Place evaluate(const double* point) const;
+
+ private:
+  const PolynomialShape& shape_;
+  Eigen::Vector3d origin_;  ///< the first node: what is left is of the cell's size, and so is its rounding
+  std::array<Eigen::Vector3d, PolynomialShape::most_nodes> coefficients_;  ///< per monomial
 };
 
 }  // namespace ricochet

@@ -4,7 +4,6 @@
 #include <limits>
 #include <set>
 
-#include "ricochet/contact/facet_surface.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
 
 namespace ricochet {
@@ -25,13 +24,13 @@ std::set<int> bodies_of(const Body& body, const std::vector<Index>& facets, cons
 FacetSizes facet_sizes(const Body& body, const std::vector<Index>& facets) {
   const auto count = static_cast<std::size_t>(body.space->node_count());
   FacetSizes result{std::vector<double>(count, 0.0), std::vector<double>(count, 0.0)};
-  const FacetSurface surface(body, facets, cell_heights(*body.mesh));
-  for (const FacetSurface::Facet& facet : surface.facets()) {
-    for (const Index node : facet_nodes(*body.space, {facet.number})) {
+  for (const Index facet : facets) {
+    const double size = facet_diameter(*body.mesh, facet);
+    for (const Index node : facet_nodes(*body.space, {facet})) {
       double &smallest = result.smallest[static_cast<std::size_t>(node)],
              &largest = result.largest[static_cast<std::size_t>(node)];
-      smallest = smallest > 0.0 ? std::min(smallest, facet.size) : facet.size;
-      largest = std::max(largest, facet.size);
+      smallest = smallest > 0.0 ? std::min(smallest, size) : size;
+      largest = std::max(largest, size);
     }
   }
   return result;
