@@ -63,7 +63,6 @@ struct BodyPairing::Implementation {
   [[nodiscard]] Vector in_mesh(const Three& values) const { return values.head(body.mesh->dimension); }
 
   AnchorDirections find_directions(bool at_facets, PairFacing& found) const;
-  [[nodiscard]] std::map<Index, AreaSum> areas_of_faced_nodes() const;
   [[nodiscard]] Three middle_direction(const Three& at, const Three& direction, double height,
                                        const std::map<Index, AreaSum>& faced) const;
   void take_functions(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
@@ -79,13 +78,13 @@ struct BodyPairing::Implementation {
 /// friction between equal bodies that are only pressed.
 AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, PairFacing& found) const {
   AnchorDirections directions;
-  const std::map<Index, AreaSum> faced = areas_of_faced_nodes();
+  const std::map<Index, AreaSum> faced = areas_around_faced_nodes(surfaces, direct);
   if (at_facets) {
     for (std::size_t k = 0; k < own.facets().size(); ++k) {
       if (!faces(k)) continue;
       const FacetSurface::Facet& facet = own.facets()[k];
       directions[facet.number] =
-          middle_direction(0.5 * (facet.range[0] + facet.range[1]), -normal_of(k), facet.height, faced);
+          middle_direction(facet.centre, -normal_of(k), facet.height, faced);
     }
     return directions;
   }
@@ -98,14 +97,14 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
   const std::set<Index> own_facing(facing.begin(), facing.end());
   for (const auto& [node, sum] : areas_around_nodes(body, own, &own_facing)) {
     const double agreement = sum.vector.norm() / sum.size;
-    if (agreement < found.sharpest) {
-      found.sharpest = agreement;
+    if (agreement < found.agreement) {
+      found.agreement = agreement;
       found.edge = in_mesh(surfaces.position(node));
     }
     const Three mean = -sum.vector.normalized();
     if ((mean - directions[node]).norm() > same_direction) directions[node] = mean;
   }
-  if (found.sharpest < folded) {
+  if (found.agreement < folded) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("contact group \"{}\": its facets around the node at ({:.6g}) fold so sharply that they "
                             "have no common direction in which \"{}\" could be met; leave those of one side of the "
@@ -118,15 +117,6 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
     direction = middle_direction(at, direction, own.height_at(node), faced);
   }
   return directions;
-}
-
-/// Around the nodes of the opposite facets that some own facet faces.
-std::map<Index, AreaSum> BodyPairing::Implementation::areas_of_faced_nodes() const {
-  std::set<Index> faced;
-  for (const FacetSegments& segments : direct) {
-    for (const SurfaceSegment& segment : segments.segments) faced.insert(segment.opposite);
-  }
-  return areas_around_nodes(body, opposite, &faced);
 }
 
 Three BodyPairing::Implementation::middle_direction(const Three& at, const Three& direction, double height,
@@ -153,6 +143,7 @@ void BodyPairing::Implementation::take_functions(const MultiplierSpace& space, c
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
     if (faces(k)) integration.add_facet(static_cast<int>(k), normal_of(k), direct[k]);
   }
+  result.facing.lost = integration.lost();
   const bool at_facets = anchor_of(pair.multipliers) == MultiplierAnchor::facet;
   const bool by_quadrature = body.mesh->degree > body.space->degree;
   for (const auto& [anchor, sums] : integration.sums()) {
@@ -219,13 +210,12 @@ void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) 
   facing.points = static_cast<Index>(result.multipliers.size());
   for (std::size_t i = 0; i < result.multipliers.size(); ++i) {
     PointConditions& point = result.conditions[i];
-    Vector apart = Vector::Zero(body.mesh->dimension), place = apart;
+    Vector apart = Vector::Zero(body.mesh->dimension);
     double lengths = 0.0;
     const auto add = [&](const NodeWeights& weights, double sign) {
       for (const auto& [node, weight] : weights) {
         const Vector at = body.space->nodes.col(node);
         apart += sign * weight * at;
-        if (sign > 0.0) place += weight * at;
         lengths += std::abs(weight) * (at.lpNorm<1>() + size);
       }
     };
@@ -235,7 +225,6 @@ void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) 
     point.gap_rounding = 8.0 * std::numeric_limits<double>::epsilon() * lengths;
     if (point.gap < facing.smallest_gap) {
       facing.smallest_gap = point.gap;
-      facing.deepest = place;
       facing.gap_rounding = point.gap_rounding;
     }
     facing.largest_gap = std::max(facing.largest_gap, point.gap);
@@ -272,7 +261,7 @@ BodyContact BodyPairing::make(const MultiplierSpace& space, const FreeComponent&
     own.take_nodes_as_points(space, directions, result);
   }
   own.leave_out_held(is_free, result);
-  result.nodes = nodes_of_points(own.surfaces, at_facets ? AnchorDirections{} : directions, result);
+  result.nodes = nodes_of_points(own.surfaces, own.direct, at_facets ? AnchorDirections{} : directions, result);
   result.opposite_recovery = opposite_pressure(own.surfaces, own.direct, space, result.multipliers);
   own.summarize(space.has_functions() && own.body.mesh->degree > own.body.space->degree, result);
   return result;

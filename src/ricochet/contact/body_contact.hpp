@@ -32,12 +32,12 @@ struct PairFacing {
   Index points = 0;                  ///< contact points
   Index uncovered = 0;               ///< multipliers that face nothing
   Index held = 0;                    ///< multipliers that supports hold on both sides
+  Index lost = 0;                    ///< pieces of facets that are left out, as they are seen edge-on
   double area = 0.0, covered = 0.0;  ///< of the group that carries the multipliers, and of its part that faces
   double smallest_gap = std::numeric_limits<double>::infinity(), largest_gap = -smallest_gap;  ///< of points
-  Vector deepest;             ///< the place of the smallest
   Index closed = 0;           ///< points whose gap was below zero and is taken for zero
   double gap_rounding = 0.0;  ///< of the smallest
-  double sharpest = 1.0;      ///< the shortest mean of the facets' unit normals around a multiplier: 1 where they agree
+  double agreement = 1.0;     ///< the shortest mean of the facets' unit normals around a multiplier: 1 where they agree
   Vector edge;                ///< where that is
   bool matches = true;        ///< each node faces a node
 };

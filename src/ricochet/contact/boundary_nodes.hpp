@@ -6,7 +6,7 @@
 
 #include "ricochet/contact/contact_boundary.hpp"
 
-/// @file The nodes of all contact pairs and the conditions they must meet.
+/// @file The nodes of the contacts with obstacles and the conditions they must meet.
 namespace ricochet {
 
 /// Each node once per obstacle. Pairs of bodies have no part in it.

@@ -24,31 +24,23 @@ struct Side {
 /// Of facets that share a node: the angle of their normals over the distance of their centres, the mean of all.
 double curvature_of(const Body& body, const FacetSurface& surface) {
   std::map<Index, std::vector<std::size_t>> around;
-  std::vector<FacetSurface::Three> centres;
   for (std::size_t k = 0; k < surface.facets().size(); ++k) {
-    const FacetSurface::Facet& facet = surface.facets()[k];
-    const PlaceInBlocks place = place_in_blocks(body.mesh->facets, facet.number);
+    const PlaceInBlocks place = place_in_blocks(body.mesh->facets, surface.facets()[k].number);
     const CellBlock& block = body.mesh->facets[place.block];
-    FacetSurface::Three centre = FacetSurface::Three::Zero();
-    const int vertices = vertex_count(block.shape);
-    for (int v = 0; v < vertices; ++v) {
-      const Index node = block.cell(place.local)[v];
-      centre.head(body.mesh->dimension) += body.mesh->nodes.col(node) / vertices;
-      around[node].push_back(k);
-    }
-    centres.push_back(centre);
+    for (int v = 0; v < vertex_count(block.shape); ++v) around[block.cell(place.local)[v]].push_back(k);
   }
+  constexpr double rounding = 1e-6;
   double sum = 0.0;
   Index count = 0;
+  const auto add = [&](const FacetSurface::Facet& a, const FacetSurface::Facet& b) {
+    const FacetSurface::Three one = a.area_vector.normalized(), other = b.area_vector.normalized();
+    const double angle = std::atan2(one.cross(other).norm(), one.dot(other)), distance = (a.centre - b.centre).norm();
+    sum += angle > rounding && distance > 0.0 ? angle / distance : 0.0;
+    ++count;
+  };
   for (const auto& [node, facets] : around) {
-    for (std::size_t i = 1; i < facets.size(); ++i) {
-      const FacetSurface::Three one = surface.facets()[facets[i - 1]].area_vector.normalized(),
-                                other = surface.facets()[facets[i]].area_vector.normalized();
-      const double angle = std::atan2(one.cross(other).norm(), one.dot(other));
-      constexpr double rounding = 1e-6;
-      const double distance = (centres[facets[i - 1]] - centres[facets[i]]).norm();
-      sum += angle > rounding && distance > 0.0 ? angle / distance : 0.0;
-      ++count;
+    for (std::size_t i = 0; i < facets.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) add(surface.facets()[facets[j]], surface.facets()[facets[i]]);
     }
   }
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
@@ -61,8 +53,7 @@ Side measure(const Body& body, const std::vector<Index>& facets) {
   for (std::size_t k = 0; k < surface.facets().size(); ++k) {
     const FacetSurface::Facet& facet = surface.facets()[k];
     side.size += facet.size / body.space->degree;
-    const IsotropicElasticity law = linear_law(body, material_of(body, surface.cells()[k]));
-    side.stiffness += facet.area * law.mu * (3.0 * law.lambda + 2.0 * law.mu) / (law.lambda + law.mu);
+    side.stiffness += facet.area * material_of(body, surface.cells()[k]).young();
     area += facet.area;
   }
   side.size /= static_cast<double>(std::max<std::size_t>(surface.facets().size(), 1));

@@ -35,7 +35,7 @@ bool is_straight(CellShape shape, const std::vector<Three>& nodes, double size) 
   return true;
 }
 
-/// Twice the area of a triangle, and the length of a segment, along the normal on the side where the nodes turn
+/// The area of a triangle, and the length of a segment, along the normal on the side where the nodes turn
 /// counter-clockwise, or to the right of the way.
 Three area_vector(const std::array<Three, 3>& corners, bool plane) {
   const Three along = corners[1] - corners[0];
@@ -82,13 +82,10 @@ void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
   Facet facet{number, static_cast<int>(pieces_.size())};
   facet.size = facet_diameter(mesh, number);
   const bool as_straight = mesh.degree == 1 || is_straight(block.shape, nodes, facet.size);
-  BoxTree::Box box;
   for (const FlatPiece& local : flat_pieces(block.shape, as_straight ? 1 : 2)) {
     Piece piece{static_cast<int>(facets_.size()), {}, Three::Zero()};
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k)
       piece.corners[k] = nodes[static_cast<std::size_t>(local[k] >= 0 ? local[k] : local[1])];
-      box.extend(piece.corners[k]);
-    }
     Three area = area_vector(piece.corners, plane);
     if (area.dot(inside - piece.corners[0]) > 0.0) {
       std::swap(piece.corners[0], piece.corners[1]);
@@ -101,7 +98,8 @@ void FacetSurface::add_facet(const Body& body, Index number, Index cell) {
     pieces_.push_back(piece);
   }
   facet.piece_count = static_cast<int>(pieces_.size()) - facet.first_piece;
-  facet.range = {box.min(), box.max()};
+  for (int v = 0; v < vertex_count(block.shape); ++v)
+    facet.centre += nodes[static_cast<std::size_t>(v)] / vertex_count(block.shape);
   facets_.push_back(facet);
 }
 

@@ -14,7 +14,8 @@
 /// To add one: a file with a class and its registration, and one line in multiplier_space.cpp.
 namespace ricochet {
 
-/// What a space is built on: the facets of all contact pairs that share an obstacle and name the same space.
+/// What a space is built on: the facets of all contact pairs that share an obstacle and name the same space, or of one
+/// pair of bodies.
 struct ContactPatch {
   struct Part {
     int pair = 0;               ///< number of the ContactPair
@@ -52,13 +53,17 @@ class MultiplierSpace {
   /// All multipliers of the patch, by ascending anchor. Those that could only press against supports may be left out.
   [[nodiscard]] virtual std::vector<Multiplier> multipliers() const = 0;
   /// Pressure at nodes from reactions: entries (node, number of the multiplier in `kept`, value) of the matrix P in
-  /// p = P r. `kept` are those of multipliers() that are in use: others are zero.
+  /// p = P r. `kept` are those of multipliers() that are in use: others are zero. Between bodies D_i and c_ij are those
+  /// of the covered part.
   [[nodiscard]] virtual std::vector<Eigen::Triplet<double>> pressure_recovery(
       const std::vector<Multiplier>& kept) const = 0;
   /// False for nodal forces: they are conditions at nodes, not functions. `evaluate` then gives a basis of their L²
   /// representatives.
   [[nodiscard]] virtual bool has_functions() const { return true; }
-  /// ψ_i at the quadrature points of a facet of the patch.
+  /// ψ_i at the quadrature points of a facet of the patch. Between bodies these are in the part of it that faces the
+  /// other surface (FacetQuadrature::whole tells). There each facet has the same anchors in the same order wherever the
+  /// points are, and the functions sum to 1 and have positive integrals over any part: a multiplier without one is left
+  /// out as not covered.
   virtual void evaluate(const FacetQuadrature& facet, FacetMultipliers& result) const = 0;
 
   [[nodiscard]] const ContactPatch& patch() const { return *patch_; }

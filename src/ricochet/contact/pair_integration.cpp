@@ -45,6 +45,7 @@ void PairIntegration::add_facet(int facet, const Eigen::Vector3d& normal, const 
 }
 
 void PairIntegration::add_segments(int facet, const FacetSegments& segments, const std::vector<char>& takes_part) {
+  lost_ += segments.lost;
   if (segments.segments.empty()) return;
   const Index number = own_.facets()[static_cast<std::size_t>(facet)].number;
   gather_points(map_, number, segments, points_);

@@ -28,6 +28,8 @@ class PairIntegration {
 
   void add_facet(int facet, const Eigen::Vector3d& normal, const FacetSegments& direct);
   [[nodiscard]] const std::map<Index, MultiplierSums>& sums() const { return sums_; }
+  /// Segments that were left out.
+  [[nodiscard]] Index lost() const { return lost_; }
 
  private:
   void add_segments(int facet, const FacetSegments& segments, const std::vector<char>& takes_part);
@@ -43,6 +45,7 @@ class PairIntegration {
   FacetMultipliers functions_;
   FacetPoints points_;
   std::map<Index, MultiplierSums> sums_;
+  Index lost_ = 0;
 };
 
 /// The pressure on the opposite side as a mean of that on the own one: entries (opposite vertex, own vertex, weight),

@@ -33,17 +33,39 @@ PressureRows rows_between_vertices(const PairedSurfaces& surfaces, const Pressur
   return middles;
 }
 
+/// Adds nodes around which no facet faces the other side, with all facets around them.
+std::map<Index, AreaSum> with_others(std::map<Index, AreaSum> facing, const PairedSurfaces& surfaces,
+                                     const FacetSurface& surface) {
+  facing.merge(areas_around_nodes(surfaces.body, surface));
+  return facing;
+}
+
 }  // namespace
 
-std::vector<BodyContact::Node> nodes_of_points(const PairedSurfaces& surfaces, const AnchorDirections& directions,
-                                               const BodyContact& contact) {
+std::map<Index, AreaSum> areas_around_faced_nodes(const PairedSurfaces& surfaces,
+                                                  const std::vector<FacetSegments>& direct) {
+  std::set<Index> faced;
+  for (const FacetSegments& segments : direct) {
+    for (const SurfaceSegment& segment : segments.segments) faced.insert(segment.opposite);
+  }
+  return areas_around_nodes(surfaces.body, surfaces.opposite, &faced);
+}
+
+std::vector<BodyContact::Node> nodes_of_points(const PairedSurfaces& surfaces, const std::vector<FacetSegments>& direct,
+                                               const AnchorDirections& directions, const BodyContact& contact) {
   std::set<Index> own_nodes, opposite_nodes;
   for (std::size_t i = 0; i < contact.multipliers.size(); ++i) {
     for (const auto& [node, weight] : contact.multipliers[i].trace) own_nodes.insert(node);
     for (const auto& [node, weight] : contact.conditions[i].opposite) opposite_nodes.insert(node);
   }
-  const std::map<Index, AreaSum> own_areas = areas_around_nodes(surfaces.body, surfaces.own);
-  const std::map<Index, AreaSum> opposite_areas = areas_around_nodes(surfaces.body, surfaces.opposite);
+  std::set<Index> facing;
+  for (std::size_t k = 0; k < direct.size(); ++k) {
+    if (!direct[k].segments.empty()) facing.insert(surfaces.own.facets()[k].number);
+  }
+  const std::map<Index, AreaSum> own_areas =
+      with_others(areas_around_nodes(surfaces.body, surfaces.own, &facing), surfaces, surfaces.own);
+  const std::map<Index, AreaSum> opposite_areas =
+      with_others(areas_around_faced_nodes(surfaces, direct), surfaces, surfaces.opposite);
   std::vector<BodyContact::Node> result;
   for (const Index node : own_nodes) {
     const auto known = directions.find(node);

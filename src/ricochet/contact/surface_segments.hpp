@@ -20,6 +20,7 @@ struct FacetSegments {
   Points axes;  ///< d × (d−1), orthonormal with the direction
   std::vector<SurfaceSegment> segments;
   double covered = 0.0;  ///< part of the facet, seen along the direction, that faces the other surface
+  Index lost = 0;        ///< segments left out, as a curved facet is seen edge-on there
   [[nodiscard]] bool is_whole() const { return covered > 1.0 - 1e-8; }
 };
 

@@ -84,11 +84,16 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
                              names_of_pair(pair), counted(facing.held, "multiplier is", "multipliers are"),
                              facing.held == 1 ? "point is" : "points are"));
   }
+  if (facing.lost > 0) {
+    log::warning(fmt::format("{}: {} left out of the contact, as curved facets are seen edge-on there; refine the mesh "
+                             "at the rim of the contact",
+                             names_of_pair(pair), counted(facing.lost, "piece of a facet is", "pieces of facets are")));
+  }
   if (facing.closed > 0) {
     log::info(fmt::format("{} overlap by up to {:.3g} at {}, as meshes: there they are taken to touch",
                           names_of_pair(pair), -facing.smallest_gap, counted(facing.closed, "contact point")));
   }
-  if (facing.sharpest < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node) {
+  if (facing.agreement < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node) {
     log::warning(
         fmt::format("{}: facets of \"{}\" meet at an edge at {}, where the direction of contact is the mean of their "
                     "normals; give the facets of each side of the edge a contact of their own",

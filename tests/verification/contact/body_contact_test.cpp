@@ -172,6 +172,40 @@ TEST(BodyContact, PassesAUniformPressureWhereOnlyAPartIsCovered) {
   }
 }
 
+/// The narrow body ends within facets of the wide one. Multipliers sum to 1 wherever there is cover, so that the forces
+/// on the narrow side are those of a uniform pressure, and those on the wide side have its resultant and moment.
+TEST(BodyContact, PassesAUniformPressureWhereFacetsAreCoveredInPart) {
+  for (const Pairing& p : all_pairings()) {
+    const int d = dimension(p.lower);
+    StackedBoxes stack{p.lower, p.upper, {4, 3}, {3, 2}};
+    if (d == 3) stack.lower_counts = {4, 4, 1}, stack.upper_counts = {3, 2, 1};
+    stack.upper_map = [d](const Vector& x) {
+      Vector y = x;
+      y[d - 1] += 1.0;
+      for (int k = 0; k < d - 1; ++k) y[k] = 0.31 + 0.5 * x[k];
+      return y;
+    };
+    stack.both = skew(d);
+    const auto test = make_meshed_body(make_stack(stack), p.degree);
+    for (const std::string& multipliers : multiplier_space_names()) {
+      if (multipliers == "nodal") continue;
+      SCOPED_TRACE(name(p.lower) + name(p.upper) + std::to_string(p.degree) + multipliers +
+                   (p.upper_carries ? "upper" : "lower"));
+      const ContactPair pair = pair_of(*test, p.upper_carries, multipliers);
+      const ContactBoundary boundary = make_contact_boundary(test->body, {pair}, all_free);
+      EXPECT_GT(boundary.weights.minCoeff(), 0.0);
+      const double tolerance = tolerance_of(*test);
+      const Vector narrow = integrals(*test, p.upper_carries ? pair.facets : pair.opposite_facets);
+      const Vector force = (p.upper_carries ? 1.0 : -1.0) * forces_of_pressure(boundary);
+      Vector on_narrow = force, on_wide = force;
+      for (Index node = 0; node < force.size(); ++node) (narrow[node] != 0.0 ? on_wide : on_narrow)[node] = 0.0;
+      EXPECT_LT((on_narrow - narrow).lpNorm<Eigen::Infinity>(), tolerance * narrow.lpNorm<Eigen::Infinity>());
+      EXPECT_NEAR(on_wide.sum(), -narrow.sum(), tolerance);
+      EXPECT_LT((test->space.nodes * (on_wide + narrow)).lpNorm<Eigen::Infinity>(), 10.0 * tolerance);
+    }
+  }
+}
+
 /// Curved, tilted, apart: the mean gap vector of each point is along its normal, so that forces along it have no
 /// moment.
 TEST(BodyContact, HasMeanGapVectorsAlongTheNormals) {
