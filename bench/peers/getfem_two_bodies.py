@@ -252,7 +252,7 @@ def main():
                   + ("" if agrees else "   not the same contact"), flush=True)
         print(f"\n{steps} steps of {STEP} s; medians of {arguments.runs} runs, processor time, one thread. Ricochet itself:")
         default = {"time.scheme": "reduced-kane", "mass.type": "equivalent"}
-        print(f"{'cells of half the size':64s} " + compare("Ricochet, half the cells", ricochet(fine / "pair.toml", steps))[0])
+        print(f"{'cells of half the size':64s} " + compare("Ricochet, cells of half the size", ricochet(fine / "pair.toml", steps))[0])
         print(f"{'its default scheme and mass':64s} " + compare("Ricochet, default scheme", ricochet(case, steps, default))[0])
         if arguments.figure:
             draw(arguments.figure, forces, peak)
