@@ -198,8 +198,8 @@ def main():
     parser.add_argument("--keep", help="leaves CalculiX' files there, and takes those of runs that are there")
     arguments = parser.parse_args()
     (force, duration, end), ball, runs, agree = hertz(), Ball(), {}, True
-    print(f"Hertz: largest force {force:.2f} N, duration {1e6 * duration:.3f} µs, less than {LOW:g} N from {1e6 * end:.3f} µs on\n\n{'':40s} force, N            less from, µs      impulse / "
-          "energy, %      of the      steps  iterations  processor, s\n"
+    print(f"Hertz: largest force {force:.2f} N, duration {1e6 * duration:.3f} µs, less than {LOW:g} N from {1e6 * end:.3f} µs on\n\n"
+          f"{'':40s} force, N            less from, µs       impulse / energy, %      of the      steps  iterations  processor, s\n"
           f"{'':80s} momentum   at the end  penalty", flush=True)
     with tempfile.TemporaryDirectory() as scratch:
         def report(name, run):
