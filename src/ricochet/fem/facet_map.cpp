@@ -19,7 +19,7 @@ constexpr double far_outside = 3.0;
 /// where the derivative at the last place leads, or else from the centre.
 class PlaceFinder {
  public:
-  PlaceFinder(const PolynomialMap& seen, bool is_segment, const Eigen::Vector2d& centre)
+  PlaceFinder(const PolynomialMap<2>& seen, bool is_segment, const Eigen::Vector2d& centre)
       : seen_(seen), is_segment_(is_segment), centre_(centre) {}
 
   /// False where there are none.
@@ -45,7 +45,7 @@ class PlaceFinder {
     double last = 0.0;
     for (int k = 0; k < most_iterations && !is_known_; ++k) {
       here_ = seen_.evaluate(at_.data());
-      const Eigen::Vector2d step = solve(here_.at.head<2>() - wanted);
+      const Eigen::Vector2d step = solve(here_.at - wanted);
       at_ -= step;
       if (!(at_.lpNorm<Eigen::Infinity>() <= far_outside)) return false;
       // Steps go like their squares, s₂ = c s₁²; so after the second one c s₂² is left.
@@ -57,10 +57,10 @@ class PlaceFinder {
     return is_known_;
   }
 
-  const PolynomialMap& seen_;
+  const PolynomialMap<2>& seen_;
   bool is_segment_;
   Eigen::Vector2d centre_, at_, wanted_;
-  PolynomialMap::Place here_;
+  PolynomialMap<2>::Place here_;
   bool is_known_ = false;  ///< `at_` is where `wanted_` is
 };
 
@@ -70,7 +70,7 @@ void tabulate(const PolynomialShape& shape, const Points& local, Matrix& values)
 }
 
 /// Of a facet over that of its projection: axes in the columns, the second zero in two dimensions.
-double area_ratio(const PolynomialMap::Place& at, const Eigen::Matrix<double, 3, 2>& axes, bool is_segment) {
+double area_ratio(const PolynomialMap<3>::Place& at, const Eigen::Matrix<double, 3, 2>& axes, bool is_segment) {
   const auto& [along, across] = at.slopes;
   if (is_segment) return along.norm() / std::abs(axes.col(0).dot(along));
   const Eigen::Vector2d a = axes.transpose() * along, b = axes.transpose() * across;
@@ -86,17 +86,17 @@ FacetMap::FacetMap(const Body& body) : body_(body) {
   }
 }
 
-PolynomialMap FacetMap::geometry(const PlaceInBlocks& place) const {
+PolynomialMap<3> FacetMap::geometry(const PlaceInBlocks& place) const {
   const PolynomialShape& shape = shapes_[place.block].geometry;
   const Index* const nodes = body_.mesh->facets[place.block].cell(place.local);
-  PolynomialMap::NodePlaces places = PolynomialMap::NodePlaces::Zero();
+  PolynomialMap<3>::NodePlaces places = PolynomialMap<3>::NodePlaces::Zero();
   for (Index k = 0; k < shape.node_count(); ++k)
     places.col(k).head(body_.mesh->dimension) = body_.mesh->nodes.col(nodes[k]);
   return {shape, places};
 }
 
 void FacetMap::positions(Index facet, const Points& local, Points& result) const {
-  const PolynomialMap map = geometry(locate_facet(*body_.space, facet));
+  const PolynomialMap<3> map = geometry(locate_facet(*body_.space, facet));
   const Index d = body_.mesh->dimension;
   result.resize(d, local.cols());
   for (Index q = 0; q < local.cols(); ++q) result.col(q) = map.evaluate(local.col(q).data()).at.head(d);
@@ -106,10 +106,10 @@ bool FacetMap::invert(Index facet, const Points& axes, const Points& plane, Poin
   const PlaceInBlocks place = locate_facet(*body_.space, facet);
   const CellBlock& block = body_.mesh->facets[place.block];
   const Index* const nodes = block.cell(place.local);
-  PolynomialMap::NodePlaces places = PolynomialMap::NodePlaces::Zero();
+  PolynomialMap<2>::NodePlaces places = PolynomialMap<2>::NodePlaces::Zero();
   for (Index k = 0; k < block.nodes_per_cell; ++k)
     places.col(k).head(axes.cols()) = axes.transpose() * body_.mesh->nodes.col(nodes[k]);
-  const PolynomialMap seen(shapes_[place.block].geometry, places);
+  const PolynomialMap<2> seen(shapes_[place.block].geometry, places);
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   centre.head(axes.cols()) = reference_centre(block.shape);
   PlaceFinder finder(seen, axes.cols() == 1, centre);
@@ -138,9 +138,9 @@ void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, 
   result.measure.resize(count);
   Eigen::Matrix<double, 3, 2> all_axes = Eigen::Matrix<double, 3, 2>::Zero();
   all_axes.topLeftCorner(d, d - 1) = axes;
-  const PolynomialMap map = geometry(place);
+  const PolynomialMap<3> map = geometry(place);
   for (Index q = 0; q < count; ++q) {
-    const PolynomialMap::Place at = map.evaluate(points.local.col(q).data());
+    const PolynomialMap<3>::Place at = map.evaluate(points.local.col(q).data());
     result.positions.col(q) = at.at.head(d);
     result.measure[q] = weights[q] * area_ratio(at, all_axes, d == 2);
   }

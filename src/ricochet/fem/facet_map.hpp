@@ -37,7 +37,7 @@ class FacetMap {
   struct Shapes {
     PolynomialShape geometry, displacement, hats;
   };
-  [[nodiscard]] PolynomialMap geometry(const PlaceInBlocks& place) const;
+  [[nodiscard]] PolynomialMap<3> geometry(const PlaceInBlocks& place) const;
 
   const Body& body_;
   std::vector<Shapes> shapes_;  ///< per block of facets
