@@ -1,7 +1,7 @@
 #include "ricochet/fem/facet_map.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ricochet {
 
@@ -10,28 +10,59 @@ namespace {
 constexpr int most_iterations = 30;
 /// In reference coordinates: Newton's method squares the error, and what a step of this size leaves is below rounding.
 constexpr double settled = 1e-9;
+/// The same where two steps in a row tell that it has.
+constexpr double nearly_settled = 1e-7;
 /// Points that are farther outside of a facet than this, in reference coordinates, do not belong to it.
 constexpr double far_outside = 3.0;
 
-/// Of a facet that is seen in a plane, which has one axis or two: from `at` to the reference coordinates of a place.
-bool find_local(const PolynomialMap& seen, const Eigen::Ref<const Vector>& wanted, Eigen::Vector2d& at) {
-  for (int k = 0; k < most_iterations; ++k) {
-    const PolynomialMap::Place here = seen.evaluate(at.data());
-    const auto& [along, across] = here.slopes;
-    Eigen::Vector2d step = Eigen::Vector2d::Zero();
-    if (wanted.size() == 1) {
-      step[0] = (here.at[0] - wanted[0]) / along[0];
-    } else {
-      const double a = here.at[0] - wanted[0], b = here.at[1] - wanted[1];
-      step = Eigen::Vector2d(across[1] * a - across[0] * b, along[0] * b - along[1] * a) /
-             (along[0] * across[1] - across[0] * along[1]);
-    }
-    at -= step;
-    if (!(at.lpNorm<Eigen::Infinity>() <= far_outside)) return false;
-    if (step.lpNorm<Eigen::Infinity>() <= settled) return true;
+/// The reference coordinates of places on a facet that is seen in a plane, one after the other: Newton's method from
+/// where the derivative at the last place leads, or else from the centre.
+class PlaceFinder {
+ public:
+  PlaceFinder(const PolynomialMap<2>& seen, bool is_segment, const Eigen::Vector2d& centre)
+      : seen_(seen), is_segment_(is_segment), centre_(centre) {}
+
+  /// False where there are none.
+  [[nodiscard]] bool find(const Eigen::Vector2d& wanted) {
+    if (is_known_ && settle(at_ + solve(wanted - wanted_), wanted)) return true;
+    return settle(centre_, wanted);
   }
-  return false;
-}
+  [[nodiscard]] const Eigen::Vector2d& at() const { return at_; }
+
+ private:
+  /// The derivative's inverse on a vector of the plane.
+  [[nodiscard]] Eigen::Vector2d solve(const Eigen::Vector2d& apart) const {
+    const auto& [along, across] = here_.slopes;
+    if (is_segment_) return {apart[0] / along[0], 0.0};
+    return Eigen::Vector2d(across[1] * apart[0] - across[0] * apart[1], along[0] * apart[1] - along[1] * apart[0]) /
+           (along[0] * across[1] - across[0] * along[1]);
+  }
+
+  bool settle(const Eigen::Vector2d& from, const Eigen::Vector2d& wanted) {
+    at_ = from;
+    wanted_ = wanted;
+    is_known_ = false;
+    double last = 0.0;
+    for (int k = 0; k < most_iterations && !is_known_; ++k) {
+      here_ = seen_.evaluate(at_.data());
+      const Eigen::Vector2d step = solve(here_.at - wanted);
+      at_ -= step;
+      if (!(at_.lpNorm<Eigen::Infinity>() <= far_outside)) return false;
+      // Steps go like their squares, s₂ = c s₁²; so after the second one c s₂² is left.
+      const double size = step.lpNorm<Eigen::Infinity>();
+      is_known_ = size <= settled || (size <= nearly_settled &&
+                                      size * size * size <= std::numeric_limits<double>::epsilon() * last * last);
+      last = size;
+    }
+    return is_known_;
+  }
+
+  const PolynomialMap<2>& seen_;
+  bool is_segment_;
+  Eigen::Vector2d centre_, at_, wanted_;
+  PolynomialMap<2>::Place here_;
+  bool is_known_ = false;  ///< `at_` is where `wanted_` is
+};
 
 void tabulate(const PolynomialShape& shape, const Points& local, Matrix& values) {
   values.resize(shape.node_count(), local.cols());
@@ -39,7 +70,7 @@ void tabulate(const PolynomialShape& shape, const Points& local, Matrix& values)
 }
 
 /// Of a facet over that of its projection: axes in the columns, the second zero in two dimensions.
-double area_ratio(const PolynomialMap::Place& at, const Eigen::Matrix<double, 3, 2>& axes, bool is_segment) {
+double area_ratio(const PolynomialMap<3>::Place& at, const Eigen::Matrix<double, 3, 2>& axes, bool is_segment) {
   const auto& [along, across] = at.slopes;
   if (is_segment) return along.norm() / std::abs(axes.col(0).dot(along));
   const Eigen::Vector2d a = axes.transpose() * along, b = axes.transpose() * across;
@@ -55,17 +86,17 @@ FacetMap::FacetMap(const Body& body) : body_(body) {
   }
 }
 
-PolynomialMap FacetMap::geometry(const PlaceInBlocks& place) const {
+PolynomialMap<3> FacetMap::geometry(const PlaceInBlocks& place) const {
   const PolynomialShape& shape = shapes_[place.block].geometry;
   const Index* const nodes = body_.mesh->facets[place.block].cell(place.local);
-  PolynomialMap::NodePlaces places = PolynomialMap::NodePlaces::Zero();
+  PolynomialMap<3>::NodePlaces places = PolynomialMap<3>::NodePlaces::Zero();
   for (Index k = 0; k < shape.node_count(); ++k)
     places.col(k).head(body_.mesh->dimension) = body_.mesh->nodes.col(nodes[k]);
   return {shape, places};
 }
 
 void FacetMap::positions(Index facet, const Points& local, Points& result) const {
-  const PolynomialMap map = geometry(locate_facet(*body_.space, facet));
+  const PolynomialMap<3> map = geometry(locate_facet(*body_.space, facet));
   const Index d = body_.mesh->dimension;
   result.resize(d, local.cols());
   for (Index q = 0; q < local.cols(); ++q) result.col(q) = map.evaluate(local.col(q).data()).at.head(d);
@@ -75,20 +106,19 @@ bool FacetMap::invert(Index facet, const Points& axes, const Points& plane, Poin
   const PlaceInBlocks place = locate_facet(*body_.space, facet);
   const CellBlock& block = body_.mesh->facets[place.block];
   const Index* const nodes = block.cell(place.local);
-  PolynomialMap::NodePlaces places = PolynomialMap::NodePlaces::Zero();
+  PolynomialMap<2>::NodePlaces places = PolynomialMap<2>::NodePlaces::Zero();
   for (Index k = 0; k < block.nodes_per_cell; ++k)
     places.col(k).head(axes.cols()) = axes.transpose() * body_.mesh->nodes.col(nodes[k]);
-  const PolynomialMap seen(shapes_[place.block].geometry, places);
+  const PolynomialMap<2> seen(shapes_[place.block].geometry, places);
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   centre.head(axes.cols()) = reference_centre(block.shape);
-  Eigen::Vector2d at = centre;
+  PlaceFinder finder(seen, axes.cols() == 1, centre);
   local.resize(axes.cols(), plane.cols());
+  Eigen::Vector2d wanted = Eigen::Vector2d::Zero();
   for (Index q = 0; q < plane.cols(); ++q) {
-    if (!find_local(seen, plane.col(q), at)) {
-      at = centre;
-      if (!find_local(seen, plane.col(q), at)) return false;
-    }
-    local.col(q) = at.head(axes.cols());
+    wanted.head(axes.cols()) = plane.col(q);
+    if (!finder.find(wanted)) return false;
+    local.col(q) = finder.at().head(axes.cols());
   }
   return true;
 }
@@ -108,9 +138,9 @@ void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, 
   result.measure.resize(count);
   Eigen::Matrix<double, 3, 2> all_axes = Eigen::Matrix<double, 3, 2>::Zero();
   all_axes.topLeftCorner(d, d - 1) = axes;
-  const PolynomialMap map = geometry(place);
+  const PolynomialMap<3> map = geometry(place);
   for (Index q = 0; q < count; ++q) {
-    const PolynomialMap::Place at = map.evaluate(points.local.col(q).data());
+    const PolynomialMap<3>::Place at = map.evaluate(points.local.col(q).data());
     result.positions.col(q) = at.at.head(d);
     result.measure[q] = weights[q] * area_ratio(at, all_axes, d == 2);
   }

@@ -22,8 +22,9 @@ class FacetMap {
   /// x(ξ) of each point, d × points.
   void positions(Index facet, const Points& local, Points& result) const;
   /// The reference coordinates ξ at which axesᵀ x(ξ) = y: those of the points of a facet that are seen at `plane`,
-  /// (d−1) × points, along the direction that the axes, d × (d−1), are perpendicular to. Newton's method from the
-  /// last point's, or from the facet's centre; false where it finds none, since the facet is seen edge-on.
+  /// (d−1) × points, along the direction that the axes, d × (d−1), are perpendicular to. Newton's method from
+  /// where the last point leads, or from the facet's centre; false where it finds none, since the facet is seen
+  /// edge-on.
   [[nodiscard]] bool invert(Index facet, const Points& axes, const Points& plane, Points& local) const;
   /// Shape functions at points.local. `weights` are areas in the plane of the axes, from which the measures on the
   /// facet come: the area of the facet over that of its projection.
@@ -36,7 +37,7 @@ class FacetMap {
   struct Shapes {
     PolynomialShape geometry, displacement, hats;
   };
-  [[nodiscard]] PolynomialMap geometry(const PlaceInBlocks& place) const;
+  [[nodiscard]] PolynomialMap<3> geometry(const PlaceInBlocks& place) const;
 
   const Body& body_;
   std::vector<Shapes> shapes_;  ///< per block of facets

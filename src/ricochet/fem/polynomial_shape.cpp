@@ -44,28 +44,33 @@ void PolynomialShape::values(const double* point, double* values) const {
   }
 }
 
-PolynomialMap::PolynomialMap(const PolynomialShape& shape, const NodePlaces& places)
+template <int components>
+PolynomialMap<components>::PolynomialMap(const PolynomialShape& shape, const NodePlaces& places)
     : shape_(shape), origin_(places.col(0)) {
   for (int t = 0; t < shape.terms_; ++t) {
-    Eigen::Vector3d& sum = coefficients_[static_cast<std::size_t>(t)];
+    At& sum = coefficients_[static_cast<std::size_t>(t)];
     sum.setZero();
     for (Index k = 1; k < shape.node_count(); ++k) sum += shape.coefficients_(k, t) * (places.col(k) - origin_);
   }
 }
 
-PolynomialMap::Place PolynomialMap::evaluate(const double* point) const {
+template <int components>
+auto PolynomialMap<components>::evaluate(const double* point) const -> Place {
   const double x = point[0], y = shape_.dimension_ == 2 ? point[1] : 0.0;
   const double of_x[3] = {1.0, x, x * x}, of_y[3] = {1.0, y, y * y};
   const double slope_x[3] = {0.0, 1.0, 2.0 * x}, slope_y[3] = {0.0, 1.0, 2.0 * y};
-  Place result{origin_, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}};
+  Place result{origin_, {At::Zero(), At::Zero()}};
   for (int t = 0; t < shape_.terms_; ++t) {
     const int i = shape_.powers_[t][0], j = shape_.powers_[t][1];
-    const Eigen::Vector3d& coefficient = coefficients_[static_cast<std::size_t>(t)];
+    const At& coefficient = coefficients_[static_cast<std::size_t>(t)];
     result.at += of_x[i] * of_y[j] * coefficient;
     result.slopes[0] += slope_x[i] * of_y[j] * coefficient;
     result.slopes[1] += of_x[i] * slope_y[j] * coefficient;
   }
   return result;
 }
+
+template class PolynomialMap<2>;
+template class PolynomialMap<3>;
 
 }  // namespace ricochet

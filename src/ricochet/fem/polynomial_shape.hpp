@@ -19,6 +19,7 @@ class PolynomialShape {
   void values(const double* point, double* values) const;
 
  private:
+  template <int components>
   friend class PolynomialMap;
   void monomials(const double* point, double* terms) const;
 
@@ -28,25 +29,31 @@ class PolynomialShape {
   Matrix coefficients_;  ///< nodes × monomials
 };
 
-/// x(ξ) = Σ_k x_k φ_k(ξ) of one cell, as polynomials: for those who ask where a cell is at many of its points.
+/// x(ξ) = Σ_k x_k φ_k(ξ) of one cell, as polynomials: for those who ask where a cell is at many of its points. With two
+/// components, seen in a plane, or with three.
+template <int components>
 class PolynomialMap {
  public:
+  using At = Eigen::Matrix<double, components, 1>;
   /// x_k in the columns; components and nodes that a cell does not have count for nothing.
-  using NodePlaces = Eigen::Matrix<double, 3, PolynomialShape::most_nodes>;
+  using NodePlaces = Eigen::Matrix<double, components, PolynomialShape::most_nodes>;
   /// Keeps a reference to the shape.
   PolynomialMap(const PolynomialShape& shape, const NodePlaces& places);
 
   struct Place {
-    Eigen::Vector3d at;                     ///< x
-    std::array<Eigen::Vector3d, 2> slopes;  ///< ∂x/∂ξ along the axes; zero along one that the cell does not have
+    At at;                     ///< x
+    std::array<At, 2> slopes;  ///< ∂x/∂ξ along the axes; zero along one that the cell does not have
   };
   /// `point` has one or two coordinates.
   [[nodiscard]] Place evaluate(const double* point) const;
 
  private:
   const PolynomialShape& shape_;
-  Eigen::Vector3d origin_;  ///< the first node: what is left is of the cell's size, and so is its rounding
-  std::array<Eigen::Vector3d, PolynomialShape::most_nodes> coefficients_;  ///< per monomial
+  At origin_;  ///< the first node: what is left is of the cell's size, and so is its rounding
+  std::array<At, PolynomialShape::most_nodes> coefficients_;  ///< per monomial
 };
+
+extern template class PolynomialMap<2>;
+extern template class PolynomialMap<3>;
 
 }  // namespace ricochet
