@@ -40,6 +40,10 @@ std::string facing_text(const FacingDescription& facing) {
 
 void print_contacts(const std::vector<ContactDescription>& contacts) {
   for (const ContactDescription& c : contacts) {
+    if (c.tied) {
+      fmt::print("  \"{}\" tied to \"{}\"\n", c.group, c.opponent);
+      continue;
+    }
     fmt::print("  contact of \"{}\" {} \"{}\"{}: {}, {} multipliers\n", c.group, c.between_bodies ? "against" : "with",
                c.opponent, motion_text(c), law_text(c), c.multipliers);
     if (c.facing) fmt::print("    {}\n", facing_text(*c.facing));

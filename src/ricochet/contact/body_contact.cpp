@@ -83,8 +83,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
     for (std::size_t k = 0; k < own.facets().size(); ++k) {
       if (!faces(k)) continue;
       const FacetSurface::Facet& facet = own.facets()[k];
-      directions[facet.number] =
-          middle_direction(facet.centre, -normal_of(k), facet.height, faced);
+      directions[facet.number] = middle_direction(facet.centre, -normal_of(k), facet.height, faced);
     }
     return directions;
   }

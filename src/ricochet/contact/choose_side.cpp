@@ -64,6 +64,19 @@ Side measure(const Body& body, const std::vector<Index>& facets) {
 
 }  // namespace
 
+double distance_from_curved(const Body& body, const ContactPair& pair) {
+  if (body.mesh->degree > 1) return 0.0;
+  double result = 0.0;
+  for (const std::vector<Index>* const facets : {&pair.facets, &pair.opposite_facets}) {
+    const FacetSurface surface(body, *facets);
+    double size = 0.0;
+    for (const FacetSurface::Facet& facet : surface.facets())
+      size += facet.size / static_cast<double>(surface.facets().size());
+    result = std::max(result, 0.125 * curvature_of(body, surface) * size * size);
+  }
+  return result;
+}
+
 SideChoice choose_side(const Body& body, const ContactPair& pair) {
   const Side one = measure(body, pair.facets), other = measure(body, pair.opposite_facets);
   const auto differ = [](double a, double b) { return std::max(a, b) > alike * std::min(a, b); };

@@ -19,4 +19,8 @@ struct SideChoice {
 /// are alike in all.
 [[nodiscard]] SideChoice choose_side(const Body& body, const ContactPair& pair);
 
+/// How far straight facets are from the curved surface that they stand for, h²/8R in the mean: of the side where it is
+/// more; 0 on a mesh of second order.
+[[nodiscard]] double distance_from_curved(const Body& body, const ContactPair& pair);
+
 }  // namespace ricochet

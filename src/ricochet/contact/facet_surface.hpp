@@ -23,11 +23,11 @@ class FacetSurface {
   struct Facet {
     Index number = 0;  ///< through all blocks
     int first_piece = 0, piece_count = 0;
-    double area = 0.0;             ///< of the pieces
+    double area = 0.0;           ///< of the pieces
     Three area_vector{0, 0, 0};  ///< ∫ N of them, out of the body: a length in two dimensions, an area in three
-    Three centre{0, 0, 0};         ///< the mean of its vertices
-    double size = 0.0;             ///< the longest distance between corners
-    double height = 0.0;           ///< of the cell behind it
+    Three centre{0, 0, 0};       ///< the mean of its vertices
+    double size = 0.0;           ///< the longest distance between corners
+    double height = 0.0;         ///< of the cell behind it
   };
 
   /// `facets`: numbered through all blocks, ascending. They are seen where they are displaced by `shift` (d; empty: not

@@ -205,9 +205,8 @@ FacetSegments SegmentFinder::find(int facet, const Three& direction) const {
     add_points(view, cuts, result.segments);
   }
   std::erase_if(result.segments, [](const SurfaceSegment& segment) { return segment.weights.size() == 0; });
-  result.lost = static_cast<Index>(std::erase_if(result.segments, [&](SurfaceSegment& segment) {
-    return !find_coordinates(own.number, result.axes, segment);
-  }));
+  result.lost = static_cast<Index>(std::erase_if(
+      result.segments, [&](SurfaceSegment& segment) { return !find_coordinates(own.number, result.axes, segment); }));
   double faced = 0.0;
   for (const SurfaceSegment& segment : result.segments) faced += segment.weights.sum();
   result.covered = seen > 0.0 ? faced / seen : 0.0;

@@ -22,23 +22,26 @@ constexpr double least_weight = 1e-14;
 /// Σ P = 1 but for the rounding of the solve.
 constexpr double rounding_of_sum = 1e-9;
 
-/// Leaves out the multipliers of nodes that do not face the other surface themselves, though a part of their facets
-/// does. P would have entries of the size of a cell over that part.
-void leave_out_overhanging(BodyContact& contact) {
+/// Leaves out the multipliers of nodes that are to stay free, and of those that do not face the other surface
+/// themselves, though a part of their facets does. P would have entries of the size of a cell over that part.
+void leave_out_overhanging(BodyContact& contact, const std::function<bool(Index)>& stays_free) {
   std::set<Index> facing;
   for (const BodyContact::Node& node : contact.nodes) {
     if (node.own && !node.opposite.empty()) facing.insert(node.node);
   }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < contact.multipliers.size(); ++i) {
-    if (!facing.contains(contact.multipliers[i].node)) continue;
+    if (!facing.contains(contact.multipliers[i].node)) {
+      ++contact.facing.uncovered;
+      continue;
+    }
+    if (stays_free && stays_free(contact.multipliers[i].node)) continue;
     if (kept != i) {
       contact.multipliers[kept] = std::move(contact.multipliers[i]);
       contact.conditions[kept] = std::move(contact.conditions[i]);
     }
     ++kept;
   }
-  contact.facing.uncovered += static_cast<Index>(contact.multipliers.size() - kept);
   contact.multipliers.resize(kept);
   contact.conditions.resize(kept);
 }
@@ -125,7 +128,7 @@ double distance_from_geometry(const TiedNodes& tied, const Mesh& mesh, const Dis
 
 }  // namespace
 
-TiedSurface tie_surfaces(const Body& body, const ContactPair& pair) {
+TiedSurface tie_surfaces(const Body& body, const ContactPair& pair, const std::function<bool(Index)>& stays_free) {
   TiedSurface result;
   ContactPair dual = pair;
   dual.multipliers = "dual";
@@ -134,7 +137,7 @@ TiedSurface tie_surfaces(const Body& body, const ContactPair& pair) {
   const ContactPatch patch{&body, {{0, pairing.facing_facets()}}};
   const std::unique_ptr<MultiplierSpace> space = make_multiplier_space(dual.multipliers, patch);
   BodyContact contact = pairing.make(*space, [](Index, int) { return true; });
-  leave_out_overhanging(contact);
+  leave_out_overhanging(contact, stays_free);
   result.facing = contact.facing;
   result.ties = solve_ties(contact);
   const FacetSurface own(body, pair.facets);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "ricochet/contact/body_contact.hpp"
 #include "ricochet/fem/tied_nodes.hpp"
 
@@ -17,7 +19,9 @@ struct TiedSurface {
 /// With dual multipliers the mortar conditions C u_s = M̂ u_m are solved node by node where facets are covered whole:
 /// P = C⁻¹M̂ has few entries per node, and reproduces linear functions on flat surfaces. A node that does not face the
 /// other surface stays free. Throws Error(invalid_input) where facets fold around a node, or P has no sense.
-[[nodiscard]] TiedSurface tie_surfaces(const Body& body, const ContactPair& pair);
+/// `stays_free`: nodes that follow something else, or must not follow this; null: none.
+[[nodiscard]] TiedSurface tie_surfaces(const Body& body, const ContactPair& pair,
+                                       const std::function<bool(Index)>& stays_free = nullptr);
 
 /// Moves tied nodes to where they are on the other surface, Σ P X: then turns of both together have no strain (M. A.
 /// Puso, Int. J. Numer. Meth. Engng 59, 2004, 315–336). The nodes of the geometry go with those of the displacement.

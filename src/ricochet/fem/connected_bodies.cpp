@@ -60,13 +60,22 @@ std::vector<std::string> names_of_bodies(const Mesh& mesh, const ConnectedBodies
     parts[body].push_back(name);
     if (whole[body].empty() && members.size() == cells[body]) whole[body] = name;
   };
-  for (const MeshPart& part : mesh.parts) look_at(part.name, part.cells);  // a body of a file of its own is called so
+  std::vector<std::size_t> in_parts(count, 0);
+  for (const MeshPart& part : mesh.parts) {  // a body of a file of its own is called so, one of several files after all
+    look_at(part.name, part.cells);
+    if (!part.cells.empty()) in_parts[body_of(part.cells.front())] += part.cells.size();
+  }
+  const std::vector<std::vector<std::string>> files = parts;
   for (const Group& group : mesh.groups) {
     if (group.dimension == mesh.dimension) look_at(group.name, group.members);
   }
   std::vector<std::string> result;
   for (std::size_t body = 0; body < count; ++body) {
-    if (!whole[body].empty()) parts[body] = {whole[body]};
+    if (!whole[body].empty()) {
+      parts[body] = {whole[body]};
+    } else if (!files[body].empty() && in_parts[body] == cells[body]) {
+      parts[body] = files[body];
+    }
     result.push_back("body " + (parts[body].empty() ? std::to_string(body) : join_names(parts[body])));
   }
   return result;

@@ -61,6 +61,7 @@ Json contacts_to_json(const RunSummary& summary) {
                   {"friction_bound", c.friction_bound},
                   {"obstacle_velocity", c.obstacle_velocity},
                   {"obstacle_rotation_rate", c.obstacle_rotation_rate}};
+    if (c.between_bodies) entry["tied"] = c.tied;
     if (c.facing) {
       entry["facing"] = {{"multipliers_on", c.facing->multipliers_on},
                          {"reason", c.facing->reason},
@@ -315,7 +316,7 @@ RunSummary read_summary(const std::string& path) {
       s.contacts.push_back({contact.at("group"), contact.at(between_bodies ? "against" : "obstacle"),
                             contact.at("multipliers"), contact.at("friction"), contact.at("friction_bound"),
                             contact.at("obstacle_velocity"), contact.at("obstacle_rotation_rate"), between_bodies,
-                            facing_from(contact)});
+                            contact.value("tied", Json(false)).get<bool>(), facing_from(contact)});
     }
     for (const auto& probe : json.at("probes")) {
       s.probes.push_back({probe.at("name"), probe.at("node"), probe.at("distance"),

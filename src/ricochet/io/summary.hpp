@@ -60,6 +60,7 @@ struct ContactDescription {
   std::vector<double> obstacle_velocity = {};  ///< empty: at rest
   double obstacle_rotation_rate = 0.0;
   bool between_bodies = false;
+  bool tied = false;                             ///< glued: no multipliers, no friction
   std::optional<FacingDescription> facing = {};  ///< none: an obstacle, or it is not known
 };
 

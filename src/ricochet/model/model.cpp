@@ -313,6 +313,7 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   add_loads(input, *model);
   add_initial_conditions(input, *model);
   add_motions(input, *model);
+  warn_of_torn_ties(*model);
   check_body_overlaps(input, *model);
   check_obstacles(input, *model);
   add_standing_columns(*model);

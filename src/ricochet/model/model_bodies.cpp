@@ -85,9 +85,23 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
                              facing.held == 1 ? "point is" : "points are"));
   }
   if (facing.lost > 0) {
-    log::warning(fmt::format("{}: {} left out of the contact, as curved facets are seen edge-on there; refine the mesh "
-                             "at the rim of the contact",
-                             names_of_pair(pair), counted(facing.lost, "piece of a facet is", "pieces of facets are")));
+    log::warning(
+        fmt::format("{}: {} left out of the contact, as curved facets are seen edge-on there; refine the mesh "
+                    "at the rim of the contact",
+                    names_of_pair(pair), counted(facing.lost, "piece of a facet is", "pieces of facets are")));
+  }
+  // Surfaces that overlap or are taken to touch fit each other, and gaps are differences of places that facets are off.
+  const double interference = std::max(-facing.smallest_gap, 0.0);
+  constexpr double felt = 0.05;
+  if (interference > facing.gap_rounding && (input.initial.static_equilibrium || facing.closed > 0)) {
+    const double off = distance_from_curved(model.body, pair);
+    if (off > felt * interference) {
+      log::warning(fmt::format(
+          "{}: the surfaces are curved, and their straight facets are off by {:.2g} in the mean, beside an "
+          "overlap of {:.2g}: where meshes do not match, gaps and pressures are those of the facets, not of "
+          "the curved surfaces; use a mesh of second order (mesh.degree = 2 makes one of a geometry)",
+          names_of_pair(pair), off, interference));
+    }
   }
   if (facing.closed > 0) {
     log::info(fmt::format("{} overlap by up to {:.3g} at {}, as meshes: there they are taken to touch",

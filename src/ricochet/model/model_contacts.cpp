@@ -8,7 +8,6 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/contact/body_contact.hpp"
-#include "ricochet/contact/choose_side.hpp"
 #include "ricochet/contact/multiplier_space.hpp"
 #include "ricochet/model/model_parts.hpp"
 

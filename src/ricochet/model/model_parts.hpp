@@ -45,6 +45,8 @@ void add_supports(const Case& input, Model& model);
 void collect_contacts(const Case& input, Model& model);
 /// Nodes that are tied; moves them onto the surface that they follow.
 void add_ties(const Case& input, Model& model);
+/// Where velocities of the start differ across a tie.
+void warn_of_torn_ties(const Model& model);
 void add_contacts(const Case& input, Model& model);
 /// The groups of a contact between bodies; that which carries the multipliers is the pair's first.
 [[nodiscard]] ContactPair body_pair(const Case& input, std::size_t number, const Model& model);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
@@ -43,6 +44,8 @@ class ProbeMaker {
     const auto& nodes = model_.problem.contact.nodes;
     const auto entries = std::count(nodes.begin(), nodes.end(), node);
     if (entries > 0) probe.contact_node = std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
+    if (entries > 0 && std::isnan(model_.problem.contact.node_initial_gap[probe.contact_node]))
+      log::info(fmt::format("probe \"{}\" is at a node that faces nothing of the other body: it has no gap", name));
     if (entries > 1) {
       const auto first = static_cast<std::size_t>(probe.contact_node);
       const auto pair = static_cast<std::size_t>(model_.problem.contact.node_pair[first]);
@@ -104,8 +107,16 @@ class ProbeMaker {
 
   void add_boundary(const ProbeSection& section, const std::string& key) {
     const std::vector<Index> facets = boundary_at(input_, key + ".boundary", model_.mesh, section.boundary);
+    const std::vector<Index> nodes = facet_nodes(model_.space, facets);
+    if (!model_.tied.empty() &&
+        std::any_of(nodes.begin(), nodes.end(), [&](Index node) { return model_.tied.is_tied(node); })) {
+      log::warning(
+          fmt::format("probe \"{}\": forces that pass through a tie are not in the force of boundary \"{}\": they "
+                      "are inside of one body",
+                      section.name, section.boundary));
+    }
     const Vector about = section.about.empty() ? Vector(Vector::Zero(model_.mesh.dimension)) : vector_of(section.about);
-    add(section, make_boundary_sensor(section.name, model_.problem, facet_nodes(model_.space, facets), about));
+    add(section, make_boundary_sensor(section.name, model_.problem, nodes, about));
   }
 
   void add_group(const ProbeSection& section, const std::string& key) {
@@ -140,7 +151,8 @@ class ProbeMaker {
   Model& model_;
 };
 
-/// What stands in names of columns: the body's name where it has one that can, else its number.
+/// What stands in names of columns: the body's name where it has one that can, else its number. Tied parts are called
+/// after the first one.
 std::string label_of(const std::string& name, int number) {
   const std::optional<std::string_view> inner = between(name, "body \"", "\"");
   return inner && is_plain_name(*inner) ? std::string(*inner) : std::to_string(number);

@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -41,6 +43,10 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
                     "turns have no strain",
                     pair.group, surface.farthest_in_heights, pair.opposite_group));
   }
+  log::info(fmt::format("{} of \"{}\" {} \"{}\", on {:.3g} % of the area of \"{}\"",
+                        counted(surface.ties.size(), "node"), pair.group,
+                        surface.ties.size() == 1 ? "follows" : "follow", pair.opposite_group,
+                        100.0 * surface.facing.covered / surface.facing.area, pair.group));
   if (surface.facing.uncovered > 0) {
     log::warning(fmt::format("tied groups \"{}\" and \"{}\": {} the other surface and {} free", pair.group,
                              pair.opposite_group,
@@ -48,6 +54,73 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
                              surface.facing.uncovered == 1 ? "stays" : "stay"));
   }
 }
+
+/// Ties of all contacts. Where several surfaces meet, at the rim of each, a node may face more than one of them, or be
+/// followed itself by the node that it faces: it follows the first, and what the second asks of it is met already.
+class TieCollection {
+ public:
+  TieCollection(const Case& input, const Model& model)
+      : input_(input), model_(model), tied_by_(static_cast<std::size_t>(model.space.node_count()), -1) {}
+
+  void add(std::size_t contact) {
+    const ContactPair& pair = model_.contact_pairs[contact];
+    TiedSurface surface = tie(contact, {});
+    std::set<Index> taken;
+    for (const TiedNodes::Tie& tie : surface.ties) {
+      if (is_tied(tie.node) || leads_to(tie.weights, tie.node)) taken.insert(tie.node);
+    }
+    if (2 * taken.size() > surface.ties.size()) refuse_second_tie(contact, *taken.begin());
+    if (!taken.empty()) {
+      surface = tie(contact, taken);
+      log::info(fmt::format("tied groups \"{}\" and \"{}\": {} another tied surface, too, and {} that one", pair.group,
+                            pair.opposite_group,
+                            counted(taken.size(), "node is at the end of", "nodes are at the end of"),
+                            taken.size() == 1 ? "follows" : "follow"));
+    }
+    check_tie(input_, contact, pair, surface);
+    for (TiedNodes::Tie& tie : surface.ties) {
+      tied_by_[static_cast<std::size_t>(tie.node)] = static_cast<int>(contact);
+      place_[tie.node] = ties_.size();
+      ties_.push_back(std::move(tie));
+    }
+  }
+  [[nodiscard]] std::vector<TiedNodes::Tie> take() { return std::move(ties_); }
+
+ private:
+  [[nodiscard]] bool is_tied(Index node) const { return tied_by_[static_cast<std::size_t>(node)] >= 0; }
+  /// Whether one of these nodes is the node, or follows it.
+  [[nodiscard]] bool leads_to(const TiedNodes::Weights& weights, Index node) const {
+    return std::any_of(weights.begin(), weights.end(), [&](const auto& entry) {
+      const auto at = place_.find(entry.first);
+      return entry.first == node || (at != place_.end() && leads_to(ties_[at->second].weights, node));
+    });
+  }
+  [[nodiscard]] TiedSurface tie(std::size_t contact, const std::set<Index>& taken) const {
+    try {
+      return tie_surfaces(model_.body, model_.contact_pairs[contact],
+                          [&taken](Index node) { return taken.contains(node); });
+    } catch (const Error& problem) {
+      refuse(input_, fmt::format("contact.{}.group", contact), problem.what());
+    }
+  }
+  [[noreturn]] void refuse_second_tie(std::size_t contact, Index node) const {
+    const Vector at = model_.space.nodes.col(node);
+    const int by = tied_by_[static_cast<std::size_t>(node)];
+    refuse(input_, fmt::format("contact.{}.group", contact),
+           fmt::format("the node at ({:.6g}) of group \"{}\", and others, {}: they cannot follow two surfaces; let the "
+                       "other group follow (multipliers_on), leave the facets around them out of one of the groups, or "
+                       "give one contact a list of groups",
+                       fmt::join(at, ", "), model_.contact_pairs[contact].group,
+                       by >= 0 ? fmt::format("are tied already, by contact {}", by)
+                               : "are followed by what they would follow"));
+  }
+
+  const Case& input_;
+  const Model& model_;
+  std::vector<int> tied_by_;  ///< contact, or −1
+  std::map<Index, std::size_t> place_;
+  std::vector<TiedNodes::Tie> ties_;
+};
 
 void move_nodes(const Case& input, Model& model) {
   const double off = move_tied_nodes(model.tied, model.mesh, model.space);
@@ -71,32 +144,11 @@ void move_nodes(const Case& input, Model& model) {
 }  // namespace
 
 void add_ties(const Case& input, Model& model) {
-  std::vector<TiedNodes::Tie> ties;
-  std::vector<int> tied_by(static_cast<std::size_t>(model.space.node_count()), -1);
+  TieCollection collection(input, model);
   for (std::size_t i = 0; i < model.contact_pairs.size(); ++i) {
-    const ContactPair& pair = model.contact_pairs[i];
-    if (!pair.tied) continue;
-    TiedSurface surface;
-    try {
-      surface = tie_surfaces(model.body, pair);
-    } catch (const Error& problem) {
-      refuse(input, fmt::format("contact.{}.group", i), problem.what());
-    }
-    check_tie(input, i, pair, surface);
-    for (TiedNodes::Tie& tie : surface.ties) {
-      int& by = tied_by[static_cast<std::size_t>(tie.node)];
-      if (by >= 0) {
-        const Vector at = model.space.nodes.col(tie.node);
-        refuse(input, fmt::format("contact.{}.group", i),
-               fmt::format("the node at ({:.6g}) of group \"{}\" is tied already, by contact {}: it cannot follow two "
-                           "surfaces; let the other group carry the multipliers (multipliers_on), or leave the facets "
-                           "around the node out of one of the groups",
-                           fmt::join(at, ", "), pair.group, by));
-      }
-      by = static_cast<int>(i);
-      ties.push_back(std::move(tie));
-    }
+    if (model.contact_pairs[i].tied) collection.add(i);
   }
+  std::vector<TiedNodes::Tie> ties = collection.take();
   if (ties.empty()) return;
   try {
     model.tied = TiedNodes(std::move(ties), model.space.node_count());
@@ -108,6 +160,21 @@ void add_ties(const Case& input, Model& model) {
     for (const auto& [node, weight] : tie.weights) model.space.glued.emplace_back(tie.node, node);
   }
   model.body.tied = model.problem.tied = &model.tied;
+}
+
+void warn_of_torn_ties(const Model& model) {
+  constexpr double rounding = 1e-9;
+  if (model.tied.empty()) return;
+  Vector completed = model.initial.velocity;
+  model.tied.complete(completed, model.mesh.dimension);
+  const double largest = model.initial.velocity.lpNorm<Eigen::Infinity>();
+  const double torn = (completed - model.initial.velocity).lpNorm<Eigen::Infinity>();
+  if (!(torn > rounding * largest)) return;
+  log::warning(
+      fmt::format("bodies that are tied start with velocities that differ by up to {:.3g} at the tie: its nodes take "
+                  "those of the other surface, and the momentum and energy of the start are not those of the "
+                  "velocities given",
+                  torn));
 }
 
 }  // namespace ricochet

@@ -32,6 +32,9 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
       angular_column_(
           column_index(columns, model.problem.dimension == 2 ? "angular_momentum_z" : "angular_momentum_x")) {
   for (const char* work : work_columns) works_.push_back(column_index(columns, work));
+  Vector inertia;
+  model.problem.mass.multiply(Vector::Ones(model.problem.mass.size()), inertia);
+  mass_ = model.problem.ranks->sum(inertia.sum()) / model.problem.dimension;
   const std::string solver =
       input.solver.method == "direct" ? "" : ", or solver.tolerance where steps are solved by iterations";
   energy_.result.name = "energy_residual";
@@ -94,7 +97,8 @@ void RunChecks::watch(const std::vector<double>& row, const State& state) {
     has_start_ = true;
   }
   energy_scale_ = std::max({energy_scale_, std::abs(row[total_]), std::abs(row[kinetic_]), std::abs(row[elastic_])});
-  momentum_scale_ = std::max(momentum_scale_, now.force.norm());
+  // |Σ m v| ≤ √(2 m T) with the kinetic energy T; the momenta of bodies that meet head-on cancel, this does not.
+  momentum_scale_ = std::max(momentum_scale_, std::sqrt(2.0 * mass_ * std::max(row[kinetic_], 0.0)));
   const double momentum_scale = momentum_scale_ + momentum_.size();
   for (const std::size_t work : works_) work_scale_ = std::max(work_scale_, std::abs(row[work]));
   // Of works that cancel rounding is left, which no limit can be below.
@@ -125,7 +129,8 @@ void RunChecks::judge(Account& account, double residual, double scale, const std
   const std::string message = fmt::format(
       "at t = {:.6g} (step {:.0f}) the balance of {} is violated by {:.2g} of the largest {}, more than "
       "check.{} = {:g}; {}",
-      row[1], row[0], what, residual / scale, what, result.name, result.limit, account.advice);
+      row[1], row[0], what, residual / scale, &account == &energy_ ? "energy" : what + " of the parts", result.name,
+      result.limit, account.advice);
   if (stops_) throw Error(ErrorKind::not_converged, message);
   log::warning(message);
 }

@@ -36,6 +36,7 @@ class RunChecks {
   const Model& model_;
   bool stops_;
   MomentumAccount momentum_;
+  double mass_ = 0.0;  ///< of all bodies
   std::size_t kinetic_, elastic_, total_, residual_, momentum_column_, angular_column_;
   Resultant start_;
   bool has_start_ = false;

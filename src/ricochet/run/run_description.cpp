@@ -23,7 +23,8 @@ std::vector<ContactDescription> describe_contacts(const Case& input) {
                         contact.friction_bound,
                         {},
                         0.0,
-                        true});
+                        true,
+                        contact.tied});
       continue;
     }
     const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),

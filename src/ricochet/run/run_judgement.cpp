@@ -34,9 +34,11 @@ void judge_loss(const RunSummary& summary, const SemidiscreteProblem& problem, c
   log::warning(
       fmt::format("contact forces and the scheme itself have taken {:.2g} % of the largest energy (contact_work and "
                   "numerical_dissipation of the history), which a real body keeps as waves: rebounds are too slow by "
-                  "that; a smaller "
-                  "time.step and smaller cells lose less",
-                  100.0 * loss));
+                  "that; a smaller time.step and smaller cells lose less{}",
+                  100.0 * loss,
+                  problem.contact.has_friction() && summary.scheme == "reduced-kane"
+                      ? ", and so does time.reaction_weight = \"adaptive\""
+                      : ""));
 }
 
 void judge_energy(const RunSummary& summary, const Scheme& scheme, const SemidiscreteProblem& problem,

@@ -192,6 +192,28 @@ PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& dis
   return inside;
 }
 
+/// Bodies that float at the start are moved by a static start until something holds them.
+void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& pressed) {
+  constexpr double seen = 1e-3;  // of the size of the bodies
+  Vector gap;
+  problem.gaps(Vector::Zero(problem.dof_count()), 0.0, gap);
+  for (std::size_t contact = 0; contact < problem.obstacles.size(); ++contact) {
+    double smallest = std::numeric_limits<double>::infinity();
+    bool presses = false;
+    for (Index i = 0; i < gap.size(); ++i) {
+      if (problem.contact.pair[static_cast<std::size_t>(i)] != static_cast<int>(contact)) continue;
+      smallest = std::min(smallest, gap[i]);
+      presses = presses || (i < pressed.size() && pressed[i] > 0.0);
+    }
+    if (!presses || !(smallest > seen * extent(problem.nodes))) continue;
+    log::warning(
+        fmt::format("initial.displacement = \"static\" closes the gap of contact.{}, which is {:.3g} wide in the "
+                    "mesh: it moves a body until it rests; where that body is to start with a gap, leave the "
+                    "static start out",
+                    contact, smallest));
+  }
+}
+
 State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial, double step,
                           const StepSolverOptions& options) {
   State state;
@@ -202,6 +224,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
     state.displacement = std::move(equilibrium.displacement);
     pressed = std::move(equilibrium.normal_reaction);
     log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(problem, state.displacement)));
+    warn_of_closed_gaps(problem, pressed);
   } else {
     state.displacement = initial.displacement;
   }

@@ -76,7 +76,8 @@ class StaticFriction {
     const double size = extent(problem.nodes);
     for (Index i = 0; i < problem.contact.size(); ++i) {
       const Vector rate = stage.slip_offset.segment(i * tangents(), tangents());
-      if (rate.lpNorm<1>() <= stage.slip_offset_rounding[i]) continue;
+      const bool is_rough = problem.contact.friction_coefficient[i] > 0.0 || problem.contact.friction_bound[i] > 0.0;
+      if (!is_rough || rate.lpNorm<1>() <= stage.slip_offset_rounding[i]) continue;
       slide_.segment(i * tangents(), tangents()) = (size / rate.norm()) * rate;
       sliding_[static_cast<std::size_t>(i)] = 1;
     }

@@ -74,7 +74,7 @@ TEST(BodyPairs, RefuseTheSameFacetsOnBothSides) {
 TEST(BodyPairs, RefuseANodeThatIsTiedTwice) {
   const std::string mesh = write_blocks(1, 0.0), tied = "tied = true\nmultipliers_on = \"group\"\n";
   expect_refusal(case_of(mesh, pair_of("upper.y0", "lower.y1", tied) + pair_of("upper.y0", "lower.y1", tied)),
-                 {"is tied already, by contact 0", "cannot follow two surfaces"});
+                 {"are tied already, by contact 0", "cannot follow two surfaces"});
 }
 
 TEST(BodyPairs, RefuseSurfacesTooFarApartToBeTied) {

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include "ricochet/simulation/sensor.hpp"
@@ -12,6 +13,7 @@ class PointSensor final : public Sensor {
     if (probe_.contact_node < 0) return;
     // All points of this obstacle whose trace reaches the node.
     const ContactBoundary& contact = problem.contact;
+    has_gap_ = !std::isnan(contact.node_initial_gap[probe_.contact_node]);
     const int pair = contact.node_pair[static_cast<std::size_t>(probe_.contact_node)];
     const Obstacle* const obstacle = problem.obstacles[static_cast<std::size_t>(pair)];
     for (Index point = 0; point < contact.size(); ++point) {
@@ -30,7 +32,8 @@ class PointSensor final : public Sensor {
     add_vector_columns(columns, probe_.name + ".displacement", d);
     add_vector_columns(columns, probe_.name + ".velocity", d);
     if (probe_.contact_node < 0) return columns;
-    for (const char* name : {".gap", ".pressure", ".reaction_normal"}) columns.emplace_back(probe_.name + name);
+    if (has_gap_) columns.emplace_back(probe_.name + ".gap");
+    for (const char* name : {".pressure", ".reaction_normal"}) columns.emplace_back(probe_.name + name);
     add_vector_columns(columns, probe_.name + ".reaction_tangential", d);
     return columns;
   }
@@ -47,9 +50,8 @@ class PointSensor final : public Sensor {
     for (const auto& [point, weight] : points_) force += weight * contact_force(state.forces, point);
     const SpaceVector normal = problem_.node_normal(probe_.contact_node, state.displacement, state.time);
     const double normal_force = normal.dot(force);
-    for (const double value :
-         {part * observation.gap[probe_.contact_node], part * observation.pressure[probe_.contact_node], normal_force})
-      row.push_back(value);
+    if (has_gap_) row.push_back(part * observation.gap[probe_.contact_node]);
+    for (const double value : {part * observation.pressure[probe_.contact_node], normal_force}) row.push_back(value);
     force -= normal_force * normal;
     append(force, row);
   }
@@ -57,6 +59,7 @@ class PointSensor final : public Sensor {
  private:
   const SemidiscreteProblem& problem_;
   Probe probe_;
+  bool has_gap_ = false;                          ///< false where the node faces nothing
   std::vector<std::pair<Index, double>> points_;  ///< with the part of their force that acts on the node
 };
 
