@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace ricochet {
 namespace {
 
 using test_support::Discretization;
+using test_support::PointMap;
 
 struct MirroredBody {
   CellShape shape;
@@ -54,7 +56,7 @@ std::string case_text(const MirroredBody& body, const std::string& mesh, bool wi
                       const Discretization& discretization) {
   const bool flat = dimension(body.shape) == 2;
   const std::string face = flat ? "y0" : "z0";
-  // Bodies do not slip on each other, however rough they are.
+  // Bodies do not slip on each other, however rough they are. What reduced-kane takes by itself hangs on friction.
   const std::string rough = with_image && test_support::takes_friction(discretization.scheme) ? "friction = 0.4\n" : "";
   const std::string plane = "[obstacle.plane]\ntype = \"plane\"\n" +
                             std::string(flat ? "point = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
@@ -74,8 +76,10 @@ std::string case_text(const MirroredBody& body, const std::string& mesh, bool wi
       mesh, body.degree, with_image ? "" : plane, face,
       with_image ? fmt::format("against = \"lower.{}\"\nmultipliers_on = \"group\"", face) : "obstacle = \"plane\"",
       discretization.multipliers, rough, motion("upper.body", 1), with_image ? motion("lower.body", -1) : "",
-      discretization.mass, test_support::time_of(discretization.scheme), is_explicit ? 0.002 : 0.01,
-      is_explicit ? 0.4 : 0.8);
+      discretization.mass,
+      test_support::time_of(discretization.scheme) +
+          (discretization.scheme == "reduced-kane" ? "reaction_weight = \"end\"\n" : ""),
+      is_explicit ? 0.002 : 0.01, is_explicit ? 0.4 : 0.8);
 }
 
 /// Where each node of one set of points is in another one that contains them.
@@ -129,7 +133,11 @@ TEST(MirroredBodies, MoveAsOneAgainstThePlaneBetweenThem) {
         MirroredBody{CellShape::tetrahedron, {3, 2, 2}, 1}, MirroredBody{CellShape::hexahedron, {2, 3, 2}, 1}}) {
     const std::string one = write_blocks(body, false), two = write_blocks(body, true);
     for (const Discretization& discretization : test_support::all_discretizations()) {
-      if (!discretization.is_possible()) continue;
+      // Under Nitsche's method points penetrate by what the stress of one side is wrong by: both sides share it.
+      if (!discretization.is_possible() || discretization.scheme == "nitsche") continue;
+      // These masses cannot be made of blocks of so few cells.
+      if (discretization.mass == "equivalent-nearest") continue;
+      if (discretization.mass == "equivalent-lumped" && dimension(body.shape) == 3) continue;
       const std::string label = fmt::format("{} degree {}", discretization.label(), body.degree);
       test_support::CaseRun alone(case_text(body, one, false, discretization));
       test_support::CaseRun pair(case_text(body, two, true, discretization));

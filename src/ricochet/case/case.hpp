@@ -149,7 +149,7 @@ struct OutputSection {
 
 struct CheckSection {
   double energy_residual = 1e-8;   ///< relative to the largest energy; 0: not checked
-  double momentum = 1e-8;          ///< relative to √(2 m T), at least that of the parts, and the sum of all impulses
+  double momentum = 1e-8;          ///< relative to the momenta of all bodies and the sum of all impulses
   double angular_momentum = 1e-8;  ///< likewise, times the distance of the body from the origin
   bool stops = false;              ///< the run ends where an account does not close, else it warns
 };

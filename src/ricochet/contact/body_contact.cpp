@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "ricochet/base/error.hpp"
@@ -12,6 +13,7 @@
 #include "ricochet/contact/contact_directions.hpp"
 #include "ricochet/contact/pair_nodes.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
+#include "ricochet/mesh/reference_cell.hpp"
 
 namespace ricochet {
 
@@ -25,6 +27,8 @@ constexpr double same_direction = 1e-13;
 constexpr double least_cover = 1e-8;
 /// Length of the mean of unit normals below which there is no direction.
 constexpr double folded = 0.5;
+/// Of a facet's size: so far off the rim a surface is continued to find a direction.
+constexpr double beyond_rim = 0.25;
 /// Of the height of cells: surfaces that overlap by no more touch, and their coordinates have been rounded.
 constexpr double rounding_of_files = 1e-6;
 
@@ -37,12 +41,15 @@ struct BodyPairing::Implementation {
   const FacetMap& map = surfaces.map;
   const FacetSurface &own = surfaces.own, &opposite = surfaces.opposite;
   const SegmentFinder& finder = surfaces.finder;
-  std::vector<Three> normals;         ///< per own facet
-  std::vector<FacetSegments> direct;  ///< per own facet, along its own normal
+  std::vector<Three> normals;              ///< per own facet
+  std::map<Index, Three> opposite_normal;  ///< of opposite facets, by number
+  std::vector<FacetSegments> direct;       ///< per own facet, along its own normal
   std::vector<Index> facing;
 
   Implementation(const Body& of_body, const ContactPair& of_pair)
       : body(of_body), pair(of_pair), surfaces(of_body, of_pair) {
+    for (const FacetSurface::Facet& facet : opposite.facets())
+      opposite_normal[facet.number] = facet.area_vector.normalized();
     for (std::size_t k = 0; k < own.facets().size(); ++k) {
       normals.push_back(known_normal(own.facets()[k].area_vector.normalized()));
       direct.push_back(finder.find(static_cast<int>(k), -normal_of(k)));
@@ -63,8 +70,12 @@ struct BodyPairing::Implementation {
   [[nodiscard]] Vector in_mesh(const Three& values) const { return values.head(body.mesh->dimension); }
 
   AnchorDirections find_directions(bool at_facets, PairFacing& found) const;
-  [[nodiscard]] Three middle_direction(const Three& at, const Three& direction, double height,
-                                       const std::map<Index, AreaSum>& faced) const;
+  [[nodiscard]] AnchorDirections normals_seen(bool at_facets) const;
+  [[nodiscard]] Three normal_between_nodes(const SegmentFinder::Hit& hit, const std::map<Index, AreaSum>& areas) const;
+  [[nodiscard]] std::vector<std::pair<Index, Three>> normals_at_nodes(Index facet,
+                                                                      const std::map<Index, AreaSum>& areas) const;
+  [[nodiscard]] Three middle_direction(const Three& at, const Three& own_direction, const Three& seen, double height,
+                                       const std::map<Index, AreaSum>* faced) const;
   void take_functions(const MultiplierSpace& space, const AnchorDirections& directions, BodyContact& result) const;
   void take_nodes_as_points(const MultiplierSpace& space, const AnchorDirections& directions,
                             BodyContact& result) const;
@@ -79,29 +90,26 @@ struct BodyPairing::Implementation {
 AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, PairFacing& found) const {
   AnchorDirections directions;
   const std::map<Index, AreaSum> faced = areas_around_faced_nodes(surfaces, direct);
+  const AnchorDirections seen = normals_seen(at_facets);
+  const std::set<Index> own_facing(facing.begin(), facing.end());
+  const std::map<Index, AreaSum> own_areas = areas_around_nodes(body, own, &own_facing);
+  const auto near = [](const Three& known, const Three& found) {
+    return (found - known).norm() > same_direction ? found : known;
+  };
   if (at_facets) {
     for (std::size_t k = 0; k < own.facets().size(); ++k) {
       if (!faces(k)) continue;
       const FacetSurface::Facet& facet = own.facets()[k];
-      directions[facet.number] = middle_direction(facet.centre, -normal_of(k), facet.height, faced);
+      directions[facet.number] =
+          middle_direction(facet.centre, -normal_of(k), seen.at(facet.number), facet.height, nullptr);
     }
     return directions;
   }
-  // On a flat surface all facets and multipliers have the very same one.
-  for (std::size_t k = 0; k < own.facets().size(); ++k) {
-    if (!faces(k)) continue;
-    for (const Index node : facet_nodes(*body.space, {own.facets()[k].number}))
-      directions.try_emplace(node, -normal_of(k));
-  }
-  const std::set<Index> own_facing(facing.begin(), facing.end());
-  for (const auto& [node, sum] : areas_around_nodes(body, own, &own_facing)) {
+  for (const auto& [node, sum] : own_areas) {
     const double agreement = sum.vector.norm() / sum.size;
-    if (agreement < found.agreement) {
-      found.agreement = agreement;
-      found.edge = in_mesh(surfaces.position(node));
-    }
-    const Three mean = -sum.vector.normalized();
-    if ((mean - directions[node]).norm() > same_direction) directions[node] = mean;
+    if (agreement >= found.agreement) continue;
+    found.agreement = agreement;
+    found.edge = in_mesh(surfaces.position(node));
   }
   if (found.agreement < folded) {
     throw Error(ErrorKind::invalid_input,
@@ -110,30 +118,89 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
                             "edge out of the group, or give them a contact of their own",
                             pair.group, fmt::join(found.edge, ", "), pair.opposite_group));
   }
+  // On a flat surface all facets and multipliers have the very same one.
+  for (std::size_t k = 0; k < own.facets().size(); ++k) {
+    if (!faces(k)) continue;
+    for (const auto& [node, normal] : normals_at_nodes(own.facets()[k].number, own_areas))
+      directions.try_emplace(node, near(-normal_of(k), -normal));
+  }
   for (auto& [node, direction] : directions) {
     Three at = surfaces.position(node);
     at.head(body.mesh->dimension) += own.shift();
-    direction = middle_direction(at, direction, own.height_at(node), faced);
+    direction = middle_direction(at, direction, seen.at(node), own.height_at(node), &faced);
   }
   return directions;
 }
 
-Three BodyPairing::Implementation::middle_direction(const Three& at, const Three& direction, double height,
-                                                    const std::map<Index, AreaSum>& faced) const {
-  const SegmentFinder::Hit hit = finder.find_point(at, direction, 0.5 * height);
-  if (hit.facet < 0) return direction;
+/// At the nodes of a facet: between vertices the mean of theirs, as the opposite side's normals are taken, too.
+std::vector<std::pair<Index, Three>> BodyPairing::Implementation::normals_at_nodes(
+    Index facet, const std::map<Index, AreaSum>& areas) const {
+  const PlaceInBlocks place = locate_facet(*body.space, facet);
+  const CellBlock& block = body.space->facets[place.block];
+  std::vector<std::pair<Index, Three>> result;
+  for (const std::vector<int>& vertices : node_vertices(block.shape, body.space->degree)) {
+    Three sum = Three::Zero();
+    for (const int v : vertices) sum += areas.at(block.cell(place.local)[v]).vector.normalized();
+    result.emplace_back(block.cell(place.local)[result.size()], sum.normalized());
+  }
+  return result;
+}
+
+/// Per anchor the mean normal of what its facets see along their own normals.
+AnchorDirections BodyPairing::Implementation::normals_seen(bool at_facets) const {
+  AnchorDirections result;
+  for (std::size_t k = 0; k < own.facets().size(); ++k) {
+    if (!faces(k)) continue;
+    Three sum = Three::Zero();
+    for (const SurfaceSegment& segment : direct[k].segments)
+      sum += segment.weights.sum() * opposite_normal.at(segment.opposite);
+    const Index facet = own.facets()[k].number;
+    const std::vector<Index> anchors = at_facets ? std::vector{facet} : facet_nodes(*body.space, {facet});
+    for (const Index anchor : anchors) result.try_emplace(anchor, Three::Zero()).first->second += sum;
+  }
+  for (auto& [anchor, sum] : result) sum.normalize();
+  return result;
+}
+
+/// The normals at the vertices, from the areas around them, interpolated.
+Three BodyPairing::Implementation::normal_between_nodes(const SegmentFinder::Hit& hit,
+                                                        const std::map<Index, AreaSum>& areas) const {
   Matrix values;
   map.hats(hit.facet, hit.local, values);
   const PlaceInBlocks place = locate_facet(*body.space, hit.facet);
   const Index* const nodes = body.space->facets[place.block].cell(place.local);
   Three normal = Three::Zero();
   for (Index k = 0; k < values.rows(); ++k) {
-    const auto around = faced.find(nodes[k]);
-    if (around != faced.end()) normal += values(k, 0) * around->second.vector.normalized();
+    const auto around = areas.find(nodes[k]);
+    if (around != areas.end()) normal += values(k, 0) * around->second.vector.normalized();
   }
-  if (normal.dot(direction) <= 0.0) return direction;
-  const Three mean = (direction + normal.normalized()).normalized();
-  return (mean - direction).norm() > same_direction ? mean : direction;
+  return normal;
+}
+
+/// The middle of the own direction and the normal of the opposite surface at the place that is seen along that very
+/// middle: that of the facet there where `faced` is null. So surfaces that are mirror images have the normal of the
+/// mirror, at any gap; along the own direction another place would be seen, off by the gap times its slope. Where the
+/// rounds find no such place, what is seen along the own direction decides, or that direction alone.
+Three BodyPairing::Implementation::middle_direction(const Three& at, const Three& own_direction, const Three& seen,
+                                                    double height, const std::map<Index, AreaSum>* faced) const {
+  constexpr int most_rounds = 30;
+  const auto from = [&](const Three& direction) -> std::optional<Three> {
+    SegmentFinder::Hit hit = finder.find_point(at, direction, 0.5 * height);
+    if (hit.facet < 0) hit = finder.find_point(at, direction, 0.5 * height, beyond_rim);
+    if (hit.facet < 0) return {};
+    const Three normal = faced != nullptr ? normal_between_nodes(hit, *faced) : opposite_normal.at(hit.facet);
+    if (!(normal.dot(own_direction) > 0.0)) return {};
+    return (own_direction + normal.normalized()).normalized();
+  };
+  std::optional<Three> direction = (own_direction + seen).normalized();
+  for (int round = 0; round < most_rounds && direction; ++round) {
+    const std::optional<Three> next = from(*direction);
+    if (next && (*next - *direction).norm() <= same_direction)
+      return (*next - own_direction).norm() > same_direction ? *next : own_direction;
+    direction = next;
+  }
+  direction = from(own_direction);
+  return direction && (*direction - own_direction).norm() > same_direction ? *direction : own_direction;
 }
 
 void BodyPairing::Implementation::take_functions(const MultiplierSpace& space, const AnchorDirections& directions,

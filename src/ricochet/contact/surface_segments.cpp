@@ -20,8 +20,6 @@ constexpr double deepest_overlap = 0.5;
 constexpr double sliver = 1e-13;
 /// Of a piece's area: parts that face several pieces at once.
 constexpr double doubly = 1e-9;
-/// Of a piece's size: points that are no farther outside are on its rim.
-constexpr double on_rim = 1e-7;
 
 }  // namespace
 
@@ -213,14 +211,15 @@ FacetSegments SegmentFinder::find(int facet, const Three& direction) const {
   return result;
 }
 
-SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& direction, double reach) const {
+SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& direction, double reach,
+                                             double beyond) const {
   const View view(static_cast<int>(own_.shift().size()), direction);
   const PlanePoint at = view.seen(point);
   const double height = direction.dot(point);
   Hit best;
   int best_piece = -1;
   const auto may_face = [&](const BoxTree::Box& box) {
-    const double rim = on_rim * box.sizes().maxCoeff();
+    const double rim = beyond * box.sizes().maxCoeff();
     return overlaps(box, view.first, at[0] - rim, at[0] + rim) &&
            (view.plane || overlaps(box, view.second, at[1] - rim, at[1] + rim));
   };
@@ -229,7 +228,7 @@ SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& di
     if (direction.dot(piece.normal) < edge_on) return;
     const SeenPiece flat = view.flatten(piece);
     const double gap = height - flat.height_at(at);
-    if (gap < -reach || !flat.covers(at, view.plane, on_rim)) return;
+    if (gap < -reach || !flat.covers(at, view.plane, beyond)) return;
     const bool is_nearer = best_piece < 0 || std::abs(gap) < std::abs(best.gap) ||
                            (std::abs(gap) == std::abs(best.gap) && number < best_piece);
     if (!is_nearer) return;

@@ -42,13 +42,17 @@ class SegmentFinder {
   [[nodiscard]] FacetSegments find(int facet, const Eigen::Vector3d& direction) const;
 
   /// A point of the own side, seen along a direction: the facet that it faces, and where. None: facet −1.
+  /// What is off a facet by less, in its size, is on it.
+  static constexpr double on_rim = 1e-7;
   struct Hit {
     Index facet = -1;
     Points local;      ///< (d−1) × 1
     double gap = 0.0;  ///< along the direction
   };
-  /// `reach`: how far it may be inside of the opposite surface.
-  [[nodiscard]] Hit find_point(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double reach) const;
+  /// `reach`: how far it may be inside of the opposite surface. `beyond`: how far off the surface's rim, in sizes of a
+  /// facet, which is continued there.
+  [[nodiscard]] Hit find_point(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double reach,
+                               double beyond = on_rim) const;
 
  private:
   struct View;

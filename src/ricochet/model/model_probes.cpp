@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
@@ -163,8 +164,15 @@ HistoryBodies bodies_of_history(const Model& model) {
   if (bodies.count < 2 || bodies.count > most_bodies) return {};
   HistoryBodies result;
   const std::vector<std::string> names = names_of_bodies(model.mesh, bodies);
-  for (int body = 0; body < bodies.count; ++body)
-    result.labels.push_back(label_of(names[static_cast<std::size_t>(body)], body));
+  std::set<std::string> taken;
+  for (const MeshPart& part : model.mesh.parts) taken.insert(part.name);
+  for (int body = 0; body < bodies.count; ++body) {
+    std::string label = label_of(names[static_cast<std::size_t>(body)], body);
+    // A part may be called by a number, which is then not that of another body.
+    while (label == std::to_string(body) && taken.contains(label)) label = "body_" + label;
+    while (std::find(result.labels.begin(), result.labels.end(), label) != result.labels.end()) label += "_";
+    result.labels.push_back(std::move(label));
+  }
   result.of_node = std::move(bodies.of_node);
   return result;
 }

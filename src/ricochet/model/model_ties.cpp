@@ -21,6 +21,8 @@ namespace {
 constexpr double farthest_apart = 0.5;
 /// The same from which a user hears that nodes have moved.
 constexpr double moved = 1e-6;
+/// The same from which the user is warned.
+constexpr double moved_far = 0.1;
 
 void check_tie(const Case& input, std::size_t number, const ContactPair& pair, const TiedSurface& surface) {
   const std::string key = fmt::format("contact.{}.against", number);
@@ -38,7 +40,7 @@ void check_tie(const Case& input, std::size_t number, const ContactPair& pair, c
                pair.group, pair.opposite_group, surface.farthest_in_heights, fmt::join(surface.farthest_place, ", ")));
   }
   if (surface.farthest_in_heights > moved) {
-    log::info(
+    (surface.farthest_in_heights > moved_far ? log::warning : log::info)(
         fmt::format("nodes of \"{}\" move by up to {:.2g} heights of a cell onto the surface of \"{}\", so that "
                     "turns have no strain",
                     pair.group, surface.farthest_in_heights, pair.opposite_group));

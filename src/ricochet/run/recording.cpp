@@ -113,6 +113,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       peak_stress_(model.body, step_work(model.body, factor_entries)),
       penetration_(make_penetration_watch(input, model)),
       sliding_(model.body, model.problem, model.contact_pairs),
+      late_(model.body, model.problem, model.contact_pairs),
       rotation_(model.body, column_index(recorder_.columns(), "max_rotation")),
       method_(scheme.acting_reactions(model.problem)),
       history_every_(input.output.history_every.value_or(scheme.history_every())) {
@@ -128,6 +129,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   peak_stress_.load(*snapshot, "peak_stress");
   penetration_.load(*snapshot, "penetration");
   sliding_.load(*snapshot, "sliding");
+  late_.load(*snapshot, "late_contact");
   rotation_.load(*snapshot, "rotation");
   method_.load(*snapshot, "method");
 }
@@ -146,6 +148,7 @@ void Recording::record(const State& state, EnergyAccount& account) {
   const Timer watch_timer;
   penetration_.look(state);
   sliding_.look(state);
+  late_.look(state);
   watch_seconds_ += watch_timer.seconds();
   for (Sampled& sampled : sampled_) {
     if (state.step % sampled.every == 0) sampled.file.write(sampled.recorder.row(state));
@@ -207,6 +210,7 @@ void Recording::save(Snapshot& snapshot) {
   peak_stress_.save(snapshot, "peak_stress");
   penetration_.save(snapshot, "penetration");
   sliding_.save(snapshot, "sliding");
+  late_.save(snapshot, "late_contact");
   rotation_.save(snapshot, "rotation");
   method_.save(snapshot, "method");
 }

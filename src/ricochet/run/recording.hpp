@@ -11,6 +11,7 @@
 #include "ricochet/run/rotation_watch.hpp"
 #include "ricochet/run/run_checks.hpp"
 #include "ricochet/simulation/impacts.hpp"
+#include "ricochet/simulation/late_contact_watch.hpp"
 #include "ricochet/simulation/peak_stress.hpp"
 #include "ricochet/simulation/penetration_watch.hpp"
 #include "ricochet/simulation/sliding_watch.hpp"
@@ -89,6 +90,7 @@ class Recording {
   PeakStress peak_stress_;
   PenetrationWatch penetration_;
   SlidingWatch sliding_;
+  LateContactWatch late_;
   RotationWatch rotation_;
   MethodWatch method_;
   long history_every_;

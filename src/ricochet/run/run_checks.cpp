@@ -16,6 +16,8 @@ namespace {
 
 /// What a sum of works is rounded to, relative to the largest.
 constexpr double rounding_of_works = 1e-12;
+/// The same of momenta, relative to √(2 m T).
+constexpr double rounding_of_momenta = 1e-12;
 
 }  // namespace
 
@@ -32,6 +34,10 @@ RunChecks::RunChecks(const Case& input, const Model& model, const Scheme& scheme
       angular_column_(
           column_index(columns, model.problem.dimension == 2 ? "angular_momentum_z" : "angular_momentum_x")) {
   for (const char* work : work_columns) works_.push_back(column_index(columns, work));
+  const auto of_bodies = [](const std::string& column) { return column.starts_with("momentum."); };
+  const auto first = std::find_if(columns.begin(), columns.end(), of_bodies);
+  body_momenta_ = static_cast<std::size_t>(first - columns.begin());
+  body_momenta_end_ = body_momenta_ + static_cast<std::size_t>(std::count_if(first, columns.end(), of_bodies));
   Vector inertia;
   model.problem.mass.multiply(Vector::Ones(model.problem.mass.size()), inertia);
   mass_ = model.problem.ranks->sum(inertia.sum()) / model.problem.dimension;
@@ -78,6 +84,20 @@ void RunChecks::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".told", Snapshot::Integers{energy_.told ? 1 : 0, linear_.told ? 1 : 0, angular_.told ? 1 : 0});
 }
 
+double RunChecks::size_of_momenta(const std::vector<double>& row, const Resultant& all) const {
+  double sum = 0.0;
+  const auto d = static_cast<std::size_t>(model_.problem.dimension);
+  for (std::size_t first = body_momenta_; first + d <= body_momenta_end_; first += d)
+    sum += Eigen::Map<const Vector>(row.data() + first, static_cast<Index>(d)).norm();
+  return std::max(sum, all.force.norm());
+}
+
+/// Of the two balances of momentum; 1 where neither is checked.
+double RunChecks::largest_limit() const {
+  const double limit = std::max(linear_.result.limit, angular_.result.limit);
+  return limit > 0.0 ? limit : 1.0;
+}
+
 Resultant RunChecks::momentum(const std::vector<double>& row) const {
   Resultant result;
   const auto d = static_cast<std::size_t>(model_.problem.dimension);
@@ -97,8 +117,11 @@ void RunChecks::watch(const std::vector<double>& row, const State& state) {
     has_start_ = true;
   }
   energy_scale_ = std::max({energy_scale_, std::abs(row[total_]), std::abs(row[kinetic_]), std::abs(row[elastic_])});
-  // |Σ m v| ≤ √(2 m T) with the kinetic energy T; the momenta of bodies that meet head-on cancel, this does not.
-  momentum_scale_ = std::max(momentum_scale_, std::sqrt(2.0 * mass_ * std::max(row[kinetic_], 0.0)));
+  // Momenta of bodies that meet head-on cancel, their sizes do not. Of a body that only spins or vibrates rounding is
+  // left: relative to √(2 m T), T the kinetic energy, which no momentum of a part exceeds.
+  momentum_scale_ =
+      std::max({momentum_scale_, size_of_momenta(row, now),
+                rounding_of_momenta / largest_limit() * std::sqrt(2.0 * mass_ * std::max(row[kinetic_], 0.0))});
   const double momentum_scale = momentum_scale_ + momentum_.size();
   for (const std::size_t work : works_) work_scale_ = std::max(work_scale_, std::abs(row[work]));
   // Of works that cancel rounding is left, which no limit can be below.

@@ -32,11 +32,15 @@ class RunChecks {
   };
   void judge(Account& account, double residual, double scale, const std::vector<double>& row, const State& state);
   [[nodiscard]] Resultant momentum(const std::vector<double>& row) const;
+  /// Σ |P| over the bodies.
+  [[nodiscard]] double size_of_momenta(const std::vector<double>& row, const Resultant& all) const;
+  [[nodiscard]] double largest_limit() const;
 
   const Model& model_;
   bool stops_;
   MomentumAccount momentum_;
-  double mass_ = 0.0;  ///< of all bodies
+  double mass_ = 0.0;                                    ///< of all bodies
+  std::size_t body_momenta_ = 0, body_momenta_end_ = 0;  ///< columns momentum.BODY_x, …
   std::size_t kinetic_, elastic_, total_, residual_, momentum_column_, angular_column_;
   Resultant start_;
   bool has_start_ = false;

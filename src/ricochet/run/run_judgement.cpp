@@ -21,8 +21,12 @@ constexpr double strain_limit = 0.1;
 }  // namespace
 
 bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, const State& state) {
-  const Vector magnitude = state.displacement.cwiseAbs();
-  const double terms = magnitude.dot(problem.internal_force->tangent().cwiseAbs() * magnitude);
+  // Energies are those of displacements less their rigid part (LinearElasticity), and round as these do.
+  const SparseMatrix stiffness = problem.internal_force->tangent();
+  Vector deformation;
+  RigidMotion(problem.nodes, stiffness).remove(state.displacement, deformation);
+  const Vector magnitude = deformation.cwiseAbs();
+  const double terms = magnitude.dot(stiffness.cwiseAbs() * magnitude);
   return energy <= 1e-14 * terms;
 }
 

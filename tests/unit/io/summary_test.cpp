@@ -140,14 +140,18 @@ TEST_F(SummaryTest, KeepsBothBodiesOfAnImpact) {
 
 TEST_F(SummaryTest, KeepsHowBodiesFaceAndSlide) {
   RunSummary summary;
-  summary.contacts.push_back({"a", "b", "p1", 0.0, 0.0, {}, 0.0, true, FacingDescription{"b", "it is softer", 7}});
+  summary.contacts.push_back(
+      {"a", "b", "p1", 0.0, 0.0, {}, 0.0, true, false, FacingDescription{"b", "it is softer", 7}});
   summary.contacts[0].facing->covered = 0.5;
   summary.contacts[0].facing->largest_gap = 0.25;
   summary.contacts.push_back({"c", "floor", "nodal"});
+  summary.contacts.push_back({"d", "e", "p1", 0.0, 0.0, {}, 0.0, true, true});
   summary.sliding.push_back({0, 0.25, 0.125, 1.5, {2.0, 3.0}, 0.75});
   summary.sliding.push_back({1, 0.0625, 0.125, 1.5, {2.0, 3.0}});
   const RunSummary back = read_back(summary);
   ASSERT_TRUE(back.contacts.at(0).facing.has_value());
+  EXPECT_FALSE(back.contacts[0].tied);
+  EXPECT_TRUE(back.contacts.at(2).tied);
   EXPECT_EQ(back.contacts[0].facing->multipliers_on, "b");
   EXPECT_EQ(back.contacts[0].facing->reason, "it is softer");
   EXPECT_EQ(back.contacts[0].facing->points, 7);

@@ -28,8 +28,8 @@ class Nitsche final : public ForcedMidpoint {
       throw Error(ErrorKind::invalid_input, "scheme \"nitsche\" needs the stress at the contact points");
     warn_of_dense_response("nitsche", 2 * problem.contact.size());
     stress_ = problem.contact_stress();
-    if (!(stress_.stiffness.array() > 1e-10 * stress_.stiffness.maxCoeff()).all() ||
-        !(problem.contact.weights.array() > 0.0).all())
+    const double largest = stress_.stiffness.size() > 0 ? stress_.stiffness.maxCoeff() : 0.0;
+    if (!(stress_.stiffness.array() > 1e-10 * largest).all() || !(problem.contact.weights.array() > 0.0).all())
       throw Error(ErrorKind::invalid_input,
                   "scheme \"nitsche\" needs a share of the area at every contact point, which nodal forces of degree 2 "
                   "have not; set multipliers = \"p1\" or \"dual\", or mesh.degree = 1");
