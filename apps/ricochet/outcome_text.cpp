@@ -146,6 +146,11 @@ void print_no_contact(const RunSummary& summary) {
   // Results of a version that told no impacts list no bodies: nothing is known of them.
   if (summary.contacts.empty() || summary.bodies.empty() || summary.steps == 0) return;
   if (!summary.impacts.empty() || summary.impacts_left_out > 0) return;
+  // As where a body touches itself.
+  if (summary.digest("active_contacts").maximum > 0.0) {
+    fmt::print("  contact forces have acted, but within one body: that is no impact\n");
+    return;
+  }
   fmt::print("  no contact: no contact force {}\n",
              summary.status == "done" ? "acted in this run" : "has acted in this run so far");
 }

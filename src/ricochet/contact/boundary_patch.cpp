@@ -1,8 +1,14 @@
 #include "ricochet/contact/boundary_patch.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <map>
 #include <tuple>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
 
 namespace ricochet {
 
@@ -69,6 +75,7 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
     kept.push_back(patch.kept[i]);
     conditions.push_back(patch.conditions[i]);
   }
+  std::vector<Index> lost;
   std::vector<TiedNodes::Weights> areas(patch.kept.size());  // of each: (multiplier that stays, area that goes there)
   for (std::size_t i = 0; i < patch.kept.size(); ++i) {
     const Multiplier& multiplier = patch.kept[i];
@@ -80,10 +87,20 @@ void leave_out_tied_forces(const TiedNodes& tied, BoundaryPatch& patch) {
       known += weight;
     }
     if (!tied.is_tied(multiplier.node)) continue;
+    if (areas[i].empty()) lost.push_back(multiplier.node);
     for (auto& [to, area] : areas[i]) {
       area = known > 0.0 ? area / known : 0.0;
       kept[static_cast<std::size_t>(to)].weight += area;
     }
+  }
+  if (!lost.empty()) {
+    const Vector at = patch.facets.body->space->nodes.col(lost.front());
+    log::warning(
+        fmt::format("{} at tied nodes, first at ({:.6g}), and {} left out: no node that these follow is in the "
+                    "contact; let the other surface follow (multipliers_on of the tie), or take multipliers "
+                    "\"p1\"",
+                    counted(lost.size(), "contact point lies", "contact points lie"), fmt::join(at, ", "),
+                    lost.size() == 1 ? "is" : "are"));
   }
   const auto hand_on = [&](std::vector<Eigen::Triplet<double>>& recovery) {
     std::vector<Eigen::Triplet<double>> result;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "ricochet/base/error.hpp"
@@ -150,14 +151,17 @@ void assign_materials(const Case& input, Model& model) {
 }
 
 /// Supports at tied nodes are left out: these follow the other surface, which is supported there, too, or is not.
-void tell_of_supports_at_ties(const Model& model, const std::set<Index>& dofs) {
+void tell_of_supports_at_ties(const Model& model, const std::map<Index, Expression>& dofs) {
   const int d = model.mesh.dimension;
   std::set<Index> follow, lost;
   for (const TiedNodes::Tie& tie : model.tied.ties()) {
     for (int k = 0; k < d; ++k) {
-      if (!dofs.contains(tie.node * d + k)) continue;
+      const auto own = dofs.find(tie.node * d + k);
+      if (own == dofs.end()) continue;
       const bool held = std::all_of(tie.weights.begin(), tie.weights.end(), [&](const auto& entry) {
-        return std::abs(entry.second) < 1e-12 || model.problem.supports.contains(entry.first * d + k);
+        const Index dof = entry.first * d + k;
+        return std::abs(entry.second) < 1e-12 ||
+               (model.problem.supports.contains(dof) && model.problem.supports.expression(dof) == own->second);
       });
       (held ? follow : lost).insert(tie.node);
     }
@@ -169,18 +173,18 @@ void tell_of_supports_at_ties(const Model& model, const std::set<Index>& dofs) {
   }
   if (lost.empty()) return;
   const Vector at = model.space.nodes.col(*lost.begin());
-  log::warning(
-      fmt::format("{} tied to another surface that is not supported there, and {} it: the support does not hold "
-                  "there, first at ({:.6g}); support the nodes of the other surface, or let that one follow "
-                  "(multipliers_on)",
-                  counted(lost.size(), "supported node is", "supported nodes are"),
-                  lost.size() == 1 ? "follows" : "follow", fmt::join(at, ", ")));
+  log::warning(fmt::format(
+      "{} tied to another surface that is not supported there as they are, and {} it: the support does not hold "
+      "there, first at ({:.6g}); support the nodes of the other surface, or let that one follow "
+      "(multipliers_on)",
+      counted(lost.size(), "supported node is", "supported nodes are"), lost.size() == 1 ? "follows" : "follow",
+      fmt::join(at, ", ")));
 }
 
 void add_supports(const Case& input, Model& model) {
   constexpr std::array<const char*, 3> axes{"x", "y", "z"};
   Supports& supports = model.problem.supports;
-  std::set<Index> tied;  // dofs
+  std::map<Index, Expression> tied;  // dofs, and what their supports prescribe
   const int d = model.mesh.dimension;
   for (std::size_t i = 0; i < input.supports.size(); ++i) {
     const SupportSection& section = input.supports[i];
@@ -189,7 +193,7 @@ void add_supports(const Case& input, Model& model) {
     for (const int component : section.components) {
       for (const Index node : facet_nodes(model.space, group.members)) {
         if (model.tied.is_tied(node)) {
-          tied.insert(node * d + component);
+          tied.emplace(node * d + component, section.value);
           continue;
         }
         const Index dof = node * d + component;
