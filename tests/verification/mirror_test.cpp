@@ -140,7 +140,8 @@ TEST(MirroredBodies, MoveAsOneAgainstThePlaneBetweenThem) {
       // These masses cannot be made of blocks of so few cells.
       if (discretization.mass == "equivalent-nearest") continue;
       if (discretization.mass == "equivalent-lumped" && dimension(body.shape) == 3) continue;
-      const std::string label = fmt::format("{} on {} degree {}", discretization.label(), name(body.shape), body.degree);
+      const std::string label =
+          fmt::format("{} on {} degree {}", discretization.label(), name(body.shape), body.degree);
       test_support::CaseRun alone(case_text(body, one, false, discretization));
       test_support::CaseRun pair(case_text(body, two, true, discretization));
       const Difference found = compare(alone, pair);

@@ -192,12 +192,14 @@ PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& dis
   return inside;
 }
 
-/// Bodies that float at the start are moved by a static start until something holds them.
+/// A body that floats above another one is moved by a static start until that one holds it. One that is moved onto an
+/// obstacle is what static starts are for.
 void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& pressed) {
   constexpr double seen = 1e-3;  // of the size of the bodies
   Vector gap;
   problem.gaps(Vector::Zero(problem.dof_count()), 0.0, gap);
   for (std::size_t contact = 0; contact < problem.obstacles.size(); ++contact) {
+    if (problem.obstacles[contact] != nullptr) continue;
     double smallest = std::numeric_limits<double>::infinity();
     bool presses = false;
     for (Index i = 0; i < gap.size(); ++i) {
