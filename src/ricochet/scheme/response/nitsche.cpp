@@ -42,6 +42,11 @@ class Nitsche final : public ForcedMidpoint {
     find_pressures(unforced.start.displacement, unforced.gap_before, points_.s_before, points_.p_before);
     points_.s.noalias() = stress_.rows * unforced.place;
     points_.gap = unforced.gap;
+    if (stiffness_.size() == 0) {  // no contact: there are no dense problems of no points
+      normal.resize(0);
+      q_.resize(0);
+      return true;
+    }
     law(problem, rows, stages).solve(points_, normal, q_);
     return true;
   }
