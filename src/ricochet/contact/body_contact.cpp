@@ -245,25 +245,11 @@ void BodyPairing::Implementation::take_nodes_as_points(const MultiplierSpace& sp
 
 /// Points that could only press against supports: on both sides.
 void BodyPairing::Implementation::leave_out_held(const FreeComponent& is_free, BodyContact& result) const {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < result.multipliers.size(); ++i) {
-    const auto is_held = [&](const auto& entry) {
-      return !has_free_part(entry.first, result.conditions[i].normal, is_free);
-    };
-    const NodeWeights &own_nodes = result.multipliers[i].trace, &opposite_nodes = result.conditions[i].opposite;
-    if (std::all_of(own_nodes.begin(), own_nodes.end(), is_held) &&
-        std::all_of(opposite_nodes.begin(), opposite_nodes.end(), is_held)) {
-      ++result.facing.held;
-      continue;
-    }
-    if (kept != i) {
-      result.multipliers[kept] = std::move(result.multipliers[i]);
-      result.conditions[kept] = std::move(result.conditions[i]);
-    }
-    ++kept;
-  }
-  result.multipliers.resize(kept);
-  result.conditions.resize(kept);
+  result.facing.held = result.keep([&](const Multiplier& multiplier, const PointConditions& conditions) {
+    const auto is_free_here = [&](const auto& entry) { return has_free_part(entry.first, conditions.normal, is_free); };
+    return std::any_of(multiplier.trace.begin(), multiplier.trace.end(), is_free_here) ||
+           std::any_of(conditions.opposite.begin(), conditions.opposite.end(), is_free_here);
+  });
 }
 
 /// Gaps and their rounding, and what of the group faces.

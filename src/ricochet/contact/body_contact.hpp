@@ -57,6 +57,25 @@ struct BodyContact {
   /// Pressure on the other side: entries (node, number of the multiplier, value).
   std::vector<Eigen::Triplet<double>> opposite_recovery;
   PairFacing facing;
+
+  /// Leaves out the multipliers, with their conditions, for which `keeps(multiplier, conditions)` is false; returns how
+  /// many. Their order stays.
+  template <class Keeps>
+  Index keep(const Keeps& keeps) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < multipliers.size(); ++i) {
+      if (!keeps(std::as_const(multipliers[i]), std::as_const(conditions[i]))) continue;
+      if (kept != i) {
+        multipliers[kept] = std::move(multipliers[i]);
+        conditions[kept] = std::move(conditions[i]);
+      }
+      ++kept;
+    }
+    const auto left_out = static_cast<Index>(multipliers.size() - kept);
+    multipliers.resize(kept);
+    conditions.resize(kept);
+    return left_out;
+  }
 };
 
 /// Finds which facets face each other, and then what the multipliers of a space are there.

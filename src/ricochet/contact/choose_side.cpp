@@ -68,11 +68,9 @@ double distance_from_curved(const Body& body, const ContactPair& pair) {
   if (body.mesh->degree > 1) return 0.0;
   double result = 0.0;
   for (const std::vector<Index>* const facets : {&pair.facets, &pair.opposite_facets}) {
-    const FacetSurface surface(body, *facets);
-    double size = 0.0;
-    for (const FacetSurface::Facet& facet : surface.facets())
-      size += facet.size / static_cast<double>(surface.facets().size());
-    result = std::max(result, 0.125 * curvature_of(body, surface) * size * size);
+    const Side side = measure(body, *facets);
+    const double size = side.size * body.space->degree;  // of facets, not of the distance of their nodes
+    result = std::max(result, 0.125 * side.curvature * size * size);
   }
   return result;
 }

@@ -195,7 +195,6 @@ class StressRows {
 }  // namespace
 
 ContactStress make_contact_stress(const Body& body, const ContactBoundary& boundary) {
-  if (boundary.size() == 0) return {SparseRowMatrix(0, body.space->dof_count()), Vector()};
   return boundary.dimension == 2 ? StressRows<2>(body, boundary).make() : StressRows<3>(body, boundary).make();
 }
 

@@ -29,21 +29,9 @@ void leave_out_overhanging(BodyContact& contact, const std::function<bool(Index)
   for (const BodyContact::Node& node : contact.nodes) {
     if (node.own && !node.opposite.empty()) facing.insert(node.node);
   }
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < contact.multipliers.size(); ++i) {
-    if (!facing.contains(contact.multipliers[i].node)) {
-      ++contact.facing.uncovered;
-      continue;
-    }
-    if (stays_free && stays_free(contact.multipliers[i].node)) continue;
-    if (kept != i) {
-      contact.multipliers[kept] = std::move(contact.multipliers[i]);
-      contact.conditions[kept] = std::move(contact.conditions[i]);
-    }
-    ++kept;
-  }
-  contact.multipliers.resize(kept);
-  contact.conditions.resize(kept);
+  contact.facing.uncovered +=
+      contact.keep([&](const Multiplier& multiplier, const auto&) { return facing.contains(multiplier.node); });
+  if (stays_free) contact.keep([&](const Multiplier& multiplier, const auto&) { return !stays_free(multiplier.node); });
 }
 
 /// P = C⁻¹ (M̂ − C_u) with the columns C_u of nodes that stay free. Few nodes have more than themselves in C.

@@ -169,7 +169,7 @@ HistoryBodies bodies_of_history(const Model& model) {
   for (int body = 0; body < bodies.count; ++body) {
     std::string label = label_of(names[static_cast<std::size_t>(body)], body);
     // A part may be called by a number, which is then not that of another body.
-    while (label == std::to_string(body) && taken.contains(label)) label = "body_" + label;
+    if (label == std::to_string(body) && taken.contains(label)) label = "body_" + label;
     while (std::find(result.labels.begin(), result.labels.end(), label) != result.labels.end()) label += "_";
     result.labels.push_back(std::move(label));
   }
