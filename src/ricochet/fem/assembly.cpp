@@ -2,90 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "ricochet/base/error.hpp"
-#include "ricochet/base/parallel.hpp"
-#include "ricochet/fem/cell_integration.hpp"
-#include "ricochet/fem/element_matrices.hpp"
+#include "ricochet/fem/cell_assembly.hpp"
 #include "ricochet/fem/facet_integration.hpp"
 
 namespace ricochet {
 
 namespace {
-
-/// An empty matrix with `components` × `components` values per pair of neighbouring nodes.
-SparseMatrix matrix_on_graph(const NodeGraph& graph, int components) {
-  const Index nodes = graph.node_count();
-  SparseMatrix matrix(nodes * components, nodes * components);
-  const Index entries = static_cast<Index>(graph.neighbours.size()) * components * components;
-  matrix.resizeNonZeros(entries);
-  int* outer = matrix.outerIndexPtr();
-  outer[nodes * components] = static_cast<int>(entries);
-  parallel_ranges(nodes, [&](Index first, Index last) {
-    for (Index node = first; node < last; ++node) {
-      const Index begin = graph.offsets[static_cast<std::size_t>(node)];
-      const Index length = graph.offsets[static_cast<std::size_t>(node) + 1] - begin;
-      for (int a = 0; a < components; ++a) {
-        Index position = (begin * components + a * length) * components;
-        outer[node * components + a] = static_cast<int>(position);
-        for (Index k = begin; k < begin + length; ++k) {
-          for (int b = 0; b < components; ++b, ++position) {
-            matrix.innerIndexPtr()[position] = graph.neighbours[static_cast<std::size_t>(k)] * components + b;
-            matrix.valuePtr()[position] = 0.0;
-          }
-        }
-      }
-    }
-  });
-  return matrix;
-}
-
-/// Adds the rows of a cell's matrix that belong to the nodes of a part: blocks of `components`² for pairs of nodes i ≤
-/// j, see element_matrices.hpp.
-template <int components>
-void add_rows(const NodeGraph& graph, Index part_begin, Index part_end, const Index* nodes, int count,
-              const double* blocks, double* values) {
-  for (int i = 0; i < count; ++i) {
-    const auto row = static_cast<std::size_t>(nodes[i]);
-    if (nodes[i] < part_begin || nodes[i] >= part_end) continue;
-    const Index row_start = graph.offsets[row];
-    const Index row_length = graph.offsets[row + 1] - row_start;
-    const int* begin = graph.neighbours.data() + row_start;
-    for (int j = 0; j < count; ++j) {
-      const Index at = std::lower_bound(begin, begin + row_length, static_cast<int>(nodes[j])) - begin;
-      const double* block = blocks + pair_number(std::min(i, j), std::max(i, j)) * components * components;
-      for (int a = 0; a < components; ++a) {
-        double* target = values + (row_start * components + a * row_length + at) * components;
-        for (int c = 0; c < components; ++c)
-          target[c] += i <= j ? block[a * components + c] : block[c * components + a];
-      }
-    }
-  }
-}
-
-/// Adds the matrices of all cells. Every row is summed by one thread in the order of the cells: the same bits for any
-/// number of threads. `element(block number, cell, cell number through all blocks, blocks)` computes a cell's matrix.
-template <int components, class ElementMatrix>
-SparseMatrix assemble(const Body& body, const NodeGraph& graph, const ElementMatrix& element) {
-  SparseMatrix result = matrix_on_graph(graph, components);
-  int most_nodes = 0;
-  for (const CellBlock& block : body.space->cells) most_nodes = std::max(most_nodes, block.nodes_per_cell);
-  parallel_ranges(graph.parts(), [&](Index first, Index last) {
-    std::vector<double> blocks(static_cast<std::size_t>(pair_number(0, most_nodes) * components * components));
-    for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) {
-      CellWalk cell(body.space->cells);
-      for (Index k = graph.cell_begins[part]; k < graph.cell_begins[part + 1]; ++k) {
-        const int number = graph.cells[static_cast<std::size_t>(k)];
-        cell.go_to(number);
-        element(cell.block(), cell.local(), static_cast<std::size_t>(number), blocks.data());
-        add_rows<components>(graph, graph.part_begins[part], graph.part_begins[part + 1], cell.nodes(),
-                             cell.node_count(), blocks.data(), result.valuePtr());
-      }
-    }
-  });
-  return result;
-}
 
 template <int d>
 SparseMatrix scalar_mass(const Body& body, const NodeGraph& graph, const std::vector<double>& weight) {

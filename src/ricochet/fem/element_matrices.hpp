@@ -17,6 +17,9 @@ constexpr int pair_number(int i, int j) {
   return j * (j + 1) / 2 + i;
 }
 
+/// Of a hexahedron of degree 2.
+inline constexpr int most_cell_nodes = 27;
+
 /// What the mass needs of a block of cells.
 struct MassIntegration {
   BlockIntegration block;
@@ -79,9 +82,8 @@ void add_elastic_pairs(const double* gradients, int count, const IsotropicElasti
 template <int d>
 void element_stiffness(const BlockIntegration& integration, const Points& coordinates, const Index* nodes,
                        const IsotropicElasticity& law, double* result) {
-  constexpr int most_nodes = 27;
   const int count = static_cast<int>(integration.displacement.values.rows());
-  std::array<double, most_nodes * d> gradients;
+  std::array<double, most_cell_nodes * d> gradients;
   std::fill_n(result, pair_number(0, count) * d * d, 0.0);
   for (std::size_t q = 0; q < integration.geometry.gradients.size(); ++q) {
     const Eigen::Matrix<double, d, d> map = jacobian<d>(coordinates, nodes, integration.geometry.gradients[q]);

@@ -17,6 +17,9 @@ struct Material {
   std::shared_ptr<const MaterialLaw> law;
   double mass_damping = 0.0;       ///< Rayleigh, 1/time
   double stiffness_damping = 0.0;  ///< Rayleigh, time
+  /// The dilatation's part of the energy is that of a mean over each cell (elastic_cells.hpp), where the law has such a
+  /// part and the cell has more than one quadrature point.
+  bool mean_dilatation = false;
 
   // At zero strain, in three dimensions:
   [[nodiscard]] double lambda() const { return law->lambda(); }  ///< Lamé's first parameter

@@ -12,26 +12,38 @@
 
 /// @file Material laws. To add one: a file in laws/ with a class and its registration, and one line in
 /// material_law.cpp.
+///
+/// A law gives an energy W(E) per undeformed volume of a strain tensor in space, its derivative S and the derivative of
+/// that. For a law of finite strain E is Green's strain, E = ½(H + Hᵀ + HᵀH) of the displacement's gradient H, which no
+/// rotation changes, and S the second Piola–Kirchhoff stress: the Cauchy stress is F S Fᵀ/J with F = I + H, J = det F.
+/// For the law "linear" E is the small strain ½(H + Hᵀ), and S the stress. Formulas are written for E, not for
+/// C = I + 2E, so that no digits are lost where strains are small.
 namespace ricochet {
+
+using Tensor = Eigen::Matrix3d;
+/// ∂S_ij/∂E_kl between the components xx, yy, zz, xy, yz, zx: dS = this · (dE_xx, dE_yy, dE_zz, 2dE_xy, 2dE_yz, 2dE_zx).
+using StressTangent = Eigen::Matrix<double, 6, 6>;
 
 class MaterialLaw {
  public:
   virtual ~MaterialLaw() = default;
   /// Of a law whose stress is a linear function of the displacement's gradient: assembly and stress output then need
-  /// nothing else. None where the tangent depends on the displacement.
-  [[nodiscard]] virtual std::optional<IsotropicElasticity> constant_tangent(bool plane_stress) const = 0;
-  /// Lamé's parameters of the three-dimensional law at zero strain: of waves, locking and estimates.
+  /// nothing else. None of a law of finite strain.
+  [[nodiscard]] virtual std::optional<IsotropicElasticity> constant_tangent(bool) const { return std::nullopt; }
+  [[nodiscard]] bool is_linear() const { return constant_tangent(false).has_value(); }
+  /// Lamé's parameters at zero strain: of waves, locking and estimates.
   [[nodiscard]] virtual double lambda() const = 0;
   [[nodiscard]] virtual double mu() const = 0;
 
-  // At a displacement gradient H (d × d, H_ij = ∂u_i/∂x_j), per volume of the undeformed body; in the plane, of a body
-  // in plane strain or plane stress:
-  /// Strain energy W(H).
-  [[nodiscard]] virtual double energy(const Matrix& gradient, bool plane_stress) const = 0;
-  /// First Piola–Kirchhoff stress P = ∂W/∂H, d × d.
-  virtual void stress(const Matrix& gradient, bool plane_stress, Matrix& result) const = 0;
-  /// ∂P_ij/∂H_kl, d² × d², symmetric; components numbered i + d j.
-  virtual void tangent(const Matrix& gradient, bool plane_stress, Matrix& result) const = 0;
+  // What comes out is not finite where det(I + 2E) ≤ 0; the caller sees to det F > 0.
+  [[nodiscard]] virtual double energy(const Tensor& strain) const = 0;
+  virtual void stress(const Tensor& strain, Tensor& result) const = 0;
+  virtual void tangent(const Tensor& strain, StressTangent& result) const = 0;
+
+  /// K of a part (K/4)(J² − 1 − 2 ln J) of the energy, the only one whose modulus grows without bounds as the material
+  /// becomes incompressible: it may be taken from a mean of J over a cell (cell_dilatation.hpp). 0: there is no such
+  /// part.
+  [[nodiscard]] virtual double volumetric_modulus() const { return 0.0; }
 };
 
 using MaterialLawConstructor = std::function<std::unique_ptr<MaterialLaw>(const Parameters& parameters)>;

@@ -1,10 +1,12 @@
 #include "ricochet/fem/stress.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/cell_integration.hpp"
+#include "ricochet/fem/elastic_cells.hpp"
 
 namespace ricochet {
 
@@ -90,6 +92,11 @@ bool has_straight_simplices(const Body& body, CellShape shape) {
 }  // namespace
 
 CellStress::CellStress(const Body& body) : body_(body) {
+  const auto is_linear = [](const Material& material) { return material.law->is_linear(); };
+  if (!std::all_of(body.materials.begin(), body.materials.end(), is_linear)) {
+    finite_ = std::make_unique<ElasticCells>(body);
+    return;
+  }
   for (const CellBlock& block : body.mesh->cells) {
     const bool simple = has_straight_simplices(body, block.shape);
     integrations_.push_back(simple ? nullptr
@@ -156,6 +163,15 @@ void visit_cells(const Body& body, const BlockIntegration* integration, std::siz
 template <int d>
 void CellStress::evaluate_block(std::size_t block, Index first_cell, const Vector& displacement, double* stress,
                                 double* energy_density) const {
+  if (finite_) {
+    parallel_ranges(body_.space->cells[block].size(), [&](Index first, Index last) {
+      for (Index cell = first; cell < last; ++cell) {
+        finite_->cell_stress(block, cell, first_cell + cell, displacement, stress + tensor_components * cell,
+                             energy_density[cell]);
+      }
+    });
+    return;
+  }
   parallel_ranges(body_.space->cells[block].size(), [&](Index first, Index last) {
     visit_cells<d>(body_, integrations_[block].get(), block, first_cell, displacement, first, last,
                    [&](Index cell, const StressLaw<d>& law, const CellMeans<d>& means) {
@@ -167,6 +183,18 @@ void CellStress::evaluate_block(std::size_t block, Index first_cell, const Vecto
 
 template <int d>
 LargestOfCells CellStress::largest_in_block(std::size_t block, Index first_cell, const Vector& displacement) const {
+  if (finite_) {
+    return parallel_sum<LargestOfCells>(body_.space->cells[block].size(), [&](Index first, Index last) {
+      LargestOfCells largest;
+      for (Index cell = first; cell < last; ++cell) {
+        std::array<double, tensor_components> stress;
+        double energy = 0.0;
+        finite_->cell_stress(block, cell, first_cell + cell, displacement, stress.data(), energy);
+        largest += LargestOfCells{von_mises_stress(stress.data()), first_cell + cell};
+      }
+      return largest;
+    });
+  }
   return parallel_sum<LargestOfCells>(body_.space->cells[block].size(), [&](Index first, Index last) {
     LargestOfCells largest;
     visit_cells<d>(body_, integrations_[block].get(), block, first_cell, displacement, first, last,

@@ -10,6 +10,7 @@
 namespace ricochet {
 
 struct BlockIntegration;
+class ElasticCells;
 
 /// Symmetric 3 × 3 tensors, also in the plane, by xx, xy, xz, yy, yz, zz: the order of XDMF.
 inline constexpr int tensor_components = 6;
@@ -26,6 +27,7 @@ struct LargestOfCells {
 
 /// Means over each cell of the stress σ = λ tr ε I + 2μ ε and of ½ σ : ε, by the quadrature of the stiffness: the sum
 /// of the energy densities times the volumes of the cells is ½UᵀKU. In the plane σ_zz is that of plane strain, or zero.
+/// Of laws of finite strain the Cauchy stress, and the energy per undeformed volume.
 class CellStress {
  public:
   /// Keeps a reference.
@@ -49,6 +51,7 @@ class CellStress {
   const Body& body_;
   /// Per block; none for straight simplices of degree 1.
   std::vector<std::unique_ptr<const BlockIntegration>> integrations_;
+  std::unique_ptr<const ElasticCells> finite_;  ///< null: all laws are linear
 };
 
 /// √(3/2 s : s) with the deviator s.

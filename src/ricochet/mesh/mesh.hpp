@@ -74,4 +74,11 @@ struct Mesh {
   [[nodiscard]] const Group& group(const std::string& name, int dimension) const;
 };
 
+struct CellPlace {
+  Vector centre;         ///< mean of the cell's vertices, in the reference configuration
+  std::int64_t tag = 0;  ///< the cell's number in the mesh file
+};
+/// Of a cell, numbered through all blocks.
+[[nodiscard]] CellPlace place_of_cell(const Mesh& mesh, Index cell);
+
 }  // namespace ricochet

@@ -120,11 +120,6 @@ void assign_materials(const Case& input, Model& model) {
     }
     model.body.materials.push_back({section.group, section.density, make_material_law(section.law, section.parameters),
                                     section.damping.mass, section.damping.stiffness});
-    if (!model.body.materials.back().law->constant_tangent(model.body.plane == PlaneState::stress)) {
-      refuse(input, fmt::format("material.{}.law", i),
-             fmt::format("the law \"{}\" is not linear: runs of bodies whose stiffness changes are not supported yet",
-                         section.law));
-    }
     const double poisson = model.body.materials.back().poisson();
     const bool locks = input.mesh.degree == 1 && !(mesh.dimension == 2 && model.body.plane == PlaneState::stress);
     // Got back from λ and μ, 0.45 itself is a little more or less.

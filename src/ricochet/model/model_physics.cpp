@@ -14,6 +14,7 @@
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/mass/mass_conditions.hpp"
 #include "ricochet/model/model_parts.hpp"
+#include "ricochet/problem/finite_elasticity.hpp"
 #include "ricochet/scheme/requirements.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
@@ -122,6 +123,16 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
   }
 }
 
+/// Forces of Cη U̇ are not those of a turned body.
+void refuse_stiffness_damping(const Case& input, const Model& model) {
+  for (std::size_t i = 0; i < model.body.materials.size(); ++i) {
+    if (model.body.materials[i].stiffness_damping == 0.0) continue;
+    refuse(input, fmt::format("material.{}.damping.stiffness", i),
+           "stiffness damping resists rotations that are not small, and some material here has a law of finite strain: "
+           "set it to 0");
+  }
+}
+
 }  // namespace
 
 void assemble_operators(const Case& input, Model& model) {
@@ -162,8 +173,14 @@ void assemble_operators(const Case& input, Model& model) {
   if (construction->removes_contact_inertia())
     warn_of_heaped_inertia(input, choice.name, *choice.mass, consistent.diagonal());
   choice.mass.reset();
-  model.problem.internal_force =
-      std::make_shared<LinearElasticity>(condensed(assemble_stiffness(model.body, graph), d), model.space.nodes);
+  const auto is_linear = [](const Material& material) { return material.law->is_linear(); };
+  if (std::all_of(model.body.materials.begin(), model.body.materials.end(), is_linear)) {
+    model.problem.internal_force =
+        std::make_shared<LinearElasticity>(condensed(assemble_stiffness(model.body, graph), d), model.space.nodes);
+  } else {
+    refuse_stiffness_damping(input, model);
+    model.problem.internal_force = std::make_shared<FiniteElasticity>(model.body, graph);
+  }
   std::vector<double> mass_damping, stiffness_damping;
   for (const Material& material : model.body.materials) {
     mass_damping.push_back(material.mass_damping);

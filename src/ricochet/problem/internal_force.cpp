@@ -21,6 +21,10 @@ void LinearElasticity::evaluate(const Vector& displacement, Vector& force) const
   stiffness_.multiply(deformation_, force);
 }
 
+void LinearElasticity::strain_force(const Vector&, const Vector& increment, Vector& force) const {
+  evaluate(increment, force);
+}
+
 double LinearElasticity::energy(const Vector& displacement) const {
   rigid_.remove(displacement, deformation_);
   return 0.5 * stiffness_.form(deformation_);

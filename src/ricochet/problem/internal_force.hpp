@@ -7,16 +7,21 @@
 #include "ricochet/problem/rigid_motion.hpp"
 
 /// @file The body's elastic response: internal force, tangent and energy behind one small interface. Linear elasticity
-/// has a constant tangent; a law of finite strain would not.
+/// has a constant tangent; laws of finite strain have not (finite_elasticity.hpp).
 namespace ricochet {
 
 class InternalForce {
  public:
   virtual ~InternalForce() = default;
-  /// Nodal forces of the stress at displacement U (for linear elasticity K U).
+  /// Nodal forces of the stress at displacement U (for linear elasticity K U). Throws Error(not_converged) that names
+  /// the cell where the displacement turns one inside out.
   virtual void evaluate(const Vector& displacement, Vector& force) const = 0;
   /// Strain energy (½UᵀKU).
   [[nodiscard]] virtual double energy(const Vector& displacement) const = 0;
+  /// Forces at a displacement of the stress 𝔻₀ : (the derivative of the strain along `increment`), with the tangent 𝔻₀
+  /// at zero strain (for linear elasticity K times the increment): forces that no rotation changes, without resultant or
+  /// moment about the current positions.
+  virtual void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const = 0;
   /// The same where the force that evaluate() gives for this displacement is known.
   [[nodiscard]] virtual double energy(const Vector& displacement, const Vector& force) const;
   /// The force is a linear function of U: the tangent is the same everywhere. Who relies on that asks (require_linear).
@@ -38,6 +43,7 @@ class LinearElasticity final : public InternalForce {
   void evaluate(const Vector& displacement, Vector& force) const override;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   [[nodiscard]] double energy(const Vector& displacement, const Vector& force) const override;
+  void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
   [[nodiscard]] bool is_linear() const override { return true; }
   using InternalForce::tangent;
   [[nodiscard]] SparseMatrix tangent(const Vector&) const override { return stiffness_.whole(); }

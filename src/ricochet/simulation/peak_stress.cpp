@@ -73,21 +73,6 @@ void PeakStress::look(const State& state) {
   result_.step = state.step;
 }
 
-CellPlace place_of_cell(const Mesh& mesh, Index cell) {
-  for (const CellBlock& block : mesh.cells) {
-    if (cell >= block.size()) {
-      cell -= block.size();
-      continue;
-    }
-    CellPlace result{Vector::Zero(mesh.dimension), block.tags[static_cast<std::size_t>(cell)]};
-    const int vertices = vertex_count(block.shape);
-    for (int k = 0; k < vertices; ++k) result.centre += mesh.nodes.col(block.cell(cell)[k]);
-    result.centre /= static_cast<double>(vertices);
-    return result;
-  }
-  return {};
-}
-
 void PeakStress::save(Snapshot& snapshot, const std::string& name) const {
   Vector numbers(6);
   numbers << looks_per_step_, saved_, since_look_, hardest_press_, result_.von_mises, result_.time;

@@ -42,13 +42,6 @@ class PeakStress {
   PeakStressResult result_;
 };
 
-struct CellPlace {
-  Vector centre;         ///< mean of the cell's vertices, in the reference configuration
-  std::int64_t tag = 0;  ///< the cell's number in the mesh file
-};
-/// Of a cell, numbered through all blocks.
-[[nodiscard]] CellPlace place_of_cell(const Mesh& mesh, Index cell);
-
 /// What a step reads at least, in numbers: the factor twice, or the stiffness of a scheme without one.
 [[nodiscard]] double step_work(const Body& body, std::size_t factor_entries);
 

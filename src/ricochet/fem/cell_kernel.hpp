@@ -1,0 +1,291 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "ricochet/fem/cell_dilatation.hpp"
+#include "ricochet/fem/element_matrices.hpp"
+#include "ricochet/fem/finite_strain.hpp"
+#include "ricochet/fem/point_law.hpp"
+
+/// @file The elastic energy of one cell and its derivatives. Not part of the public interface.
+namespace ricochet {
+
+/// What is constant of the cells of a block: shape functions, and the inverse Jacobian with the weight of every
+/// quadrature point (of straight simplices one Jacobian for all).
+template <int d>
+struct KernelBlock {
+  BlockIntegration integration;
+  bool affine = false;
+  Matrix dilatation_functions = {};   ///< points × functions; empty: no mean dilatation
+  std::vector<double> inverse = {};   ///< d × d numbers, row by row, per point or per cell
+  std::vector<double> weight = {};    ///< per point
+  int nodes = 0, points = 0;
+
+  [[nodiscard]] const double* inverse_at(Index cell, int q) const {
+    return inverse.data() + d * d * (affine ? cell : cell * points + q);
+  }
+  [[nodiscard]] const double* weights_of(Index cell) const { return weight.data() + cell * points; }
+};
+
+/// One cell at a displacement. A local vector has d components per node of the cell.
+template <int d>
+class CellKernel {
+ public:
+  using LocalVector = std::array<double, most_cell_nodes * d>;
+
+  CellKernel(const KernelBlock<d>& block, Index cell, const MaterialLaw& law, bool plane_stress, bool mean_dilatation)
+      : block_(block), cell_(cell), law_(law, plane_stress), weights_(block.weights_of(cell)) {
+    if (mean_dilatation && law.volumetric_modulus() > 0.0 && block.dilatation_functions.size() > 0) {
+      volume_.modulus = law.volumetric_modulus();
+      dilatation_.start(block.dilatation_functions, weights_, block.points);
+    }
+  }
+
+  void gather(const Index* nodes, const Vector& from, LocalVector& to) const {
+    for (int i = 0; i < block_.nodes; ++i) {
+      for (int a = 0; a < d; ++a) to[static_cast<std::size_t>(i * d + a)] = from[nodes[i] * d + a];
+    }
+  }
+
+  /// Gradients of the shape functions at a point.
+  void go_to(int q) {
+    const double* inverse = block_.inverse_at(cell_, q);
+    const Matrix& reference = block_.integration.displacement.gradients[static_cast<std::size_t>(q)];
+    for (int i = 0; i < block_.nodes; ++i) {
+      for (int a = 0; a < d; ++a) {
+        double sum = reference(i, 0) * inverse[a];
+        for (int k = 1; k < d; ++k) sum += reference(i, k) * inverse[k * d + a];
+        gradients_[static_cast<std::size_t>(i * d + a)] = sum;
+      }
+    }
+  }
+  [[nodiscard]] double weight(int q) const { return weights_[q]; }
+  [[nodiscard]] Tensor gradient(const LocalVector& u) const {
+    Tensor result = Tensor::Zero();
+    for (int i = 0; i < block_.nodes; ++i) {
+      for (int a = 0; a < d; ++a) {
+        for (int b = 0; b < d; ++b) result(a, b) += u[static_cast<std::size_t>(i * d + a)] * gradients_[static_cast<std::size_t>(i * d + b)];
+      }
+    }
+    return result;
+  }
+  /// Adds ∫ P ∇φ_a of this point to a local vector.
+  void add_force(int q, const Tensor& stress, LocalVector& force) const {
+    for (int i = 0; i < block_.nodes; ++i) {
+      for (int a = 0; a < d; ++a) {
+        double sum = 0.0;
+        for (int b = 0; b < d; ++b) sum += stress(a, b) * gradients_[static_cast<std::size_t>(i * d + b)];
+        force[static_cast<std::size_t>(i * d + a)] += weights_[q] * sum;
+      }
+    }
+  }
+
+  /// Calls visit(q, F, E, S) at all points, F with the stretch across the plane; the gradients are those of q. Returns
+  /// the least J; what is visited where it is not positive means nothing. (The linear law has F = I, J = 1.)
+  template <class Visit>
+  double visit_stress(const LocalVector& u, const Visit& visit) {
+    double least = 1.0;
+    if (has_dilatation()) least = find_dilatation(u);
+    Tensor stress;
+    for (int q = 0; q < block_.points; ++q) {
+      go_to(q);
+      const Tensor motion = gradient(u);
+      const Tensor strain = law_.strain(motion);
+      const Tensor deformation = deformation_of(motion, strain);
+      if (!law_.is_linear()) {
+        const double volume = deformation.determinant();
+        if (!(volume >= least)) least = std::isnan(volume) ? -std::numeric_limits<double>::infinity() : volume;
+      }
+      law_.stress(strain, stress);
+      if (has_dilatation()) add_mean_pressure(q, strain, stress);
+      visit(q, deformation, strain, stress);
+    }
+    return least;
+  }
+
+  /// ∫ W.
+  [[nodiscard]] double energy(const LocalVector& u) {
+    double sum = 0.0;
+    if (has_dilatation()) static_cast<void>(find_dilatation(u));
+    for (int q = 0; q < block_.points; ++q) {
+      go_to(q);
+      sum += weights_[q] * energy_at(q, law_.strain(gradient(u)));
+    }
+    return sum;
+  }
+  /// Of a point, after visit_stress or within energy().
+  [[nodiscard]] double energy_at(int q, const Tensor& strain) const {
+    double density = law_.energy(strain);
+    if (has_dilatation()) {
+      const double theta = mean_[static_cast<std::size_t>(q)];  // Θ − 1
+      density += volume_.energy(theta * (2.0 + theta)) - volume_.energy(determinant_change(2.0 * strain));
+    }
+    return density;
+  }
+
+  /// Adds the tangent, blocks of d × d for pairs of nodes as of element_matrices.hpp.
+  void add_tangent(const LocalVector& u, double* blocks) {
+    if (has_dilatation()) static_cast<void>(find_dilatation(u));
+    Tensor stress;
+    StressTangent tangent;
+    for (int q = 0; q < block_.points; ++q) {
+      go_to(q);
+      const Tensor motion = gradient(u), strain = law_.strain(motion);
+      const Tensor deformation = deformation_of(motion, strain);
+      law_.stress(strain, stress);
+      law_.tangent(strain, tangent);
+      if (has_dilatation()) {
+        add_mean_pressure(q, strain, stress);
+        add_mean_tangent(q, strain, tangent);
+      }
+      add_point_tangent(q, deformation, law_.is_linear() ? Tensor::Zero().eval() : stress, tangent, blocks);
+    }
+    if (has_dilatation()) add_volume_tangent(u, blocks);
+    make_symmetric(blocks);
+  }
+
+  [[nodiscard]] bool has_dilatation() const { return volume_.modulus > 0.0; }
+  [[nodiscard]] const PointLaw& law() const { return law_; }
+  [[nodiscard]] int points() const { return block_.points; }
+  [[nodiscard]] int nodes() const { return block_.nodes; }
+
+ private:
+  using PointValues = std::array<double, CellDilatation::most_points>;
+
+  /// F. Its stretch across a plane is that of the strain there.
+  [[nodiscard]] Tensor deformation_of(const Tensor& motion, const Tensor& strain) const {
+    if (law_.is_linear()) return Tensor::Identity();
+    Tensor result = Tensor::Identity() + motion;
+    if constexpr (d == 2) result(2, 2) = std::sqrt(1.0 + 2.0 * strain(2, 2));
+    return result;
+  }
+
+  /// Θ − 1 and the pressure p of all points. Returns the least J.
+  double find_dilatation(const LocalVector& u) {
+    PointValues change;
+    double least = 1.0;
+    for (int q = 0; q < block_.points; ++q) {
+      go_to(q);
+      change[static_cast<std::size_t>(q)] = determinant_change(gradient(u));
+      least = std::min(least, 1.0 + change[static_cast<std::size_t>(q)]);
+    }
+    dilatation_.project(change.data(), mean_.data());
+    for (int q = 0; q < block_.points; ++q) change[static_cast<std::size_t>(q)] = slope(mean_[static_cast<std::size_t>(q)]);
+    dilatation_.project(change.data(), pressure_.data());
+    return least;
+  }
+  /// U′ and U″ of U(J) = (K/4)(J² − 1 − 2 ln J) at J = 1 + j.
+  [[nodiscard]] double slope(double j) const { return 0.5 * volume_.modulus * j * (2.0 + j) / (1.0 + j); }
+  [[nodiscard]] double curvature(double j) const {
+    const double volume = 1.0 + j;
+    return 0.5 * volume_.modulus * (1.0 + 1.0 / (volume * volume));
+  }
+
+  /// S += (p − U′(J)) J C⁻¹.
+  void add_mean_pressure(int q, const Tensor& strain, Tensor& stress) const {
+    const double s = determinant_change(2.0 * strain), volume = std::sqrt(1.0 + s);
+    const Tensor inverse = (Tensor::Identity() + 2.0 * strain).inverse();
+    stress += (pressure_[static_cast<std::size_t>(q)] * volume - volume_.stress_factor(s)) * inverse;
+  }
+  /// ∂/∂E of it with p constant: p J (C⁻¹ ⊗ C⁻¹ − 2 C⁻¹ ⊙ C⁻¹) in place of the tangent of U(J).
+  void add_mean_tangent(int q, const Tensor& strain, StressTangent& tangent) const {
+    const double s = determinant_change(2.0 * strain), volume = std::sqrt(1.0 + s);
+    const Tensor inverse = (Tensor::Identity() + 2.0 * strain).inverse();
+    const double p = pressure_[static_cast<std::size_t>(q)] * volume;
+    VolumetricEnergy{-volume_.modulus}.add_tangent(s, inverse, tangent);
+    add_dyad(inverse, inverse, p, tangent);
+    add_symmetric_product(inverse, -2.0 * p, tangent);
+  }
+
+  /// Rows of B of a node: derivatives of the strain's components (shear twice) by its displacements, at F.
+  void strain_rows(int node, const Tensor& f, Eigen::Matrix<double, 6, d>& rows) const {
+    std::array<double, 3> g{};
+    for (int a = 0; a < d; ++a) g[static_cast<std::size_t>(a)] = gradients_[static_cast<std::size_t>(node * d + a)];
+    for (int k = 0; k < d; ++k) {
+      rows(0, k) = f(k, 0) * g[0];
+      rows(1, k) = f(k, 1) * g[1];
+      rows(2, k) = d == 3 ? f(k, 2) * g[2] : 0.0;
+      rows(3, k) = f(k, 0) * g[1] + f(k, 1) * g[0];
+      rows(4, k) = d == 3 ? f(k, 1) * g[2] + f(k, 2) * g[1] : 0.0;
+      rows(5, k) = d == 3 ? f(k, 2) * g[0] + f(k, 0) * g[2] : 0.0;
+    }
+  }
+
+  void add_point_tangent(int q, const Tensor& f, const Tensor& stress, const StressTangent& tangent, double* blocks) {
+    std::array<Eigen::Matrix<double, 6, d>, most_cell_nodes> rows;
+    for (int i = 0; i < block_.nodes; ++i) strain_rows(i, f, rows[static_cast<std::size_t>(i)]);
+    const StressTangent weighted = weights_[q] * tangent;
+    for (int j = 0; j < block_.nodes; ++j) {
+      const Eigen::Matrix<double, 6, d> right = weighted * rows[static_cast<std::size_t>(j)];
+      Eigen::Matrix<double, d, 1> traction = Eigen::Matrix<double, d, 1>::Zero();
+      for (int a = 0; a < d; ++a) {
+        for (int b = 0; b < d; ++b) traction[a] += weights_[q] * stress(a, b) * gradients_[static_cast<std::size_t>(j * d + b)];
+      }
+      for (int i = 0; i <= j; ++i, blocks += d * d) {
+        const Eigen::Matrix<double, d, d> block = rows[static_cast<std::size_t>(i)].transpose() * right;
+        double geometric = 0.0;
+        for (int a = 0; a < d; ++a) geometric += gradients_[static_cast<std::size_t>(i * d + a)] * traction[a];
+        for (int a = 0; a < d; ++a) {
+          for (int b = 0; b < d; ++b) blocks[a * d + b] += block(a, b);
+          blocks[a * d + a] += geometric;
+        }
+      }
+    }
+  }
+
+  /// To the bit: the blocks of a node with itself are so but for rounding.
+  void make_symmetric(double* blocks) const {
+    for (int j = 0; j < block_.nodes; ++j) {
+      double* const own = blocks + pair_number(j, j) * d * d;
+      for (int a = 0; a < d; ++a) {
+        for (int b = 0; b < a; ++b) own[a * d + b] = own[b * d + a];
+      }
+    }
+  }
+
+  /// Of U(Θ): Σ_mn b_m b_nᵀ ∫ ψ_m ψ_n U″(Θ), b_m = ∫ ψ_m ∂J/∂u.
+  void add_volume_tangent(const LocalVector& u, double* blocks) {
+    const int count = dilatation_.functions();
+    std::array<LocalVector, CellDilatation::most_functions> slopes{};
+    Eigen::Matrix<double, CellDilatation::most_functions, CellDilatation::most_functions> product;
+    product.setZero();
+    for (int q = 0; q < block_.points; ++q) {
+      go_to(q);
+      const Tensor f = Tensor::Identity() + gradient(u);
+      const Tensor cofactor = f.determinant() * f.inverse().transpose();
+      const double second = weights_[q] * curvature(mean_[static_cast<std::size_t>(q)]);
+      for (int m = 0; m < count; ++m) {
+        const double value = dilatation_.function(m, q);
+        add_force(q, value * cofactor, slopes[static_cast<std::size_t>(m)]);
+        for (int n = 0; n < count; ++n) product(m, n) += value * second * dilatation_.function(n, q);
+      }
+    }
+    for (int j = 0; j < block_.nodes; ++j) {
+      for (int i = 0; i <= j; ++i, blocks += d * d) {
+        for (int m = 0; m < count; ++m) {
+          for (int n = 0; n < count; ++n) {
+            for (int a = 0; a < d; ++a) {
+              for (int b = 0; b < d; ++b) {
+                blocks[a * d + b] += product(m, n) * slopes[static_cast<std::size_t>(m)][static_cast<std::size_t>(i * d + a)] *
+                                     slopes[static_cast<std::size_t>(n)][static_cast<std::size_t>(j * d + b)];
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+
+  const KernelBlock<d>& block_;
+  Index cell_;
+  PointLaw law_;
+  const double* weights_;
+  VolumetricEnergy volume_;  ///< modulus 0: no mean dilatation
+  CellDilatation dilatation_;
+  PointValues mean_{}, pressure_{};
+  std::array<double, most_cell_nodes * d> gradients_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "ricochet/fem/node_graph.hpp"
+#include "ricochet/fem/stress.hpp"
+
+/// @file The elastic energy of a body, W(U) = Σ over cells ∫ W(E) over the undeformed cell, with its derivatives, for
+/// every material law:
+///   force     F_a = ∫ F S ∇φ_a          (F = I + H, H the displacement's gradient; of the linear law F = I)
+///   tangent   K_ab = ∫ B_aᵀ (∂S/∂E) B_b + (∇φ_a · S ∇φ_b) I,   B_a the derivative of E by the displacement of node a.
+/// In cells with mean dilatation the part U(J) of the energy is taken of a projection Θ of J on the functions that are
+/// constant over the cell (for quadrilaterals and hexahedra of degree 2: linear), which does not lock as the material
+/// becomes incompressible (J. C. Simo, R. L. Taylor, K. S. Pister, Comput. Methods Appl. Mech. Engrg. 51 (1985)
+/// 177–208): in all formulas U′(J) gives way to the projection of U′(Θ). The force is still the derivative of the energy.
+///
+/// Quadrature is that of the stiffness, so that small displacements have the linear body's forces.
+namespace ricochet {
+
+/// A cell whose volume is not positive somewhere, or whose thickness has no value.
+struct InvertedCell {
+  Index cell = -1;  ///< numbered through all blocks; −1: there is none
+  double volume_ratio = 1.0;
+};
+
+class ElasticCells {
+ public:
+  /// Keeps references. Without a graph there is neither force nor tangent.
+  explicit ElasticCells(const Body& body, const NodeGraph* graph = nullptr);
+  ~ElasticCells();
+  ElasticCells(const ElasticCells&) = delete;
+  ElasticCells& operator=(const ElasticCells&) = delete;
+
+  /// Per dof. Where a cell is inverted the force means nothing, and it is told which one.
+  [[nodiscard]] InvertedCell force(const Vector& displacement, Vector& result) const;
+  [[nodiscard]] double energy(const Vector& displacement) const;
+  /// Symmetric to the bit, on the pattern of the graph. An empty displacement is zero.
+  [[nodiscard]] SparseMatrix tangent(const Vector& displacement) const;
+  /// Forces, at a displacement, of the stress 𝔻₀ : (the derivative of E along `increment`), 𝔻₀ the tangent at zero
+  /// strain. From half way, that is the change of E over the increment, and the work on the increment is
+  /// Σ ∫ ΔE : 𝔻₀ : ΔE ≥ 0. No law of a linear material has such forces here.
+  void strain_force(const Vector& displacement, const Vector& increment, Vector& result) const;
+
+  /// Means over one cell of the Cauchy stress (weighted by the undeformed volume) and of the energy per undeformed
+  /// volume. `stress`: 6, in the order of XDMF.
+  void cell_stress(std::size_t block, Index local, Index cell, const Vector& displacement, double* stress,
+                   double& energy_density) const;
+
+ private:
+  template <int d>
+  struct Blocks;
+  template <int d>
+  [[nodiscard]] const Blocks<d>& blocks() const;
+
+  const Body& body_;
+  const NodeGraph* graph_;
+  std::unique_ptr<Blocks<2>> plane_;
+  std::unique_ptr<Blocks<3>> solid_;
+};
+
+}  // namespace ricochet

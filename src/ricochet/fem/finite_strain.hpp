@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "ricochet/fem/material_law.hpp"
+
+/// @file What laws of finite strain are written with. Not part of the public interface.
+namespace ricochet {
+
+/// Green's strain ½(H + Hᵀ + HᵀH) of a displacement gradient.
+inline Tensor green_strain(const Tensor& gradient) {
+  return 0.5 * (gradient + gradient.transpose() + gradient.transpose() * gradient);
+}
+
+/// det(I + A) − 1 − tr A, to the digits of its terms: they are of the second order.
+inline double determinant_remainder(const Tensor& a) {
+  const double second = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0) + a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1) +
+                        a(2, 2) * a(0, 0) - a(2, 0) * a(0, 2);
+  return second + a.determinant();
+}
+
+/// det(I + A) − 1, to the digits of A.
+inline double determinant_change(const Tensor& a) {
+  return a.trace() + determinant_remainder(a);
+}
+
+/// x − ln(1 + x), to the digits of x: with t = x/(2+x), ln(1+x) = 2(t + t³/3 + t⁵/5 + …).
+inline double logarithm_remainder(double x) {
+  if (!(std::abs(x) < 0.1)) return x - std::log1p(x);
+  const double t = x / (2.0 + x), square = t * t;
+  double sum = 0.0;
+  for (int k = 17; k >= 3; k -= 2) sum = 1.0 / k + square * sum;
+  return x * t - 2.0 * t * square * sum;
+}
+
+/// (i, j) of the components of a StressTangent.
+inline constexpr std::array<std::array<int, 2>, 6> tangent_components{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
+
+/// Adds factor · A ⊗ B, A and B symmetric.
+inline void add_dyad(const Tensor& a, const Tensor& b, double factor, StressTangent& result) {
+  for (int p = 0; p < 6; ++p) {
+    const auto [i, j] = tangent_components[static_cast<std::size_t>(p)];
+    for (int q = 0; q < 6; ++q) {
+      const auto [k, l] = tangent_components[static_cast<std::size_t>(q)];
+      result(p, q) += factor * a(i, j) * b(k, l);
+    }
+  }
+}
+
+/// Adds factor · A ⊙ A, (A ⊙ A)_ijkl = ½(A_ik A_jl + A_il A_jk): with A = I the identity on symmetric tensors.
+inline void add_symmetric_product(const Tensor& a, double factor, StressTangent& result) {
+  for (int p = 0; p < 6; ++p) {
+    const auto [i, j] = tangent_components[static_cast<std::size_t>(p)];
+    for (int q = 0; q < 6; ++q) {
+      const auto [k, l] = tangent_components[static_cast<std::size_t>(q)];
+      result(p, q) += 0.5 * factor * (a(i, k) * a(j, l) + a(i, l) * a(j, k));
+    }
+  }
+}
+
+/// What the part (K/4)(J² − 1 − 2 ln J) of an energy is made of, from s = J² − 1.
+struct VolumetricEnergy {
+  double modulus = 0.0;
+
+  [[nodiscard]] double energy(double s) const { return 0.25 * modulus * logarithm_remainder(s); }
+  /// S = this · C⁻¹.
+  [[nodiscard]] double stress_factor(double s) const { return 0.5 * modulus * s; }
+  void add_tangent(double s, const Tensor& inverse, StressTangent& result) const {
+    add_dyad(inverse, inverse, modulus * (1.0 + s), result);
+    add_symmetric_product(inverse, -modulus * s, result);
+  }
+};
+
+}  // namespace ricochet

@@ -1,0 +1,62 @@
+#include "ricochet/fem/laws/elastic_constants.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace ricochet {
+
+std::vector<Key> elastic_constant_keys() {
+  return {{.name = "lambda",
+           .type = KeyType::number,
+           .unit = "stress",
+           .doc = "First Lamé parameter; 3 lambda + 2 mu must be positive."},
+          {.name = "mu",
+           .type = KeyType::number,
+           .unit = "stress",
+           .range = positive,
+           .doc = "Second Lamé parameter, the shear modulus."},
+          {.name = "young", .type = KeyType::number, .unit = "stress", .range = positive, .doc = "Young's modulus."},
+          {.name = "poisson",
+           .type = KeyType::number,
+           .unit = "1",
+           .range = {.above = -1.0, .below = 0.5},
+           .doc = "Poisson's ratio."}};
+}
+
+namespace {
+
+/// Of E and ν.
+ElasticConstants lame_parameters(double young, double poisson) {
+  return {young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))};
+}
+
+}  // namespace
+
+void check_elastic_constants(const ParameterCheck& place, Parameters& values) {
+  if (place.is_usable("lambda") && place.is_usable("mu")) {
+    const double bulk = 3.0 * values.number("lambda") + 2.0 * values.number("mu");
+    if (!(bulk > 0.0)) {
+      place.add_problem(
+          "lambda",
+          fmt::format("3 lambda + 2 mu must be positive (the bulk modulus is a third of it); it is {}", bulk));
+    }
+  }
+  if (!place.is_usable("young") || !place.is_usable("poisson")) return;
+  const double young = values.number("young"), poisson = values.number("poisson");
+  const ElasticConstants lame = lame_parameters(young, poisson);
+  if (!std::isfinite(lame.lambda) || !std::isfinite(lame.mu)) {
+    place.add_problem("poisson", fmt::format("young = {} and poisson = {} give infinite lambda or mu", young, poisson));
+  }
+}
+
+KeySets elastic_constant_pairs() {
+  return {{"lambda", "mu"}, {"young", "poisson"}};
+}
+
+ElasticConstants elastic_constants(const Parameters& parameters) {
+  if (!parameters.has("young")) return {parameters.number("lambda"), parameters.number("mu")};
+  return lame_parameters(parameters.number("young"), parameters.number("poisson"));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,98 @@
+#include "ricochet/problem/body_rotations.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/linear_algebra/graph_components.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// The orthogonal factor of a matrix with a positive determinant, by Newton's iteration R ← ½(R + R⁻ᵀ) (N. J. Higham,
+/// SIAM J. Sci. Stat. Comput. 7 (1986) 1160–1174). A matrix that has none to speak of gives I.
+Tensor orthogonal_factor(Tensor matrix) {
+  constexpr int most_steps = 60;
+  const double size = matrix.norm();
+  if (!(matrix.determinant() > 1e-12 * size * size * size)) return Tensor::Identity();
+  for (int step = 0; step < most_steps; ++step) {
+    const Tensor next = 0.5 * (matrix + matrix.inverse().transpose());
+    const double change = (next - matrix).norm();
+    matrix = next;
+    if (change < 1e-14) break;
+  }
+  return matrix;
+}
+
+}  // namespace
+
+BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
+    : problem_(problem), body_of_node_(static_cast<std::size_t>(problem.nodes.cols()), -1) {
+  const int d = problem.dimension;
+  for (const std::vector<Index>& members : graph_components(problem.internal_force->tangent(), d)) {
+    if (members.size() == 1 && problem.is_tied_dof(members.front() * d)) continue;
+    Body body;
+    const auto is_supported = [&](Index node) {
+      for (Index dof = node * d; dof < (node + 1) * d; ++dof) {
+        if (problem.supports.contains(dof)) return true;
+      }
+      return false;
+    };
+    for (const Index node : members) body_of_node_[static_cast<std::size_t>(node)] = static_cast<int>(bodies_.size());
+    if (std::none_of(members.begin(), members.end(), is_supported)) {
+      const auto size = static_cast<Index>(members.size());
+      const Index stride = std::max(Index{1}, size / most_fitted);
+      for (Index i = 0; i < size; i += stride) body.fitted.push_back(members[static_cast<std::size_t>(i)]);
+    }
+    bodies_.push_back(std::move(body));
+  }
+}
+
+template <int d>
+Tensor BodyRotations::fit_body(const Body& body, const Vector& displacement) const {
+  using Place = Eigen::Matrix<double, d, 1>;
+  Place centre = Place::Zero(), now = Place::Zero();
+  for (const Index node : body.fitted) {
+    const Place place = problem_.nodes.col(node);
+    centre += place;
+    now += place + displacement.segment<d>(node * d);
+  }
+  centre /= static_cast<double>(body.fitted.size());
+  now /= static_cast<double>(body.fitted.size());
+  Eigen::Matrix<double, d, d> sum = Eigen::Matrix<double, d, d>::Zero();
+  for (const Index node : body.fitted) {
+    const Place place = problem_.nodes.col(node);
+    sum += (place + displacement.segment<d>(node * d) - now) * (place - centre).transpose();
+  }
+  Tensor rotation = Tensor::Identity();
+  if constexpr (d == 2) {
+    const double cosine = sum(0, 0) + sum(1, 1), sine = sum(1, 0) - sum(0, 1), size = std::hypot(cosine, sine);
+    if (!(size > 0.0)) return rotation;
+    rotation.topLeftCorner<2, 2>() << cosine / size, -sine / size, sine / size, cosine / size;
+  } else {
+    rotation = orthogonal_factor(sum / sum.norm());
+  }
+  return rotation.allFinite() ? rotation : Tensor::Identity();
+}
+
+void BodyRotations::fit(const Vector& displacement, std::vector<Tensor>& rotations) const {
+  rotations.resize(bodies_.size());
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (bodies_[i].fitted.empty()) {
+      rotations[i].setIdentity();
+    } else {
+      rotations[i] =
+          problem_.dimension == 2 ? fit_body<2>(bodies_[i], displacement) : fit_body<3>(bodies_[i], displacement);
+    }
+  }
+}
+
+double rotation_angle(const Tensor& rotation) {
+  // Half of the antisymmetric part has the sine of the angle, the trace its cosine.
+  const Eigen::Vector3d axis(rotation(2, 1) - rotation(1, 2), rotation(0, 2) - rotation(2, 0),
+                             rotation(1, 0) - rotation(0, 1));
+  return std::atan2(0.5 * axis.norm(), 0.5 * (rotation.trace() - 1.0));
+}
+
+}  // namespace ricochet

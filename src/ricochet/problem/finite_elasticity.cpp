@@ -1,0 +1,50 @@
+#include "ricochet/problem/finite_elasticity.hpp"
+
+#include <fmt/format.h>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph)
+    : body_(body), graph_(std::move(graph)), cells_(body, &graph_) {}
+
+const Vector& FiniteElasticity::complete(const Vector& values, Vector& memory) const {
+  if (body_.tied == nullptr || body_.tied->empty() || values.size() == 0) return values;
+  memory = values;
+  body_.tied->complete(memory, body_.mesh->dimension);
+  return memory;
+}
+
+void FiniteElasticity::condense(Vector& force) const {
+  if (body_.tied != nullptr && !body_.tied->empty()) body_.tied->condense_load(force, body_.mesh->dimension);
+}
+
+void FiniteElasticity::evaluate(const Vector& displacement, Vector& force) const {
+  const InvertedCell inverted = cells_.force(complete(displacement, displacement_), force);
+  if (inverted.cell >= 0) {
+    const CellPlace place = place_of_cell(*body_.mesh, inverted.cell);
+    throw Error(ErrorKind::not_converged,
+                fmt::format("cell {} at ({:.6g}) is turned inside out: somewhere in it the volume is {:.3g} times that "
+                            "at rest",
+                            place.tag, fmt::join(place.centre, ", "), inverted.volume_ratio));
+  }
+  condense(force);
+}
+
+double FiniteElasticity::energy(const Vector& displacement) const {
+  return cells_.energy(complete(displacement, displacement_));
+}
+
+void FiniteElasticity::strain_force(const Vector& displacement, const Vector& increment, Vector& force) const {
+  cells_.strain_force(complete(displacement, displacement_), complete(increment, increment_), force);
+  condense(force);
+}
+
+SparseMatrix FiniteElasticity::tangent(const Vector& displacement) const {
+  SparseMatrix result = cells_.tangent(complete(displacement, displacement_));
+  if (body_.tied == nullptr || body_.tied->empty()) return result;
+  return body_.tied->condense(result, body_.mesh->dimension);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "ricochet/fem/elastic_cells.hpp"
+#include "ricochet/problem/internal_force.hpp"
+
+/// @file The internal force of bodies of which some material has a law of finite strain.
+namespace ricochet {
+
+class FiniteElasticity final : public InternalForce {
+ public:
+  /// Keeps a reference to the body, and to its ties.
+  FiniteElasticity(const Body& body, NodeGraph graph);
+
+  void evaluate(const Vector& displacement, Vector& force) const override;
+  using InternalForce::energy;
+  [[nodiscard]] double energy(const Vector& displacement) const override;
+  void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
+  [[nodiscard]] bool is_linear() const override { return false; }
+  using InternalForce::tangent;
+  [[nodiscard]] SparseMatrix tangent(const Vector& displacement) const override;
+
+ private:
+  /// With the values of tied nodes.
+  const Vector& complete(const Vector& values, Vector& memory) const;
+  void condense(Vector& force) const;
+
+  const Body& body_;
+  NodeGraph graph_;
+  ElasticCells cells_;
+  mutable Vector displacement_, increment_;
+};
+
+}  // namespace ricochet

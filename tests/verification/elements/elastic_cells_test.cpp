@@ -1,0 +1,192 @@
+#include "ricochet/fem/elastic_cells.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/fem/point_law.hpp"
+#include "ricochet/problem/finite_elasticity.hpp"
+#include "support/box_mesh.hpp"
+
+/// @file Energy, force and tangent of bodies with any material law, on all cells.
+namespace ricochet {
+namespace {
+
+using namespace test_support;
+
+struct Kind {
+  ElementKind element;
+  std::string law;
+  bool mean_dilatation = false;
+  PlaneState plane = PlaneState::strain;
+};
+
+Parameters parameters_of(const std::string& law) {
+  if (law == "mooney-rivlin") return {{"c10", 0.3}, {"c01", 0.1}, {"bulk_modulus", 2.0}};
+  return {{"lambda", 1.3}, {"mu", 0.8}};
+}
+
+std::vector<Kind> kinds() {
+  std::vector<Kind> all;
+  for (const ElementKind& element : all_element_kinds()) {
+    for (const std::string law : {"linear", "saint-venant-kirchhoff", "neo-hookean", "mooney-rivlin"})
+      all.push_back({element, law});
+    for (const std::string law : {"neo-hookean", "mooney-rivlin"}) all.push_back({element, law, true});
+    if (element.dimension() == 2) all.push_back({element, "neo-hookean", false, PlaneState::stress});
+  }
+  return all;
+}
+
+class ElasticCellsOfKind : public ::testing::TestWithParam<Kind> {
+ protected:
+  void SetUp() override {
+    BoxMesh box = box_of(kind().element.shape, std::vector<int>(static_cast<std::size_t>(dimension()), 2));
+    box.geometry_degree = kind().element.geometry_degree;
+    if (box.geometry_degree == 2) box.map = bend_map();
+    body_ = make_meshed_body(make_box_mesh(box), kind().element.displacement_degree, kind().plane);
+    body_->body.materials[0].law = make_material_law(kind().law, parameters_of(kind().law));
+    body_->body.materials[0].mean_dilatation = kind().mean_dilatation;
+    force_ = std::make_unique<FiniteElasticity>(body_->body, node_graph(body_->space));
+  }
+  static const Kind& kind() { return GetParam(); }
+  static int dimension() { return kind().element.dimension(); }
+  [[nodiscard]] Vector random_displacement(double size, unsigned seed) const {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<double> random(-size, size);
+    Vector result(body_->space.dof_count());
+    for (double& each : result) each = random(generator);
+    return result;
+  }
+  /// X ↦ Q (X + u).
+  [[nodiscard]] Vector turned(const Vector& displacement, const Matrix& rotation) const {
+    const Points places = body_->space.nodes + displacement.reshaped(dimension(), body_->space.node_count());
+    return Vector((rotation * places - body_->space.nodes).reshaped());
+  }
+  [[nodiscard]] Matrix some_rotation() const {
+    const Matrix space = Eigen::AngleAxisd(2.3, Eigen::Vector3d(0.3, -0.2, 0.8).normalized()).toRotationMatrix();
+    if (dimension() == 3) return space;
+    return Eigen::Rotation2Dd(2.3).toRotationMatrix();
+  }
+
+  std::unique_ptr<MeshedBody> body_;
+  std::unique_ptr<FiniteElasticity> force_;
+};
+
+TEST_P(ElasticCellsOfKind, ForceIsTheDerivativeOfTheEnergyAndTangentThatOfTheForce) {
+  constexpr double h = 1e-5;
+  const Vector u = random_displacement(0.03, 1), along = random_displacement(1.0, 2);
+  Vector force, before, after;
+  force_->evaluate(u, force);
+  const double slope = (force_->energy(u + h * along) - force_->energy(u - h * along)) / (2.0 * h);
+  EXPECT_NEAR(slope, force.dot(along), 1e-7 * force.norm() * along.norm());
+  force_->evaluate(u - h * along, before);
+  force_->evaluate(u + h * along, after);
+  const Vector wanted = (after - before) / (2.0 * h), found = force_->tangent(u) * along;
+  EXPECT_LT((wanted - found).norm(), 1e-6 * wanted.norm());
+  const SparseMatrix tangent = force_->tangent(u);
+  EXPECT_EQ((tangent - SparseMatrix(tangent.transpose())).norm(), 0.0);
+}
+
+TEST_P(ElasticCellsOfKind, IsTheLinearBodyWhereDisplacementsAreSmall) {
+  if (kind().mean_dilatation) return;
+  const auto& law = *body_->body.materials[0].law;
+  Body linear = body_->body;
+  linear.materials[0].law = make_linear_elasticity(law.lambda(), law.mu());
+  const SparseMatrix stiffness = assemble_stiffness(linear, node_graph(body_->space));
+  EXPECT_LT((force_->tangent() - stiffness).norm(), 1e-14 * stiffness.norm());
+  const Vector u = random_displacement(1e-9, 3);
+  Vector force;
+  force_->evaluate(u, force);
+  EXPECT_LT((force - stiffness * u).norm(), 1e-7 * force.norm());
+  EXPECT_NEAR(force_->energy(u), 0.5 * u.dot(stiffness * u), 1e-7 * force_->energy(u));
+}
+
+TEST_P(ElasticCellsOfKind, RotationsChangeNothing) {
+  if (kind().law == "linear" || !kind().element.contains_affine()) return;
+  const Vector u = random_displacement(0.03, 4);
+  const Matrix rotation = some_rotation();
+  const Vector other = turned(u, rotation);
+  EXPECT_NEAR(force_->energy(other), force_->energy(u), 1e-13 * force_->energy(u));
+  Vector force, turned_force;
+  force_->evaluate(u, force);
+  force_->evaluate(other, turned_force);
+  const Matrix wanted = rotation * force.reshaped(dimension(), body_->space.node_count());
+  EXPECT_LT((turned_force - Vector(wanted.reshaped())).norm(), 1e-12 * force.norm());
+}
+
+/// Neither a resultant nor a moment about the current positions, and the work on the increment is a square.
+TEST_P(ElasticCellsOfKind, StrainForceIsSelfEquilibrated) {
+  if (kind().law == "linear") return;
+  const Vector u = random_displacement(0.03, 5), change = random_displacement(0.02, 6);
+  Vector force, internal;
+  force_->strain_force(u, change, force);
+  force_->evaluate(u, internal);
+  EXPECT_GT(force.dot(change), 0.0);
+  const Index d = dimension();
+  for (const Vector& each : {force, internal}) {
+    const Points forces = each.reshaped(d, body_->space.node_count());
+    const Points places = body_->space.nodes + u.reshaped(d, body_->space.node_count());
+    EXPECT_LT(forces.rowwise().sum().norm(), 1e-13 * each.norm());
+    if (!kind().element.contains_affine()) continue;
+    const Matrix moments = forces * places.transpose();
+    EXPECT_LT((moments - moments.transpose()).norm(), 1e-12 * each.norm());
+  }
+}
+
+/// Of a homogeneous strain all cells have the stress of the law, mean dilatation or not.
+TEST_P(ElasticCellsOfKind, HomogeneousStrainHasTheStressOfTheLaw) {
+  if (!kind().element.contains_affine() || kind().law == "linear") return;
+  const int d = dimension();
+  Matrix gradient(d, d);
+  gradient << (d == 2 ? (Matrix(2, 2) << 0.3, -0.2, 0.4, -0.1).finished()
+                      : (Matrix(3, 3) << 0.3, -0.2, 0.1, 0.4, -0.1, 0.05, 0.2, -0.15, 0.25).finished());
+  const Vector u = Vector((gradient * body_->space.nodes).reshaped());
+  Tensor motion = Tensor::Zero();
+  motion.topLeftCorner(d, d) = gradient;
+  const PointLaw law(*body_->body.materials[0].law, kind().plane == PlaneState::stress);
+  const Tensor strain = law.strain(motion);
+  Tensor second, deformation = Tensor::Identity() + motion;
+  if (d == 2) deformation(2, 2) = std::sqrt(1.0 + 2.0 * strain(2, 2));
+  law.stress(strain, second);
+  const Tensor cauchy = deformation * second * deformation.transpose() / deformation.determinant();
+  std::vector<double> stress, energy;
+  CellStress(body_->body).evaluate(u, stress, energy);
+  for (std::size_t cell = 0; cell < energy.size(); ++cell) {
+    EXPECT_NEAR(energy[cell], law.energy(strain), 1e-13);
+    std::size_t at = tensor_components * cell;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) EXPECT_NEAR(stress[at++], cauchy(i, j), 1e-13) << kind().law;
+    }
+  }
+}
+
+std::string name_of(const ::testing::TestParamInfo<Kind>& info) {
+  std::string law = info.param.law;
+  std::replace(law.begin(), law.end(), '-', '_');
+  return info.param.element.label() + "_" + law + (info.param.mean_dilatation ? "_mean" : "") +
+         (info.param.plane == PlaneState::stress ? "_plane_stress" : "");
+}
+
+INSTANTIATE_TEST_SUITE_P(, ElasticCellsOfKind, ::testing::ValuesIn(kinds()), name_of);
+
+/// A cell that is turned inside out is named.
+TEST(FiniteElasticity, NamesTheCellThatIsTurnedInsideOut) {
+  const auto body = make_meshed_body(make_box_mesh(box_of(CellShape::triangle, {2, 2})), 1);
+  body->body.materials[0].law = make_material_law("neo-hookean", parameters_of("neo-hookean"));
+  const FiniteElasticity elasticity(body->body, node_graph(body->space));
+  Vector u = Vector::Zero(body->space.dof_count()), force;
+  u[0] = 3.0;
+  try {
+    elasticity.evaluate(u, force);
+    FAIL();
+  } catch (const Error& problem) {
+    EXPECT_EQ(problem.kind(), ErrorKind::not_converged);
+    EXPECT_NE(std::string(problem.what()).find("turned inside out"), std::string::npos) << problem.what();
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
