@@ -20,6 +20,7 @@ namespace ricochet {
 [[nodiscard]] inline std::vector<std::string> history_column_names() {
   std::vector<std::string> names = names_of(HistoryRecorder::standard_columns(2));
   for (std::string& name : names_of(HistoryRecorder::standard_columns(3))) names.push_back(std::move(name));
+  for (std::string& name : names_of(HistoryRecorder::finite_strain_columns())) names.push_back(std::move(name));
   return names;
 }
 

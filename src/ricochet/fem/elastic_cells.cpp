@@ -62,6 +62,11 @@ ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph) : body_(bod
   if (body.mesh->dimension == 3) solid_ = std::make_unique<Blocks<3>>(body);
 }
 
+ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph, std::vector<int> cells)
+    : ElasticCells(body, graph) {
+  cells_ = std::move(cells);
+}
+
 ElasticCells::~ElasticCells() = default;
 
 template <>
@@ -119,10 +124,12 @@ double ElasticCells::energy(const Vector& displacement) const {
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
-    return parallel_sum<double>(body_.mesh->cell_count(), [&](Index first, Index last) {
+    const Index count = cells_.empty() ? body_.mesh->cell_count() : static_cast<Index>(cells_.size());
+    return parallel_sum<double>(count, [&](Index first, Index last) {
       CellWalk walk(body_.space->cells);
       double sum = 0.0;
-      for (Index cell = first; cell < last; ++cell) {
+      for (Index i = first; i < last; ++i) {
+        const Index cell = cells_.empty() ? i : cells_[static_cast<std::size_t>(i)];
         walk.go_to(cell);
         CellKernel<d> kernel = all.kernel(walk, cell);
         typename CellKernel<d>::LocalVector u;

@@ -28,6 +28,8 @@ class ElasticCells {
  public:
   /// Keeps references. Without a graph there is neither force nor tangent.
   explicit ElasticCells(const Body& body, const NodeGraph* graph = nullptr);
+  /// Of some cells alone, ascending, that those of the graph are.
+  ElasticCells(const Body& body, const NodeGraph* graph, std::vector<int> cells);
   ~ElasticCells();
   ElasticCells(const ElasticCells&) = delete;
   ElasticCells& operator=(const ElasticCells&) = delete;
@@ -55,6 +57,7 @@ class ElasticCells {
 
   const Body& body_;
   const NodeGraph* graph_;
+  std::vector<int> cells_;  ///< empty: all
   std::unique_ptr<Blocks<2>> plane_;
   std::unique_ptr<Blocks<3>> solid_;
 };

@@ -118,4 +118,23 @@ NodeGraph node_graph(const DisplacementSpace& space) {
   return graph;
 }
 
+NodeGraph cells_at_nodes(const NodeGraph& graph, const DisplacementSpace& space, const std::vector<char>& wanted) {
+  NodeGraph result = graph;
+  result.cells.clear();
+  result.cell_begins.assign(1, 0);
+  for (std::size_t part = 0; part + 1 < graph.cell_begins.size(); ++part) {
+    CellWalk walk(space.cells);
+    for (Index k = graph.cell_begins[part]; k < graph.cell_begins[part + 1]; ++k) {
+      const int cell = graph.cells[static_cast<std::size_t>(k)];
+      walk.go_to(cell);
+      const Index* const nodes = walk.nodes();
+      if (std::any_of(nodes, nodes + walk.node_count(),
+                      [&](Index node) { return wanted[static_cast<std::size_t>(node)] != 0; }))
+        result.cells.push_back(cell);
+    }
+    result.cell_begins.push_back(static_cast<Index>(result.cells.size()));
+  }
+  return result;
+}
+
 }  // namespace ricochet

@@ -24,6 +24,9 @@ struct NodeGraph {
   [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
 };
 [[nodiscard]] NodeGraph node_graph(const DisplacementSpace& space);
+/// The same with those cells alone that touch a wanted node.
+[[nodiscard]] NodeGraph cells_at_nodes(const NodeGraph& graph, const DisplacementSpace& space,
+                                       const std::vector<char>& wanted);
 
 /// Walks through cells in ascending order of their number through all blocks.
 class CellWalk {

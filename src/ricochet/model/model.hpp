@@ -59,6 +59,9 @@ struct CaseMeshFile {
   Placement placement;
 };
 
+/// The columns of the histories of its runs.
+[[nodiscard]] Columns history_columns(const Model& model);
+
 /// That of [mesh], or those of the parts in their order.
 [[nodiscard]] std::vector<CaseMeshFile> mesh_files(const Case& input);
 

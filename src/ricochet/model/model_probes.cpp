@@ -188,6 +188,11 @@ void add_standing_columns(Model& model) {
   }
 }
 
+Columns history_columns(const Model& model) {
+  return HistoryRecorder::columns_of(model.problem.dimension, !model.problem.internal_force->is_linear(), model.sensors,
+                                     model.history_bodies);
+}
+
 void add_probes(const Case& input, Model& model) {
   ProbeMaker maker(input, model);
   for (std::size_t i = 0; i < input.probes.size(); ++i) maker.make(i);

@@ -2,12 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "ricochet/base/error.hpp"
 
 namespace ricochet {
 
 FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph)
     : body_(body), graph_(std::move(graph)), cells_(body, &graph_) {}
+
+FiniteElasticity::FiniteElasticity(const Body& body, NodeGraph graph, std::vector<int> cells)
+    : body_(body), graph_(std::move(graph)), cells_(body, &graph_, std::move(cells)) {}
+
+/// Nodes that follow a wanted one are wanted, too.
+std::shared_ptr<const InternalForce> FiniteElasticity::near(const std::vector<char>& nodes) const {
+  std::vector<char> wanted = nodes;
+  if (body_.tied != nullptr) {
+    for (const TiedNodes::Tie& tie : body_.tied->ties()) {
+      for (const auto& [node, weight] : tie.weights) {
+        if (weight != 0.0 && nodes[static_cast<std::size_t>(node)] != 0) wanted[static_cast<std::size_t>(tie.node)] = 1;
+      }
+    }
+  }
+  NodeGraph graph = cells_at_nodes(graph_, *body_.space, wanted);
+  std::vector<int> cells = graph.cells;
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return std::make_shared<FiniteElasticity>(body_, std::move(graph), std::move(cells));
+}
 
 const Vector& FiniteElasticity::complete(const Vector& values, Vector& memory) const {
   if (body_.tied == nullptr || body_.tied->empty() || values.size() == 0) return values;

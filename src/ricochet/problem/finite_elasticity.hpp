@@ -11,10 +11,14 @@ class FiniteElasticity final : public InternalForce {
   /// Keeps a reference to the body, and to its ties.
   FiniteElasticity(const Body& body, NodeGraph graph);
 
+  /// Of some cells alone.
+  FiniteElasticity(const Body& body, NodeGraph graph, std::vector<int> cells);
+
   void evaluate(const Vector& displacement, Vector& force) const override;
   using InternalForce::energy;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
+  [[nodiscard]] std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const override;
   [[nodiscard]] bool is_linear() const override { return false; }
   using InternalForce::tangent;
   [[nodiscard]] SparseMatrix tangent(const Vector& displacement) const override;

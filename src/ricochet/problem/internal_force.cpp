@@ -1,5 +1,7 @@
 #include "ricochet/problem/internal_force.hpp"
 
+#include <stdexcept>
+
 #include "ricochet/base/error.hpp"
 
 namespace ricochet {
@@ -7,6 +9,10 @@ namespace ricochet {
 void require_linear(const InternalForce& internal_force, const std::string& who) {
   if (internal_force.is_linear()) return;
   throw Error(ErrorKind::invalid_input, who + " needs a linear material law: set material.law = \"linear\"");
+}
+
+std::shared_ptr<const InternalForce> InternalForce::near(const std::vector<char>&) const {
+  throw std::logic_error("the part of an internal force that is asked for is not there");
 }
 
 double InternalForce::energy(const Vector& displacement, const Vector&) const {

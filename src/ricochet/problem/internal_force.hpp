@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "ricochet/base/types.hpp"
 #include "ricochet/linear_algebra/node_matrix.hpp"
@@ -24,6 +26,9 @@ class InternalForce {
   virtual void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const = 0;
   /// The same where the force that evaluate() gives for this displacement is known.
   [[nodiscard]] virtual double energy(const Vector& displacement, const Vector& force) const;
+  /// The part of it that is of the cells at some nodes (per node, 1: wanted): their forces, and the energy of these cells
+  /// alone. Only where the force is not linear.
+  [[nodiscard]] virtual std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const;
   /// The force is a linear function of U: the tangent is the same everywhere. Who relies on that asks (require_linear).
   [[nodiscard]] virtual bool is_linear() const = 0;
   /// ∂force/∂U at a displacement (empty: the undeformed body), symmetric, of one pattern. Made anew by every call,

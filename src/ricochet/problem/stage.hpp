@@ -69,6 +69,9 @@ struct Stage {
   std::vector<std::shared_ptr<ContactRows>> rows_in_store;  ///< memory for rows that follow the motion
   ObstacleMotion obstacle;                                  ///< where rows follow the motion: velocities along them
   Vector right_hand_side;                                   ///< b, per dof
+  /// Where the internal force f is no linear function of the displacement: a place p with −f(p) in b, and A δ
+  /// stands for αM δ + ηC δ + f(p + κδ) − f(p). Empty: A δ is what it is.
+  Vector force_place;
   Vector prescribed;                                        ///< δ on supported dofs, in the order of Supports::dofs()
   std::vector<char> eligible;                               ///< per contact point
   Vector gap_offset;                                        ///< q, per contact point
@@ -89,6 +92,7 @@ struct StageSolution {
   Vector support_reaction;                    ///< on supported dofs
   std::vector<ContactStatus> contact_status;  ///< per contact point
   int iterations = 0;                         ///< of the contact solver
+  int rounds = 1;                             ///< linear stages that were solved, for an internal force that is none
   Vector contact_increment;                   ///< m on contact nodes, where the operator has a layer; else empty
   /// ρ̄, where it is not ρ: then not empty.
   Vector mean_normal_reaction, mean_tangential_reaction;

@@ -1,4 +1,5 @@
 #include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/integration_error.hpp"
 #include "ricochet/scheme/newmark_keys.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
@@ -14,7 +15,8 @@ namespace {
 ///
 /// Energy: J + ½h²(β−γ/2)AᵀMA changes in a step by ΔUᵀ[(1−γ)F₀+γF₁], with F the forces outside J, less
 ///   (γ−½)ΔUᵀKΔU + ½h²(β−γ/2)(2γ−1)ΔAᵀMΔA
-/// (S. Krenk, Int. J. Numer. Meth. Engng. 67 (2006) 1–16).
+/// (S. Krenk, Int. J. Numer. Meth. Engng. 67 (2006) 1–16). Where the internal force f is not linear, the change of the
+/// elastic energy W has ΔW − ΔU·[(1−γ)f₀+γf₁] in place of the term with K (integration_error.hpp).
 ///
 /// On massless dofs A and V are no states: A = 0, V = ΔU/h. Damping then acts on ΔU/h for all dofs, because a mixture
 /// of the two velocities would make the operator unsymmetric.
@@ -23,6 +25,7 @@ class Newmark final : public Scheme {
   Newmark(double step, double beta, double gamma) : Scheme(step), beta_(beta), gamma_(gamma) {}
 
   [[nodiscard]] bool changes_step() const override { return true; }
+  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return {{alpha(), 1.0, damping_factor(problem)}};
   }
@@ -46,6 +49,7 @@ class Newmark final : public Scheme {
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();
+    error_.begin(problem, state);
     predicted_ = h * state.velocity + (h * h * (0.5 - beta_)) * state.acceleration;
     base_ = state.displacement + predicted_;
     Stage& stage = stages.stage(0);
@@ -61,6 +65,8 @@ class Newmark final : public Scheme {
     for (const Index dof : problem.massless_dofs) acceleration_[dof] = 0.0;
     dissipate(problem, state, increment);
     state.displacement += increment;
+    integration_error_ =
+        problem.internal_force->is_linear() ? 0.0 : error_.end(problem, increment, gamma_, state);
     state.velocity += h * ((1.0 - gamma_) * state.acceleration + gamma_ * acceleration_);
     state.acceleration = acceleration_;
     follow_without_inertia(problem, increment, h, state);
@@ -75,7 +81,7 @@ class Newmark final : public Scheme {
   }
 
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.numerical_dissipation = dissipation_};
+    return {.numerical_dissipation = dissipation_, .integration_error = integration_error_};
   }
 
  private:
@@ -93,16 +99,18 @@ class Newmark final : public Scheme {
   void dissipate(const SemidiscreteProblem& problem, const State& state, const Vector& increment) {
     dissipation_ = 0.0;
     if (gamma_ == 0.5) return;
-    dissipation_ = (gamma_ - 0.5) * elastic_product(problem, increment, increment, force_);
+    if (problem.internal_force->is_linear())
+      dissipation_ = (gamma_ - 0.5) * elastic_product(problem, increment, increment, force_);
     difference_ = acceleration_ - state.acceleration;
     dissipation_ +=
         0.5 * step() * step() * (beta_ - 0.5 * gamma_) * (2.0 * gamma_ - 1.0) * problem.mass.form(difference_);
   }
 
   double beta_, gamma_;
-  double dissipation_ = 0.0;
+  double dissipation_ = 0.0, integration_error_ = 0.0;
   Vector base_, predicted_, acceleration_, velocity_, difference_, force_;
   StepEquations equations_;
+  IntegrationError error_;
 };
 
 }  // namespace

@@ -30,6 +30,9 @@ struct StepCorrections {
   double support_work = 0.0;           ///< of reactions that are none of the step's own
   double load_work = 0.0;              ///< of loads that vary on nodes without inertia
   double numerical_dissipation = 0.0;  ///< energy that the scheme itself takes away, positive when it is lost
+  /// ΔW less the work of the internal forces that the scheme takes for a step, where these are no linear function of the
+  /// displacement: energy that appears, of either sign.
+  double integration_error = 0.0;
 };
 
 class Scheme {

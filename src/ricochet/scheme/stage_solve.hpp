@@ -15,6 +15,12 @@ class StageSolve {
   /// Solves it. The solution stays until this stage is solved again. Throws Error(not_converged) where there is none,
   /// or where it is not finite.
   virtual const StageSolution& solve(std::size_t number) = 0;
+
+  // Where the internal force is not linear:
+  /// Operators turn with bodies that are at this displacement.
+  virtual void follow(const Vector& displacement) = 0;
+  /// Operators are made anew with the tangent at this displacement.
+  virtual void renew(const Vector& displacement) = 0;
 };
 
 }  // namespace ricochet

@@ -43,7 +43,8 @@ struct State {
   std::vector<ContactStatus> contact_status;  ///< per contact point, at the instant of the forces
   /// Displacement of the obstacles at the contact points while the body made the increment of the last step.
   ObstacleMotion obstacle_increment;
-  int iterations = 0;  ///< of the contact solver in the last step
+  int iterations = 0;     ///< of the contact solver in the last step
+  int newton_rounds = 0;  ///< linear stages that the last step took for an internal force that is not linear
   /// What a scheme remembers besides, by name, so that a checkpoint can write it: of a length per dof, per supported
   /// dof, or (d−1) per contact point.
   std::map<std::string, Vector> memory;

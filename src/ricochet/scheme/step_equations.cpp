@@ -9,6 +9,7 @@ void StepEquations::balance(const SemidiscreteProblem& problem, double time, con
   problem.internal_force->evaluate(base, force_);
   problem.loads.total(time, stage.right_hand_side);
   stage.right_hand_side -= force_;
+  if (!problem.internal_force->is_linear()) stage.force_place = base;
 }
 
 void StepEquations::balance(const SemidiscreteProblem& problem, double time, const Vector& base, const Vector& velocity,
@@ -21,6 +22,7 @@ void StepEquations::balance_with(const SemidiscreteProblem& problem, const Vecto
                                  const Vector& velocity, Stage& stage) {
   problem.internal_force->evaluate(base, force_);
   stage.right_hand_side = load - force_;
+  if (!problem.internal_force->is_linear()) stage.force_place = base;
   resist(problem, velocity, stage);
 }
 

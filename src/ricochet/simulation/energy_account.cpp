@@ -12,16 +12,16 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
 EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
                              const Snapshot& snapshot, const std::string& name)
     : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
-  const Vector& works = snapshot.reals(name + ".works", 7);
-  works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6]};
+  const Vector& works = snapshot.reals(name + ".works", 8);
+  works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6], works[7]};
   initial_ = snapshot.real(name + ".initial");
   initial_algorithmic_ = snapshot.real(name + ".initial_algorithmic");
 }
 
 void EnergyAccount::save(Snapshot& snapshot, const std::string& name) const {
-  Vector works(7);
+  Vector works(8);
   works << works_.load, works_.contact, works_.friction, works_.support, works_.obstacle, works_.damping,
-      works_.numerical_dissipation;
+      works_.numerical_dissipation, works_.integration_error;
   snapshot.save(name + ".works", works);
   snapshot.save(name + ".initial", initial_);
   snapshot.save(name + ".initial_algorithmic", initial_algorithmic_);
@@ -81,6 +81,7 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   works_.support += corrections.support_work;
   works_.load += corrections.load_work;
   works_.numerical_dissipation += corrections.numerical_dissipation;
+  works_.integration_error += corrections.integration_error;
   previous_ = state.forces;
   algorithmic_.reset();
 }
@@ -99,7 +100,8 @@ double EnergyAccount::algorithmic(const State& state) {
 }
 
 double EnergyAccount::of_method(const State& state) {
-  return works_.contact - works_.numerical_dissipation - (algorithmic(state) - initial_algorithmic_);
+  return works_.contact + works_.integration_error - works_.numerical_dissipation -
+         (algorithmic(state) - initial_algorithmic_);
 }
 
 Energies EnergyAccount::energies(const State& state) {
@@ -117,7 +119,7 @@ Energies EnergyAccount::energies(const State& state) {
 }
 
 double EnergyAccount::residual(const Energies& now) const {
-  return now.total() + now.algorithmic - initial_ - works_.sum() + works_.numerical_dissipation;
+  return now.total() + now.algorithmic - initial_ - works_.sum() + works_.numerical_dissipation - works_.integration_error;
 }
 
 }  // namespace ricochet

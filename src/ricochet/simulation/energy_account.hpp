@@ -17,6 +17,7 @@ struct Works {
   double obstacle = 0.0;  ///< of all reactions on the motion of the obstacles: what these put into the body
   double damping = 0.0;
   double numerical_dissipation = 0.0;  ///< taken away by the scheme, positive when energy is lost
+  double integration_error = 0.0;      ///< what the scheme's internal forces miss of the change of the elastic energy
 
   [[nodiscard]] double sum() const { return load + contact + friction + support + obstacle + damping; }
 };
@@ -48,10 +49,10 @@ class EnergyAccount {
   [[nodiscard]] Energies energies(const State& state);
   [[nodiscard]] const Works& works() const { return works_; }
   /// What the discretization of time has put into the body since the start; negative where it has taken energy away:
-  /// contact work, which exact motions have none of, less numerical dissipation and the change of the algorithmic
-  /// energy. Of the state of the last step; what total energy then changes besides is the other works.
+  /// contact work, which exact motions have none of, less numerical dissipation, the error of integration and the change
+  /// of the algorithmic energy. Of the state of the last step; what total energy then changes besides is the other works.
   [[nodiscard]] double of_method(const State& state);
-  /// total + algorithmic − initial values − Σ works + numerical dissipation: zero to rounding.
+  /// total + algorithmic − initial values − Σ works + numerical dissipation − integration error: zero to rounding.
   [[nodiscard]] double residual(const Energies& now) const;
   /// The velocity that `energies` was last computed from, for this state.
   [[nodiscard]] const Vector& velocity(const State& state) const {

@@ -60,10 +60,17 @@ Columns HistoryRecorder::standard_columns(int dimension) {
   return columns;
 }
 
-Columns HistoryRecorder::columns_of(int dimension, const std::vector<std::shared_ptr<Sensor>>& sensors,
+Columns HistoryRecorder::finite_strain_columns() {
+  return {"integration_error", {"newton_rounds", Reduction::same}};
+}
+
+Columns HistoryRecorder::columns_of(int dimension, bool finite_strain, const std::vector<std::shared_ptr<Sensor>>& sensors,
                                     const HistoryBodies& bodies) {
   Columns columns = standard_columns(dimension);
   for (const std::string& label : bodies.labels) add_vector_columns(columns, "momentum." + label, dimension);
+  if (finite_strain) {
+    for (const Column& column : finite_strain_columns()) columns.push_back(column);
+  }
   for (const auto& sensor : sensors) {
     for (const Column& column : sensor->columns()) columns.push_back(column);
   }
@@ -78,8 +85,9 @@ HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const Rotat
       sensors_(std::move(sensors)),
       bodies_(std::move(bodies)),
       body_momentum_(bodies_.labels.size() * static_cast<std::size_t>(problem.dimension)),
-      columns_(names_of(columns_of(problem.dimension, sensors_, bodies_))),
-      reductions_(reductions_of(columns_of(problem.dimension, sensors_, bodies_))) {
+      finite_strain_(!problem.internal_force->is_linear()),
+      columns_(names_of(columns_of(problem.dimension, finite_strain_, sensors_, bodies_))),
+      reductions_(reductions_of(columns_of(problem.dimension, finite_strain_, sensors_, bodies_))) {
   row_.reserve(columns_.size());
   weigh_nodes();
 }
@@ -87,14 +95,22 @@ HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const Rotat
 void HistoryRecorder::weigh_nodes() {
   const NodeMatrix& mass = problem_.mass;
   node_weight_.setOnes(problem_.nodes.cols());
-  node_arm_ = problem_.nodes;
-  if (!mass.is_scalar()) return;
-  const Index d = problem_.dimension;
-  Vector product;
-  mass.multiply(Vector::Ones(problem_.dof_count()), product);
-  for (Index node = 0; node < node_weight_.size(); ++node) node_weight_[node] = product[node * d];
-  mass.multiply(problem_.nodes.reshaped(), product);
-  node_arm_ = product.reshaped(d, problem_.nodes.cols());
+  position_ = problem_.nodes.reshaped();
+  if (mass.is_scalar()) {
+    mass.multiply(Vector::Ones(problem_.dof_count()), momentum_);
+    for (Index node = 0; node < node_weight_.size(); ++node)
+      node_weight_[node] = momentum_[node * problem_.dimension];
+  }
+  weigh_positions();
+}
+
+void HistoryRecorder::weigh_positions() {
+  if (problem_.mass.is_scalar()) {
+    problem_.mass.multiply(position_, momentum_);
+    node_arm_ = momentum_.reshaped(problem_.dimension, problem_.nodes.cols());
+  } else {
+    node_arm_ = position_.reshaped(problem_.dimension, problem_.nodes.cols());
+  }
 }
 
 const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccount& account) {
@@ -104,10 +120,14 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
                energies.algorithmic, energies.total(), works.load, works.contact, works.friction, works.support,
                works.obstacle, works.damping, works.numerical_dissipation, account.residual(energies)});
   add_contact_force(state);
-  add_momentum(account.velocity(state));
+  add_momentum(state, account.velocity(state));
   const Observation observation = observer_.observe(state);
   add_contact_state(observation);
   row_.insert(row_.end(), body_momentum_.begin(), body_momentum_.end());
+  if (finite_strain_) {
+    row_.push_back(works.integration_error);
+    row_.push_back(state.newton_rounds);
+  }
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
   problem_.ranks->reduce(row_, reductions_);
   return row_;
@@ -120,7 +140,11 @@ void HistoryRecorder::add_contact_force(const State& state) {
   append(force, row_);
 }
 
-void HistoryRecorder::add_momentum(const Vector& velocity) {
+void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
+  if (finite_strain_) {
+    position_ = Vector(problem_.nodes.reshaped()) + state.displacement;
+    weigh_positions();
+  }
   if (!problem_.mass.is_scalar()) problem_.mass.multiply(velocity, momentum_);
   const Vector& values = problem_.mass.is_scalar() ? velocity : momentum_;
   const Momenta sum = parallel_sum<Momenta>(node_weight_.size(), [&](Index first, Index last) {

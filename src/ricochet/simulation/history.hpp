@@ -57,18 +57,21 @@ class HistoryRecorder {
 
   /// Names of the columns, in the order of a row.
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
-  /// The same of a history that is yet to come.
-  [[nodiscard]] static Columns columns_of(int dimension, const std::vector<std::shared_ptr<Sensor>>& sensors,
+  /// The same of a history that is yet to come. `finite_strain`: some material's law is not linear.
+  [[nodiscard]] static Columns columns_of(int dimension, bool finite_strain,
+                                          const std::vector<std::shared_ptr<Sensor>>& sensors,
                                           const HistoryBodies& bodies = {});
-  /// The standard columns alone (no sensors), for a body of this dimension: names that a probe cannot have.
+  /// Of every history of a body of this dimension; with those of finite strain, names that a probe cannot have.
   [[nodiscard]] static Columns standard_columns(int dimension);
+  [[nodiscard]] static Columns finite_strain_columns();
   /// The row of a state. The reference stays valid until the next call.
   [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
 
  private:
   void weigh_nodes();
+  void weigh_positions();
   void add_contact_force(const State& state);
-  void add_momentum(const Vector& velocity);
+  void add_momentum(const State& state, const Vector& velocity);
   void sum_of_bodies(const Vector& values);
   void add_contact_state(const Observation& observation);
 
@@ -78,15 +81,16 @@ class HistoryRecorder {
   std::vector<std::shared_ptr<Sensor>> sensors_;
   HistoryBodies bodies_;
   std::vector<double> body_momentum_;  ///< d of each
+  bool finite_strain_;
   std::vector<std::string> columns_;
   std::vector<Reduction> reductions_;
   std::vector<double> row_;
   /// Momentum and angular momentum are Σ node_weight_ p and Σ node_arm_ × p over the nodes. Where M = m ⊗ I, as it is
   /// for a density, p is the velocity, and these are m 1 and m x of the reference positions x: no product with M. Else
-  /// p is M V, and these are 1 and x.
+  /// p is M V, and these are 1 and x. At finite strain x are the positions of the state.
   Vector node_weight_;
   Points node_arm_;
-  Vector momentum_;  ///< M V
+  Vector momentum_, position_;  ///< M V, x
 };
 
 /// Digests of all columns, row by row.

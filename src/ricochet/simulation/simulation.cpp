@@ -130,12 +130,13 @@ const StageSolution& Simulation::solve(std::size_t number) {
                 "(reduced-kane with mass \"equivalent\")");
   }
   iterations_ += solution.iterations;
+  newton_rounds_ += solution.rounds;
   return solution;
 }
 
 /// One attempt. Leaves step and time as they were.
 void Simulation::take_step() {
-  iterations_ = 0;
+  iterations_ = newton_rounds_ = 0;
   // Rows that follow the motion go on from those of the state, whatever was solved in between.
   if (problem_.contact.follows_motion()) {
     for (SolvedStage& each : current_->stages) each.stage.rows = state_.forces.rows;
@@ -151,6 +152,7 @@ void Simulation::take_step() {
                                             problem_.contact.size(), problem.what(), advice));
   }
   state_.iterations = iterations_;
+  state_.newton_rounds = newton_rounds_;
 }
 
 /// An operator that is needed for the first time is factorized.

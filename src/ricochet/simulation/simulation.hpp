@@ -64,6 +64,8 @@ class Simulation : private StageSolve {
   double take_controlled_step();
   Stage& stage(std::size_t number) override;
   const StageSolution& solve(std::size_t number) override;
+  void follow(const Vector& displacement) override { current_->solver->follow(displacement); }
+  void renew(const Vector& displacement) override { current_->solver->renew(displacement); }
 
   const SemidiscreteProblem& problem_;
   Scheme& scheme_;
@@ -75,7 +77,8 @@ class Simulation : private StageSolve {
   std::optional<StepControl> control_;
   State before_;  ///< an attempt, with control
   std::unique_ptr<EnergyAccount> account_;
-  int iterations_ = 0;  ///< of the contact solver in this step
+  int iterations_ = 0;     ///< of the contact solver in this step
+  int newton_rounds_ = 0;  ///< in this step
   Vector increment_;
 };
 

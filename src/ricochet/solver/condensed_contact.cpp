@@ -152,7 +152,7 @@ SparseMatrix CondensedContact::transposed_rows(const std::vector<Index>& points,
 void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& w) {
   for (const Index point : points) {
     contact_.row_offset.push_back(contact_.row_offset.back() + rows_of(point));
-    if (!rows_->revision.empty()) revision_.push_back(rows_->revision[static_cast<std::size_t>(point)]);
+    revision_.push_back(rows_->revision.empty() ? -1 : rows_->revision[static_cast<std::size_t>(point)]);
   }
   columns_.append(transposed_rows(points, unknown_, factor_.size()), w);
   if (layer_) layer_->append(transposed_rows(points, layer_->unknown(), layer_->size()));

@@ -92,7 +92,7 @@ class CondensedContact {
   bool must_ask_ = false;       ///< points have penetrated where none was thought to touch
   bool asked_ = false;          ///< the candidates took part in the last stage
   const ContactRows* rows_;     ///< those of the stage that is being solved
-  std::vector<long> revision_;  ///< of each candidate's rows in the columns; empty where rows never change
+  std::vector<long> revision_;  ///< of each candidate's rows in the columns; −1: of rows that never change
   ContactCandidates candidates_;
   std::vector<Index> taken_up_;  ///< how many candidates there were after each call of take_up
   ContactColumns columns_;

@@ -14,7 +14,8 @@ class FactoredStage;
 
 class ContactLayer {
  public:
-  /// Keeps references to the problem and the stage of A_c, which must not be factorized anew (linear elasticity).
+  /// Keeps references to the problem and the stage of A_c. Where that is factorized anew, so is the stage that has the
+  /// layer, after it.
   /// `coefficients` are those of the stage that has the layer.
   ContactLayer(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, FactoredStage& layer);
 

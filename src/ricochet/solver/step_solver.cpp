@@ -8,8 +8,10 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/solver/choose_method.hpp"
+#include "ricochet/solver/newton_rounds.hpp"
 #include "ricochet/solver/stage_solver.hpp"
 #include "ricochet/solver/tangent_rounds.hpp"
+#include "ricochet/solver/turned_stage.hpp"
 
 namespace ricochet {
 
@@ -19,6 +21,8 @@ namespace {
 constexpr double long_factorization = 1e11;
 
 constexpr const char* methods_entry = ".methods";  ///< of a snapshot
+constexpr const char* made_at_entry = ".made_at";
+constexpr const char* frame_entry = ".frame";
 constexpr const char* kept = "as when the run began";
 
 void log_factorization(const ChosenMethod& chosen, std::size_t unknowns) {
@@ -37,18 +41,46 @@ class StagesStepSolver final : public StepSolver {
  public:
   StagesStepSolver(const SemidiscreteProblem& problem, const std::vector<OperatorCoefficients>& operators,
                    const StepSolverOptions& options)
-      : rounds_(problem) {
+      : problem_(problem), operators_(operators), rounds_(problem), newton_(problem) {
+    if (!problem.internal_force->is_linear()) frame_ = std::make_unique<TurnedFrame>(problem);
     for (const OperatorCoefficients& coefficients : operators) add_stage(problem, coefficients, options);
   }
 
   void solve(std::size_t number, Stage& stage, StageSolution& solution) override {
     StageSolver& solver = *stages_.at(number);
-    solver.solve(stage, solution);
-    if (stage.motion) rounds_.follow_motion(solver, stage, solution);
+    const auto solve_linear = [&](Stage& linear, StageSolution& result) {
+      solver.solve(linear, result);
+      if (linear.motion) rounds_.follow_motion(solver, linear, result);
+    };
+    if (stage.force_place.size() > 0) {
+      follow(stage.force_place);
+      newton_.solve(
+          operators_[number], solve_linear, [this](const Vector& displacement) { renew(displacement); }, stage,
+          solution);
+    } else {
+      solve_linear(stage, solution);
+      solution.rounds = 1;
+    }
     solver.show_contact();
   }
   void refactorize(std::size_t number, const Vector& displacement) override {
     stages_.at(number)->refactorize(displacement);
+  }
+  void renew(const Vector& displacement) override {
+    try {
+      for (const auto& stage : stages_) stage->refactorize(displacement);
+      made_at_ = displacement;
+    } catch (const Error& problem) {
+      if (problem.kind() != ErrorKind::invalid_input) throw;
+      made_at_.resize(0);
+      for (const auto& stage : stages_) stage->refactorize(made_at_);
+    }
+    if (!frame_) return;
+    frame_->restart(made_at_);
+    frame_->follow(displacement);
+  }
+  void follow(const Vector& displacement) override {
+    if (frame_) frame_->follow(displacement);
   }
   void observe_contact(const ContactObserver& observer) override {
     for (const auto& stage : stages_) stage->observe_contact(observer);
@@ -67,9 +99,18 @@ class StagesStepSolver final : public StepSolver {
     Snapshot::Integers methods;
     for (const ChosenMethod& chosen : methods_) methods.push_back(static_cast<std::int64_t>(chosen.method));
     snapshot.save(name + methods_entry, std::move(methods));
+    if (frame_) {
+      snapshot.save(name + made_at_entry, made_at_);
+      frame_->save(snapshot, name + frame_entry);
+    }
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->save(snapshot, fmt::format("{}.{}", name, i));
   }
   void load(const Snapshot& snapshot, const std::string& name) override {
+    if (frame_) {
+      const Vector& made_at = snapshot.reals(name + made_at_entry, 0, problem_.dof_count());
+      if (made_at.size() > 0) renew(made_at);
+      frame_->load(snapshot, name + frame_entry);
+    }
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->load(snapshot, fmt::format("{}.{}", name, i));
   }
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const override { return methods_; }
@@ -79,6 +120,7 @@ class StagesStepSolver final : public StepSolver {
                  const StepSolverOptions& options) {
     const SolverMethod before = options.chosen.empty() ? SolverMethod::automatic : options.chosen[methods_.size()];
     ChosenMethod chosen{.method = options.method, .reason = "the case asks for it"};
+    if (frame_) chosen = require_direct(options);
     AnalysedOperator analysed;
     Timer timer;
     if (options.method == SolverMethod::automatic && before == SolverMethod::iterative) {
@@ -87,7 +129,7 @@ class StagesStepSolver final : public StepSolver {
       log::info("solved by iterations, as when the run began");
     } else if (chosen.method != SolverMethod::iterative || coefficients.dofs == StageDofs::contact) {
       analysed = analyse_operator(problem, coefficients);
-      chosen = choose_method(problem, analysed.factor.predicted(), coefficients, options);
+      if (!frame_) chosen = choose_method(problem, analysed.factor.predicted(), coefficients, options);
       if (before == SolverMethod::direct && chosen.method != before) {
         chosen.method = before;
         chosen.reason = kept;
@@ -107,10 +149,25 @@ class StagesStepSolver final : public StepSolver {
       analysed = {};
       stages_.push_back(make_iterative_stage(problem, coefficients, options, layer));
     }
+    if (frame_) stages_.back() = make_turned_stage(std::move(stages_.back()), *frame_);
     methods_.push_back(chosen);
   }
 
+  /// A factor turns with the bodies; what conjugate gradients are preconditioned with does not.
+  static ChosenMethod require_direct(const StepSolverOptions& options) {
+    if (options.method == SolverMethod::iterative) {
+      throw Error(ErrorKind::invalid_input,
+                  "solver.method = \"iterative\" needs linear material laws: leave it out, or set it to \"direct\"");
+    }
+    return {.method = SolverMethod::direct, .reason = "the stiffness follows the motion"};
+  }
+
+  const SemidiscreteProblem& problem_;
+  std::vector<OperatorCoefficients> operators_;
+  std::unique_ptr<TurnedFrame> frame_;  ///< null where the internal force is linear
+  Vector made_at_;                      ///< displacement of the factors; empty: the undeformed body
   TangentRounds rounds_;
+  NewtonRounds newton_;
   std::vector<std::unique_ptr<StageSolver>> stages_;
   std::vector<ChosenMethod> methods_;
 };

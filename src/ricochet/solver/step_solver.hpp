@@ -53,6 +53,12 @@ class StepSolver {
   /// from now on. Throws Error(invalid_input) when the operator is not positive definite there; the stages are then not
   /// to be solved before another displacement has been given at which it is.
   virtual void refactorize(std::size_t number, const Vector& displacement) = 0;
+  /// The same of all stages. Where some operator is not positive definite there, all go back to the undeformed body's
+  /// tangent, turned as the bodies are.
+  virtual void renew(const Vector& displacement) = 0;
+  /// Where the internal force is not linear: operators turn with bodies that are at this displacement. (solve() does
+  /// so by itself for a stage with a force_place.)
+  virtual void follow(const Vector& displacement) = 0;
   /// Shows every contact problem that is solved from now on, and its solution, to the observer; none if it is empty.
   virtual void observe_contact(const ContactObserver& observer) = 0;
   /// Spent so far in contact solvers, for the summary.

@@ -7,7 +7,6 @@
 namespace ricochet {
 
 void TurnedFrame::restart(const Vector& displacement) {
-  made_at_ = displacement;
   if (displacement.size() > 0) {
     bodies_.fit(displacement, start_);
   } else {
@@ -94,7 +93,6 @@ void TurnedFrame::turn_back(const SparseRowMatrix& rows, SparseRowMatrix& result
 }
 
 void TurnedFrame::save(Snapshot& snapshot, const std::string& name) const {
-  snapshot.save(name + ".made_at", made_at_);
   Vector numbers(static_cast<Index>(9 * rotation_.size()));
   for (std::size_t i = 0; i < rotation_.size(); ++i)
     numbers.segment<9>(static_cast<Index>(9 * i)) = rotation_[i].reshaped();

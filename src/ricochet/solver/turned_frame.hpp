@@ -44,7 +44,6 @@ class TurnedFrame {
   std::vector<Tensor> start_;     ///< per body, at the factor's displacement
   std::vector<Tensor> rotation_;  ///< R
   std::vector<Tensor> fitted_;
-  Vector made_at_;  ///< displacement
   bool is_identity_ = true;
   long number_ = 0;
 };

@@ -88,7 +88,7 @@ std::optional<Names> columns_of(const Case& input) {
   const log::Silence silence;  // the runs say what there is to say
   try {
     const std::unique_ptr<Model> model = build_model(input);
-    return names_of(HistoryRecorder::columns_of(model->problem.dimension, model->sensors, model->history_bodies));
+    return names_of(history_columns(*model));
   } catch (const Error&) {
     return std::nullopt;
   }

@@ -23,6 +23,7 @@ void AlphaScheme::start(const SemidiscreteProblem&, State& state, StageSolve&) {
 void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
   const double h = step(), end = state.time + h;
   Vector& before = state.memory.at(algorithmic_acceleration);
+  error_.begin(problem, state);
   shift_ = (weights_.inertia * before - weights_.force * state.acceleration) /
            ((1.0 - weights_.force) * weights_.alpha);  // c/α
   predicted_ = h * state.velocity + (h * h * (0.5 - weights_.beta)) * before - shift_;
@@ -39,6 +40,9 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
   change_ = (solution.increment - shift_) / (weights_.beta * h * h);  // A₁
   for (const Index dof : problem.massless_dofs) change_[dof] = 0.0;
   state.displacement += increment;
+  integration_error_ = problem.internal_force->is_linear()
+                           ? 0.0
+                           : error_.end(problem, increment, 1.0 - weights_.force, state);
   state.velocity += h * ((1.0 - weights_.gamma) * before + weights_.gamma * change_);
   change_ -= before;
   before += change_;
@@ -64,6 +68,7 @@ void AlphaScheme::dissipate(const SemidiscreteProblem& problem, const Vector& in
   dissipation_ = weights_.energy_factor * (2.0 * weights_.gamma - 1.0) * change_.dot(force_);
   if (weights_.force == 0.5) return;
   dissipation_ += (0.5 - weights_.force) * increment.dot(force_);
+  if (!problem.internal_force->is_linear()) return;
   dissipation_ += (0.5 - weights_.force) * elastic_product(problem, increment, increment, force_);
 }
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "ricochet/scheme/integration_error.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -38,6 +39,7 @@ class AlphaScheme final : public Scheme {
   AlphaScheme(double step, const AlphaWeights& weights) : Scheme(step), weights_(weights) {}
 
   [[nodiscard]] bool changes_step() const override { return true; }
+  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return {{weights_.alpha, 1.0, damping_factor(problem)}};
   }
@@ -51,7 +53,7 @@ class AlphaScheme final : public Scheme {
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override;
   bool momentum_acceleration(const State& state, Vector& acceleration) const override;
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
-    return {.numerical_dissipation = dissipation_};
+    return {.numerical_dissipation = dissipation_, .integration_error = integration_error_};
   }
 
  protected:
@@ -67,9 +69,10 @@ class AlphaScheme final : public Scheme {
   void dissipate(const SemidiscreteProblem& problem, const Vector& increment);
 
   AlphaWeights weights_;
-  double dissipation_ = 0.0;
+  double dissipation_ = 0.0, integration_error_ = 0.0;
   Vector shift_, predicted_, base_, velocity_, change_, force_;
   StepEquations equations_;
+  IntegrationError error_;
 };
 
 /// Key of State::memory: A, which is not the acceleration that the forces give.

@@ -13,6 +13,7 @@ class EndScheme : public Scheme {
   EndScheme(const std::string& name, double step) : Scheme(step), layer_(name, step) {}
 
   [[nodiscard]] bool changes_step() const override { return true; }
+  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
   void analyse(const SemidiscreteProblem& problem) override { layer_.analyse(problem); }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
     return layer_.operators(problem, mean_of(problem));

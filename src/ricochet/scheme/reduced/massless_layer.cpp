@@ -26,6 +26,11 @@ void MasslessLayer::analyse(const SemidiscreteProblem& problem) {
                             "creates no energy with this mass",
                             scheme_));
   }
+  if (!problem.internal_force->is_linear()) {
+    finite_.emplace();
+    finite_->analyse(problem);
+    return;
+  }
   stiffness_.analyse(problem);
   find_damping(problem);
 }
@@ -69,6 +74,7 @@ void MasslessLayer::find_damping(const SemidiscreteProblem& problem) {
 std::vector<OperatorCoefficients> MasslessLayer::operators(const SemidiscreteProblem& problem,
                                                            ReactionMean mean) const {
   const double h = step_;
+  if (finite_) return FiniteLayer::operators(problem, h, mean);
   OperatorCoefficients midpoint{.mass = 4.0 / (h * h), .stiffness = 1.0, .damping = 2.0 / h};
   if (problem.contact_dofs.empty()) return {midpoint};
   const OperatorCoefficients layer{
@@ -132,6 +138,10 @@ void MasslessLayer::require_mean(const SemidiscreteProblem& problem, const State
 
 void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean, State& state, StageSolve& stages,
                             Vector& increment) {
+  if (finite_) {
+    finite_->advance(problem, mean, step_, state, stages, increment);
+    return;
+  }
   const double h = step_;
   const bool has_layer = !problem.contact_dofs.empty();
   Stage& stage = stages.stage(midpoint_stage(problem));

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ricochet/scheme/contact_stiffness.hpp"
+#include "ricochet/scheme/reduced/finite_layer.hpp"
 #include "ricochet/scheme/reduced/stick_memory.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
@@ -40,7 +42,7 @@ class MasslessLayer {
   void advance(const SemidiscreteProblem& problem, ReactionMean mean, State& state, StageSolve& stages,
                Vector& increment);
   /// Of the last step.
-  [[nodiscard]] const StepCorrections& corrections() const { return corrections_; }
+  [[nodiscard]] const StepCorrections& corrections() const { return finite_ ? finite_->corrections() : corrections_; }
 
   // Pieces of a step, for schemes that put them together in another way.
   /// L̄, base = u₀ + (h/2)v₀, and the balance at the middle in the stage.
@@ -90,6 +92,7 @@ class MasslessLayer {
   StickMemory stick_;
   StepEquations equations_;
   StepCorrections corrections_;
+  std::optional<FiniteLayer> finite_;  ///< where the internal force is not linear
   Vector load_, next_varying_, base_, residual_, load_change_, right_, contact_base_, rate_, middle_, before_;
   Vector row_force_, of_layer_, nodal_, gap_change_, slip_change_, normal_, tangential_;
 };

@@ -1,0 +1,23 @@
+#include "ricochet/scheme/integration_error.hpp"
+
+namespace ricochet {
+
+void IntegrationError::begin(const SemidiscreteProblem& problem, const State& state) {
+  if (problem.internal_force->is_linear() || step_ == state.step) return;
+  step_ = state.step;
+  problem.internal_force->evaluate(state.displacement, force_);
+  energy_ = problem.internal_force->energy(state.displacement);
+}
+
+double IntegrationError::end(const SemidiscreteProblem& problem, const Vector& increment, double weight,
+                             const State& state) {
+  mean_ = (1.0 - weight) * force_;
+  problem.internal_force->evaluate(state.displacement, force_);
+  mean_ += weight * force_;
+  const double before = energy_;
+  energy_ = problem.internal_force->energy(state.displacement);
+  step_ = state.step + 1;
+  return (energy_ - before) - increment.dot(mean_);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,283 @@
+#include "ricochet/scheme/reduced/finite_layer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/scheme/reduced/massless_layer.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr std::size_t layer_stage = MasslessLayer::layer_stage;
+/// What the balance of energy of a step may lack, relative to kinetic and elastic energy.
+constexpr double energy_tolerance = 1e-15;
+/// σ is about half of the change of a strain; one that is larger means that steps are far too long.
+constexpr double largest_sigma = 1.0;
+
+double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vector& b) {
+  double sum = 0.0;
+  for (const Index dof : problem.contact_dofs) sum += a[dof] * b[dof];
+  return sum;
+}
+
+}  // namespace
+
+void FiniteLayer::analyse(const SemidiscreteProblem& problem) {
+  if (problem.contact_dofs.empty()) return;
+  std::vector<char> wanted(static_cast<std::size_t>(problem.nodes.cols()), 0);
+  for (const Index dof : problem.contact_dofs) wanted[static_cast<std::size_t>(dof / problem.dimension)] = 1;
+  layer_ = problem.internal_force->near(wanted);
+}
+
+std::vector<OperatorCoefficients> FiniteLayer::operators(const SemidiscreteProblem& problem, double step,
+                                                         ReactionMean mean) {
+  OperatorCoefficients midpoint{.mass = 4.0 / (step * step), .stiffness = 1.0, .damping = 2.0 / step};
+  if (problem.contact_dofs.empty()) return {midpoint};
+  midpoint.layer = static_cast<int>(layer_stage);
+  midpoint.mean = mean;
+  return {{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact}, midpoint};
+}
+
+/// L̄, but L₁ on contact nodes, and the parts of it that vary.
+void FiniteLayer::take_loads(const SemidiscreteProblem& problem, double step, const State& state) {
+  load_ = problem.loads.constant();
+  if (!problem.loads.varies()) return;
+  problem.loads.varying(state.time, product_);
+  problem.loads.varying(state.time + step, end_load_);
+  product_ = 0.5 * (product_ + end_load_);
+  for (const Index dof : problem.contact_dofs) product_[dof] = end_load_[dof];
+  end_load_ = product_;  // what acts over the step
+  load_ += end_load_;
+}
+
+void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const State& state) {
+  take_loads(problem, step, state);
+  base_ = state.displacement + (0.5 * step) * state.velocity;
+  middle_ = base_;
+  end_ = state.displacement + step * state.velocity;
+  increment_ = end_ - state.displacement;
+  relaxed_ = state.displacement;
+  sigma_ = lacking_ = end_weight_ = dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
+  nodal_.setZero(problem.dof_count());
+  mean_nodal_.setZero(problem.dof_count());
+  if (energy_step_ != state.step) energy_ = problem.internal_force->energy(state.displacement);
+  energy_start_ = energy_;
+}
+
+/// f(x), p, f(u₁), and σ from the balance of energy at these.
+void FiniteLayer::evaluate(const SemidiscreteProblem& problem, const State& state) {
+  const InternalForce& elastic = *problem.internal_force;
+  increment_ = end_ - state.displacement;
+  elastic.evaluate(middle_, force_);
+  elastic.strain_force(middle_, increment_, strain_force_);
+  if (layer_) layer_->evaluate(end_, end_force_);
+  energy_ = elastic.energy(end_);
+  // ΔW − L₁·Δ_c and Ψ(u_f1) − Ψ(u_f0), which differ by ρ·HΔ_c − d.
+  const double at_end = work_at_end_ - dissipation_;
+  const double wanted =
+      (energy_ - energy_start_) - on_contact(problem, load_, increment_) - obstacle_work_ - end_weight_ * at_end;
+  product_ = load_ + mean_nodal_;
+  const double has = force_.dot(increment_) - on_contact(problem, product_, increment_);
+  const double unit = strain_force_.dot(increment_);
+  lacking_ = wanted - has - sigma_ * unit;
+  const double least = energy_tolerance * std::abs(energy_start_ + energy_);
+  if (unit > least * energy_tolerance) sigma_ = std::clamp((wanted - has) / unit, -largest_sigma, largest_sigma);
+}
+
+/// b of the stage: what is missing at the middle.
+void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage) {
+  stage.force_place.resize(0);
+  product_ = middle_ - base_;
+  problem.mass.multiply(product_, right_);
+  stage.right_hand_side = load_ - force_ - sigma_ * strain_force_ - (4.0 / (step * step)) * right_;
+  if (problem.has_damping()) {
+    product_ = middle_ - state.displacement;
+    problem.damping.evaluate(product_, damping_force_);
+    stage.right_hand_side -= (2.0 / step) * damping_force_;
+  }
+  const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
+  equations_.prescribe(problem, state.time + step, half_way, stage);
+}
+
+/// A_cc⁻¹ of right_ on contact dofs.
+const Vector& FiniteLayer::solve_layer(const SemidiscreteProblem& problem, StageSolve& stages) {
+  Stage& stage = stages.stage(layer_stage);
+  stage.force_place.resize(0);
+  if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
+  for (const Index dof : problem.contact_dofs) stage.right_hand_side[dof] = right_[dof];
+  stage.prescribed.setZero(problem.supports.size());
+  stage.motion.reset();
+  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
+  return stages.solve(layer_stage).increment;
+}
+
+/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ − f_c(u₁) − 2 b_c).
+void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
+                                  const State& state, StageSolve& stages, Stage& stage) {
+  right_ = load_ - end_force_ - 2.0 * stage.right_hand_side;
+  const Vector& shift = solve_layer(problem, stages);
+  for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
+  const StepStart at_start{state.displacement, state.time};
+  require_no_penetration(problem, end_, state.time + step, stage, &at_start);
+  stage.gap_factor = 2.0;
+  product_ = 0.5 * (state.displacement + end_);
+  if (problem.has_moving_obstacles()) equations_.observe_obstacles(problem, state.time + 0.5 * step, product_);
+  rate_ = (end_ - state.displacement) / step;
+  equations_.require_friction(problem, rate_, 2.0 / step, stage);
+  stick_.require(problem, state, step, stage);
+  if (mean == ReactionMean::end) return;
+  problem.gaps(state.displacement, state.time, stage.start_gap);
+  stage.start_normal_reaction = state.forces.normal_reaction;
+  stage.start_tangential_reaction = state.forces.tangential_reaction;
+}
+
+/// x += δ, u₁ += 2δ, on contact nodes 2m.
+FiniteLayer::Round FiniteLayer::correct(const SemidiscreteProblem& problem, const State& state,
+                                        const StageSolution& solution) {
+  middle_ += solution.increment;
+  product_ = 2.0 * middle_ - state.displacement;
+  for (const Index dof : problem.contact_dofs)
+    product_[dof] = end_[dof] + 2.0 * solution.contact_increment[dof];
+  Round round{(product_ - last_end_).lpNorm<Eigen::Infinity>(), 0.0};
+  round.correction = std::max(round.correction, 2.0 * (middle_ - last_middle_).lpNorm<Eigen::Infinity>());
+  end_ = product_;
+  // Of the step less that of a free flight: what forces do.
+  round.increment = 2.0 * (middle_ - base_).lpNorm<Eigen::Infinity>();
+  return round;
+}
+
+/// Hᵀρ, Hᵀρ̄, and where some of it is that of the end one round for the contact nodes that attain Ψ(u_f0; ρ).
+void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
+                               const Stage& stage, const StageSolution& solution) {
+  nodal_.setZero();
+  stage.rows->add_force(solution.normal_reaction, solution.tangential_reaction, nodal_);
+  mean_nodal_.setZero();
+  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), mean_nodal_);
+  obstacle_work_ = obstacle_work(*stage.rows, solution.acting_normal(), solution.acting_tangential(), step);
+  end_weight_ = solution.end_weight;
+  dissipation_ = work_at_end_ = 0.0;
+  if (end_weight_ == 0.0 || (solution.normal_reaction.isZero(0.0) && state.forces.normal_reaction.isZero(0.0))) {
+    if (!problem.loads.varies()) {
+      relaxed_ = state.displacement;
+      end_weight_ = 0.0;
+      return;
+    }
+  }
+  layer_->evaluate(relaxed_, end_force_);
+  right_ = load_ + nodal_ - end_force_;
+  const Vector& change = solve_layer(problem, stages);
+  for (const Index dof : problem.contact_dofs) relaxed_[dof] += change[dof];
+  // d: both energies are of the cells at contact nodes, as the others are the same.
+  product_ = relaxed_ - state.displacement;
+  right_ = load_ + nodal_;
+  dissipation_ = on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - layer_->energy(state.displacement));
+  product_ = end_ - state.displacement;
+  work_at_end_ = on_contact(problem, nodal_, product_) -
+                 obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step);
+}
+
+/// Of reactions on the motion of the obstacles over the step.
+double FiniteLayer::obstacle_work(const ContactRows& rows, const Vector& normal, const Vector& tangential,
+                                  double step) {
+  if (equations_.obstacle_velocity().normal.size() == 0) return 0.0;
+  obstacle_ = equations_.obstacle_velocity();
+  project_motion(rows, obstacle_);
+  return step * (normal.dot(obstacle_.normal) -
+                 (tangential.size() > 0 ? tangential.dot(obstacle_.tangential) : 0.0));
+}
+
+void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State& state, const Stage& stage,
+                         const StageSolution& solution, Vector& increment) {
+  increment = end_ - state.displacement;
+  before_ = state.displacement;
+  product_ = middle_ - base_;
+  state.displacement = end_;
+  state.velocity += (4.0 / step) * product_;
+  state.acceleration = (4.0 / (step * step)) * product_;
+  follow_without_inertia(problem, increment, step, state);
+  equations_.take_contact(stage, solution, step, state);
+  if (problem.loads.varies()) state.forces.varying_load = end_load_;
+  if (problem.has_damping()) {
+    problem.damping.evaluate(increment, state.forces.damping_force);
+    state.forces.damping_force *= 1.0 / step;
+  }
+  stick_.learn(problem, before_, state);
+  energy_step_ = state.step + 1;
+  corrections_ = {.numerical_dissipation = end_weight_ * dissipation_, .integration_error = lacking_};
+  if (end_weight_ == 1.0) return;
+  // The mean works nothing along the path; what of it is the end's works what that does.
+  corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
+}
+
+void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, const State& state) {
+  constexpr int most_halvings = 5;
+  for (int halving = 0;; ++halving) {
+    try {
+      evaluate(problem, state);
+      return;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
+    }
+    middle_ = 0.5 * (middle_ + last_middle_);
+    end_ = 0.5 * (end_ + last_end_);
+  }
+}
+
+void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state,
+                          StageSolve& stages, Vector& increment) {
+  const std::size_t number = MasslessLayer::midpoint_stage(problem);
+  start(problem, step, state);
+  stages.follow(base_);
+  evaluate(problem, state);
+  progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
+                  (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
+  progress_.forget_rounds();
+  Stage& stage = stages.stage(number);
+  const StageSolution* solution = nullptr;
+  const double kinetic = 0.5 * problem.mass.form(state.velocity);
+  bool converged = false;
+  double lacked = std::numeric_limits<double>::infinity();
+  while (true) {
+    last_middle_ = middle_;
+    last_end_ = end_;
+    balance(problem, step, state, stage);
+    if (problem.contact_dofs.empty()) {
+      stage.eligible.clear();
+      stage.motion.reset();
+    } else {
+      require_contact(problem, mean, step, state, stages, stage);
+    }
+    solution = &stages.solve(number);
+    const Round round = correct(problem, state, *solution);
+    if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, *solution);
+    halve_where_inverted(problem, state);
+    // Rounding of forces and energies may leave more.
+    const bool balanced = std::abs(lacking_) <= energy_tolerance * (kinetic + energy_start_ + energy_) ||
+                          (converged && std::abs(lacking_) > 0.5 * lacked);
+    lacked = std::abs(lacking_);
+    const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
+    converged = converged || advice == NewtonProgress::Advice::done;
+    if (converged && balanced) break;
+    if (converged) continue;
+    if (advice == NewtonProgress::Advice::failed) {
+      throw Error(ErrorKind::not_converged,
+                  fmt::format("Newton's method did not converge in {} iterations (the last correction moves a node by "
+                              "{:.3g})",
+                              progress_.rounds(), round.correction));
+    }
+    if (advice == NewtonProgress::Advice::renew) {
+      stages.renew(middle_);
+      progress_.count_renewal();
+      progress_.restart();
+    }
+  }
+  finish(problem, step, state, stage, *solution, increment);
+}
+
+}  // namespace ricochet

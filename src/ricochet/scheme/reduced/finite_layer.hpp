@@ -1,0 +1,74 @@
+#pragma once
+
+#include <memory>
+
+#include "ricochet/problem/newton_progress.hpp"
+#include "ricochet/scheme/reduced/stick_memory.hpp"
+#include "ricochet/scheme/scheme.hpp"
+#include "ricochet/scheme/step_equations.hpp"
+
+/// @file The step of massless_layer.hpp where the internal force f = ∂W/∂u is no linear function of the displacement.
+///
+/// With c the contact nodes, f the others, H, ρ and the mean ρ̄ as there, x the middle of the step on f, Δ = u₁ − u₀ and
+///   p = the forces at x of the stress 𝔻₀ : ΔE (InternalForce::strain_force),   D = f(x) + σ p:
+///   M (v₁−v₀)/h + (2/h) C (x−u₀) + D = L̄ on f,   D = L₁ + Hᵀρ̄ on c,   f(u₁) = L₁ + Hᵀρ on c,
+/// and Coulomb's law at the end. D has neither resultant nor moment about x beside contact and loads, so linear and
+/// angular momentum change by the impulses of these alone, whatever σ is. The number σ makes the work of D the change
+/// of the elastic energy. With Ψ(u_f; ρ) = min over u_c of W(u) − (L₁ + Hᵀρ)·u_c, which u₁ attains,
+///   D_f·Δ_f = (1−μ)(ΔW − L₁·Δ_c) + μ (Ψ(u_f1; ρ) − Ψ(u_f0; ρ)),   ρ̄ = (1−μ) ρ̄_path + μ ρ,
+/// and then
+///   E₁ − E₀ = work of loads, supports and damping + μ (ρ·HΔ_c − d),
+///   d = [W(u₀) − (L₁+Hᵀρ)·u_c0] − Ψ(u_f0; ρ) ≥ 0,   ρ·HΔ_c = −r_N·g₀ − Σ F r_N |Δy_T| ≤ 0 against planes.
+/// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that Ψ is a minimum, which is so
+/// while K_cc is positive definite between u₀ and it. Where W is quadratic, σ = 0 and this is massless_layer.hpp. (The
+/// idea of a number that turns a force of the middle into one that keeps energy is that of O. Gonzalez, J. Nonlinear
+/// Sci. 6 (1996) 449–467; p instead of the increment keeps angular momentum, and Ψ the proof of dissipation.)
+namespace ricochet {
+
+class FiniteLayer {
+ public:
+  /// After a mass and supports are known. Throws Error(invalid_input).
+  void analyse(const SemidiscreteProblem& problem);
+  [[nodiscard]] static std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem, double step,
+                                                                   ReactionMean mean);
+  void advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state, StageSolve& stages,
+               Vector& increment);
+  [[nodiscard]] const StepCorrections& corrections() const { return corrections_; }
+
+ private:
+  struct Round {
+    double correction = 0.0;  ///< the largest entry of the last one
+    double increment = 0.0;   ///< of the step so far
+  };
+  void start(const SemidiscreteProblem& problem, double step, const State& state);
+  void take_loads(const SemidiscreteProblem& problem, double step, const State& state);
+  /// Forces at the middle and at the end, and what the energy lacks; then σ for it.
+  void evaluate(const SemidiscreteProblem& problem, const State& state);
+  void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
+  void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
+                       StageSolve& stages, Stage& stage);
+  Round correct(const SemidiscreteProblem& problem, const State& state, const StageSolution& solution);
+  [[nodiscard]] double obstacle_work(const ContactRows& rows, const Vector& normal, const Vector& tangential,
+                                     double step);
+  void follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages, const Stage& stage,
+                    const StageSolution& solution);
+  void finish(const SemidiscreteProblem& problem, double step, State& state, const Stage& stage,
+              const StageSolution& solution, Vector& increment);
+  const Vector& solve_layer(const SemidiscreteProblem& problem, StageSolve& stages);
+  void halve_where_inverted(const SemidiscreteProblem& problem, const State& state);
+
+  std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes alone
+  NewtonProgress progress_;
+  StickMemory stick_;
+  StepEquations equations_;
+  StepCorrections corrections_;
+  long energy_step_ = -1;  ///< the step whose end energy_ is of
+  double energy_ = 0.0, energy_start_ = 0.0, sigma_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
+  double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
+  ObstacleMotion obstacle_;
+  Vector load_, end_load_, base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
+  Vector relaxed_;  ///< u_f0 with the contact nodes that attain Ψ(u_f0; ρ)
+  Vector product_, right_, rate_, damping_force_, before_, last_middle_, last_end_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,101 @@
+#include "ricochet/solver/newton_rounds.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+void NewtonRounds::keep(const Stage& stage) {
+  place_ = stage.force_place;
+  problem_.internal_force->evaluate(place_, force_at_place_);
+  right_hand_side_ = stage.right_hand_side;
+  prescribed_ = stage.prescribed;
+  gap_offset_ = stage.gap_offset;
+  slip_offset_ = stage.slip_offset;
+  if (!stage.motion) return;
+  motion_ = stage.motion->displacement;
+  velocity_ = stage.motion->velocity;
+}
+
+/// f(p + κδ). Where a correction turns a cell inside out half of it is taken, and half of that.
+void NewtonRounds::take_internal_force(double factor, const Vector& correction) {
+  constexpr int most_halvings = 5;
+  double part = 1.0;
+  for (int halving = 0;; ++halving) {
+    displacement_ = place_ + factor * total_;
+    try {
+      problem_.internal_force->evaluate(displacement_, force_);
+      return;
+    } catch (const Error& problem) {
+      if (problem.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
+    }
+    part *= 0.5;
+    total_ -= part * correction;
+  }
+}
+
+/// The stage for a correction of δ = total.
+void NewtonRounds::linearize(const OperatorCoefficients& coefficients, Stage& stage) {
+  problem_.mass.multiply(total_, product_);
+  stage.right_hand_side = right_hand_side_ - coefficients.mass * product_ - (force_ - force_at_place_);
+  if (problem_.has_damping()) {
+    problem_.damping.evaluate(total_, product_);
+    stage.right_hand_side -= coefficients.damping * product_;
+  }
+  stage.prescribed = prescribed_;
+  for (Index i = 0; i < problem_.supports.size(); ++i)
+    stage.prescribed[i] -= total_[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+  if (stage.motion) {
+    stage.motion->displacement = motion_ + stage.gap_factor * total_;
+    if (stage.slip_offset.size() > 0) stage.motion->velocity = velocity_ + stage.slip_factor * total_;
+    product_.setZero(total_.size());
+    linearize_contact(problem_, product_, stage);
+    return;
+  }
+  stage.rows->normal_motion(total_, stage.gap_offset);
+  stage.gap_offset = gap_offset_ + stage.gap_factor * stage.gap_offset;
+  if (stage.slip_offset.size() == 0) return;
+  stage.rows->tangential_motion(total_, stage.slip_offset);
+  stage.slip_offset = slip_offset_ + stage.slip_factor * stage.slip_offset;
+}
+
+void NewtonRounds::solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
+                         Stage& stage, StageSolution& solution) {
+  keep(stage);
+  total_.setZero(problem_.dof_count());
+  const double size = problem_.nodes.cwiseAbs().maxCoeff() + place_.lpNorm<Eigen::Infinity>();
+  progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size);
+  progress_.forget_rounds();
+  int iterations = 0;
+  while (true) {
+    solve_linear(stage, solution);
+    iterations += solution.iterations;
+    const double correction =
+        solution.increment.allFinite() ? solution.increment.lpNorm<Eigen::Infinity>()
+                                       : std::numeric_limits<double>::infinity();
+    if (std::isfinite(correction)) total_ += solution.increment;
+    const NewtonProgress::Advice advice = progress_.judge(correction, total_.lpNorm<Eigen::Infinity>());
+    if (advice == NewtonProgress::Advice::done) break;
+    if (advice == NewtonProgress::Advice::failed) {
+      throw Error(ErrorKind::not_converged, fmt::format("Newton's method did not converge in {} iterations (the last "
+                                                        "correction moves a node by {:.3g})",
+                                                        progress_.rounds(), correction));
+    }
+    take_internal_force(coefficients.stiffness, solution.increment);
+    if (advice == NewtonProgress::Advice::renew) {
+      renew(displacement_);
+      progress_.count_renewal();
+      progress_.restart();
+    }
+    linearize(coefficients, stage);
+  }
+  solution.increment = total_;
+  solution.iterations = iterations;
+  solution.rounds = progress_.rounds();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+
+#include "ricochet/problem/newton_progress.hpp"
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/problem/stage.hpp"
+
+/// @file Stages whose internal force is no linear function of the displacement.
+namespace ricochet {
+
+/// Solves  αM δ + ηC δ + f(p + κδ) − f(p) = b + Hᵀρ  with the contact conditions of the stage by Newton's method with a
+/// factor that is kept: A d = residual + Hᵀρ, δ += d, the conditions on contact exact for δ + d in every round.
+class NewtonRounds {
+ public:
+  explicit NewtonRounds(const SemidiscreteProblem& problem) : problem_(problem) {}
+
+  /// The linear stage, and a new factor at a displacement.
+  using SolveLinear = std::function<void(Stage&, StageSolution&)>;
+  using Renew = std::function<void(const Vector& displacement)>;
+  /// Leaves the stage as the last round had it. Throws Error(not_converged).
+  void solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew, Stage& stage,
+             StageSolution& solution);
+
+ private:
+  void keep(const Stage& stage);
+  void linearize(const OperatorCoefficients& coefficients, Stage& stage);
+  void take_internal_force(double factor, const Vector& correction);
+
+  const SemidiscreteProblem& problem_;
+  NewtonProgress progress_;
+  Vector total_, displacement_, force_, product_;
+  // Of the stage at δ = 0:
+  Vector place_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_;
+};
+
+}  // namespace ricochet
