@@ -114,7 +114,7 @@ class Outcome {
     return !s_.small_strain_holds_in(static_cast<std::size_t>(impact - s_.impacts.begin()));
   }
   [[nodiscard]] bool turned_until(double time) const {
-    return s_.rotation ? s_.rotation->time_beyond <= time : s_.digest("max_rotation").maximum > rotation_limit;
+    return s_.rotation ? s_.rotation->time_beyond <= time : s_.digest("max_rotation").maximum > s_.largest_rotation();
   }
   [[nodiscard]] std::string mark(const char* sign, bool applies) const {
     if (!applies) return "";

@@ -55,7 +55,7 @@ std::string deformation_text(const RunSummary& s) {
       fmt::format("  deepest interpenetration {:.3g}{}, largest rotation of a cell {:.3g} rad{}",
                   s.digest("max_penetration").maximum,
                   s.penetration.checked ? " of contact nodes" : " of contact nodes (no others were looked at)",
-                  rotation, rotation > rotation_limit ? beyond_text(s) : "");
+                  rotation, rotation > s.largest_rotation() ? beyond_text(s) : "");
   for (const UnwatchedPenetration& found : s.penetration.found) text += found_text(found);
   for (const ContactBeyondRim& rim : s.penetration.rims)
     text += fmt::format("\n  the contact of \"{}\" with \"{}\" goes on beyond its group", rim.group, rim.obstacle);

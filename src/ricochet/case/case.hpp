@@ -47,6 +47,7 @@ struct DampingSection {
 };
 
 struct MaterialSection {
+  std::string dilatation = "automatic";
   std::string group;
   double density = 0.0;
   std::string law = "linear";

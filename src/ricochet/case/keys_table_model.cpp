@@ -68,7 +68,18 @@ Section material_section() {
                        .required = true,
                        .range = positive,
                        .doc = "Mass per volume."},
-                      {.name = "law", .type = KeyType::choice, .standard = "linear", .doc = "The material law."},
+                      {.name = "law",
+                       .type = KeyType::choice,
+                       .standard = "linear",
+                       .doc = "The material law: \"linear\" for small strains and rotations, the others for any; all "
+                              "materials of a case are of one or the other kind."},
+                      {.name = "dilatation",
+                       .type = KeyType::choice,
+                       .standard = "automatic",
+                       .choices = {"automatic", "pointwise", "mean"},
+                       .doc = "Of laws of finite strain: where the volume's part of the energy is taken, \"pointwise\" "
+                              "or of a \"mean\" over each cell, which does not lock as Poisson's ratio nears 1/2; "
+                              "\"automatic\": the mean from 0.4 on, where the law and the cells have one."},
                       damping_key(),
                   }};
   return with_types(std::move(section), "law", material_law_registry());

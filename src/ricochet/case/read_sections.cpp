@@ -47,6 +47,7 @@ MaterialSection read_material(const SectionReader& reader, Case& result) {
   material.group = reader.groups("group", result.group_lists);
   material.density = reader.number("density");
   material.law = reader.text("law");
+  material.dilatation = reader.text("dilatation");
   material.parameters = reader.type_parameters(*find_section("material"));
   const SectionReader damping = reader.table("damping");
   material.damping.mass = damping.number("mass");

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "ricochet/base/error.hpp"
 #include "ricochet/fem/cell_assembly.hpp"
 #include "ricochet/fem/facet_integration.hpp"
@@ -64,6 +66,11 @@ void cell_load(const Body& body, const ForceDensity& force, Vector& load) {
 }
 
 }  // namespace
+
+bool has_finite_strain(const Body& body) {
+  return std::any_of(body.materials.begin(), body.materials.end(),
+                     [](const Material& material) { return !material.law->is_linear(); });
+}
 
 IsotropicElasticity linear_law(const Body& body, const Material& material) {
   if (const auto law = material.law->constant_tangent(is_plane_stress(body))) return *law;

@@ -25,6 +25,8 @@ struct Body {
 [[nodiscard]] inline bool is_plane_stress(const Body& body) {
   return body.mesh->dimension == 2 && body.plane == PlaneState::stress;
 }
+/// Some material has a law of finite strain; then all have.
+[[nodiscard]] bool has_finite_strain(const Body& body);
 /// The law of a material of which the tangent is constant; throws Error(invalid_input) for one that is not linear.
 [[nodiscard]] IsotropicElasticity linear_law(const Body& body, const Material& material);
 [[nodiscard]] inline const Material& material_of(const Body& body, Index cell) {

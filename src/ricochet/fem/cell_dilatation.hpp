@@ -19,7 +19,9 @@ class CellDilatation {
   /// P f at the points; symmetric in the product Σ w f g.
   void project(const double* values, double* result) const;
   /// Orthonormal functions: P f = Σ_m ψ_m Σ w ψ_m f.
-  [[nodiscard]] double function(int m, int point) const { return orthonormal_[static_cast<std::size_t>(m)][static_cast<std::size_t>(point)]; }
+  [[nodiscard]] double function(int m, int point) const {
+    return orthonormal_[static_cast<std::size_t>(m)][static_cast<std::size_t>(point)];
+  }
 
  private:
   int points_ = 0, count_ = 0;

@@ -18,9 +18,9 @@ template <int d>
 struct KernelBlock {
   BlockIntegration integration;
   bool affine = false;
-  Matrix dilatation_functions = {};   ///< points × functions; empty: no mean dilatation
-  std::vector<double> inverse = {};   ///< d × d numbers, row by row, per point or per cell
-  std::vector<double> weight = {};    ///< per point
+  Matrix dilatation_functions = {};  ///< points × functions; empty: no mean dilatation
+  std::vector<double> inverse = {};  ///< d × d numbers, row by row, per point or per cell
+  std::vector<double> weight = {};   ///< per point
   int nodes = 0, points = 0;
 
   [[nodiscard]] const double* inverse_at(Index cell, int q) const {
@@ -66,7 +66,8 @@ class CellKernel {
     Tensor result = Tensor::Zero();
     for (int i = 0; i < block_.nodes; ++i) {
       for (int a = 0; a < d; ++a) {
-        for (int b = 0; b < d; ++b) result(a, b) += u[static_cast<std::size_t>(i * d + a)] * gradients_[static_cast<std::size_t>(i * d + b)];
+        for (int b = 0; b < d; ++b)
+          result(a, b) += u[static_cast<std::size_t>(i * d + a)] * gradients_[static_cast<std::size_t>(i * d + b)];
       }
     }
     return result;
@@ -82,18 +83,36 @@ class CellKernel {
     }
   }
 
-  /// Calls visit(q, F, E, S) at all points, F with the stretch across the plane; the gradients are those of q. Returns
-  /// the least J; what is visited where it is not positive means nothing. (The linear law has F = I, J = 1.)
-  template <class Visit>
-  double visit_stress(const LocalVector& u, const Visit& visit) {
+  /// A point's displacement gradient, which F is made of, and the strain that its stress is of.
+  struct PointMotion {
+    Tensor gradient, strain;
+  };
+  [[nodiscard]] PointMotion motion_of(const LocalVector& u) const {
+    const Tensor motion = gradient(u);
+    return {motion, law_.strain(motion)};
+  }
+  /// At the middle of an increment Δ the mean of the strains of both ends, ½(E₀ + E₁) = E + ⅛ (∇Δ)ᵀ∇Δ.
+  [[nodiscard]] PointMotion mean_motion_of(const LocalVector& middle, const LocalVector& increment) const {
+    PointMotion result{gradient(middle), Tensor()};
+    const Tensor change = gradient(increment);
+    result.strain = green_strain(result.gradient) + 0.125 * (change.transpose() * change);
+    law_.complete(result.strain);
+    return result;
+  }
+
+  /// Calls visit(q, F, E, S) at all points, F with the stretch across the plane; the gradients are those of q.
+  /// motion() gives what a point has. Returns the least det F; what is visited where it is not positive means nothing.
+  /// (The linear law has F = I.)
+  template <class Motion, class Visit>
+  double visit_stress(const Motion& motion, const Visit& visit) {
     double least = 1.0;
-    if (has_dilatation()) least = find_dilatation(u);
+    if (has_dilatation()) find_dilatation(motion);
     Tensor stress;
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
-      const Tensor motion = gradient(u);
-      const Tensor strain = law_.strain(motion);
-      const Tensor deformation = deformation_of(motion, strain);
+      const PointMotion at = motion();
+      const Tensor& strain = at.strain;
+      const Tensor deformation = deformation_of(at.gradient, strain);
       if (!law_.is_linear()) {
         const double volume = deformation.determinant();
         if (!(volume >= least)) least = std::isnan(volume) ? -std::numeric_limits<double>::infinity() : volume;
@@ -108,7 +127,7 @@ class CellKernel {
   /// ∫ W.
   [[nodiscard]] double energy(const LocalVector& u) {
     double sum = 0.0;
-    if (has_dilatation()) static_cast<void>(find_dilatation(u));
+    if (has_dilatation()) find_dilatation([&] { return motion_of(u); });
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
       sum += weights_[q] * energy_at(q, law_.strain(gradient(u)));
@@ -127,12 +146,12 @@ class CellKernel {
 
   /// Adds the tangent, blocks of d × d for pairs of nodes as of element_matrices.hpp.
   void add_tangent(const LocalVector& u, double* blocks) {
-    if (has_dilatation()) static_cast<void>(find_dilatation(u));
+    if (has_dilatation()) find_dilatation([&] { return motion_of(u); });
     Tensor stress;
     StressTangent tangent;
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
-      const Tensor motion = gradient(u), strain = law_.strain(motion);
+      const auto [motion, strain] = motion_of(u);
       const Tensor deformation = deformation_of(motion, strain);
       law_.stress(strain, stress);
       law_.tangent(strain, tangent);
@@ -162,19 +181,18 @@ class CellKernel {
     return result;
   }
 
-  /// Θ − 1 and the pressure p of all points. Returns the least J.
-  double find_dilatation(const LocalVector& u) {
+  /// Θ − 1 and the pressure p of all points.
+  template <class Motion>
+  void find_dilatation(const Motion& motion) {
     PointValues change;
-    double least = 1.0;
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
-      change[static_cast<std::size_t>(q)] = determinant_change(gradient(u));
-      least = std::min(least, 1.0 + change[static_cast<std::size_t>(q)]);
+      change[static_cast<std::size_t>(q)] = volume_change(determinant_change(2.0 * motion().strain));
     }
     dilatation_.project(change.data(), mean_.data());
-    for (int q = 0; q < block_.points; ++q) change[static_cast<std::size_t>(q)] = slope(mean_[static_cast<std::size_t>(q)]);
+    for (int q = 0; q < block_.points; ++q)
+      change[static_cast<std::size_t>(q)] = slope(mean_[static_cast<std::size_t>(q)]);
     dilatation_.project(change.data(), pressure_.data());
-    return least;
   }
   /// U′ and U″ of U(J) = (K/4)(J² − 1 − 2 ln J) at J = 1 + j.
   [[nodiscard]] double slope(double j) const { return 0.5 * volume_.modulus * j * (2.0 + j) / (1.0 + j); }
@@ -221,7 +239,8 @@ class CellKernel {
       const Eigen::Matrix<double, 6, d> right = weighted * rows[static_cast<std::size_t>(j)];
       Eigen::Matrix<double, d, 1> traction = Eigen::Matrix<double, d, 1>::Zero();
       for (int a = 0; a < d; ++a) {
-        for (int b = 0; b < d; ++b) traction[a] += weights_[q] * stress(a, b) * gradients_[static_cast<std::size_t>(j * d + b)];
+        for (int b = 0; b < d; ++b)
+          traction[a] += weights_[q] * stress(a, b) * gradients_[static_cast<std::size_t>(j * d + b)];
       }
       for (int i = 0; i <= j; ++i, blocks += d * d) {
         const Eigen::Matrix<double, d, d> block = rows[static_cast<std::size_t>(i)].transpose() * right;
@@ -268,7 +287,8 @@ class CellKernel {
           for (int n = 0; n < count; ++n) {
             for (int a = 0; a < d; ++a) {
               for (int b = 0; b < d; ++b) {
-                blocks[a * d + b] += product(m, n) * slopes[static_cast<std::size_t>(m)][static_cast<std::size_t>(i * d + a)] *
+                blocks[a * d + b] += product(m, n) *
+                                     slopes[static_cast<std::size_t>(m)][static_cast<std::size_t>(i * d + a)] *
                                      slopes[static_cast<std::size_t>(n)][static_cast<std::size_t>(j * d + b)];
               }
             }

@@ -32,8 +32,8 @@ struct ElasticCells::Blocks {
     block.weight.reserve(static_cast<std::size_t>(cells.size() * block.points));
     for (Index cell = 0; cell < cells.size(); ++cell) {
       for (int q = 0; q < block.points; ++q) {
-        const auto map =
-            jacobian<d>(body.mesh->nodes, cells.cell(cell), block.integration.geometry.gradients[static_cast<std::size_t>(q)]);
+        const auto map = jacobian<d>(body.mesh->nodes, cells.cell(cell),
+                                     block.integration.geometry.gradients[static_cast<std::size_t>(q)]);
         block.weight.push_back(block.integration.rule.weights[q] * map.determinant());
         if (block.affine && q > 0) continue;
         const Eigen::Matrix<double, d, d> inverse = map.inverse();
@@ -93,31 +93,65 @@ void worse(InvertedCell& worst, Index cell, double ratio) {
 
 }  // namespace
 
-InvertedCell ElasticCells::force(const Vector& displacement, Vector& result) const {
-  std::vector<InvertedCell> worst(static_cast<std::size_t>(graph_->parts()));
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const Blocks<d>& all = blocks<d>();
-    assemble_vector<d>(
-        body_, *graph_,
-        [&](const CellWalk& walk, std::size_t part, Index cell, auto& local) {
-          CellKernel<d> kernel = all.kernel(walk, cell);
-          typename CellKernel<d>::LocalVector u;
-          kernel.gather(walk.nodes(), displacement, u);
-          local.fill(0.0);
-          const double least = kernel.visit_stress(
-              u, [&](int q, const Tensor& deformation, const Tensor&, const Tensor& stress) {
-                kernel.add_force(q, deformation * stress, local);
-              });
-          if (!(least > 0.0)) worse(worst[part], cell, least);
-        },
-        result);
-  });
+namespace {
+
+/// Of the parts, in their order.
+InvertedCell worst_of(const std::vector<InvertedCell>& parts) {
   InvertedCell all;
-  for (const InvertedCell& each : worst) {
+  for (const InvertedCell& each : parts) {
     if (each.cell >= 0) worse(all, each.cell, each.volume_ratio);
   }
   return all;
+}
+
+}  // namespace
+
+/// Adds up the forces of cells whose points move as make_motion(kernel, nodes) has it.
+template <int d, class MakeMotion>
+InvertedCell ElasticCells::add_up(const MakeMotion& make_motion, Vector& result) const {
+  std::vector<InvertedCell> worst(static_cast<std::size_t>(graph_->parts()));
+  const Blocks<d>& all = blocks<d>();
+  assemble_vector<d>(
+      body_, *graph_,
+      [&](const CellWalk& walk, std::size_t part, Index cell, auto& local) {
+        CellKernel<d> kernel = all.kernel(walk, cell);
+        local.fill(0.0);
+        const double least =
+            kernel.visit_stress(make_motion(kernel, walk.nodes()),
+                                [&](int q, const Tensor& deformation, const Tensor&, const Tensor& stress) {
+                                  kernel.add_force(q, deformation * stress, local);
+                                });
+        if (!(least > 0.0)) worse(worst[part], cell, least);
+      },
+      result);
+  return worst_of(worst);
+}
+
+InvertedCell ElasticCells::force(const Vector& displacement, Vector& result) const {
+  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    return add_up<d>(
+        [&](const CellKernel<d>& kernel, const Index* nodes) {
+          typename CellKernel<d>::LocalVector u;
+          kernel.gather(nodes, displacement, u);
+          return [&kernel, u] { return kernel.motion_of(u); };
+        },
+        result);
+  });
+}
+
+InvertedCell ElasticCells::mean_force(const Vector& middle, const Vector& increment, Vector& result) const {
+  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    return add_up<d>(
+        [&](const CellKernel<d>& kernel, const Index* nodes) {
+          typename CellKernel<d>::LocalVector u, change;
+          kernel.gather(nodes, middle, u);
+          kernel.gather(nodes, increment, change);
+          return [&kernel, u, change] { return kernel.mean_motion_of(u, change); };
+        },
+        result);
+  });
 }
 
 double ElasticCells::energy(const Vector& displacement) const {
@@ -195,12 +229,13 @@ void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const
     kernel.gather(body_.space->cells[block].cell(local), displacement, u);
     Tensor mean = Tensor::Zero();
     double volume = 0.0, energy = 0.0;
-    kernel.visit_stress(u, [&](int q, const Tensor& deformation, const Tensor& strain, const Tensor& second) {
-      const double weight = kernel.weight(q);
-      volume += weight;
-      energy += weight * kernel.energy_at(q, strain);
-      mean += weight / deformation.determinant() * (deformation * second * deformation.transpose());
-    });
+    kernel.visit_stress([&] { return kernel.motion_of(u); },
+                        [&](int q, const Tensor& deformation, const Tensor& strain, const Tensor& second) {
+                          const double weight = kernel.weight(q);
+                          volume += weight;
+                          energy += weight * kernel.energy_at(q, strain);
+                          mean += weight / deformation.determinant() * (deformation * second * deformation.transpose());
+                        });
     mean /= volume;
     energy_density = energy / volume;
     for (int i = 0; i < 3; ++i) {

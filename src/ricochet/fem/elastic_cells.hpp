@@ -13,7 +13,8 @@
 /// In cells with mean dilatation the part U(J) of the energy is taken of a projection Θ of J on the functions that are
 /// constant over the cell (for quadrilaterals and hexahedra of degree 2: linear), which does not lock as the material
 /// becomes incompressible (J. C. Simo, R. L. Taylor, K. S. Pister, Comput. Methods Appl. Mech. Engrg. 51 (1985)
-/// 177–208): in all formulas U′(J) gives way to the projection of U′(Θ). The force is still the derivative of the energy.
+/// 177–208): in all formulas U′(J) gives way to the projection of U′(Θ). The force is still the derivative of the
+/// energy.
 ///
 /// Quadrature is that of the stiffness, so that small displacements have the linear body's forces.
 namespace ricochet {
@@ -36,6 +37,10 @@ class ElasticCells {
 
   /// Per dof. Where a cell is inverted the force means nothing, and it is told which one.
   [[nodiscard]] InvertedCell force(const Vector& displacement, Vector& result) const;
+  /// The forces at a displacement `middle` of the stress of E + ⅛ (∇Δ)ᵀ∇Δ, Δ = `increment`: half way from u₀ to u₁,
+  /// with Δ their difference, that is the strain ½(E₀+E₁), and a rigid motion has none (J. C. Simo, N. Tarnow, Z.
+  /// Angew. Math. Phys. 43 (1992) 757–792).
+  [[nodiscard]] InvertedCell mean_force(const Vector& middle, const Vector& increment, Vector& result) const;
   [[nodiscard]] double energy(const Vector& displacement) const;
   /// Symmetric to the bit, on the pattern of the graph. An empty displacement is zero.
   [[nodiscard]] SparseMatrix tangent(const Vector& displacement) const;
@@ -54,6 +59,8 @@ class ElasticCells {
   struct Blocks;
   template <int d>
   [[nodiscard]] const Blocks<d>& blocks() const;
+  template <int d, class MakeMotion>
+  [[nodiscard]] InvertedCell add_up(const MakeMotion& make_motion, Vector& result) const;
 
   const Body& body_;
   const NodeGraph* graph_;

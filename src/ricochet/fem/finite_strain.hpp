@@ -34,6 +34,11 @@ inline double logarithm_remainder(double x) {
   return x * t - 2.0 * t * square * sum;
 }
 
+/// J − 1 of J² − 1.
+inline double volume_change(double s) {
+  return s / (1.0 + std::sqrt(1.0 + s));
+}
+
 /// (i, j) of the components of a StressTangent.
 inline constexpr std::array<std::array<int, 2>, 6> tangent_components{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
 

@@ -21,7 +21,8 @@
 namespace ricochet {
 
 using Tensor = Eigen::Matrix3d;
-/// ∂S_ij/∂E_kl between the components xx, yy, zz, xy, yz, zx: dS = this · (dE_xx, dE_yy, dE_zz, 2dE_xy, 2dE_yz, 2dE_zx).
+/// ∂S_ij/∂E_kl between the components xx, yy, zz, xy, yz, zx: dS = this · (dE_xx, dE_yy, dE_zz, 2dE_xy, 2dE_yz,
+/// 2dE_zx).
 using StressTangent = Eigen::Matrix<double, 6, 6>;
 
 class MaterialLaw {

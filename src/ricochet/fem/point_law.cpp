@@ -14,7 +14,7 @@ Tensor PointLaw::strain(const Tensor& gradient) const {
   } else {
     strain = green_strain(gradient);
   }
-  if (plane_stress_) thin_out(strain);
+  complete(strain);
   return strain;
 }
 

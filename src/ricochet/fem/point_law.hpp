@@ -14,6 +14,10 @@ class PointLaw {
   /// The strain that the law has at a displacement gradient; of plane stress with the strain across the plane at which
   /// there is no stress across it (NaN where there is none).
   [[nodiscard]] Tensor strain(const Tensor& gradient) const;
+  /// The same from its components in the plane, where that is needed.
+  void complete(Tensor& strain) const {
+    if (plane_stress_) thin_out(strain);
+  }
 
   // At that strain:
   [[nodiscard]] double energy(const Tensor& strain) const { return law_->energy(strain); }

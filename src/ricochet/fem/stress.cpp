@@ -1,6 +1,5 @@
 #include "ricochet/fem/stress.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "ricochet/base/dense_decompositions.hpp"
@@ -92,8 +91,7 @@ bool has_straight_simplices(const Body& body, CellShape shape) {
 }  // namespace
 
 CellStress::CellStress(const Body& body) : body_(body) {
-  const auto is_linear = [](const Material& material) { return material.law->is_linear(); };
-  if (!std::all_of(body.materials.begin(), body.materials.end(), is_linear)) {
+  if (has_finite_strain(body)) {
     finite_ = std::make_unique<ElasticCells>(body);
     return;
   }

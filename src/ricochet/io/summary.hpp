@@ -73,7 +73,7 @@ struct BodyDescription {
 
 /// How far cells have turned, by the rows of the history.
 struct RotationReport {
-  double limit = 0.0;                                            ///< above it small strain does not hold
+  double limit = 0.0;  ///< above it small strain does not hold; infinite: the laws hold for any rotation
   double time_beyond = std::numeric_limits<double>::infinity();  ///< of the first row above it; infinite: there is none
   std::vector<double> until_impact_end;  ///< the largest so far when each impact ended, or so far
 
@@ -183,6 +183,8 @@ struct RunSummary {
   [[nodiscard]] double creation_by_method() const;
   /// False where cells had turned too far for small strain when an impact (numbered from 0) ended.
   [[nodiscard]] bool small_strain_holds_in(std::size_t impact) const;
+  /// That the laws of this run allow; infinite at finite strain.
+  [[nodiscard]] double largest_rotation() const;
   /// The same of all impacts; of a run without any at all times.
   [[nodiscard]] bool small_strain_holds_in_impacts() const;
   /// The deepest interpenetration of all, at contact points and elsewhere; of results that did not look elsewhere

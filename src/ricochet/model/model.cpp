@@ -101,50 +101,6 @@ std::vector<Index> boundary_at(const Case& input, const std::string& key_path, c
   return group.members;
 }
 
-void assign_materials(const Case& input, Model& model) {
-  const Mesh& mesh = model.mesh;
-  model.body =
-      Body{&mesh, &model.space, input.mesh.plane == "stress" ? PlaneState::stress : PlaneState::strain, {}, {}};
-  model.body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), -1);
-  for (std::size_t i = 0; i < input.materials.size(); ++i) {
-    const MaterialSection& section = input.materials[i];
-    const std::string key = fmt::format("material.{}.group", i);
-    for (const Index cell : group_at(input, key, mesh, section.group, mesh.dimension).members) {
-      int& assigned = model.body.cell_material[static_cast<std::size_t>(cell)];
-      if (assigned >= 0) {
-        refuse(input, key,
-               fmt::format("groups \"{}\" and \"{}\" overlap: they share cells, which would have two materials",
-                           input.materials[static_cast<std::size_t>(assigned)].group, section.group));
-      }
-      assigned = static_cast<int>(i);
-    }
-    model.body.materials.push_back({section.group, section.density, make_material_law(section.law, section.parameters),
-                                    section.damping.mass, section.damping.stiffness});
-    const double poisson = model.body.materials.back().poisson();
-    const bool locks = input.mesh.degree == 1 && !(mesh.dimension == 2 && model.body.plane == PlaneState::stress);
-    // Got back from λ and μ, 0.45 itself is a little more or less.
-    if (locks && poisson >= 0.45 * (1.0 - 1e-9)) {
-      log::warning(fmt::format(
-          "material \"{}\" is nearly incompressible (Poisson's ratio {:.4g}): elements of degree 1 lock and "
-          "are far too stiff; use mesh.degree = 2",
-          section.group, poisson));
-    }
-  }
-  Index without = 0;
-  for (const int material : model.body.cell_material) without += material < 0 ? 1 : 0;
-  if (without > 0) {
-    std::vector<std::string> names;
-    for (const Group& group : mesh.groups) {
-      if (group.dimension == mesh.dimension) names.push_back(group.name);
-    }
-    refuse(input, "material",
-           fmt::format("{} of {} of {} {} no material: give a [[material]] for every group of cells "
-                       "(the mesh has {}), and put every cell into a group",
-                       without, counted(mesh.cell_count(), "cell"), mesh.source, without == 1 ? "has" : "have",
-                       names.empty() ? "none" : join_names(names)));
-  }
-}
-
 /// Supports at tied nodes are left out: these follow the other surface, which is supported there, too, or is not.
 void tell_of_supports_at_ties(const Model& model, const std::map<Index, Expression>& dofs) {
   const int d = model.mesh.dimension;

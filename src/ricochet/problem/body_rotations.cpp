@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ricochet/linear_algebra/graph_components.hpp"
@@ -33,14 +34,14 @@ BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
   for (const std::vector<Index>& members : graph_components(problem.internal_force->tangent(), d)) {
     if (members.size() == 1 && problem.is_tied_dof(members.front() * d)) continue;
     Body body;
-    const auto is_supported = [&](Index node) {
-      for (Index dof = node * d; dof < (node + 1) * d; ++dof) {
-        if (problem.supports.contains(dof)) return true;
-      }
-      return false;
-    };
+    std::array<bool, 3> held{};
+    for (const Index node : members) {
+      for (int k = 0; k < d; ++k) held[static_cast<std::size_t>(k)] |= problem.supports.contains(node * d + k);
+    }
+    const auto count = std::count(held.begin(), held.end(), true);
+    if (count == 1 && d == 3) body.axis = static_cast<int>(std::find(held.begin(), held.end(), true) - held.begin());
     for (const Index node : members) body_of_node_[static_cast<std::size_t>(node)] = static_cast<int>(bodies_.size());
-    if (std::none_of(members.begin(), members.end(), is_supported)) {
+    if (count == 0 || body.axis >= 0) {
       const auto size = static_cast<Index>(members.size());
       const Index stride = std::max(Index{1}, size / most_fitted);
       for (Index i = 0; i < size; i += stride) body.fitted.push_back(members[static_cast<std::size_t>(i)]);
@@ -66,12 +67,18 @@ Tensor BodyRotations::fit_body(const Body& body, const Vector& displacement) con
     sum += (place + displacement.segment<d>(node * d) - now) * (place - centre).transpose();
   }
   Tensor rotation = Tensor::Identity();
-  if constexpr (d == 2) {
-    const double cosine = sum(0, 0) + sum(1, 1), sine = sum(1, 0) - sum(0, 1), size = std::hypot(cosine, sine);
+  if (d == 2 || body.axis >= 0) {
+    // About z of the plane, or about an axis in space: the angle of the two components across it.
+    const int i = d == 2 ? 0 : (body.axis + 1) % 3, j = d == 2 ? 1 : (body.axis + 2) % 3;
+    const double cosine = sum(i, i) + sum(j, j), sine = sum(j, i) - sum(i, j), size = std::hypot(cosine, sine);
     if (!(size > 0.0)) return rotation;
-    rotation.topLeftCorner<2, 2>() << cosine / size, -sine / size, sine / size, cosine / size;
+    rotation(i, i) = rotation(j, j) = cosine / size;
+    rotation(j, i) = sine / size;
+    rotation(i, j) = -sine / size;
   } else {
-    rotation = orthogonal_factor(sum / sum.norm());
+    Tensor all = Tensor::Identity();
+    all.topLeftCorner<d, d>() = sum / sum.norm();
+    rotation = orthogonal_factor(all);
   }
   return rotation.allFinite() ? rotation : Tensor::Identity();
 }

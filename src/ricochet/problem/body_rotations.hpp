@@ -10,7 +10,8 @@ namespace ricochet {
 
 /// The rotation R of a body is that which fits its places x best in the sense of least squares,
 /// Σ |x_a − x̄ − R (X_a − X̄)|² over nodes: the orthogonal part of Σ (x_a − x̄)(X_a − X̄)ᵀ. Bodies that supports hold do
-/// not turn as a whole, and have R = I.
+/// not turn as a whole, and have R = I; where these hold one component in space alone, as on a plane of symmetry, a
+/// body turns about that axis.
 class BodyRotations {
  public:
   /// Bodies are the connected components of the graph of K. Keeps a reference.
@@ -27,6 +28,7 @@ class BodyRotations {
   static constexpr Index most_fitted = 1024;
   struct Body {
     std::vector<Index> fitted;  ///< nodes; none: it does not turn
+    int axis = -1;              ///< that it turns about; −1: any
   };
   template <int d>
   [[nodiscard]] Tensor fit_body(const Body& body, const Vector& displacement) const;

@@ -42,15 +42,23 @@ void FiniteElasticity::condense(Vector& force) const {
   if (body_.tied != nullptr && !body_.tied->empty()) body_.tied->condense_load(force, body_.mesh->dimension);
 }
 
+void FiniteElasticity::require_upright(const InvertedCell& inverted) const {
+  if (inverted.cell < 0) return;
+  const CellPlace place = place_of_cell(*body_.mesh, inverted.cell);
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format("cell {} at ({:.6g}) is turned inside out: somewhere in it the volume is {:.3g} times that at "
+                  "rest",
+                  place.tag, fmt::join(place.centre, ", "), inverted.volume_ratio));
+}
+
 void FiniteElasticity::evaluate(const Vector& displacement, Vector& force) const {
-  const InvertedCell inverted = cells_.force(complete(displacement, displacement_), force);
-  if (inverted.cell >= 0) {
-    const CellPlace place = place_of_cell(*body_.mesh, inverted.cell);
-    throw Error(ErrorKind::not_converged,
-                fmt::format("cell {} at ({:.6g}) is turned inside out: somewhere in it the volume is {:.3g} times that "
-                            "at rest",
-                            place.tag, fmt::join(place.centre, ", "), inverted.volume_ratio));
-  }
+  require_upright(cells_.force(complete(displacement, displacement_), force));
+  condense(force);
+}
+
+void FiniteElasticity::mean_force(const Vector& middle, const Vector& increment, Vector& force) const {
+  require_upright(cells_.mean_force(complete(middle, displacement_), complete(increment, increment_), force));
   condense(force);
 }
 

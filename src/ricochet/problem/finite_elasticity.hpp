@@ -15,6 +15,7 @@ class FiniteElasticity final : public InternalForce {
   FiniteElasticity(const Body& body, NodeGraph graph, std::vector<int> cells);
 
   void evaluate(const Vector& displacement, Vector& force) const override;
+  void mean_force(const Vector& middle, const Vector& increment, Vector& force) const override;
   using InternalForce::energy;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
@@ -27,6 +28,7 @@ class FiniteElasticity final : public InternalForce {
   /// With the values of tied nodes.
   const Vector& complete(const Vector& values, Vector& memory) const;
   void condense(Vector& force) const;
+  void require_upright(const InvertedCell& inverted) const;
 
   const Body& body_;
   NodeGraph graph_;

@@ -11,8 +11,20 @@ void require_linear(const InternalForce& internal_force, const std::string& who)
   throw Error(ErrorKind::invalid_input, who + " needs a linear material law: set material.law = \"linear\"");
 }
 
+namespace {
+
+[[noreturn]] void throw_linear() {
+  throw std::logic_error("what is asked for is of internal forces at finite strain");
+}
+
+}  // namespace
+
 std::shared_ptr<const InternalForce> InternalForce::near(const std::vector<char>&) const {
-  throw std::logic_error("the part of an internal force that is asked for is not there");
+  throw_linear();
+}
+
+void InternalForce::mean_force(const Vector&, const Vector&, Vector&) const {
+  throw_linear();
 }
 
 double InternalForce::energy(const Vector& displacement, const Vector&) const {

@@ -21,13 +21,16 @@ class InternalForce {
   /// Strain energy (½UᵀKU).
   [[nodiscard]] virtual double energy(const Vector& displacement) const = 0;
   /// Forces at a displacement of the stress 𝔻₀ : (the derivative of the strain along `increment`), with the tangent 𝔻₀
-  /// at zero strain (for linear elasticity K times the increment): forces that no rotation changes, without resultant or
-  /// moment about the current positions.
+  /// at zero strain (for linear elasticity K times the increment): forces that no rotation changes, without resultant
+  /// or moment about the current positions.
   virtual void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const = 0;
   /// The same where the force that evaluate() gives for this displacement is known.
   [[nodiscard]] virtual double energy(const Vector& displacement, const Vector& force) const;
-  /// The part of it that is of the cells at some nodes (per node, 1: wanted): their forces, and the energy of these cells
-  /// alone. Only where the force is not linear.
+  /// Forces of a step from u₀ to u₁ = u₀ + increment at a displacement in its middle: of the stress of ½(E₀+E₁) where
+  /// that is ½(u₀+u₁), so that a rigid motion has none. Only where the force is not linear; throws as evaluate() does.
+  virtual void mean_force(const Vector& middle, const Vector& increment, Vector& force) const;
+  /// The part of it that is of the cells at some nodes (per node, 1: wanted): their forces, and the energy of these
+  /// cells alone. Only where the force is not linear.
   [[nodiscard]] virtual std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const;
   /// The force is a linear function of U: the tangent is the same everywhere. Who relies on that asks (require_linear).
   [[nodiscard]] virtual bool is_linear() const = 0;

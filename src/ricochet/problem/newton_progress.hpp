@@ -42,12 +42,15 @@ class NewtonProgress {
     const double left = rate < 1.0 ? correction * rate / (1.0 - rate) : correction;
     if (rate < 1.0 && left <= tolerance * increment) return Advice::done;
     // Rounding that accumulates in forces may be larger than that of positions: nothing is gained any more.
-    if (rate >= stalled && correction <= loose_tolerance * increment) return Advice::done;
+    if (rate >= stalled && correction <= std::max(loose_tolerance * increment, most_rounding * rounding_))
+      return Advice::done;
     last_ = correction;
     slow_ = rate > slow_rate ? slow_ + 1 : 0;
     least_ = std::min(least_, correction);
     const bool diverges = correction > divergence * least_;
-    if (slow_ >= patience || diverges || rounds_ >= most_rounds) return renew_or_fail();
+    // New factors that brought nothing before bring nothing now, and what comes nearer may go on.
+    const bool is_worth_one = slow_ >= patience && renewals_ < helpful_renewals;
+    if (is_worth_one || diverges || rounds_ >= most_rounds) return renew_or_fail();
     return Advice::go_on;
   }
   void count_renewal() { ++renewals_; }
@@ -57,14 +60,13 @@ class NewtonProgress {
  private:
   static constexpr double tolerance = 1e-13;       ///< of the increment
   static constexpr double loose_tolerance = 1e-9;  ///< where rounding lets corrections shrink no more
+  static constexpr double most_rounding = 100.0;   ///< times that of positions, likewise
   static constexpr double stalled = 0.7;
   static constexpr double slow_rate = 0.5;
   static constexpr double divergence = 1e3;
-  static constexpr int patience = 3, most_rounds = 60, most_renewals = 12;
+  static constexpr int patience = 3, most_rounds = 60, helpful_renewals = 3, most_renewals = 6;
 
-  [[nodiscard]] Advice renew_or_fail() const {
-    return renewals_ < most_renewals ? Advice::renew : Advice::failed;
-  }
+  [[nodiscard]] Advice renew_or_fail() const { return renewals_ < most_renewals ? Advice::renew : Advice::failed; }
 
   double rounding_ = 0.0, last_ = 0.0, least_ = 0.0;
   int rounds_ = 0, all_rounds_ = 0, slow_ = 0, renewals_ = 0;

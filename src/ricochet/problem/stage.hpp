@@ -72,9 +72,9 @@ struct Stage {
   /// Where the internal force f is no linear function of the displacement: a place p with −f(p) in b, and A δ
   /// stands for αM δ + ηC δ + f(p + κδ) − f(p). Empty: A δ is what it is.
   Vector force_place;
-  Vector prescribed;                                        ///< δ on supported dofs, in the order of Supports::dofs()
-  std::vector<char> eligible;                               ///< per contact point
-  Vector gap_offset;                                        ///< q, per contact point
+  Vector prescribed;               ///< δ on supported dofs, in the order of Supports::dofs()
+  std::vector<char> eligible;      ///< per contact point
+  Vector gap_offset;               ///< q, per contact point
   Vector gap_offset_rounding;      ///< size of the rounding error of q: a y above −(this + the solver's own) is zero
   double gap_factor = 1.0;         ///< s
   double slip_factor = 1.0;        ///< σ

@@ -102,8 +102,7 @@ std::string problem_of(const Case& input, const Quantity& quantity, const std::v
 }  // namespace
 
 void check_expected_quantities(const Case& input, const Model& model) {
-  const std::vector<std::string> columns =
-      names_of(history_columns(model));
+  const std::vector<std::string> columns = names_of(history_columns(model));
   const double end =
       input.time.adaptive ? input.time.end : static_cast<double>(step_count(input.time)) * input.time.step;
   Problems problems;

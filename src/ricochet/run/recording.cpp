@@ -134,13 +134,15 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   method_.load(*snapshot, "method");
 }
 
+void Recording::enter_part(const State& state, EnergyAccount& account) {
+  checks_.enter_part(state);
+  impacts_.enter_step(state, account.of_method(state));
+}
+
 void Recording::record(const State& state, EnergyAccount& account) {
   Timer timer;
   if (state.step > 0) {
-    checks_.enter_step(state);
-    const double of_method = account.of_method(state);
-    impacts_.enter_step(state, of_method);
-    method_.enter_step(state, of_method);
+    method_.enter_step(state, account.of_method(state));
   }
   const bool is_frame = results_ && fields_.includes(state);
   peak_stress_.enter(state, is_frame);
@@ -227,7 +229,7 @@ void Recording::describe(RunSummary& summary) const {
   summary.impacts_left_out = impacts_.left_out();
   summary.penetration = penetration_.report();
   summary.sliding = sliding_.report();
-  summary.rotation = RotationReport{rotation_limit, rotation_.time_beyond_limit(), {}};
+  summary.rotation = RotationReport{rotation_.limit(), rotation_.time_beyond_limit(), {}};
   for (const Impact& impact : summary.impacts)
     summary.rotation->until_impact_end.push_back(rotation_.largest_until(impact.end));
   describe_bodies(summary);

@@ -52,6 +52,8 @@ class Recording {
   /// Error(file_access), and Error(not_converged) when the motion has grown beyond all bounds or breaks an account that
   /// is to stop it.
   void record(const State& state, EnergyAccount& account);
+  /// Before that: of every part of a step that was cut, or once.
+  void enter_part(const State& state, EnergyAccount& account);
   /// Of the last state, what record() has left out: the end of a run is always in its results.
   void record_end(const State& state, EnergyAccount& account);
   /// What is needed to go on; the files are on the disk then.

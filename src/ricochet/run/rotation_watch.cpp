@@ -26,7 +26,10 @@ std::string spurious_strain(double rotation) {
                      100.0 * (1.0 - std::cos(rotation)));
 }
 
-RotationWatch::RotationWatch(const Body& body, std::size_t column) : body_(body), column_(column) {
+RotationWatch::RotationWatch(const Body& body, std::size_t column)
+    : body_(body),
+      column_(column),
+      limit_(has_finite_strain(body) ? std::numeric_limits<double>::infinity() : rotation_limit) {
   // No rotation is larger than pi.
   const double most = std::log(std::numbers::pi / least_noted) / std::log(noted_growth);
   growth_.reserve(static_cast<std::size_t>(most) + 3);
@@ -51,7 +54,7 @@ void RotationWatch::load(const Snapshot& snapshot, const std::string& name) {
 
 double RotationWatch::time_beyond_limit() const {
   const auto first =
-      std::find_if(growth_.begin(), growth_.end(), [](const Noted& noted) { return noted.rotation > rotation_limit; });
+      std::find_if(growth_.begin(), growth_.end(), [this](const Noted& noted) { return noted.rotation > limit_; });
   return first == growth_.end() ? std::numeric_limits<double>::infinity() : first->time;
 }
 
@@ -63,13 +66,14 @@ double RotationWatch::largest_until(double time) const {
 
 void RotationWatch::watch(const std::vector<double>& row, const State& state) {
   const double rotation = row[column_], before = growth_.empty() ? 0.0 : growth_.back().rotation;
-  const bool passes = before <= rotation_limit && rotation > rotation_limit;
+  const bool passes = before <= limit_ && rotation > limit_;
   if (passes || (rotation > least_noted && rotation > noted_growth * before)) growth_.push_back({row[1], rotation});
   if (!passes) return;
   log::warning(fmt::format(
       "at t = {:.6g} a cell has rotated by {:.3g} rad: above {} rad small strain no longer holds; it takes this "
       "rotation for {}, and the largest strain that is there is {:.2g} %. A body that turns inflates, and from "
-      "here on its forces and rebounds are wrong; an impact that had ended before is not affected",
+      "here on its forces and rebounds are wrong; an impact that had ended before is not affected. "
+      "A law of finite strain (law = \"neo-hookean\" in [[material]]) holds for any rotation",
       row[1], rotation, rotation_limit, spurious_strain(rotation),
       100.0 * largest_green_strain(body_, state.displacement)));
 }

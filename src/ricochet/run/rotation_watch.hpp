@@ -15,13 +15,15 @@ namespace ricochet {
 
 class RotationWatch {
  public:
-  /// `column`: of max_rotation in a row. Keeps a reference.
+  /// `column`: of max_rotation in a row. At finite strain there is no limit. Keeps a reference.
   RotationWatch(const Body& body, std::size_t column);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
   /// A row of history.csv. Warns the first time that a cell has turned too far. Allocates nothing.
   void watch(const std::vector<double>& row, const State& state);
+  /// Beyond which small strain does not hold; infinite at finite strain.
+  [[nodiscard]] double limit() const { return limit_; }
   /// Of the first row in which a cell has turned too far; infinite: there is none.
   [[nodiscard]] double time_beyond_limit() const;
   /// The largest rotation in rows up to that time: to a hundredth, and on the right side of the limit.
@@ -33,6 +35,7 @@ class RotationWatch {
   };
   const Body& body_;
   std::size_t column_;
+  double limit_;
   std::vector<Noted> growth_;
 };
 

@@ -275,7 +275,7 @@ bool Run::advance() {
   if (log::enabled(log::Level::debug))
     log::debug(fmt::format("step {}, t = {:.9g}", step_, simulation.state().time + session_.scheme().step()));
   if (contact_export_) contact_export_->begin_step(step_);
-  simulation.advance();
+  simulation.advance([&](const State& state) { recording_->enter_part(state, simulation.account()); });
   step_seconds_ = timer.seconds();
   times_.steps += step_seconds_;
   const std::lock_guard files(files_);

@@ -17,8 +17,8 @@ class RunChecks {
             const std::vector<std::string>& columns, const Snapshot* snapshot);
   void save(Snapshot& snapshot, const std::string& name) const;
 
-  /// After every step.
-  void enter_step(const State& state) { momentum_.enter_step(state); }
+  /// After every step, and after the parts of one that was cut.
+  void enter_part(const State& state) { momentum_.enter_step(state); }
   /// A row of history.csv. Warns the first time that an account does not balance, or throws Error(not_converged) where
   /// the case asks for that.
   void watch(const std::vector<double>& row, const State& state);

@@ -12,6 +12,7 @@ void IntegrationError::begin(const SemidiscreteProblem& problem, const State& st
 double IntegrationError::end(const SemidiscreteProblem& problem, const Vector& increment, double weight,
                              const State& state) {
   mean_ = (1.0 - weight) * force_;
+  step_ = -1;
   problem.internal_force->evaluate(state.displacement, force_);
   mean_ += weight * force_;
   const double before = energy_;

@@ -19,6 +19,7 @@ class Kane : public Scheme {
 
   [[nodiscard]] bool changes_step() const override { return true; }
   [[nodiscard]] bool takes_nonlinear_force() const override { return name_ == "kane"; }
+  [[nodiscard]] bool keeps_moments_at_finite_strain() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{2.0 / (h * h), 0.5, 1.0 / h}};

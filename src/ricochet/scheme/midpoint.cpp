@@ -19,6 +19,7 @@ class Midpoint final : public Scheme {
 
   [[nodiscard]] bool changes_step() const override { return true; }
   [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
+  [[nodiscard]] bool keeps_moments_at_finite_strain() const override { return true; }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem&) const override {
     const double h = step();
     return {{4.0 / (h * h), 1.0, 2.0 / h, StageDofs::all}};

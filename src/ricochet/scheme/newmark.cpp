@@ -65,8 +65,7 @@ class Newmark final : public Scheme {
     for (const Index dof : problem.massless_dofs) acceleration_[dof] = 0.0;
     dissipate(problem, state, increment);
     state.displacement += increment;
-    integration_error_ =
-        problem.internal_force->is_linear() ? 0.0 : error_.end(problem, increment, gamma_, state);
+    integration_error_ = problem.internal_force->is_linear() ? 0.0 : error_.end(problem, increment, gamma_, state);
     state.velocity += h * ((1.0 - gamma_) * state.acceleration + gamma_ * acceleration_);
     state.acceleration = acceleration_;
     follow_without_inertia(problem, increment, h, state);

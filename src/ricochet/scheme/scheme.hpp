@@ -30,8 +30,8 @@ struct StepCorrections {
   double support_work = 0.0;           ///< of reactions that are none of the step's own
   double load_work = 0.0;              ///< of loads that vary on nodes without inertia
   double numerical_dissipation = 0.0;  ///< energy that the scheme itself takes away, positive when it is lost
-  /// ΔW less the work of the internal forces that the scheme takes for a step, where these are no linear function of the
-  /// displacement: energy that appears, of either sign.
+  /// ΔW less the work of the internal forces that the scheme takes for a step, where these are no linear function of
+  /// the displacement: energy that appears, of either sign.
   double integration_error = 0.0;
 };
 
@@ -71,6 +71,11 @@ class Scheme {
   [[nodiscard]] virtual std::optional<double> stability_limit(const SemidiscreteProblem&) const { return std::nullopt; }
   /// Its steps are right where the internal force is no linear function of the displacement.
   [[nodiscard]] virtual bool takes_nonlinear_force() const { return false; }
+  /// Then its steps change the angular momentum about current positions by the moments of outer forces alone, about the
+  /// positions at the middle of the step.
+  [[nodiscard]] virtual bool keeps_moments_at_finite_strain() const { return false; }
+  /// The displacement at which the forces of the last step act then; null: half way.
+  [[nodiscard]] virtual const Vector* place_of_forces() const { return nullptr; }
   /// With a mass without inertia on contact nodes its contact forces create hardly any energy.
   [[nodiscard]] virtual bool suits_singular_mass() const { return false; }
   /// Nodes with inertia that friction holds keep a velocity of alternating sign.

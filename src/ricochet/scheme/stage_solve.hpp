@@ -19,8 +19,8 @@ class StageSolve {
   // Where the internal force is not linear:
   /// Operators turn with bodies that are at this displacement.
   virtual void follow(const Vector& displacement) = 0;
-  /// Operators are made anew with the tangent at this displacement.
-  virtual void renew(const Vector& displacement) = 0;
+  /// Operators are made anew with the tangent at this displacement, those of contact nodes alone at another.
+  virtual void renew(const Vector& displacement, const Vector& of_contact_nodes) = 0;
 };
 
 }  // namespace ricochet

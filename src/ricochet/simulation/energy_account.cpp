@@ -119,7 +119,8 @@ Energies EnergyAccount::energies(const State& state) {
 }
 
 double EnergyAccount::residual(const Energies& now) const {
-  return now.total() + now.algorithmic - initial_ - works_.sum() + works_.numerical_dissipation - works_.integration_error;
+  return now.total() + now.algorithmic - initial_ - works_.sum() + works_.numerical_dissipation -
+         works_.integration_error;
 }
 
 }  // namespace ricochet

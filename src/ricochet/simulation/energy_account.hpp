@@ -49,8 +49,9 @@ class EnergyAccount {
   [[nodiscard]] Energies energies(const State& state);
   [[nodiscard]] const Works& works() const { return works_; }
   /// What the discretization of time has put into the body since the start; negative where it has taken energy away:
-  /// contact work, which exact motions have none of, less numerical dissipation, the error of integration and the change
-  /// of the algorithmic energy. Of the state of the last step; what total energy then changes besides is the other works.
+  /// contact work, which exact motions have none of, less numerical dissipation, the error of integration and the
+  /// change of the algorithmic energy. Of the state of the last step; what total energy then changes besides is the
+  /// other works.
   [[nodiscard]] double of_method(const State& state);
   /// total + algorithmic − initial values − Σ works + numerical dissipation − integration error: zero to rounding.
   [[nodiscard]] double residual(const Energies& now) const;

@@ -15,9 +15,9 @@ namespace {
 constexpr double shortest_increment = 1e-5;
 constexpr int most_rounds = 100;
 /// ε relative to the least K_ii/M_ii: bodies that are held by supports hardly feel it, others move by what it allows.
-constexpr double proximal_fraction = 1e-6;
+constexpr double proximal_fraction = 1e-10;
 /// What the proximal force may be of the largest of the internal ones.
-constexpr double rounding = 1e-12;
+constexpr double proximal_rounding = 1e-10;
 
 double proximal_coefficient(const SemidiscreteProblem& problem) {
   const Vector stiffness = problem.internal_force->tangent().diagonal(), mass = problem.mass.diagonal();
@@ -44,9 +44,10 @@ class LoadPath {
     Stage stage = contact_stage(problem_, at.displacement, part * load_ - force_);
     stage.force_place = at.displacement;
     for (Index i = 0; i < problem_.supports.size(); ++i)
-      stage.prescribed[i] = part * supported_[i] - at.displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
+      stage.prescribed[i] =
+          part * supported_[i] - at.displacement[problem_.supports.dofs()[static_cast<std::size_t>(i)]];
     require_friction(problem_, Vector::Zero(problem_.dof_count()), {}, 1.0, stage);
-    solver_->renew(at.displacement);
+    solver_->renew(at.displacement, at.displacement);
     solver_->solve(0, stage, solution_);
     at.displacement += solution_.increment;
     at.normal_reaction = solution_.normal_reaction;
@@ -55,7 +56,8 @@ class LoadPath {
   /// Whether what the proximal term holds is rounding.
   [[nodiscard]] bool holds_by_itself() {
     problem_.mass.multiply(solution_.increment, left_);
-    return epsilon_ * largest(problem_, left_) <= rounding * (largest(problem_, force_) + largest(problem_, load_));
+    return epsilon_ * largest(problem_, left_) <=
+           proximal_rounding * (largest(problem_, force_) + largest(problem_, load_));
   }
 
  private:

@@ -64,8 +64,8 @@ Columns HistoryRecorder::finite_strain_columns() {
   return {"integration_error", {"newton_rounds", Reduction::same}};
 }
 
-Columns HistoryRecorder::columns_of(int dimension, bool finite_strain, const std::vector<std::shared_ptr<Sensor>>& sensors,
-                                    const HistoryBodies& bodies) {
+Columns HistoryRecorder::columns_of(int dimension, bool finite_strain,
+                                    const std::vector<std::shared_ptr<Sensor>>& sensors, const HistoryBodies& bodies) {
   Columns columns = standard_columns(dimension);
   for (const std::string& label : bodies.labels) add_vector_columns(columns, "momentum." + label, dimension);
   if (finite_strain) {
@@ -98,8 +98,7 @@ void HistoryRecorder::weigh_nodes() {
   position_ = problem_.nodes.reshaped();
   if (mass.is_scalar()) {
     mass.multiply(Vector::Ones(problem_.dof_count()), momentum_);
-    for (Index node = 0; node < node_weight_.size(); ++node)
-      node_weight_[node] = momentum_[node * problem_.dimension];
+    for (Index node = 0; node < node_weight_.size(); ++node) node_weight_[node] = momentum_[node * problem_.dimension];
   }
   weigh_positions();
 }

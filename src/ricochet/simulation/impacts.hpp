@@ -148,6 +148,8 @@ class ImpactRecorder {
   double first_step_ = 0.0;                           ///< length
   double method_before_ = 0.0, method_energy_ = 0.0;  ///< at the beginning and the end of a step
   Vector velocity_before_;                            ///< at the beginning of a step
+  bool finite_strain_;
+  Vector displacement_before_;  ///< likewise, at finite strain
   Vector scratch_;
   const std::vector<RigidMotionState>* motion_ = nullptr;  ///< of velocity_before_, once it was asked for
 };

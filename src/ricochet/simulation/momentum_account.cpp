@@ -1,6 +1,7 @@
 #include "ricochet/simulation/momentum_account.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "ricochet/simulation/sensor.hpp"
 
@@ -24,12 +25,22 @@ void add(Resultant& sum, const Eigen::Vector3d& position, const Eigen::Vector3d&
 }  // namespace
 
 MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state)
-    : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()) {
-  arm_ = problem.nodes.colwise().norm().maxCoeff();
-  constant_load_ = of_nodes(problem.loads.constant());
-  arms_ = problem.contact.arms(problem.nodes);
+    : problem_(problem),
+      scheme_(scheme),
+      rule_(scheme.work_rule()),
+      finite_strain_(!problem.internal_force->is_linear()),
+      positions_(problem.nodes) {
+  if (finite_strain_) before_ = state.displacement;
+  take_positions(state.displacement);
   previous_ = resultant(state.forces);
   algorithmic_ = algorithmic(state);
+}
+
+void MomentumAccount::take_positions(const Vector& displacement) {
+  if (finite_strain_) positions_ = problem_.nodes + displacement.reshaped(problem_.dimension, problem_.nodes.cols());
+  arm_ = std::max(arm_, positions_.colwise().norm().maxCoeff());
+  constant_load_ = of_nodes(problem_.loads.constant());
+  arms_ = problem_.contact.arms(positions_);
 }
 
 /// Of the momentum that is not M V, over h.
@@ -56,7 +67,7 @@ Resultant MomentumAccount::of_nodes(const Vector& force) const {
   const Index d = problem_.dimension;
   Resultant result;
   for (Index node = 0; node < problem_.nodes.cols(); ++node)
-    add(result, in_space(problem_.nodes.col(node)), in_space(force.segment(node * d, d)));
+    add(result, in_space(positions_.col(node)), in_space(force.segment(node * d, d)));
   return result;
 }
 
@@ -80,7 +91,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const 
   include(contact);
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
     const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];
-    add(supports, in_space(problem_.nodes.col(dof / d)), forces.support_reaction[i] * Eigen::Vector3d::Unit(dof % d));
+    add(supports, in_space(positions_.col(dof / d)), forces.support_reaction[i] * Eigen::Vector3d::Unit(dof % d));
     sum.size += std::abs(forces.support_reaction[i]);
   }
   include(supports);
@@ -95,6 +106,12 @@ void MomentumAccount::enter_step(const State& state) {
     impulse_.moment += scheme_.step() * weight * sum.total.moment;
     size_ += scheme_.step() * weight * sum.size;
   };
+  if (finite_strain_) {
+    const Vector* const place = scheme_.place_of_forces();
+    before_ = place != nullptr ? *place : Vector(0.5 * (before_ + state.displacement));
+    take_positions(before_);
+    before_ = state.displacement;
+  }
   enter({constant_load_, constant_load_.force.norm()}, 1.0);
   const Sum current = resultant(state.forces);
   if (rule_.previous_weight != 0.0) enter(previous_, rule_.previous_weight);

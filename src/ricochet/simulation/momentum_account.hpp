@@ -8,6 +8,8 @@
 /// over a step P₁ − P₀ = h (w₀ F₀ + w₁ F₁), with the resultants F of the loads, obstacles, supports and damping at the
 /// two ends and the scheme's weights (WorkRule). The same for moments about the origin with reference positions. It
 /// holds to rounding where the displacement's functions contain rigid rotations: not for degree 1 on curved cells.
+/// At finite strain moments are about current positions, those of forces at the middle of the step: for schemes whose
+/// internal forces are of that middle (Scheme::keeps_moments_at_finite_strain).
 namespace ricochet {
 
 /// Resultant and moment, or momentum and angular momentum.
@@ -41,11 +43,15 @@ class MomentumAccount {
   [[nodiscard]] Sum resultant(const StepForces& forces) const;
   [[nodiscard]] Resultant algorithmic(const State& state);
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;
+  void take_positions(const Vector& displacement);
 
   const SemidiscreteProblem& problem_;
   const Scheme& scheme_;
   WorkRule rule_;
   double arm_ = 0.0;
+  bool finite_strain_;
+  Points positions_;  ///< of the nodes, that moments are taken with
+  Vector before_;     ///< displacement at the start of the step, at finite strain
   Resultant constant_load_;
   Points arms_;  ///< of the contact points: Σ_j t_ij X_j
   Sum previous_;

@@ -73,26 +73,53 @@ void RigidBodies::measure() {
   }
 }
 
-const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity) {
+/// Centres and inertia at current positions x, from Σ x_a (M x)_aᵀ about each body's origin.
+void RigidBodies::measure_at(const Vector& displacement) {
   const int d = problem_.dimension;
+  position_.resize(problem_.dof_count());
+  for (Index node = 0; node < problem_.nodes.cols(); ++node) {
+    const auto b = static_cast<std::size_t>(body_of_node(node));
+    position_.segment(node * d, d) = problem_.nodes.col(node) + displacement.segment(node * d, d) - origin_[b].head(d);
+  }
+  problem_.mass.multiply(position_, weighted_);
+  centre_.assign(bodies_.size(), Eigen::Vector3d::Zero());
+  inertia_.assign(bodies_.size(), Eigen::Matrix3d::Zero());
+  for (Index node = 0; node < problem_.nodes.cols(); ++node) {
+    const auto b = static_cast<std::size_t>(body_of_node(node));
+    centre_[b].head(d) += weighted_.segment(node * d, d);
+    inertia_[b].topLeftCorner(d, d) += position_.segment(node * d, d) * weighted_.segment(node * d, d).transpose();
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    centre_[b] /= bodies_[b].mass;
+    const Eigen::Matrix3d about =
+        0.5 * (inertia_[b] + inertia_[b].transpose()) - bodies_[b].mass * centre_[b] * centre_[b].transpose();
+    inertia_[b] = about.trace() * Eigen::Matrix3d::Identity() - about;
+  }
+}
+
+const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity, const Vector* displacement) {
+  const int d = problem_.dimension;
+  if (displacement != nullptr) measure_at(*displacement);
   problem_.mass.multiply(velocity, momentum_);
   for (RigidMotionState& state : motion_) state = {};
   for (Index node = 0; node < problem_.nodes.cols(); ++node) {
     const auto b = static_cast<std::size_t>(body_of_node(node));
-    Eigen::Vector3d own = Eigen::Vector3d::Zero();
+    Eigen::Vector3d own = Eigen::Vector3d::Zero(), from_centre = arm(node) + origin_[b] - bodies_[b].centre;
     own.head(d) = momentum_.segment(node * d, d);
+    if (displacement != nullptr) from_centre.head(d) = position_.segment(node * d, d) - centre_[b].head(d);
     motion_[b].velocity += own;
-    motion_[b].spin += (arm(node) + origin_[b] - bodies_[b].centre).cross(own);
+    motion_[b].spin += from_centre.cross(own);
     motion_[b].kinetic_energy += 0.5 * momentum_.segment(node * d, d).dot(velocity.segment(node * d, d));
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const RigidBody& body = bodies_[b];
+    const Eigen::Matrix3d& inertia = displacement != nullptr ? inertia_[b] : body.inertia;
     const Eigen::Vector3d angular_momentum = motion_[b].spin;
     motion_[b].velocity /= body.mass;
     if (d == 2) {
-      motion_[b].spin = {0.0, 0.0, angular_momentum[2] / body.inertia(2, 2)};
+      motion_[b].spin = {0.0, 0.0, angular_momentum[2] / inertia(2, 2)};
     } else {
-      motion_[b].spin = body.inertia.ldlt().solve(angular_momentum);
+      motion_[b].spin = inertia.ldlt().solve(angular_momentum);
     }
     motion_[b].rigid_kinetic_energy =
         0.5 * (body.mass * motion_[b].velocity.squaredNorm() + motion_[b].spin.dot(angular_momentum));

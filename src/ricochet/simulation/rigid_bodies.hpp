@@ -17,11 +17,14 @@ class RigidBodies {
   [[nodiscard]] int body_of_node(Index node) const { return body_of_node_[static_cast<std::size_t>(node)]; }
   /// Of all bodies with this velocity. One product with M and one pass; allocates nothing after the first time. The
   /// reference stays valid until the next call.
-  [[nodiscard]] const std::vector<RigidMotionState>& motion(const Vector& velocity);
+  /// Spins are about the places of the reference, or, where a displacement is given, about those of the bodies there.
+  [[nodiscard]] const std::vector<RigidMotionState>& motion(const Vector& velocity,
+                                                            const Vector* displacement = nullptr);
 
  private:
   [[nodiscard]] Eigen::Vector3d arm(Index node) const;
   void measure();
+  void measure_at(const Vector& displacement);
 
   const SemidiscreteProblem& problem_;
   std::vector<int> body_of_node_;
@@ -29,6 +32,10 @@ class RigidBodies {
   std::vector<RigidBody> bodies_;
   std::vector<RigidMotionState> motion_;
   Vector momentum_;
+  // At a displacement:
+  Vector position_, weighted_;  ///< x, M x
+  std::vector<Eigen::Vector3d> centre_;
+  std::vector<Eigen::Matrix3d> inertia_;
 };
 
 }  // namespace ricochet

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/scheme/requirements.hpp"
 
 namespace ricochet {
@@ -25,13 +26,16 @@ std::string level_name(int number) {
   return "solver." + std::to_string(number);
 }
 
+/// Halvings of a step that finds no solution.
+constexpr int deepest_cut = 8;
+
 constexpr const char* nameless = "this time scheme";
 
 }  // namespace
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
-    : problem_(problem), scheme_(scheme), options_(options) {
+    : problem_(problem), scheme_(scheme), options_(options), whole_step_(scheme.step()) {
   if (!scheme_.takes_nonlinear_force()) require_linear(*problem_.internal_force, nameless);
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
@@ -49,7 +53,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
-    : problem_(problem), scheme_(scheme), options_(options) {
+    : problem_(problem), scheme_(scheme), options_(options), whole_step_(scheme.step()) {
   state_ = load_state(problem_, snapshot, "state");
   scheme_.analyse(problem_);
   int first = 0;
@@ -59,9 +63,10 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     control_->load(snapshot, "control");
     first = static_cast<int>(snapshot.integer("level"));
   }
-  for (const std::int64_t level : snapshot.integers("levels", 0, control_ ? control_->deepest() : 0)) {
+  cut_steps_ = snapshot.integer("cut_steps");
+  for (const std::int64_t level : snapshot.integers("levels", 0, control_ ? control_->deepest() : deepest_cut)) {
     const auto number = static_cast<int>(level);
-    if (control_) scheme_.change_step(problem_, control_->step_of(number));
+    if (scheme_.step() != length_of(number)) scheme_.change_step(problem_, length_of(number));
     const std::string name = level_name(number);
     // Whatever would be chosen for the steps that are left: another method has other bits.
     StepSolverOptions kept = options;
@@ -69,7 +74,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
     make_level(number, kept).solver->load(snapshot, name);
   }
   if (!levels_.contains(first)) Snapshot::refuse("level", "is none of the lengths of steps");
-  if (control_) scheme_.change_step(problem_, control_->step_of(first));
+  if (scheme_.step() != length_of(first)) scheme_.change_step(problem_, length_of(first));
   current_ = &levels_.at(first);
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, snapshot, "account");
 }
@@ -82,6 +87,7 @@ void Simulation::save(Snapshot& snapshot) const {
     level.solver->save(snapshot, level_name(number));
     if (&level == current_) snapshot.save("level", std::int64_t{number});
   }
+  snapshot.save("cut_steps", std::int64_t{cut_steps_});
   snapshot.save("levels", std::move(numbers));
   if (control_) control_->save(snapshot, "control");
   account_->save(snapshot, "account");
@@ -130,7 +136,7 @@ const StageSolution& Simulation::solve(std::size_t number) {
                 "(reduced-kane with mass \"equivalent\")");
   }
   iterations_ += solution.iterations;
-  newton_rounds_ += solution.rounds;
+  if (dofs != StageDofs::contact) newton_rounds_ += solution.rounds;
   return solution;
 }
 
@@ -157,8 +163,8 @@ void Simulation::take_step() {
 
 /// An operator that is needed for the first time is factorized.
 void Simulation::use_level(int number) {
-  if (scheme_.step() != control_->step_of(number))
-    account_->change_step(state_, [&] { scheme_.change_step(problem_, control_->step_of(number)); });
+  if (scheme_.step() != length_of(number))
+    account_->change_step(state_, [&] { scheme_.change_step(problem_, length_of(number)); });
   const auto found = levels_.find(number);
   current_ = found != levels_.end() ? &found->second : &make_level(number, options_);
 }
@@ -187,17 +193,68 @@ void Simulation::complete_tied() {
     problem_.tied->complete(*values, problem_.dimension);
 }
 
-void Simulation::advance() {
+double Simulation::length_of(int level) const {
+  return control_ ? control_->step_of(level) : std::ldexp(whole_step_, -level);
+}
+
+void Simulation::end_part(const std::function<void(const State&)>& each_part) {
+  complete_tied();
+  account_->enter_step(increment_, state_);
+  if (each_part) each_part(state_);
+}
+
+/// Parts are of the lengths h 2^-k. After each the longest is tried that fits into what is left.
+void Simulation::take_step_in_parts(const std::function<void(const State&)>& each_part) {
+  const State start = state_;
+  const EnergyAccount account = *account_;
+  constexpr long whole = 1L << deepest_cut;
+  const auto fits = [](long done, int level) {
+    return done % (whole >> level) == 0 && done + (whole >> level) <= whole;
+  };
+  int level = 1;
+  for (long done = 0; done < whole;) {
+    use_level(level);
+    try {
+      take_step();
+    } catch (const Error& problem) {
+      if (problem.kind() == ErrorKind::not_converged && level < deepest_cut) {
+        ++level;
+        continue;
+      }
+      state_ = start;
+      account_ = std::make_unique<EnergyAccount>(account);
+      use_level(0);
+      throw;
+    }
+    done += whole >> level;
+    state_.time = start.time + whole_step_ * static_cast<double>(done) / static_cast<double>(whole);
+    end_part(each_part);
+    while (level > 1 && fits(done, level - 1)) --level;
+  }
+  use_level(0);
+  if (cut_steps_++ == 0)
+    log::info(
+        fmt::format("step {} is taken in parts, as Newton's method found no solution for all of it", state_.step + 1));
+}
+
+void Simulation::advance(const std::function<void(const State&)>& each_part) {
   double energy = 0.0;
+  bool in_parts = false;
   if (control_) {
     energy = take_controlled_step();
   } else {
-    take_step();
+    try {
+      take_step();
+    } catch (const Error& problem) {
+      const bool may_cut = !problem_.internal_force->is_linear() && scheme_.changes_step();
+      if (problem.kind() != ErrorKind::not_converged || !may_cut) throw;
+      take_step_in_parts(each_part);
+      in_parts = true;
+    }
   }
-  complete_tied();
   state_.step += 1;
-  state_.time = control_ ? control_->time() : static_cast<double>(state_.step) * scheme_.step();
-  account_->enter_step(increment_, state_);
+  state_.time = control_ ? control_->time() : static_cast<double>(state_.step) * whole_step_;
+  if (!in_parts) end_part(each_part);
   if (control_) control_->watch(energy, account_->of_method(state_));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -28,8 +29,10 @@ class Simulation : private StageSolve {
   void save(Snapshot& snapshot) const;
 
   /// One step. Throws Error(not_converged) with the step, its time and what to try; the state is then that before the
-  /// step, but where steps are adaptive and the scheme has created most of the energy.
-  void advance();
+  /// step, but where steps are adaptive and the scheme has created most of the energy. At finite strain a step of fixed
+  /// length for which Newton's method finds nothing is taken in parts, by halves, where the scheme changes its step.
+  /// `each_part` is called after the step, and after each of its parts.
+  void advance(const std::function<void(const State&)>& each_part = {});
 
   /// Shows the contact problems of the next steps, and their solutions, to the observer; none if it is empty.
   void observe_contact(const ContactObserver& observer);
@@ -39,6 +42,8 @@ class Simulation : private StageSolve {
   [[nodiscard]] const Vector& increment() const { return increment_; }
   /// Null where all steps are of one length.
   [[nodiscard]] const StepControl* control() const { return control_ ? &*control_ : nullptr; }
+  /// Steps that were taken in parts so far.
+  [[nodiscard]] long cut_steps() const { return cut_steps_; }
   /// Of all operators that were factorized.
   [[nodiscard]] std::size_t factor_entries() const;
   [[nodiscard]] double contact_seconds() const;
@@ -59,13 +64,18 @@ class Simulation : private StageSolve {
   Level& make_level(int level, const StepSolverOptions& options);
   void use_level(int level);
   void take_step();
+  void take_step_in_parts(const std::function<void(const State&)>& each_part);
+  [[nodiscard]] double length_of(int level) const;
+  void end_part(const std::function<void(const State&)>& each_part);
   void complete_tied();
   /// Returns kinetic and elastic energy at its end.
   double take_controlled_step();
   Stage& stage(std::size_t number) override;
   const StageSolution& solve(std::size_t number) override;
   void follow(const Vector& displacement) override { current_->solver->follow(displacement); }
-  void renew(const Vector& displacement) override { current_->solver->renew(displacement); }
+  void renew(const Vector& displacement, const Vector& of_contact_nodes) override {
+    current_->solver->renew(displacement, of_contact_nodes);
+  }
 
   const SemidiscreteProblem& problem_;
   Scheme& scheme_;
@@ -75,6 +85,8 @@ class Simulation : private StageSolve {
   std::map<int, Level> levels_;  ///< by the control's number; one, 0, without control
   Level* current_ = nullptr;
   std::optional<StepControl> control_;
+  double whole_step_;  ///< without control
+  long cut_steps_ = 0;
   State before_;  ///< an attempt, with control
   std::unique_ptr<EnergyAccount> account_;
   int iterations_ = 0;     ///< of the contact solver in this step

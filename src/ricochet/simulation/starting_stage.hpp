@@ -10,7 +10,8 @@ namespace ricochet {
 [[nodiscard]] Vector residual_force(const SemidiscreteProblem& problem, const Vector& displacement,
                                     const Vector& velocity);
 
-/// A stage in which every contact point is eligible by its gap at the given displacement.
+/// A stage in which every contact point is eligible by its gap at the given displacement, at which the internal forces
+/// of the right-hand side are, too.
 [[nodiscard]] Stage contact_stage(const SemidiscreteProblem& problem, const Vector& displacement,
                                   Vector right_hand_side);
 

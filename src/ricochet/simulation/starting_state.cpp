@@ -11,6 +11,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/simulation/finite_equilibrium.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 #include "ricochet/simulation/static_equilibrium.hpp"
 #include "ricochet/solver/step_solver.hpp"
@@ -138,6 +139,7 @@ void find_acceleration(const SemidiscreteProblem& problem, const Vector& support
   const auto solver = make_step_solver(problem, {{1.0, 0.0, 0.0, StageDofs::massive}}, once);
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   stage.prescribed = support_acceleration;
+  stage.force_place.resize(0);  // its unknown is an acceleration
   stage.eligible = std::move(resting);
   stage.motion.reset();
   find_curvature_term(problem, state, step, stage.gap_offset);  // the condition is on G a and this
@@ -221,8 +223,10 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   State state;
   Vector pressed;
   if (initial.static_equilibrium) {
-    StaticEquilibrium equilibrium =
-        static_equilibrium(problem, Vector::Zero(problem.dof_count()), initial.velocity, options);
+    const Vector undeformed = Vector::Zero(problem.dof_count());
+    StaticEquilibrium equilibrium = problem.internal_force->is_linear()
+                                        ? static_equilibrium(problem, undeformed, initial.velocity, options)
+                                        : finite_equilibrium(problem, undeformed, options);
     state.displacement = std::move(equilibrium.displacement);
     pressed = std::move(equilibrium.normal_reaction);
     log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(problem, state.displacement)));

@@ -74,9 +74,8 @@ void NewtonRounds::solve(const OperatorCoefficients& coefficients, const SolveLi
   while (true) {
     solve_linear(stage, solution);
     iterations += solution.iterations;
-    const double correction =
-        solution.increment.allFinite() ? solution.increment.lpNorm<Eigen::Infinity>()
-                                       : std::numeric_limits<double>::infinity();
+    const double correction = solution.increment.allFinite() ? solution.increment.lpNorm<Eigen::Infinity>()
+                                                             : std::numeric_limits<double>::infinity();
     if (std::isfinite(correction)) total_ += solution.increment;
     const NewtonProgress::Advice advice = progress_.judge(correction, total_.lpNorm<Eigen::Infinity>());
     if (advice == NewtonProgress::Advice::done) break;

@@ -19,8 +19,8 @@ class NewtonRounds {
   using SolveLinear = std::function<void(Stage&, StageSolution&)>;
   using Renew = std::function<void(const Vector& displacement)>;
   /// Leaves the stage as the last round had it. Throws Error(not_converged).
-  void solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew, Stage& stage,
-             StageSolution& solution);
+  void solve(const OperatorCoefficients& coefficients, const SolveLinear& solve_linear, const Renew& renew,
+             Stage& stage, StageSolution& solution);
 
  private:
   void keep(const Stage& stage);

@@ -22,6 +22,7 @@ constexpr double long_factorization = 1e11;
 
 constexpr const char* methods_entry = ".methods";  ///< of a snapshot
 constexpr const char* made_at_entry = ".made_at";
+constexpr const char* contact_made_at_entry = ".contact_made_at";
 constexpr const char* frame_entry = ".frame";
 constexpr const char* kept = "as when the run began";
 
@@ -55,8 +56,8 @@ class StagesStepSolver final : public StepSolver {
     if (stage.force_place.size() > 0) {
       follow(stage.force_place);
       newton_.solve(
-          operators_[number], solve_linear, [this](const Vector& displacement) { renew(displacement); }, stage,
-          solution);
+          operators_[number], solve_linear, [this](const Vector& displacement) { renew(displacement, displacement); },
+          stage, solution);
     } else {
       solve_linear(stage, solution);
       solution.rounds = 1;
@@ -66,14 +67,16 @@ class StagesStepSolver final : public StepSolver {
   void refactorize(std::size_t number, const Vector& displacement) override {
     stages_.at(number)->refactorize(displacement);
   }
-  void renew(const Vector& displacement) override {
+  void renew(const Vector& displacement, const Vector& of_contact_nodes) override {
     try {
-      for (const auto& stage : stages_) stage->refactorize(displacement);
+      refactorize_all(displacement, of_contact_nodes);
       made_at_ = displacement;
+      contact_made_at_ = of_contact_nodes;
     } catch (const Error& problem) {
       if (problem.kind() != ErrorKind::invalid_input) throw;
       made_at_.resize(0);
-      for (const auto& stage : stages_) stage->refactorize(made_at_);
+      contact_made_at_.resize(0);
+      refactorize_all(made_at_, made_at_);
     }
     if (!frame_) return;
     frame_->restart(made_at_);
@@ -101,6 +104,7 @@ class StagesStepSolver final : public StepSolver {
     snapshot.save(name + methods_entry, std::move(methods));
     if (frame_) {
       snapshot.save(name + made_at_entry, made_at_);
+      snapshot.save(name + contact_made_at_entry, contact_made_at_);
       frame_->save(snapshot, name + frame_entry);
     }
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->save(snapshot, fmt::format("{}.{}", name, i));
@@ -108,7 +112,7 @@ class StagesStepSolver final : public StepSolver {
   void load(const Snapshot& snapshot, const std::string& name) override {
     if (frame_) {
       const Vector& made_at = snapshot.reals(name + made_at_entry, 0, problem_.dof_count());
-      if (made_at.size() > 0) renew(made_at);
+      if (made_at.size() > 0) renew(made_at, snapshot.reals(name + contact_made_at_entry, problem_.dof_count()));
       frame_->load(snapshot, name + frame_entry);
     }
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->load(snapshot, fmt::format("{}.{}", name, i));
@@ -116,6 +120,11 @@ class StagesStepSolver final : public StepSolver {
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const override { return methods_; }
 
  private:
+  /// In their order: a layer is made before the stage that has it.
+  void refactorize_all(const Vector& displacement, const Vector& of_contact_nodes) {
+    for (std::size_t i = 0; i < stages_.size(); ++i)
+      stages_[i]->refactorize(operators_[i].dofs == StageDofs::contact ? of_contact_nodes : displacement);
+  }
   void add_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                  const StepSolverOptions& options) {
     const SolverMethod before = options.chosen.empty() ? SolverMethod::automatic : options.chosen[methods_.size()];
@@ -165,7 +174,7 @@ class StagesStepSolver final : public StepSolver {
   const SemidiscreteProblem& problem_;
   std::vector<OperatorCoefficients> operators_;
   std::unique_ptr<TurnedFrame> frame_;  ///< null where the internal force is linear
-  Vector made_at_;                      ///< displacement of the factors; empty: the undeformed body
+  Vector made_at_, contact_made_at_;    ///< displacement of the factors; empty: the undeformed body
   TangentRounds rounds_;
   NewtonRounds newton_;
   std::vector<std::unique_ptr<StageSolver>> stages_;

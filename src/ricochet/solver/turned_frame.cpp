@@ -84,8 +84,7 @@ void TurnedFrame::turn_back(const SparseRowMatrix& rows, SparseRowMatrix& result
       for (; entry && entry.col() / d == node; ++entry) value[entry.col() % d] = entry.value();
       const int body = bodies_.body_of_node(node);
       if (body >= 0) value = (rotation_[static_cast<std::size_t>(body)].transpose() * value).eval();
-      for (int k = 0; k < d; ++k)
-        entries.emplace_back(static_cast<int>(row), static_cast<int>(node * d + k), value[k]);
+      for (int k = 0; k < d; ++k) entries.emplace_back(static_cast<int>(row), static_cast<int>(node * d + k), value[k]);
     }
   }
   result.resize(rows.rows(), rows.cols());
@@ -103,7 +102,8 @@ void TurnedFrame::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name + ".rotation", static_cast<Index>(9 * bodies_.count()));
   for (std::size_t i = 0; i < rotation_.size(); ++i)
     rotation_[i].reshaped() = numbers.segment<9>(static_cast<Index>(9 * i));
-  is_identity_ = std::all_of(rotation_.begin(), rotation_.end(), [](const Tensor& r) { return r == Tensor::Identity(); });
+  is_identity_ =
+      std::all_of(rotation_.begin(), rotation_.end(), [](const Tensor& r) { return r == Tensor::Identity(); });
   ++number_;
 }
 

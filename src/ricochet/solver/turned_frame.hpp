@@ -8,9 +8,9 @@
 #include "ricochet/contact/contact_rows.hpp"
 #include "ricochet/problem/body_rotations.hpp"
 
-/// @file A factor that turns with the bodies. The tangent of a body that has turned by R is R K Rᵀ where its strains are
-/// those of before (for any law that sees no rotation), and M₀ = m₀ ⊗ I commutes with R. So with the factor of
-/// A₀ at one displacement,
+/// @file A factor that turns with the bodies. The tangent of a body that has turned by R is R K Rᵀ where its strains
+/// are those of before (for any law that sees no rotation), and M₀ = m₀ ⊗ I commutes with R. So with the factor of A₀
+/// at one displacement,
 ///   A ≈ R A₀ Rᵀ:   A δ = b + Hᵀρ   is   A₀ (Rᵀδ) = Rᵀb + (H R)ᵀρ,
 /// R = diag(R of each node's body). Columns of contact rows stay what they are while R stays.
 namespace ricochet {

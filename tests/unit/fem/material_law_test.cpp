@@ -109,10 +109,10 @@ TEST(MaterialLaw, HasTheEnergyOfItsInvariants) {
   const double volumetric = j * j - 1.0 - 2.0 * std::log(j);
   EXPECT_NEAR(energy("neo-hookean", {{"lambda", 1.3}, {"mu", 0.8}}),
               0.4 * (first - 3.0 - 2.0 * std::log(j)) + 1.3 / 4.0 * volumetric, 1e-14);
-  EXPECT_NEAR(energy("mooney-rivlin", {{"c10", 0.3}, {"c01", 0.1}, {"bulk_modulus", 2.0}}),
-              0.3 * (first * std::pow(j, -2.0 / 3.0) - 3.0) + 0.1 * (second * std::pow(j, -4.0 / 3.0) - 3.0) +
-                  0.5 * volumetric,
-              1e-14);
+  EXPECT_NEAR(
+      energy("mooney-rivlin", {{"c10", 0.3}, {"c01", 0.1}, {"bulk_modulus", 2.0}}),
+      0.3 * (first * std::pow(j, -2.0 / 3.0) - 3.0) + 0.1 * (second * std::pow(j, -4.0 / 3.0) - 3.0) + 0.5 * volumetric,
+      1e-14);
   EXPECT_NEAR(energy("saint-venant-kirchhoff", {{"lambda", 1.3}, {"mu", 0.8}}),
               0.65 * std::pow(strain.trace(), 2) + 0.8 * strain.squaredNorm(), 1e-15);
 }

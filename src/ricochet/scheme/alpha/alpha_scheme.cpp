@@ -40,9 +40,8 @@ void AlphaScheme::advance(const SemidiscreteProblem& problem, State& state, Stag
   change_ = (solution.increment - shift_) / (weights_.beta * h * h);  // A₁
   for (const Index dof : problem.massless_dofs) change_[dof] = 0.0;
   state.displacement += increment;
-  integration_error_ = problem.internal_force->is_linear()
-                           ? 0.0
-                           : error_.end(problem, increment, 1.0 - weights_.force, state);
+  integration_error_ =
+      problem.internal_force->is_linear() ? 0.0 : error_.end(problem, increment, 1.0 - weights_.force, state);
   state.velocity += h * ((1.0 - weights_.gamma) * before + weights_.gamma * change_);
   change_ -= before;
   before += change_;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/reduced/massless_layer.hpp"
 
@@ -63,18 +64,18 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   end_ = state.displacement + step * state.velocity;
   increment_ = end_ - state.displacement;
   relaxed_ = state.displacement;
+  sigma_before_ = asked_before_ = std::numeric_limits<double>::quiet_NaN();
   sigma_ = lacking_ = end_weight_ = dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
   nodal_.setZero(problem.dof_count());
   mean_nodal_.setZero(problem.dof_count());
-  if (energy_step_ != state.step) energy_ = problem.internal_force->energy(state.displacement);
-  energy_start_ = energy_;
+  energy_start_ = energy_step_ == state.step ? kept_energy_ : problem.internal_force->energy(state.displacement);
 }
 
-/// f(x), p, f(u₁), and σ from the balance of energy at these.
+/// f̄, p, f(u₁), and σ from the balance of energy at these.
 void FiniteLayer::evaluate(const SemidiscreteProblem& problem, const State& state) {
   const InternalForce& elastic = *problem.internal_force;
   increment_ = end_ - state.displacement;
-  elastic.evaluate(middle_, force_);
+  elastic.mean_force(middle_, increment_, force_);
   elastic.strain_force(middle_, increment_, strain_force_);
   if (layer_) layer_->evaluate(end_, end_force_);
   energy_ = elastic.energy(end_);
@@ -87,7 +88,21 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, const State& stat
   const double unit = strain_force_.dot(increment_);
   lacking_ = wanted - has - sigma_ * unit;
   const double least = energy_tolerance * std::abs(energy_start_ + energy_);
-  if (unit > least * energy_tolerance) sigma_ = std::clamp((wanted - has) / unit, -largest_sigma, largest_sigma);
+  if (unit > least * energy_tolerance) choose_sigma((wanted - has) / unit);
+}
+
+/// The balance at the last places asks for a σ, and the places depend on σ: what two rounds say of that tells where
+/// both agree (the secant method).
+void FiniteLayer::choose_sigma(double asked) {
+  constexpr double steepest = 4.0, least_left = 0.2;
+  const double slope = (asked - asked_before_) / (sigma_ - sigma_before_);
+  const double used = sigma_;
+  double next = asked;
+  if (std::isfinite(slope) && slope > -steepest && slope < 1.0 - least_left)
+    next = (asked - slope * used) / (1.0 - slope);
+  sigma_before_ = used;
+  asked_before_ = asked;
+  sigma_ = std::clamp(next, -largest_sigma, largest_sigma);
 }
 
 /// b of the stage: what is missing at the middle.
@@ -142,8 +157,7 @@ FiniteLayer::Round FiniteLayer::correct(const SemidiscreteProblem& problem, cons
                                         const StageSolution& solution) {
   middle_ += solution.increment;
   product_ = 2.0 * middle_ - state.displacement;
-  for (const Index dof : problem.contact_dofs)
-    product_[dof] = end_[dof] + 2.0 * solution.contact_increment[dof];
+  for (const Index dof : problem.contact_dofs) product_[dof] = end_[dof] + 2.0 * solution.contact_increment[dof];
   Round round{(product_ - last_end_).lpNorm<Eigen::Infinity>(), 0.0};
   round.correction = std::max(round.correction, 2.0 * (middle_ - last_middle_).lpNorm<Eigen::Infinity>());
   end_ = product_;
@@ -176,7 +190,8 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   // d: both energies are of the cells at contact nodes, as the others are the same.
   product_ = relaxed_ - state.displacement;
   right_ = load_ + nodal_;
-  dissipation_ = on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - layer_->energy(state.displacement));
+  dissipation_ =
+      on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - layer_->energy(state.displacement));
   product_ = end_ - state.displacement;
   work_at_end_ = on_contact(problem, nodal_, product_) -
                  obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step);
@@ -188,8 +203,7 @@ double FiniteLayer::obstacle_work(const ContactRows& rows, const Vector& normal,
   if (equations_.obstacle_velocity().normal.size() == 0) return 0.0;
   obstacle_ = equations_.obstacle_velocity();
   project_motion(rows, obstacle_);
-  return step * (normal.dot(obstacle_.normal) -
-                 (tangential.size() > 0 ? tangential.dot(obstacle_.tangential) : 0.0));
+  return step * (normal.dot(obstacle_.normal) - (tangential.size() > 0 ? tangential.dot(obstacle_.tangential) : 0.0));
 }
 
 void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State& state, const Stage& stage,
@@ -209,6 +223,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   }
   stick_.learn(problem, before_, state);
   energy_step_ = state.step + 1;
+  kept_energy_ = energy_;
   corrections_ = {.numerical_dissipation = end_weight_ * dissipation_, .integration_error = lacking_};
   if (end_weight_ == 1.0) return;
   // The mean works nothing along the path; what of it is the end's works what that does.
@@ -262,6 +277,13 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
                           (converged && std::abs(lacking_) > 0.5 * lacked);
     lacked = std::abs(lacking_);
     const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
+    if (log::enabled(log::Level::debug)) {
+      log::debug(
+          fmt::format("Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
+                      "missing, {:.3g} of the reactions are the end's",
+                      progress_.rounds(), round.correction, round.increment, sigma_,
+                      lacking_ / (kinetic + energy_start_ + energy_), end_weight_));
+    }
     converged = converged || advice == NewtonProgress::Advice::done;
     if (converged && balanced) break;
     if (converged) continue;
@@ -272,7 +294,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
                               progress_.rounds(), round.correction));
     }
     if (advice == NewtonProgress::Advice::renew) {
-      stages.renew(middle_);
+      stages.renew(middle_, end_);
       progress_.count_renewal();
       progress_.restart();
     }

@@ -9,20 +9,24 @@
 
 /// @file The step of massless_layer.hpp where the internal force f = ∂W/∂u is no linear function of the displacement.
 ///
-/// With c the contact nodes, f the others, H, ρ and the mean ρ̄ as there, x the middle of the step on f, Δ = u₁ − u₀ and
-///   p = the forces at x of the stress 𝔻₀ : ΔE (InternalForce::strain_force),   D = f(x) + σ p:
+/// With c the contact nodes, f the others, H, ρ and the mean ρ̄ as there, Δ = u₁ − u₀, x the middle of the step,
+/// ½(u₀+u₁) on f and on c where the equations on them have it, and the forces at x of two stresses,
+///   f̄ of S(E(x) + ⅛ (∇Δ)ᵀ∇Δ)  (InternalForce::mean_force),
+///   p of 𝔻₀ : the derivative of E along Δ  (InternalForce::strain_force),   D = f̄ + σ p:
 ///   M (v₁−v₀)/h + (2/h) C (x−u₀) + D = L̄ on f,   D = L₁ + Hᵀρ̄ on c,   f(u₁) = L₁ + Hᵀρ on c,
 /// and Coulomb's law at the end. D has neither resultant nor moment about x beside contact and loads, so linear and
 /// angular momentum change by the impulses of these alone, whatever σ is. The number σ makes the work of D the change
-/// of the elastic energy. With Ψ(u_f; ρ) = min over u_c of W(u) − (L₁ + Hᵀρ)·u_c, which u₁ attains,
+/// of the elastic energy. A rigid motion has no stress: bodies that spin do not swell. With Ψ(u_f; ρ) = min over u_c of
+/// W(u) − (L₁ + Hᵀρ)·u_c, which u₁ attains,
 ///   D_f·Δ_f = (1−μ)(ΔW − L₁·Δ_c) + μ (Ψ(u_f1; ρ) − Ψ(u_f0; ρ)),   ρ̄ = (1−μ) ρ̄_path + μ ρ,
 /// and then
 ///   E₁ − E₀ = work of loads, supports and damping + μ (ρ·HΔ_c − d),
 ///   d = [W(u₀) − (L₁+Hᵀρ)·u_c0] − Ψ(u_f0; ρ) ≥ 0,   ρ·HΔ_c = −r_N·g₀ − Σ F r_N |Δy_T| ≤ 0 against planes.
 /// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that Ψ is a minimum, which is so
-/// while K_cc is positive definite between u₀ and it. Where W is quadratic, σ = 0 and this is massless_layer.hpp. (The
-/// idea of a number that turns a force of the middle into one that keeps energy is that of O. Gonzalez, J. Nonlinear
-/// Sci. 6 (1996) 449–467; p instead of the increment keeps angular momentum, and Ψ the proof of dissipation.)
+/// while K_cc is positive definite between u₀ and it. Where W is quadratic in the displacement, σ = 0 and this is
+/// massless_layer.hpp. (The mean of strains is that of J. C. Simo and N. Tarnow, Z. Angew. Math. Phys. 43 (1992)
+/// 757–792; a number that makes a force of the middle keep energy that of O. Gonzalez, J. Nonlinear Sci. 6 (1996)
+/// 449–467.)
 namespace ricochet {
 
 class FiniteLayer {
@@ -34,6 +38,8 @@ class FiniteLayer {
   void advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state, StageSolve& stages,
                Vector& increment);
   [[nodiscard]] const StepCorrections& corrections() const { return corrections_; }
+  /// x of the last step.
+  [[nodiscard]] const Vector& middle() const { return middle_; }
 
  private:
   struct Round {
@@ -44,14 +50,15 @@ class FiniteLayer {
   void take_loads(const SemidiscreteProblem& problem, double step, const State& state);
   /// Forces at the middle and at the end, and what the energy lacks; then σ for it.
   void evaluate(const SemidiscreteProblem& problem, const State& state);
+  void choose_sigma(double asked);
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
                        StageSolve& stages, Stage& stage);
   Round correct(const SemidiscreteProblem& problem, const State& state, const StageSolution& solution);
   [[nodiscard]] double obstacle_work(const ContactRows& rows, const Vector& normal, const Vector& tangential,
                                      double step);
-  void follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages, const Stage& stage,
-                    const StageSolution& solution);
+  void follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
+                    const Stage& stage, const StageSolution& solution);
   void finish(const SemidiscreteProblem& problem, double step, State& state, const Stage& stage,
               const StageSolution& solution, Vector& increment);
   const Vector& solve_layer(const SemidiscreteProblem& problem, StageSolve& stages);
@@ -62,8 +69,11 @@ class FiniteLayer {
   StickMemory stick_;
   StepEquations equations_;
   StepCorrections corrections_;
-  long energy_step_ = -1;  ///< the step whose end energy_ is of
+  long energy_step_ = -1;     ///< the step whose end is known already
+  double kept_energy_ = 0.0;  ///< W there
   double energy_ = 0.0, energy_start_ = 0.0, sigma_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
+  /// σ of the round before and what the balance of energy asked for then; NaN before the second round.
+  double sigma_before_ = 0.0, asked_before_ = 0.0;
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
   ObstacleMotion obstacle_;
   Vector load_, end_load_, base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;

@@ -44,6 +44,10 @@ class MasslessLayer {
   /// Of the last step.
   [[nodiscard]] const StepCorrections& corrections() const { return finite_ ? finite_->corrections() : corrections_; }
 
+  [[nodiscard]] bool has_finite_strain() const { return finite_.has_value(); }
+  /// Of the last step at finite strain; else null.
+  [[nodiscard]] const Vector* place_of_forces() const { return finite_ ? &finite_->middle() : nullptr; }
+
   // Pieces of a step, for schemes that put them together in another way.
   /// L̄, base = u₀ + (h/2)v₀, and the balance at the middle in the stage.
   void balance(const SemidiscreteProblem& problem, const State& state, Stage& stage);

@@ -12,16 +12,21 @@ namespace {
 /// With W_c = G K_cc⁻¹ Gᵀ:   E₁ − E₀ = r̄·Δg − (r̄ − ½(r₀+r₁))ᵀW_c(r₁−r₀) + work of loads, supports and obstacles;
 /// the first two, which are the contact work here, vanish while the points that press stay the same.
 /// The midpoint alone would have u_c1 = 2x_c − u_c0, which flips contact nodes from step to step.
+/// At finite strain the reactions that act are those of mean-reaction, and energy is exact (finite_layer.hpp).
 class ReducedMidpoint final : public Scheme {
  public:
   explicit ReducedMidpoint(double step) : Scheme(step), layer_("reduced-midpoint", step) {}
 
   [[nodiscard]] bool changes_step() const override { return true; }
+  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
+  [[nodiscard]] bool keeps_moments_at_finite_strain() const override { return true; }
+  [[nodiscard]] const Vector* place_of_forces() const override { return layer_.place_of_forces(); }
   void analyse(const SemidiscreteProblem& problem) override {
     layer_.analyse(problem);
     layer_.require_frictionless_planes(problem);
   }
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
+    if (!problem.internal_force->is_linear()) return layer_.operators(problem, mean(problem));
     std::vector<OperatorCoefficients> result = layer_.operators(problem, ReactionMean::end);
     result.back().layer = -1;
     return result;
@@ -30,6 +35,10 @@ class ReducedMidpoint final : public Scheme {
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
+    if (!problem.internal_force->is_linear()) {
+      layer_.advance(problem, mean(problem), state, stages, increment);
+      return;
+    }
     const double h = step(), middle = state.time + 0.5 * h;
     const bool has_layer = !problem.contact_dofs.empty();
     const std::size_t number = MasslessLayer::midpoint_stage(problem);
@@ -48,12 +57,17 @@ class ReducedMidpoint final : public Scheme {
     if (has_layer)
       corrections_.contact_work = -layer_.layer_work(problem, *stage.rows, result_, increment, stages).reactions;
   }
-  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override { return corrections_; }
+  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
+    return layer_.has_finite_strain() ? layer_.corrections() : corrections_;
+  }
 
  protected:
   void step_changed(const SemidiscreteProblem& problem) override { layer_.change_step(problem, step()); }
 
  private:
+  static ReactionMean mean(const SemidiscreteProblem& problem) {
+    return problem.contact_dofs.empty() ? ReactionMean::end : ReactionMean::path;
+  }
   /// The contact nodes at the end: K_cc δ = L₁ + Gᵀr₁ − (K u)_c, from where the step left them.
   void settle(const SemidiscreteProblem& problem, const State& state, StageSolve& stages, Vector& increment) {
     for (const Index dof : problem.contact_dofs) increment[dof] = step() * state.velocity[dof];

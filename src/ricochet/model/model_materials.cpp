@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/model/model_parts.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Poisson's ratio from which on a mean dilatation is taken, and from which on cells without one lock. (Got back from λ
+/// and μ, 0.45 itself is a little more or less.)
+constexpr double mean_from = 0.4, locks_from = 0.45 * (1.0 - 1e-9);
+
+/// Cells whose dilatation has a mean that is not its value: not those with one quadrature point.
+bool has_cells_with_mean(const Case& input, const Mesh& mesh) {
+  const auto is_simplex = [](const CellBlock& block) {
+    return block.shape == CellShape::triangle || block.shape == CellShape::tetrahedron;
+  };
+  return input.mesh.degree > 1 || !std::all_of(mesh.cells.begin(), mesh.cells.end(), is_simplex);
+}
+
+void choose_dilatation(const Case& input, std::size_t i, Model& model) {
+  const MaterialSection& section = input.materials[i];
+  Material& material = model.body.materials[i];
+  const bool has_mean = material.law->volumetric_modulus() > 0.0 && has_cells_with_mean(input, model.mesh) &&
+                        !is_plane_stress(model.body);
+  if (section.dilatation == "mean" && !has_mean) {
+    refuse(input, fmt::format("material.{}.dilatation", i),
+           "\"mean\" needs a law with an energy of the volume alone (neo-hookean, mooney-rivlin), cells that are no "
+           "triangles or tetrahedra of degree 1, and no plane stress");
+  }
+  const double poisson = material.poisson();
+  material.mean_dilatation =
+      has_mean && (section.dilatation == "mean" || (section.dilatation == "automatic" && poisson >= mean_from));
+  const bool locks = input.mesh.degree == 1 && !is_plane_stress(model.body) && !material.mean_dilatation;
+  if (!locks || poisson < locks_from) return;
+  log::warning(
+      fmt::format("material \"{}\" is nearly incompressible (Poisson's ratio {:.4g}): elements of degree 1 lock and "
+                  "are far too stiff; use mesh.degree = 2{}",
+                  section.group, poisson,
+                  material.law->is_linear() ? "" : ", or quadrilaterals or hexahedra, whose mean dilatation does not"));
+}
+
+/// A body with a linear law does not see how far it turns, and the watch of rotations would have to know which it is.
+void require_one_kind_of_law(const Case& input, const Model& model) {
+  if (!has_finite_strain(model.body)) return;
+  for (std::size_t i = 0; i < model.body.materials.size(); ++i) {
+    if (!model.body.materials[i].law->is_linear()) continue;
+    refuse(input, fmt::format("material.{}.law", i),
+           "another material has a law of finite strain, and \"linear\" holds for small rotations only: use "
+           "\"saint-venant-kirchhoff\", which is the same for small strains and sees no rotation");
+  }
+}
+
+}  // namespace
+
+void assign_materials(const Case& input, Model& model) {
+  const Mesh& mesh = model.mesh;
+  model.body =
+      Body{&mesh, &model.space, input.mesh.plane == "stress" ? PlaneState::stress : PlaneState::strain, {}, {}};
+  model.body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), -1);
+  for (std::size_t i = 0; i < input.materials.size(); ++i) {
+    const MaterialSection& section = input.materials[i];
+    const std::string key = fmt::format("material.{}.group", i);
+    for (const Index cell : group_at(input, key, mesh, section.group, mesh.dimension).members) {
+      int& assigned = model.body.cell_material[static_cast<std::size_t>(cell)];
+      if (assigned >= 0) {
+        refuse(input, key,
+               fmt::format("groups \"{}\" and \"{}\" overlap: they share cells, which would have two materials",
+                           input.materials[static_cast<std::size_t>(assigned)].group, section.group));
+      }
+      assigned = static_cast<int>(i);
+    }
+    model.body.materials.push_back({section.group, section.density, make_material_law(section.law, section.parameters),
+                                    section.damping.mass, section.damping.stiffness});
+    choose_dilatation(input, i, model);
+  }
+  require_one_kind_of_law(input, model);
+  Index without = 0;
+  for (const int material : model.body.cell_material) without += material < 0 ? 1 : 0;
+  if (without > 0) {
+    std::vector<std::string> names;
+    for (const Group& group : mesh.groups) {
+      if (group.dimension == mesh.dimension) names.push_back(group.name);
+    }
+    refuse(input, "material",
+           fmt::format("{} of {} of {} {} no material: give a [[material]] for every group of cells "
+                       "(the mesh has {}), and put every cell into a group",
+                       without, counted(mesh.cell_count(), "cell"), mesh.source, without == 1 ? "has" : "have",
+                       names.empty() ? "none" : join_names(names)));
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,238 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/simulation/history.hpp"
+#include "ricochet/simulation/momentum_account.hpp"
+#include "support/case_run.hpp"
+#include "support/thrown_body.hpp"
+
+/// @file Bodies that turn and stretch: what every step must keep.
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+using test_support::mesh_geometry;
+
+std::string block(int dimension) {
+  return dimension == 2 ? mesh_geometry("finite-block-2d",
+                                        "Rectangle(1) = {0, 0, 0, 1, 0.5};\nPhysical Surface(\"body\") = {1};\n"
+                                        "Physical Curve(\"bottom\") = {1};\n",
+                                        0.125, 1)
+                        : mesh_geometry("finite-block-3d",
+                                        "Box(1) = {0, 0, 0, 1, 0.5, 0.6};\nPhysical Volume(\"body\") = {1};\n"
+                                        "Physical Surface(\"bottom\") = {3};\n",
+                                        0.2, 1);
+}
+
+struct Flight {
+  int dimension = 2;
+  std::string scheme = "reduced-kane", law = "neo-hookean", mass = "equivalent";
+  double step = 0.01, height = 10.0;
+  std::string more = {};
+};
+
+/// A block of E = 100, ρ = 1 above a floor, stretched and spinning.
+std::string case_of(const Flight& flight, const std::string& displacement, const std::string& velocity) {
+  const bool plane = flight.dimension == 2;
+  return "[mesh]\nfile = \"" + block(flight.dimension) +
+         "\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nyoung = 100.0\npoisson = 0.3\nlaw = \"" + flight.law +
+         "\"\n[obstacle.floor]\ntype = \"plane\"\npoint = " + (plane ? "[0, -" : "[0, -") +
+         std::to_string(flight.height) + (plane ? "]\nnormal = [0, 1]\n" : ", 0]\nnormal = [0, 1, 0]\n") +
+         "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n" + flight.more +
+         "[initial]\ndisplacement = " + displacement + "\nvelocity = " + velocity + "\n[mass]\ntype = \"" +
+         flight.mass + "\"\n[time]\nscheme = \"" + flight.scheme + "\"\n" +
+         (flight.scheme == "newmark" ? "preset = \"trapezoidal\"\n" : "") + "step = " + std::to_string(flight.step) +
+         "\nend = " + std::to_string(200 * flight.step) + "\n";
+}
+
+std::string stretched(int dimension) {
+  return dimension == 2 ? "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\"]"
+                        : "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\", \"0.02*sin(4*z+x)\"]";
+}
+std::string spinning(int dimension) {
+  return dimension == 2 ? "[\"0.3-2*(y-0.25)\", \"2*(x-0.5)\"]"
+                        : "[\"0.3-2*(y-0.25)+(z-0.3)\", \"2*(x-0.5)-0.5*(z-0.3)\", \"0.5*(y-0.25)-(x-0.5)\"]";
+}
+
+/// About the origin and current positions, from the mass and the state alone.
+struct Momenta {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+  explicit Momenta(const CaseRun& run) {
+    const SemidiscreteProblem& problem = run.problem();
+    const Index d = problem.dimension;
+    Vector momentum;
+    problem.mass.multiply(run.state().velocity, momentum);
+    for (Index node = 0; node < problem.nodes.cols(); ++node) {
+      Eigen::Vector3d place = Eigen::Vector3d::Zero(), own = Eigen::Vector3d::Zero();
+      place.head(d) = problem.nodes.col(node) + run.state().displacement.segment(node * d, d);
+      own.head(d) = momentum.segment(node * d, d);
+      linear += own;
+      angular += place.cross(own);
+    }
+  }
+};
+
+double energy_of(const CaseRun& run) {
+  return 0.5 * run.problem().mass.form(run.state().velocity) +
+         run.problem().internal_force->energy(run.state().displacement) -
+         run.problem().loads.constant().dot(run.state().displacement);
+}
+
+const std::vector<std::string>& exact_schemes() {
+  static const std::vector<std::string> all{"reduced-kane", "mean-reaction", "reduced-midpoint"};
+  return all;
+}
+
+TEST(FiniteStrain, FreeFlightKeepsEnergyAndMomenta) {
+  for (const int dimension : {2, 3}) {
+    for (const std::string& scheme : exact_schemes()) {
+      for (const std::string law : {"neo-hookean", "saint-venant-kirchhoff"}) {
+        CaseRun run(
+            case_of({.dimension = dimension, .scheme = scheme, .law = law}, stretched(dimension), spinning(dimension)));
+        const double energy = energy_of(run);
+        const Momenta start(run);
+        run.run([&] {
+          EXPECT_NEAR(energy_of(run), energy, 1e-12 * energy) << scheme << " " << law;
+          const Momenta now(run);
+          EXPECT_LT((now.linear - start.linear).norm(), 1e-13);
+          EXPECT_LT((now.angular - start.angular).norm(), 1e-12) << scheme;
+        });
+      }
+    }
+  }
+}
+
+/// Bouncing: energy is exact without friction under the mean of the reactions, and never rises under those of the end;
+/// the account closes, and both momenta change by the impulses.
+TEST(FiniteStrain, BouncingBalances) {
+  for (const int dimension : {2, 3}) {
+    for (const std::string& scheme : exact_schemes()) {
+      for (const std::string friction : {"", "friction = 0.4\n"}) {
+        if (!friction.empty() && scheme != "reduced-kane") continue;
+        Flight flight{.dimension = dimension, .scheme = scheme, .height = 0.05, .more = friction};
+        const std::string velocity = dimension == 2 ? "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\"]"
+                                                    : "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\", \"0.2\"]";
+        CaseRun run(case_of(flight, stretched(dimension), velocity));
+        const double start = energy_of(run);
+        double before = start, largest_force = 0.0;
+        const Momenta first(run);
+        MomentumAccount momentum(run.problem(), run.scheme(), run.state());
+        run.run(
+            [&] {
+              const double energy = energy_of(run);
+              momentum.enter_step(run.state());
+              const std::string what = scheme + friction + " step " + std::to_string(run.state().step);
+              if (scheme == "reduced-kane") {
+                EXPECT_LT(energy, before + 1e-12 * start) << what;
+              } else {
+                EXPECT_NEAR(energy, start, 1e-11 * start) << what;
+              }
+              before = energy;
+              const Energies energies = run.simulation().account().energies(run.state());
+              EXPECT_NEAR(run.simulation().account().residual(energies), 0.0, 1e-12 * start) << what;
+              const Momenta now(run);
+              EXPECT_LT((now.linear - first.linear - momentum.impulse().force).norm(), 1e-12) << what;
+              EXPECT_LT((now.angular - first.angular - momentum.impulse().moment).norm(), 1e-11) << what;
+              largest_force = std::max(largest_force, run.state().forces.normal_reaction.sum());
+              Vector gap;
+              run.problem().gaps(run.state().displacement, run.state().time, gap);
+              EXPECT_GT(gap.minCoeff(), -1e-12) << what;
+            },
+            false);
+        EXPECT_GT(largest_force, 0.1) << scheme;
+      }
+    }
+  }
+}
+
+/// A rigid spin has no strain, however far a step turns: bodies do not swell. (They are stretched by ρω²L²/E alone.)
+TEST(FiniteStrain, ARigidSpinDoesNotSwell) {
+  for (const int dimension : {2, 3}) {
+    Flight flight{.dimension = dimension, .step = 500.0, .height = 1e6};
+    CaseRun run(case_of(
+        flight, dimension == 2 ? "[\"0\", \"0\"]" : "[\"0\", \"0\", \"0\"]",
+        dimension == 2 ? "[\"-1e-4*(y-0.25)\", \"1e-4*(x-0.5)\"]" : "[\"-1e-4*(y-0.25)\", \"1e-4*(x-0.5)\", \"0\"]"));
+    const SemidiscreteProblem& problem = run.problem();
+    const Points at_rest = problem.nodes.colwise() - problem.nodes.rowwise().mean();
+    double turned = 0.0;
+    run.run([&] {
+      Points now = problem.nodes + run.state().displacement.reshaped(problem.dimension, problem.nodes.cols());
+      now.colwise() -= Vector(now.rowwise().mean());
+      for (Index node = 0; node < now.cols(); ++node) EXPECT_NEAR(now.col(node).norm(), at_rest.col(node).norm(), 1e-9);
+      turned = std::max(turned, (now - at_rest).cwiseAbs().maxCoeff());
+    });
+    EXPECT_GT(turned, 1.0);  // it has been upside down
+  }
+}
+
+/// Superposed rotations of the whole motion change nothing but the places.
+TEST(FiniteStrain, AMotionThatIsTurnedIsTheSameMotion) {
+  for (const std::string scheme : {"reduced-kane", "mean-reaction", "newmark", "generalized-alpha"}) {
+    const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
+    const auto number = [](double value) { return fmt::format("({:.17g})", value); };
+    const std::string u = "0.02*sin(5*x)", v = "0.02*sin(5*y)", x = "(x+" + u + ")", y = "(y+" + v + ")";
+    const std::string p = "(-2*(y-0.25))", q = "(2*(x-0.5)+0.3*x*y)";
+    Flight flight{.scheme = scheme};
+    CaseRun one(case_of(flight, "[\"" + u + "\", \"" + v + "\"]", "[\"" + p + "\", \"" + q + "\"]"));
+    CaseRun other(case_of(flight,
+                          "[\"" + number(c) + "*" + x + "-" + number(s) + "*" + y + "-x\", \"" + number(s) + "*" + x +
+                              "+" + number(c) + "*" + y + "-y\"]",
+                          "[\"" + number(c) + "*" + p + "-" + number(s) + "*" + q + "\", \"" + number(s) + "*" + p +
+                              "+" + number(c) + "*" + q + "\"]"));
+    one.run([] {});
+    other.run([] {});
+    const Matrix rotation = (Matrix(2, 2) << c, -s, s, c).finished();
+    const Index nodes = one.problem().nodes.cols();
+    const Points first = one.problem().nodes + one.state().displacement.reshaped(2, nodes);
+    const Points second = other.problem().nodes + other.state().displacement.reshaped(2, nodes);
+    EXPECT_LT((rotation * first - second).cwiseAbs().maxCoeff(), 1e-12) << scheme;
+  }
+}
+
+/// In the limit of small loads the linear results come back.
+TEST(FiniteStrain, SmallMotionsAreLinear) {
+  for (const std::string scheme : {"reduced-kane", "mean-reaction", "newmark", "generalized-alpha"}) {
+    for (const std::string law : {"neo-hookean", "saint-venant-kirchhoff"}) {
+      const auto run_law = [&](const std::string& name) {
+        Flight flight{.scheme = scheme, .law = name, .height = 1e-9};
+        return CaseRun(case_of(flight, "[\"1e-9*sin(5*x)\", \"1e-9*sin(5*y)\"]", "[\"0\", \"-1e-8\"]"));
+      };
+      CaseRun linear = run_law("linear"), finite = run_law(law);
+      double force = 0.0, difference = 0.0;
+      while (linear.session().step() && finite.session().step()) {
+        force = std::max(force, linear.state().forces.normal_reaction.sum());
+        difference = std::max(difference, std::abs(linear.state().forces.normal_reaction.sum() -
+                                                   finite.state().forces.normal_reaction.sum()));
+      }
+      EXPECT_GT(force, 0.0);
+      EXPECT_LT(difference, 1e-6 * force) << scheme << " " << law;
+      const double size = linear.state().displacement.lpNorm<Eigen::Infinity>();
+      EXPECT_LT((linear.state().displacement - finite.state().displacement).lpNorm<Eigen::Infinity>(), 1e-6 * size)
+          << scheme << " " << law;
+    }
+  }
+}
+
+/// Halving the step divides the error of a flight by four.
+TEST(FiniteStrain, IsOfSecondOrder) {
+  for (const std::string scheme : {"reduced-kane", "mean-reaction", "newmark", "kane", "midpoint"}) {
+    const bool has_inertia = scheme == "kane" || scheme == "midpoint";
+    const auto end_of = [&](double step) {
+      Flight flight{.scheme = scheme, .mass = has_inertia ? "consistent" : "equivalent", .step = step};
+      CaseRun run(case_of(flight, "[\"0.02*(x-0.5)\", \"-0.01*(y-0.25)\"]", "[\"-2*(y-0.25)\", \"2*(x-0.5)\"]"));
+      while (run.state().time < 0.016 * (1.0 - 1e-9)) run.session().step();
+      return run.state().displacement;
+    };
+    const Vector coarse = end_of(4e-4), middle = end_of(2e-4), fine = end_of(1e-4);
+    const double rate = (coarse - middle).norm() / (middle - fine).norm();
+    EXPECT_GT(rate, 3.5) << scheme;
+    EXPECT_LT(rate, 4.5) << scheme;
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
