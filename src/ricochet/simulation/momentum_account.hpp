@@ -7,7 +7,9 @@
 /// A rigid velocity does no work on the stress, so its product with the momentum equation is the balance of momentum:
 /// over a step P₁ − P₀ = h (w₀ F₀ + w₁ F₁), with the resultants F of the loads, obstacles, supports and damping at the
 /// two ends and the scheme's weights (WorkRule). The same for moments about the origin with reference positions. It
-/// holds to rounding where the displacement's functions contain rigid rotations: not for degree 1 on curved cells.
+/// holds to rounding where the displacement's functions contain rigid rotations: not for degree 1 on curved cells. Of
+/// an axisymmetric body only forces along its axis have an impulse: the others cancel over the ring, and so do all
+/// moments.
 namespace ricochet {
 
 /// Resultant and moment, or momentum and angular momentum.
@@ -41,6 +43,7 @@ class MomentumAccount {
   [[nodiscard]] Sum resultant(const StepForces& forces) const;
   [[nodiscard]] Resultant algorithmic(const State& state);
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;
+  void add_impulse(double weight, const Resultant& resultant);
 
   const SemidiscreteProblem& problem_;
   const Scheme& scheme_;

@@ -22,6 +22,7 @@ class RigidBodies {
  private:
   [[nodiscard]] Eigen::Vector3d arm(Index node) const;
   void measure();
+  void measure_round_axis();
 
   const SemidiscreteProblem& problem_;
   std::vector<int> body_of_node_;
