@@ -10,6 +10,7 @@
 #include "ricochet/fem/facet_integration.hpp"
 #include "ricochet/fem/green_strain.hpp"
 #include "ricochet/fem/mesh_measures.hpp"
+#include "ricochet/fem/nodal_recovery.hpp"
 #include "ricochet/fem/stress.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/mass/mass.hpp"
@@ -125,6 +126,24 @@ TEST_P(AxisymmetricPatch, EnergyDensitiesAddUpToTheStrainEnergy) {
   const double energy = 0.5 * displacement.dot(stiffness * displacement);
   EXPECT_NEAR(volumes.dot(Eigen::Map<const Vector>(density.data(), volumes.size())), energy, 1e-13 * energy);
   EXPECT_NEAR(volumes.sum(), volume(), 1e-13 * volume());
+}
+
+/// The stress of u = (rz, …) on degree 2 is a linear function, and what is recovered at the nodes is its value there.
+TEST_P(AxisymmetricPatch, RecoveryIsExactForLinearStresses) {
+  if (GetParam().kind.displacement_degree == 1 || GetParam().curved) return;  // not contained in the space
+  const auto test = make_body({5, 5});
+  const Vector displacement = interpolate(test->space, [](const Vector& x) -> Vector {
+    return Eigen::Vector2d(x[0] * (0.2 + 0.5 * x[1]), 0.7 * x[1] * x[1]);
+  });
+  std::vector<double> stress, density;
+  CellStress(test->body).evaluate(displacement, stress, density);
+  const Matrix components = Eigen::Map<const Matrix>(stress.data(), 6, test->mesh.cell_count());
+  const Vector hoop = make_nodal_recovery(test->body) * Vector(components.row(5).transpose());
+  const Material material = test_material();
+  for (Index node = 0; node < hoop.size(); ++node) {
+    const double y = test->space.nodes(1, node), around = 0.2 + 0.5 * y, along = 1.4 * y;
+    EXPECT_NEAR(hoop[node], material.lambda() * (2.0 * around + along) + 2.0 * material.mu() * around, 1e-11);
+  }
 }
 
 /// The symmetric matrix has one motion without energy, the translation along the axis.
