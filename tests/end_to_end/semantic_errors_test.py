@@ -247,6 +247,8 @@ class SemanticErrors(TestCase):
         pulled = self.write("case.toml", self.axisymmetric(support("bottom", '["x"]', '"0.1*t"')))
         self.assertIn("a node on the axis of an axisymmetric body does not move away",
                       self.expect_status(2, run("validate", pulled)).stderr)
+        self.refuse(self.axisymmetric().replace("density = 1.0", 'law = "neo-hookean"\ndensity = 1.0'), '"neo-hookean"',
+                    "finite strain")
         solid = block_case("hexahedron_o1_msh41_ascii.msh").replace("[0.0, 0.0]", "[0.0, 0.0, 0.0]")
         solid = solid.replace("[0.0, 1.0]", "[0.0, 0.0, 1.0]").replace("[0.0, -10.0]", "[0.0, 0.0, -10.0]")
         solid = solid.replace("at = [1.3, 0.1]", "at = [1.3, 0.1, 0.0]").replace("[mesh]\n", f"[mesh]\n{plane}\n")

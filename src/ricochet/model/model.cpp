@@ -129,6 +129,7 @@ void assign_materials(const Case& input, Model& model) {
     }
     model.body.materials.push_back({section.group, section.density, make_material_law(section.law, section.parameters),
                                     section.damping.mass, section.damping.stiffness});
+    check_axisymmetric_law(input, i, model.body.materials.back());
     const double poisson = model.body.materials.back().poisson();
     const bool locks = input.mesh.degree == 1 && !(mesh.dimension == 2 && model.body.plane == PlaneState::stress);
     // Got back from λ and μ, 0.45 itself is a little more or less.

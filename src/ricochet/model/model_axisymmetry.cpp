@@ -52,6 +52,14 @@ void check_axisymmetry(const Case& input, int dimension) {
   }
 }
 
+void check_axisymmetric_law(const Case& input, std::size_t number, const Material& material) {
+  if (!is_axisymmetric(input) || material.law->is_linear()) return;
+  refuse(input, fmt::format("material.{}.law", number),
+         fmt::format("the law \"{}\" is one of finite strain, which axisymmetric bodies do not have so far: take "
+                     "\"linear\", or mesh the solid",
+                     input.materials[number].law));
+}
+
 void check_axisymmetric_obstacle(const Case& input, const std::string& name, const Obstacle& obstacle) {
   if (!is_axisymmetric(input) || !obstacle.moves()) return;
   refuse_radial(input, "obstacle." + name, obstacle.translation(1.0)[0], fmt::format("the motion of \"{}\"", name));

@@ -40,6 +40,8 @@ void complete_groups(const Case& input, Mesh& mesh);
 }
 /// Refuses what axisymmetric bodies cannot do: translations and forces of gravity across the axis, spins.
 void check_axisymmetry(const Case& input, int dimension);
+/// Laws of finite strain are not for them so far.
+void check_axisymmetric_law(const Case& input, std::size_t number, const Material& material);
 /// The same of an obstacle that moves.
 void check_axisymmetric_obstacle(const Case& input, const std::string& name, const Obstacle& obstacle);
 /// Puts the nodes of an axisymmetric body that are on the axis at exactly x = 0; refuses those beyond it.
