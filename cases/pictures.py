@@ -2,7 +2,7 @@
 """Draws the pictures of the cases' READMEs: runs the cases into out/pictures and plots their history.csv beside the
 closed forms. From the repository root, with python3-matplotlib installed:
 
-    /usr/bin/python3 cases/pictures.py [puck disc rod bar ball hertz layer incline dragged conveyor oblique ball-spin bowl bars-pair cradle
+    /usr/bin/python3 cases/pictures.py [puck disc rod bar ball ball-axisymmetric hertz layer incline dragged conveyor oblique ball-spin bowl bars-pair cradle
         balls ball-block stack tied]
 """
 import csv
@@ -440,6 +440,32 @@ def stack():
     save(figure, "cases/stack/stack.png")
 
 
+def ball_axisymmetric():
+    """The force of the ball by its section beside that of the ball in space, and the pressure under a pressed one."""
+    import meshio  # python3-meshio, for this picture only
+
+    section, solid = run("ball-axisymmetric/ball-axisymmetric", "ball-axisymmetric"), run("ball/ball", "ball")
+    run("ball-axisymmetric/pressed-axisymmetric", "ball-pressed")
+    figure, (force, pressure) = plt.subplots(1, 2, figsize=(10, 3.6))
+    force.plot(1e3 * solid["time"], solid["contact_force_z"], label="ball in space", **EXACT)
+    force.plot(1e3 * section["time"], section["contact_force_y"], label="by its section")
+    force.set(xlabel="time, ms", title="contact force, N", xlim=(31, 41), ylim=(-5, 125))
+    with meshio.xdmf.TimeSeriesReader("out/pictures/ball-pressed/results.xdmf") as reader:
+        points, _ = reader.read_points_cells()
+        fields = reader.read_data(reader.num_steps - 1)[1]
+    load = 2.8e-6 * 4.18878
+    width = (0.75 * load * (1 - 0.3**2)) ** (1 / 3)
+    touching = np.flatnonzero(fields["contact_status"] >= 0)
+    radius = np.linspace(0, 1, 400)
+    pressure.plot(radius, np.sqrt(1 - radius**2), label="Hertz", **EXACT)
+    pressure.plot(points[touching, 0] / width, fields["contact_pressure"][touching] / (1.5 * load / (np.pi * width**2)), "o",
+                  markersize=4, fillstyle="none", label="computed, degree 2")
+    pressure.set(xlabel="distance from the axis / a", title="pressure / largest of Hertz", xlim=(0, 1.3), ylim=(-0.05, 1.15))
+    for axis in (force, pressure):
+        axis.legend(loc="upper right")
+    save(figure, "cases/ball-axisymmetric/ball-axisymmetric.png")
+
+
 def hertz_pressure():
     """Pressure over the radius of the pressed cylinder and ball, in every multiplier space that is stable there."""
     import meshio  # python3-meshio, for this picture only
@@ -484,7 +510,7 @@ def hertz_pressure():
 
 
 if __name__ == "__main__":
-    known = {"puck": puck, "disc": disc, "rod": rod, "bar": bar, "ball": ball, "hertz": hertz_pressure, "layer": layer, "incline": incline, "dragged": dragged,
+    known = {"puck": puck, "disc": disc, "rod": rod, "bar": bar, "ball": ball, "ball-axisymmetric": ball_axisymmetric, "hertz": hertz_pressure, "layer": layer, "incline": incline, "dragged": dragged,
              "conveyor": conveyor, "oblique": oblique, "ball-spin": ball_spin, "bowl": bowl,
              "bars-pair": bars_pair, "cradle": cradle, "balls": balls, "ball-block": ball_block, "stack": stack, "tied": tied}
     for wanted in sys.argv[1:] or known:

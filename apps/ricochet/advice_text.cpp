@@ -54,8 +54,9 @@ void print_materials(const Body& body) {
   for (std::size_t i = 0; i < body.materials.size(); ++i) {
     const Material& material = body.materials[i];
     fmt::print("  material \"{}\": {} {:.6g}, mass {:.6g}, compression waves {:.5g}, shear waves {:.5g}\n",
-               material.name, body.mesh->dimension == 2 ? "area" : "volume", volume[i], volume[i] * material.density,
-               compression_wave_speed(material, is_plane_stress(body)), shear_wave_speed(material));
+               material.name, body.mesh->dimension == 2 && !is_axisymmetric(body) ? "area" : "volume", volume[i],
+               volume[i] * material.density, compression_wave_speed(material, is_plane_stress(body)),
+               shear_wave_speed(material));
   }
 }
 
@@ -66,10 +67,12 @@ void print_bodies(const Model& model, const ConnectedBodies& connected) {
   constexpr std::size_t shown = 10;
   for (std::size_t i = 0; i < std::min(rigid.bodies().size(), shown); ++i) {
     const RigidBody& body = rigid.bodies()[i];
+    const bool is_section = d == 2 && !is_axisymmetric(model.body);
     const std::string inertia =
-        d == 2 ? fmt::format("{:.5g}", body.inertia(2, 2)) : vector_text(body.inertia.diagonal()) + " (xx, yy, zz)";
+        is_section ? fmt::format("{:.5g}", body.inertia(2, 2)) : vector_text(body.inertia.diagonal()) + " (xx, yy, zz)";
     fmt::print("  {}: mass {:.6g}{}, centre {}, moment of inertia about it {}\n", names[i], body.mass,
-               d == 2 ? " per unit of thickness" : "", vector_text(body.centre.head(d), reach(model.mesh)), inertia);
+               is_section ? " per unit of thickness" : "", vector_text(body.centre.head(d), reach(model.mesh)),
+               inertia);
   }
   if (rigid.bodies().size() > shown)
     fmt::print("  {}\n", counted(rigid.bodies().size() - shown, "more body", "more bodies"));
@@ -192,7 +195,7 @@ void print_contact(const Case& input, const Model& model, std::size_t pair) {
 
 }  // namespace
 
-void print_groups(const Mesh& of_file) {
+void print_groups(const Mesh& of_file, bool axisymmetric) {
   Mesh mesh = of_file;
   const int d = mesh.dimension;
   add_built_in_group(mesh, all_cells_name, d);
@@ -208,11 +211,11 @@ void print_groups(const Mesh& of_file) {
       fmt::print("  group \"{}\" of dimension {}, not used\n", group.name, group.dimension);
       continue;
     }
-    const MeshMeasure measure = measure_group(mesh, group);
+    const MeshMeasure measure = measure_group(mesh, group, axisymmetric);
     const bool are_cells = group.dimension == d;
     fmt::print("  group \"{}\": {} of dimension {}, {} {:.5g}, centre {}, from {} to {}{}\n", group.name,
                counted(group.members.size(), are_cells ? "cell" : "facet"), group.dimension,
-               sizes[static_cast<std::size_t>(group.dimension)], measure.size,
+               sizes[static_cast<std::size_t>(group.dimension) + (axisymmetric ? 1 : 0)], measure.size,
                vector_text(measure.centre.head(d), size), vector_text(measure.lowest.head(d), size),
                vector_text(measure.highest.head(d), size), are_cells ? "" : normal_text(measure, d));
   }
@@ -236,7 +239,7 @@ void print_advice(const Case& input, const Model& model) {
   print_place(input, model);
   print_materials(model.body);
   print_bodies(model, connected);
-  print_groups(model.mesh);
+  print_groups(model.mesh, is_axisymmetric(model.body));
   print_cell_sizes(model.mesh);
   for (std::size_t pair = 0; pair < input.contacts.size(); ++pair) print_contact(input, model, pair);
   print_steps(input, model, connected);

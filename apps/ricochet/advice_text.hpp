@@ -6,7 +6,7 @@
 namespace ricochet::program {
 
 /// A line per group of cells or facets, the built-in ones too: how large, where, and which way facets look.
-void print_groups(const Mesh& mesh);
+void print_groups(const Mesh& mesh, bool axisymmetric = false);
 /// Of all cells: their smallest heights.
 void print_cell_sizes(const Mesh& mesh);
 /// Place, masses, wave speeds, times that waves take, a step to begin with, and when bodies meet obstacles.

@@ -75,11 +75,13 @@ void print_critical_step(double step, double critical) {
 }
 
 void print_files(const Case& input) {
+  const char* const axisymmetric = input.mesh.plane == "axisymmetric" ? ", axisymmetric" : "";
   if (input.parts.empty()) {
-    fmt::print("  mesh    {} (displacement of degree {})\n", input.mesh.file, input.mesh.degree);
+    fmt::print("  mesh    {} (displacement of degree {}{})\n", input.mesh.file, input.mesh.degree, axisymmetric);
     return;
   }
-  fmt::print("  mesh    of {} (displacement of degree {})\n", counted(input.parts.size(), "part"), input.mesh.degree);
+  fmt::print("  mesh    of {} (displacement of degree {}{})\n", counted(input.parts.size(), "part"), input.mesh.degree,
+             axisymmetric);
   for (const PartSection& part : input.parts)
     fmt::print("  part \"{}\": {}{}\n", part.name, part.file, placement_text(part));
 }

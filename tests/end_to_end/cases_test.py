@@ -53,6 +53,8 @@ def documented_columns(dimension, case, points):
     if len(bodies) > 1 and not tied:
         for body in bodies:
             columns += vector_columns(f"momentum.{body}", dimension)
+    if any(material.get("law", "linear") != "linear" for material in case["material"]):
+        columns += ["integration_error", "newton_rounds"]
     for number, contact in enumerate(case.get("contact", [])):
         if "against" in contact and not contact.get("tied", False):
             columns += vector_columns(f"pair_force.{number}", dimension)

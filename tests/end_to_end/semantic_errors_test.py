@@ -1,11 +1,12 @@
 """Cases that are well formed but make no sense with their mesh: each ends with status 2 and a message that says what is
 wrong, where it stands (file:line:column), and what there is instead."""
 
+import json
 import os
 import re
 import unittest
 
-from harness import MESHES, TestCase, block_case, run
+from harness import MESHES, History, TestCase, block_case, run
 
 MIXED = block_case("mixed_o1_msh41_ascii.msh").replace('group = "body"', 'group = "all"')
 
@@ -201,6 +202,75 @@ class SemanticErrors(TestCase):
         for young in ("5e6", "60e6", "61e6", "1e9", "210e9"):
             self.assertTrue(warns(young, 0.45), young)
         self.assertFalse(warns("60e6", 0.4499))
+
+    def axisymmetric(self, more="", mesh_keys="", contact="bottom", drive="[load]\ngravity = [0.0, -1.0]\n"):
+        """A unit square beside its axis; `bottom` is all of its boundary, the axis, too."""
+        mesh = self.write("section.msh", TWO_TRIANGLES)
+        return (f'[mesh]\nfile = "{mesh}"\ndegree = 2\nplane = "axisymmetric"\n{mesh_keys}'
+                '[[material]]\ngroup = "body"\ndensity = 1.0\nlambda = 100.0\nmu = 50.0\n'
+                '[obstacle.floor]\ntype = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n'
+                f'[[contact]]\ngroup = "{contact}"\nobstacle = "floor"\n{drive}[mass]\ntype = "consistent"\n'
+                f'[time]\nscheme = "newmark"\npreset = "trapezoidal"\nstep = 0.01\nend = 0.02\n{more}')
+
+    def test_axis_of_an_axisymmetric_body(self):
+        process = self.expect_status(0, run("validate", self.write("case.toml", self.axisymmetric())))
+        self.assertIn("3 nodes are held there in the radial direction", process.stderr)
+        self.assertIn('1 facet of group "bottom" lies on the axis', process.stderr)
+        told = self.expect_status(0, run("info", self.folder / "case.toml")).stdout
+        self.assertRegex(told, r'material "body": volume 3\.14159, mass 3\.14159,')
+        self.assertRegex(told, r"the body: mass 3\.14159, centre \(0, 0\.5\), moment of inertia about it \(1\.047, 1\.571, 1\.047\)")
+        self.assertIn("displacement of degree 2, axisymmetric", told)
+        self.assertIn('group "bottom": 4 facets of dimension 1, area 12.566', told)
+        held = self.axisymmetric(support("bottom", '["x"]', 0))
+        self.expect_status(0, run("validate", self.write("case.toml", held)))
+
+    def test_ring_on_a_pin(self):
+        """It is pressed all round, and no force is along its axis: rounding is not a violated balance of momentum."""
+        text = self.axisymmetric(mesh_keys="move = [1.0, 0.0]\n", drive='[initial]\ndisplacement = "static"\n')
+        text = text.replace("point = [0.0, 0.0]\nnormal = [0.0, 1.0]", "point = [1.001, 0.0]\nnormal = [1.0, 0.0]")
+        results = self.simulate(self.write("case.toml", text))
+        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["warnings"], [])
+        row = History(results / "history.csv")
+        self.assertGreater(row["contact_force_x"][-1], 0.1)
+        self.assertEqual(row["momentum_x"][-1], 0.0)
+
+    def test_axisymmetric_bodies_that_make_no_sense(self):
+        plane = 'plane = "axisymmetric"'
+        self.refuse(self.axisymmetric(mesh_keys="move = [-0.25, 0.0]\n"), '"axisymmetric"', "node 1 is at (-0.25, 0)",
+                    "wrong side of the axis")
+        self.refuse(self.axisymmetric(drive="[load]\ngravity = [0.5, -1.0]\n"), "[0.5, -1.0]", "radial component 0.5")
+        self.refuse(self.axisymmetric('[[motion]]\ngroup = "body"\nvelocity = [1.0, 0.0]\n'), "[1.0, 0.0]", "radial")
+        self.refuse(self.axisymmetric('[[motion]]\ngroup = "body"\nspin = 2.0\n'), "2.0\n", "does not turn")
+        self.refuse(self.axisymmetric().replace("normal = [0.0, 1.0]", "normal = [0.0, 1.0]\nvelocity = [0.1, 0.2]"),
+                    "[obstacle.floor]", '"floor" has the radial component 0.1')
+        pulled = self.write("case.toml", self.axisymmetric(support("bottom", '["x"]', '"0.1*t"')))
+        self.assertIn("a node on the axis of an axisymmetric body does not move away",
+                      self.expect_status(2, run("validate", pulled)).stderr)
+        solid = block_case("hexahedron_o1_msh41_ascii.msh").replace("[0.0, 0.0]", "[0.0, 0.0, 0.0]")
+        solid = solid.replace("[0.0, 1.0]", "[0.0, 0.0, 1.0]").replace("[0.0, -10.0]", "[0.0, 0.0, -10.0]")
+        solid = solid.replace("at = [1.3, 0.1]", "at = [1.3, 0.1, 0.0]").replace("[mesh]\n", f"[mesh]\n{plane}\n")
+        self.refuse(solid, '"axisymmetric"', "dimension 3")
+
+    def test_laws_of_finite_strain_that_make_no_sense(self):
+        def with_law(text, law, more=""):
+            return text.replace("density = ", f'law = "{law}"\n{more}density = ', 1)
+
+        self.expect_status(0, run("validate", self.write("case.toml", with_law(block_case(), "neo-hookean"))))
+        self.refuse(with_law(block_case(), "neo-hookean", "damping = { stiffness = 0.1 }\n"), "0.1 }",
+                    "stiffness damping", "set it to 0")
+        self.refuse(with_law(block_case(), "saint-venant-kirchhoff", 'dilatation = "mean"\n'), '"mean"',
+                    "neo-hookean, mooney-rivlin")
+        self.refuse(with_law(block_case(), "mooney-rivlin"), None, '"c10"')
+        self.refuse(with_law(block_case(), "neo-hokean"), '"neo-hokean"', 'did you mean "neo-hookean"')
+        newmark = 'scheme = "newmark"\npreset = "trapezoidal"\n'
+        self.refuse(with_law(block_case(), "neo-hookean").replace(newmark, 'scheme = "bathe"\n'), '"bathe"',
+                    "linear", "reduced-kane")
+        # One of two materials is linear.
+        halves = with_law(MIXED, "neo-hookean").replace('group = "all"', 'group = "left half"', 1)
+        status = run("validate", self.write("case.toml", halves + '[[material]]\ngroup = "all"\ndensity = 1.0\n'
+                                            "lambda = 1.0\nmu = 1.0\n"))
+        self.assertEqual(status.returncode, 2)
 
     def test_supports_with_parameters_of_their_own(self):
         """Two supports with the same text are not the same support."""

@@ -357,7 +357,7 @@ void TreeChecker::report_missing_section(const Section& section) {
   }
   std::vector<std::string> names;
   for (const Key& key : section.keys) {
-    if (key.required) names.push_back(key.name);
+    if (key.required && key.only_for.empty()) names.push_back(key.name);
   }
   const std::string other = section.gives_way_to.empty()
                                 ? ""

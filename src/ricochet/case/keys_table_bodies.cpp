@@ -88,8 +88,9 @@ Section mesh_section() {
   section.keys.push_back({.name = "plane",
                           .type = KeyType::choice,
                           .standard = "strain",
-                          .choices = {"strain", "stress"},
-                          .doc = "In two dimensions: plane strain or plane stress."});
+                          .choices = {"strain", "stress", "axisymmetric"},
+                          .doc = "In two dimensions: plane strain, plane stress, or the section through bodies that "
+                                 "are the same all round the axis x = 0, x ≥ 0 (docs/axisymmetric.md)."});
   return section;
 }
 

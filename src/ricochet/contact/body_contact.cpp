@@ -158,7 +158,10 @@ AnchorDirections BodyPairing::Implementation::normals_seen(bool at_facets) const
     const std::vector<Index> anchors = at_facets ? std::vector{facet} : facet_nodes(*body.space, {facet});
     for (const Index anchor : anchors) result.try_emplace(anchor, Three::Zero()).first->second += sum;
   }
-  for (auto& [anchor, sum] : result) sum.normalize();
+  for (auto& [anchor, sum] : result) {
+    if (!at_facets) take_across_axis(body, anchor, sum);
+    sum.normalize();
+  }
   return result;
 }
 
@@ -288,8 +291,10 @@ void BodyPairing::Implementation::summarize(bool has_gaps, BodyContact& result) 
     if (closes(node.gap)) node.gap = 0.0;
   }
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
-    facing.area += own.facets()[k].area;
-    facing.covered += std::min(direct[k].covered, 1.0) * own.facets()[k].area;
+    const double ring = is_axisymmetric(body) ? ring_length(own.facets()[k].centre[0]) : 1.0;
+    const double area = own.facets()[k].area * ring;
+    facing.area += area;
+    facing.covered += std::min(direct[k].covered, 1.0) * area;
   }
 }
 

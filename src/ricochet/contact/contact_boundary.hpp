@@ -15,8 +15,9 @@
 /// and multipliers ≤ 0. Here:
 ///   gap operator       G = −B_N: row i is the obstacle's outward normal times multiplier i's weights of the nodes;
 ///   gap                g = g₀ + G U, ≥ 0 when open;
-///   normal reaction    r_N ≥ 0 in compression, a force (per length out of the plane in 2D);
-///   force on the body  Gᵀ r_N − B_Tᵀ r_T, with r_T aligned with the slip rate of the body relative to the obstacle.
+///   normal reaction    r_N ≥ 0 in compression, a force (per length out of the plane in 2D, of the ring in axisymmetric
+///   bodies); force on the body  Gᵀ r_N − B_Tᵀ r_T, with r_T aligned with the slip rate of the body relative to the
+///   obstacle.
 /// Back to the source: λ̃_N^i = −r_N,i and U·N_i = −(g_i − g₀,i) where the obstacle's normal is −N_i.
 namespace ricochet {
 
@@ -82,7 +83,7 @@ struct ContactBoundary {
   // Per contact point:
   std::vector<int> pair;                            ///< index of the ContactPair it came from (the first that names it)
   Vector initial_gap;                               ///< g₀
-  Vector weights;                                   ///< D_i > 0: length in 2D, area in 3D
+  Vector weights;                                   ///< D_i > 0: length in 2D, area in 3D and of rings
   Vector friction_coefficient;                      ///< F
   Vector friction_bound;                            ///< a force, bound × D_i; 0: none
   SparseRowMatrix trace;                            ///< t, points × nodes of the space: c, and −m between bodies

@@ -17,8 +17,8 @@ struct BlockRules {
   BlockIntegration stiffness;
   Tabulation geometry, displacement;
 
-  BlockRules(CellShape shape, int geometry_degree, int displacement_degree)
-      : stiffness(stiffness_integration(shape, geometry_degree, displacement_degree)) {
+  BlockRules(CellShape shape, int geometry_degree, int displacement_degree, bool axisymmetric)
+      : stiffness(stiffness_integration(shape, geometry_degree, displacement_degree, axisymmetric)) {
     const ReferenceElement& element = ReferenceElement::get(shape, displacement_degree);
     geometry = ReferenceElement::get(shape, geometry_degree).tabulate(element.nodes());
     displacement = element.tabulate(element.nodes());
@@ -43,7 +43,7 @@ class StressRows {
  public:
   StressRows(const Body& body, const ContactBoundary& boundary) : body_(body), boundary_(boundary) {
     for (const CellBlock& block : body.mesh->cells)
-      cells_.emplace_back(block.shape, body.mesh->degree, body.space->degree);
+      cells_.emplace_back(block.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body));
     for (const CellBlock& block : body.mesh->facets) {
       const Points& nodes = ReferenceElement::get(block.shape, body.space->degree).nodes();
       facet_maps_.push_back(ReferenceElement::get(block.shape, body.mesh->degree).tabulate(nodes));
@@ -117,9 +117,22 @@ class StressRows {
               boundary_.weights[point] *
               (law.lambda * n.dot(outward) * g + law.mu * (g.dot(outward) * n + n.dot(g) * outward));
         }
+        if (is_axisymmetric(body_))
+          add_hoop(nodes[a], own, boundary_.weights[point] * law.lambda * n.dot(outward), gradients, share.row);
         shares.push_back(std::move(share));
       }
     }
+  }
+
+  /// The part of the hoop strain u_x/x at a node: `own` of its cell, where alone φ is not zero. On the axis the strain
+  /// is ∂u_x/∂x.
+  void add_hoop(Index node, Index own, double factor, const Eigen::Matrix<double, Eigen::Dynamic, d>& gradients,
+                Vector& row) const {
+    if (!is_on_axis(body_, node)) {
+      row[own * d] += factor / body_.space->nodes(0, node);
+      return;
+    }
+    for (Index b = 0; b < gradients.rows(); ++b) row[b * d] += factor * gradients(b, 0);
   }
 
   /// Of the shape functions of a cell, at one of its nodes.
@@ -176,7 +189,7 @@ class StressRows {
       rows.row(static_cast<Index>(k)) = std::sqrt(std::abs(all[k].share)) * all[k].row.transpose();
     // In the eigenvectors of K_cell but for its rigid motions, which have no stress.
     const SymmetricEigen eigen = symmetric_eigen(stiffness);
-    const Index rigid = d * (d + 1) / 2, rest = stiffness.cols() - rigid;
+    const Index rigid = is_axisymmetric(body_) ? 1 : d * (d + 1) / 2, rest = stiffness.cols() - rigid;
     const Matrix scaled =
         rows * eigen.vectors.rightCols(rest) * eigen.values.tail(rest).cwiseSqrt().cwiseInverse().asDiagonal();
     const Vector values = symmetric_eigenvalues(Matrix(scaled * scaled.transpose()));

@@ -21,6 +21,8 @@ namespace {
 /// on every edge of a triangular facet, where another shape shares it, too. The coefficients of a trace with nodal
 /// values g are then g̃_v = g_v and g̃_e = (g_e − α (g_v1 + g_v2))/(1 − 2α).
 ///
+/// So has a facet of degree 2 with an end on the axis of an axisymmetric body: there ∫φ_v 2πr = 0 at that end.
+///
 /// Between bodies a facet may be covered in part. Functions that are biorthogonal there can have negative integrals (on
 /// less than 2/3 of an interval, those of the whole one), or come from a matrix that is nearly singular. So such a
 /// facet has Bernstein's polynomials: they span the same space, are positive and sum to 1, whatever is covered.
@@ -33,8 +35,8 @@ class DualMultipliers final : public MultiplierSpace {
       for (const Index facet : part.facets) {
         const PlaceInBlocks place = locate_facet(space, facet);
         const CellBlock& block = space.facets[place.block];
-        if (block.shape != CellShape::triangle) continue;
         const Index* nodes = block.cell(place.local);
+        if (block.shape != CellShape::triangle && !ends_on_axis(nodes)) continue;
         const auto& vertices_of = node_vertices(block.shape, 2);
         for (std::size_t k = 0; k < vertices_of.size(); ++k) {
           if (vertices_of[k].size() != 2) continue;
@@ -105,6 +107,12 @@ class DualMultipliers final : public MultiplierSpace {
  private:
   static constexpr double alpha = 0.2;
 
+  /// `nodes`: of a facet in the plane.
+  [[nodiscard]] bool ends_on_axis(const Index* nodes) const {
+    const Body& body = *patch().body;
+    return is_on_axis(body, nodes[0]) || is_on_axis(body, nodes[1]);
+  }
+
   /// T on a facet.
   [[nodiscard]] Matrix basis_change(const FacetQuadrature& facet) const {
     Matrix result = Matrix::Identity(facet.node_count(), facet.node_count());
@@ -148,7 +156,7 @@ class DualMultipliers final : public MultiplierSpace {
   }
 
   FacetIntegration integration_;
-  std::map<Index, std::array<Index, 2>> transformed_;  ///< middle nodes of edges of triangles, with their vertices
+  std::map<Index, std::array<Index, 2>> transformed_;  ///< middle nodes of such edges, with their vertices
 };
 
 }  // namespace

@@ -16,10 +16,15 @@ int segment_degree(const Body& body) {
   const bool simplices = std::all_of(body.mesh->facets.begin(), body.mesh->facets.end(),
                                      [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
   if (!simplices) return 2 * body.space->degree + 8;
-  return 2 * body.space->degree + (body.mesh->degree == 1 ? 0 : 2);
+  const int degree = 2 * body.space->degree + (body.mesh->degree == 1 ? 0 : 2);
+  return is_axisymmetric(body) ? degree + body.mesh->degree : degree;  // and the distance from the axis
 }
 
 }  // namespace
+
+void take_across_axis(const Body& body, Index node, Eigen::Vector3d& vector) {
+  if (is_on_axis(body, node)) vector[0] = 0.0;
+}
 
 NodeWeights fractions(const std::map<Index, double>& sums, double weight) {
   double largest = 0.0;
@@ -45,6 +50,7 @@ std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface
       sum.size += facet.area;
     }
   }
+  for (auto& [node, sum] : result) take_across_axis(body, node, sum.vector);
   return result;
 }
 

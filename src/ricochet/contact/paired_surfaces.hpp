@@ -17,12 +17,16 @@ using NodeWeights = std::vector<std::pair<Index, double>>;
 /// Sums as fractions of the weight, ascending by nodes; what vanishes to rounding is an exact zero.
 [[nodiscard]] NodeWeights fractions(const std::map<Index, double>& sums, double weight);
 
+/// Of area vectors around a node on the axis of an axisymmetric body what is left with those beyond it: the part along
+/// it. Nothing changes at other nodes.
+void take_across_axis(const Body& body, Index node, Eigen::Vector3d& vector);
+
 /// Of the facets around a node: the sum of area vectors, out of the body, and of their lengths.
 struct AreaSum {
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   double size = 0.0;
 };
-/// By nodes of the displacement. `only`: facets that count; null: all.
+/// By nodes of the displacement; on an axis with the mirror image beyond it. `only`: facets that count; null: all.
 [[nodiscard]] std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface& surface,
                                                           const std::set<Index>* only = nullptr);
 

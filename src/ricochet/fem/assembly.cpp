@@ -16,7 +16,7 @@ template <int d>
 SparseMatrix scalar_mass(const Body& body, const NodeGraph& graph, const std::vector<double>& weight) {
   std::vector<MassIntegration> rules;
   for (const CellBlock& block : body.mesh->cells)
-    rules.emplace_back(block.shape, body.mesh->degree, body.space->degree);
+    rules.emplace_back(block.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body));
   return assemble<1>(body, graph, [&](std::size_t b, Index cell, std::size_t number, double* blocks) {
     const auto material = static_cast<std::size_t>(body.cell_material[number]);
     const double density = body.materials[material].density * (weight.empty() ? 1.0 : weight[material]);
@@ -28,7 +28,7 @@ template <int d>
 SparseMatrix stiffness(const Body& body, const NodeGraph& graph, const std::vector<double>& weight) {
   std::vector<BlockIntegration> rules;
   for (const CellBlock& block : body.mesh->cells)
-    rules.push_back(stiffness_integration(block.shape, body.mesh->degree, body.space->degree));
+    rules.push_back(stiffness_integration(block.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body)));
   return assemble<d>(body, graph, [&](std::size_t b, Index cell, std::size_t number, double* blocks) {
     const auto material_number = static_cast<std::size_t>(body.cell_material[number]);
     const Material& material = body.materials[material_number];
@@ -44,8 +44,10 @@ void cell_load(const Body& body, const ForceDensity& force, Vector& load) {
   Vector position(d), density(d);
   for (std::size_t b = 0; b < body.space->cells.size(); ++b) {
     const CellBlock& cells = body.mesh->cells[b];
-    const BlockIntegration integration(cells.shape, body.mesh->degree, body.space->degree,
-                                       product_quadrature_degree(cells.shape, body.mesh->degree, body.space->degree));
+    const bool axisymmetric = is_axisymmetric(body);
+    const BlockIntegration integration(
+        cells.shape, body.mesh->degree, body.space->degree,
+        product_quadrature_degree(cells.shape, body.mesh->degree, body.space->degree, axisymmetric), axisymmetric);
     for (Index cell = 0; cell < cells.size(); ++cell) {
       for (Index q = 0; q < integration.rule.weights.size(); ++q) {
         const auto map = jacobian<d>(body.mesh->nodes, cells.cell(cell),
@@ -55,7 +57,8 @@ void cell_load(const Body& body, const ForceDensity& force, Vector& load) {
           position += body.mesh->nodes.col(cells.cell(cell)[k]) * integration.geometry.values(k, q);
         }
         force(position, density);
-        const double measure = integration.rule.weights[q] * map.determinant();
+        const double measure =
+            integration.rule.weights[q] * map.determinant() * integration.ring(body.mesh->nodes, cells.cell(cell), q);
         for (int k = 0; k < body.space->cells[b].nodes_per_cell; ++k) {
           load.segment<d>(body.space->cells[b].cell(cell)[k] * d) +=
               (measure * integration.displacement.values(k, q)) * density;

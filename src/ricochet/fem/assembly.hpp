@@ -25,6 +25,16 @@ struct Body {
 [[nodiscard]] inline bool is_plane_stress(const Body& body) {
   return body.mesh->dimension == 2 && body.plane == PlaneState::stress;
 }
+/// A section through a body that is the same all round the y axis: integrals are those over the whole ring.
+[[nodiscard]] inline bool is_axisymmetric(const Body& body) {
+  return body.mesh->dimension == 2 && body.plane == PlaneState::axisymmetric;
+}
+
+/// Of a node of the displacement: axisymmetric bodies have those at exactly x = 0 there.
+[[nodiscard]] inline bool is_on_axis(const Body& body, Index node) {
+  return is_axisymmetric(body) && body.space->nodes(0, node) == 0.0;
+}
+
 /// Some material has a law of finite strain; then all have.
 [[nodiscard]] bool has_finite_strain(const Body& body);
 /// The law of a material of which the tangent is constant; throws Error(invalid_input) for one that is not linear.
@@ -38,7 +48,8 @@ struct Body {
 [[nodiscard]] SparseMatrix assemble_scalar_mass(const Body& body, const NodeGraph& graph,
                                                 const std::vector<double>& weight = {});
 
-/// K: ∫ A ε(u) : ε(v), dof × dof. `weight` is per material (empty: 1). Exactly symmetric.
+/// K: ∫ A ε(u) : ε(v), dof × dof, in axisymmetric bodies with the hoop strain u_x/x. `weight` is per material (empty:
+/// 1). Exactly symmetric.
 [[nodiscard]] SparseMatrix assemble_stiffness(const Body& body, const NodeGraph& graph,
                                               const std::vector<double>& weight = {});
 

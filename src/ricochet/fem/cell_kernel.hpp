@@ -13,7 +13,8 @@
 namespace ricochet {
 
 /// What is constant of the cells of a block: shape functions, and the inverse Jacobian with the weight of every
-/// quadrature point (of straight simplices one Jacobian for all).
+/// quadrature point (of straight simplices one Jacobian for all). Of an axisymmetric body a weight is of the ring that
+/// a point sweeps, and the displacement's gradient has the stretch u_r/r along it.
 template <int d>
 struct KernelBlock {
   BlockIntegration integration;
@@ -23,6 +24,9 @@ struct KernelBlock {
   std::vector<double> weight = {};   ///< per point
   int nodes = 0, points = 0;
 
+  std::vector<double> radius = {};  ///< per point, of an axisymmetric body; else empty
+
+  [[nodiscard]] bool is_axisymmetric() const { return !radius.empty(); }
   [[nodiscard]] const double* inverse_at(Index cell, int q) const {
     return inverse.data() + d * d * (affine ? cell : cell * points + q);
   }
@@ -60,6 +64,10 @@ class CellKernel {
         gradients_[static_cast<std::size_t>(i * d + a)] = sum;
       }
     }
+    if (!block_.is_axisymmetric()) return;
+    const double radius = block_.radius[static_cast<std::size_t>(cell_ * block_.points + q)];
+    for (int i = 0; i < block_.nodes; ++i)
+      hoop_[static_cast<std::size_t>(i)] = block_.integration.displacement.values(i, q) / radius;
   }
   [[nodiscard]] double weight(int q) const { return weights_[q]; }
   [[nodiscard]] Tensor gradient(const LocalVector& u) const {
@@ -69,6 +77,10 @@ class CellKernel {
         for (int b = 0; b < d; ++b)
           result(a, b) += u[static_cast<std::size_t>(i * d + a)] * gradients_[static_cast<std::size_t>(i * d + b)];
       }
+    }
+    if (d == 2 && block_.is_axisymmetric()) {
+      for (int i = 0; i < block_.nodes; ++i)
+        result(2, 2) += u[static_cast<std::size_t>(i * d)] * hoop_[static_cast<std::size_t>(i)];
     }
     return result;
   }
@@ -80,6 +92,8 @@ class CellKernel {
         for (int b = 0; b < d; ++b) sum += stress(a, b) * gradients_[static_cast<std::size_t>(i * d + b)];
         force[static_cast<std::size_t>(i * d + a)] += weights_[q] * sum;
       }
+      if (d == 2 && block_.is_axisymmetric())
+        force[static_cast<std::size_t>(i * d)] += weights_[q] * stress(2, 2) * hoop_[static_cast<std::size_t>(i)];
     }
   }
 
@@ -95,7 +109,7 @@ class CellKernel {
   [[nodiscard]] PointMotion mean_motion_of(const LocalVector& middle, const LocalVector& increment) const {
     PointMotion result{gradient(middle), Tensor()};
     const Tensor change = gradient(increment);
-    result.strain = green_strain(result.gradient) + 0.125 * (change.transpose() * change);
+    result.strain = green_strain(result.gradient) + 0.125 * transposed_product(change, change);
     law_.complete(result.strain);
     return result;
   }
@@ -114,7 +128,7 @@ class CellKernel {
       const Tensor& strain = at.strain;
       const Tensor deformation = deformation_of(at.gradient, strain);
       if (!law_.is_linear()) {
-        const double volume = deformation.determinant();
+        const double volume = determinant(deformation);
         if (!(volume >= least)) least = std::isnan(volume) ? -std::numeric_limits<double>::infinity() : volume;
       }
       law_.stress(strain, stress);
@@ -173,11 +187,11 @@ class CellKernel {
  private:
   using PointValues = std::array<double, CellDilatation::most_points>;
 
-  /// F. Its stretch across a plane is that of the strain there.
+  /// F. Its stretch across a plane under plane stress is that of the strain there.
   [[nodiscard]] Tensor deformation_of(const Tensor& motion, const Tensor& strain) const {
     if (law_.is_linear()) return Tensor::Identity();
     Tensor result = Tensor::Identity() + motion;
-    if constexpr (d == 2) result(2, 2) = std::sqrt(1.0 + 2.0 * strain(2, 2));
+    if (law_.is_plane_stress()) result(2, 2) = std::sqrt(1.0 + 2.0 * strain(2, 2));
     return result;
   }
 
@@ -204,13 +218,13 @@ class CellKernel {
   /// S += (p − U′(J)) J C⁻¹.
   void add_mean_pressure(int q, const Tensor& strain, Tensor& stress) const {
     const double s = determinant_change(2.0 * strain), volume = std::sqrt(1.0 + s);
-    const Tensor inverse = (Tensor::Identity() + 2.0 * strain).inverse();
+    const Tensor inverse = inverse_metric(strain);
     stress += (pressure_[static_cast<std::size_t>(q)] * volume - volume_.stress_factor(s)) * inverse;
   }
   /// ∂/∂E of it with p constant: p J (C⁻¹ ⊗ C⁻¹ − 2 C⁻¹ ⊙ C⁻¹) in place of the tangent of U(J).
   void add_mean_tangent(int q, const Tensor& strain, StressTangent& tangent) const {
     const double s = determinant_change(2.0 * strain), volume = std::sqrt(1.0 + s);
-    const Tensor inverse = (Tensor::Identity() + 2.0 * strain).inverse();
+    const Tensor inverse = inverse_metric(strain);
     const double p = pressure_[static_cast<std::size_t>(q)] * volume;
     VolumetricEnergy{-volume_.modulus}.add_tangent(s, inverse, tangent);
     add_dyad(inverse, inverse, p, tangent);
@@ -229,6 +243,7 @@ class CellKernel {
       rows(4, k) = d == 3 ? f(k, 1) * g[2] + f(k, 2) * g[1] : 0.0;
       rows(5, k) = d == 3 ? f(k, 2) * g[0] + f(k, 0) * g[2] : 0.0;
     }
+    if (d == 2 && block_.is_axisymmetric()) rows(2, 0) = f(2, 2) * hoop_[static_cast<std::size_t>(node)];
   }
 
   void add_point_tangent(int q, const Tensor& f, const Tensor& stress, const StressTangent& tangent, double* blocks) {
@@ -249,6 +264,10 @@ class CellKernel {
         for (int a = 0; a < d; ++a) {
           for (int b = 0; b < d; ++b) blocks[a * d + b] += block(a, b);
           blocks[a * d + a] += geometric;
+        }
+        if (d == 2 && block_.is_axisymmetric()) {
+          blocks[0] +=
+              weights_[q] * stress(2, 2) * hoop_[static_cast<std::size_t>(i)] * hoop_[static_cast<std::size_t>(j)];
         }
       }
     }
@@ -306,6 +325,7 @@ class CellKernel {
   CellDilatation dilatation_;
   PointValues mean_{}, pressure_{};
   std::array<double, most_cell_nodes * d> gradients_;
+  std::array<double, most_cell_nodes> hoop_;  ///< φ/r, of an axisymmetric body
 };
 
 }  // namespace ricochet

@@ -13,7 +13,7 @@ struct CellMasses::Rules {
 CellMasses::CellMasses(const Body& body, std::vector<double> weight)
     : body_(body), weight_(std::move(weight)), rules_(std::make_unique<Rules>()) {
   for (const CellBlock& block : body.mesh->cells)
-    rules_->of_block.emplace_back(block.shape, body.mesh->degree, body.space->degree);
+    rules_->of_block.emplace_back(block.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body));
 }
 
 CellMasses::~CellMasses() = default;

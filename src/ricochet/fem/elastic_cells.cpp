@@ -24,7 +24,8 @@ struct ElasticCells::Blocks {
 
  private:
   [[nodiscard]] KernelBlock<d> make(const CellBlock& cells) const {
-    KernelBlock<d> block{stiffness_integration(cells.shape, body.mesh->degree, body.space->degree)};
+    KernelBlock<d> block{
+        stiffness_integration(cells.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body))};
     const bool simplex = is_simplex(cells.shape);
     block.affine = simplex && body.mesh->degree == 1;
     block.points = static_cast<int>(block.integration.rule.weights.size());
@@ -34,7 +35,10 @@ struct ElasticCells::Blocks {
       for (int q = 0; q < block.points; ++q) {
         const auto map = jacobian<d>(body.mesh->nodes, cells.cell(cell),
                                      block.integration.geometry.gradients[static_cast<std::size_t>(q)]);
-        block.weight.push_back(block.integration.rule.weights[q] * map.determinant());
+        block.weight.push_back(block.integration.rule.weights[q] * map.determinant() *
+                               block.integration.ring(body.mesh->nodes, cells.cell(cell), q));
+        if (is_axisymmetric(body))
+          block.radius.push_back(block.integration.radius(body.mesh->nodes, cells.cell(cell), q));
         if (block.affine && q > 0) continue;
         const Eigen::Matrix<double, d, d> inverse = map.inverse();
         for (int i = 0; i < d; ++i) {
@@ -119,7 +123,7 @@ InvertedCell ElasticCells::add_up(const MakeMotion& make_motion, Vector& result)
         const double least =
             kernel.visit_stress(make_motion(kernel, walk.nodes()),
                                 [&](int q, const Tensor& deformation, const Tensor&, const Tensor& stress) {
-                                  kernel.add_force(q, deformation * stress, local);
+                                  kernel.add_force(q, product(deformation, stress), local);
                                 });
         if (!(least > 0.0)) worse(worst[part], cell, least);
       },
@@ -210,10 +214,10 @@ void ElasticCells::strain_force(const Vector& displacement, const Vector& increm
             kernel.go_to(q);
             const Tensor motion = kernel.gradient(u), rate = kernel.gradient(change);
             const Tensor deformation = Tensor::Identity() + motion;
-            const Tensor half = deformation.transpose() * rate;
+            const Tensor half = transposed_product(deformation, rate);
             Tensor stress;
             law.stress((0.5 * (half + half.transpose())).eval(), stress);
-            kernel.add_force(q, deformation * stress, local);
+            kernel.add_force(q, product(deformation, stress), local);
           }
         },
         result);
@@ -234,7 +238,7 @@ void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const
                           const double weight = kernel.weight(q);
                           volume += weight;
                           energy += weight * kernel.energy_at(q, strain);
-                          mean += weight / deformation.determinant() * (deformation * second * deformation.transpose());
+                          mean += weight / determinant(deformation) * (deformation * second * deformation.transpose());
                         });
     mean /= volume;
     energy_density = energy / volume;

@@ -23,15 +23,16 @@ inline constexpr int most_cell_nodes = 27;
 /// What the mass needs of a block of cells.
 struct MassIntegration {
   BlockIntegration block;
-  /// The map is affine, with one Jacobian per cell.
+  /// The map is affine, with one Jacobian per cell, and nothing else varies over it.
   bool affine = false;
   /// ∫ φ_i φ_j over the reference cell, per pair.
   std::vector<double> reference;
 
-  MassIntegration(CellShape shape, int geometry_degree, int displacement_degree)
+  MassIntegration(CellShape shape, int geometry_degree, int displacement_degree, bool axisymmetric = false)
       : block(shape, geometry_degree, displacement_degree,
-              product_quadrature_degree(shape, geometry_degree, displacement_degree)),
-        affine(geometry_degree == 1 && (shape == CellShape::triangle || shape == CellShape::tetrahedron)) {
+              product_quadrature_degree(shape, geometry_degree, displacement_degree, axisymmetric), axisymmetric),
+        affine(!axisymmetric && geometry_degree == 1 &&
+               (shape == CellShape::triangle || shape == CellShape::tetrahedron)) {
     const Matrix& values = block.displacement.values;
     for (Index j = 0; j < values.rows(); ++j) {
       for (Index i = 0; i <= j; ++i) {
@@ -49,7 +50,8 @@ void element_mass(const MassIntegration& integration, const Points& coordinates,
                   double* result) {
   const Matrix& values = integration.block.displacement.values;
   const auto measure = [&](std::size_t q) {
-    return density * jacobian<d>(coordinates, nodes, integration.block.geometry.gradients[q]).determinant();
+    return density * jacobian<d>(coordinates, nodes, integration.block.geometry.gradients[q]).determinant() *
+           integration.block.ring(coordinates, nodes, static_cast<Index>(q));
   };
   if (integration.affine) {
     const double factor = measure(0);
@@ -78,6 +80,16 @@ void add_elastic_pairs(const double* gradients, int count, const IsotropicElasti
   }
 }
 
+/// Adds for all pairs what the hoop strains φ/r of axisymmetric bodies add to the tangent.
+inline void add_hoop_pairs(const BlockIntegration& integration, double radius, Index q, const double* gradients,
+                           const IsotropicElasticity& law, double* result) {
+  const Matrix& values = integration.displacement.values;
+  for (Index j = 0; j < values.rows(); ++j) {
+    for (Index i = 0; i <= j; ++i, result += 4)
+      law.add_hoop_tangent(gradients + 2 * i, values(i, q) / radius, gradients + 2 * j, values(j, q) / radius, result);
+  }
+}
+
 /// ∫ A ε(φ_i e_a) : ε(φ_j e_b) over a cell, d × d numbers per pair of nodes. `nodes` are the geometry's.
 template <int d>
 void element_stiffness(const BlockIntegration& integration, const Points& coordinates, const Index* nodes,
@@ -88,7 +100,9 @@ void element_stiffness(const BlockIntegration& integration, const Points& coordi
   for (std::size_t q = 0; q < integration.geometry.gradients.size(); ++q) {
     const Eigen::Matrix<double, d, d> map = jacobian<d>(coordinates, nodes, integration.geometry.gradients[q]);
     const Eigen::Matrix<double, d, d> inverse = map.inverse();
-    const double measure = integration.rule.weights[static_cast<Index>(q)] * map.determinant();
+    const auto point = static_cast<Index>(q);
+    const double measure =
+        integration.rule.weights[point] * map.determinant() * integration.ring(coordinates, nodes, point);
     const IsotropicElasticity weighted{measure * law.lambda, measure * law.mu};
     const Matrix& reference = integration.displacement.gradients[q];
     for (int i = 0; i < count; ++i) {
@@ -104,6 +118,12 @@ void element_stiffness(const BlockIntegration& integration, const Points& coordi
       add_elastic_pairs<d, (d + 1) * (d + 2) / 2>(gradients.data(), count, weighted, result);
     } else {
       add_elastic_pairs<d, 0>(gradients.data(), count, weighted, result);
+    }
+    if constexpr (d == 2) {
+      if (integration.axisymmetric) {
+        add_hoop_pairs(integration, integration.radius(coordinates, nodes, point), point, gradients.data(), weighted,
+                       result);
+      }
     }
   }
 }

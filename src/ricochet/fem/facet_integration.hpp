@@ -12,9 +12,9 @@ namespace ricochet {
 struct FacetQuadrature {
   Index facet = 0;  ///< numbered through all blocks
   CellShape shape = CellShape::interval;
-  const Index* nodes = nullptr;          ///< of the displacement's space, vertices first
-  Points positions;                      ///< d × points, on the curved facet
-  Vector measure;                        ///< per point: quadrature weight × area per reference area; sum: the area
+  const Index* nodes = nullptr;  ///< of the displacement's space, vertices first
+  Points positions;              ///< d × points, on the curved facet
+  Vector measure;                ///< per point: quadrature weight × area per reference area; sum: the area (of rings)
   const Matrix* displacement = nullptr;  ///< φ, nodes × points
   const Matrix* hats = nullptr;          ///< (multi)linear functions of the vertices, vertices × points
   bool whole = true;                     ///< the points are those of all of the facet, not of a part of it
@@ -29,10 +29,12 @@ struct FacetQuadrature {
 class FacetIntegration {
  public:
   explicit FacetIntegration(const Body& body) : body_(&body) {
+    const bool axisymmetric = is_axisymmetric(body);
     for (const CellBlock& block : body.mesh->facets) {
       const int degree = body.mesh->degree;
       rules_.emplace_back(block.shape, degree, body.space->degree,
-                          product_quadrature_degree(block.shape, degree, body.space->degree) + 1);
+                          product_quadrature_degree(block.shape, degree, body.space->degree, axisymmetric) + 1,
+                          axisymmetric);
       hats_.push_back(ReferenceElement::get(block.shape, 1).tabulate(rules_.back().rule.points).values);
     }
   }
@@ -60,7 +62,8 @@ class FacetIntegration {
           body_->mesh->dimension == 2
               ? facet_measure<2>(jacobian<2, 1>(body_->mesh->nodes, geometry.cell(local), gradients))
               : facet_measure<3>(jacobian<3, 2>(body_->mesh->nodes, geometry.cell(local), gradients));
-      result.measure[q] = integration.rule.weights[q] * density;
+      result.measure[q] =
+          integration.rule.weights[q] * density * integration.ring(body_->mesh->nodes, geometry.cell(local), q);
     }
   }
 

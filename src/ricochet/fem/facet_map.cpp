@@ -142,7 +142,8 @@ void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, 
   for (Index q = 0; q < count; ++q) {
     const PolynomialMap<3>::Place at = map.evaluate(points.local.col(q).data());
     result.positions.col(q) = at.at.head(d);
-    result.measure[q] = weights[q] * area_ratio(at, all_axes, d == 2);
+    const double ring = is_axisymmetric(body_) ? ring_length(at.at[0]) : 1.0;
+    result.measure[q] = weights[q] * area_ratio(at, all_axes, d == 2) * ring;
   }
 }
 

@@ -26,6 +26,20 @@ struct IsotropicElasticity {
   [[nodiscard]] double out_of_plane_stress(const Eigen::MatrixBase<Tensor>& strain) const {
     return lambda * strain.trace();
   }
+  // Of an axisymmetric body, whose hoop strain has no shear beside it: what it adds to the above.
+  template <class Tensor>
+  [[nodiscard]] double hoop_energy(const Eigen::MatrixBase<Tensor>& strain, double hoop) const {
+    return hoop * (lambda * strain.trace() + (0.5 * lambda + mu) * hoop);
+  }
+  [[nodiscard]] double hoop_pressure(double hoop) const { return lambda * hoop; }
+  [[nodiscard]] double hoop_stress(double hoop) const { return (lambda + 2.0 * mu) * hoop; }
+  /// To add_tangent<2>, with the hoop strains h_i, h_j of radial displacements by the functions of the two nodes.
+  void add_hoop_tangent(const double* gi, double hi, const double* gj, double hj, double* result) const {
+    result[0] += lambda * (hi * gj[0] + gi[0] * hj) + (lambda + 2.0 * mu) * (hi * hj);
+    result[1] += lambda * (hi * gj[1]);
+    result[2] += lambda * (gi[1] * hj);
+  }
+
   template <class Strain, class Stress>
   void stress(const Eigen::MatrixBase<Strain>& strain, Eigen::MatrixBase<Stress>& result) const {
     const double pressure = lambda * strain.trace();

@@ -8,8 +8,9 @@
 /// @file What a body is made of.
 namespace ricochet {
 
-/// What a two-dimensional body is a section of.
-enum class PlaneState { strain, stress };
+/// What a two-dimensional body is a section of: of a long one, of a thin one, or of one that is the same all round the
+/// y axis, from which x is the distance.
+enum class PlaneState { strain, stress, axisymmetric };
 
 struct Material {
   std::string name;      ///< of its group, for messages

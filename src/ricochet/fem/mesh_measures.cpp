@@ -49,7 +49,7 @@ Integral integrate(const Mesh& mesh, const BlockIntegration& rule, const CellBlo
     }
     const bool is_cell = map.cols() == map.rows();
     const Eigen::Vector3d normal = is_cell ? Eigen::Vector3d::Zero() : normal_of(map);
-    const double weight = rule.rule.weights[q];
+    const double weight = rule.rule.weights[q] * rule.ring(mesh.nodes, nodes, q);
     const double size = weight * (is_cell ? std::abs(map.determinant()) : normal.norm());
     result.size += size;
     result.moment += size * at;
@@ -104,12 +104,12 @@ class CellsOfFacets {
 /// Calls visit(block, rule, cell in it) for some cells or facets, numbered through all blocks, ascending.
 template <class Visit>
 void for_each_member(const Mesh& mesh, const std::vector<CellBlock>& blocks, const std::vector<Index>& members,
-                     const Visit& visit) {
+                     bool axisymmetric, const Visit& visit) {
   Index first = 0;
   auto member = members.begin();
   for (const CellBlock& block : blocks) {
     const BlockIntegration rule(block.shape, mesh.degree, mesh.degree,
-                                product_quadrature_degree(block.shape, mesh.degree, 1));
+                                product_quadrature_degree(block.shape, mesh.degree, 1, axisymmetric), axisymmetric);
     for (; member != members.end() && *member < first + block.size(); ++member) visit(block, rule, *member - first);
     first += block.size();
   }
@@ -117,7 +117,7 @@ void for_each_member(const Mesh& mesh, const std::vector<CellBlock>& blocks, con
 
 }  // namespace
 
-MeshMeasure measure_group(const Mesh& mesh, const Group& group) {
+MeshMeasure measure_group(const Mesh& mesh, const Group& group, bool axisymmetric) {
   MeshMeasure result;
   const bool are_facets = group.dimension == mesh.dimension - 1;
   if ((!are_facets && group.dimension != mesh.dimension) || group.members.empty()) return result;
@@ -126,7 +126,7 @@ MeshMeasure measure_group(const Mesh& mesh, const Group& group) {
   result.highest.head(mesh.dimension).setConstant(-infinity);
   std::optional<CellsOfFacets> cells;
   if (are_facets) cells.emplace(mesh);
-  for_each_member(mesh, are_facets ? mesh.facets : mesh.cells, group.members,
+  for_each_member(mesh, are_facets ? mesh.facets : mesh.cells, group.members, axisymmetric,
                   [&](const CellBlock& block, const BlockIntegration& rule, Index member) {
                     const Integral own = integrate(mesh, rule, block, member);
                     result.size += own.size;

@@ -19,8 +19,9 @@ struct MeshMeasure {
   Index inside = 0;  ///< facets between two cells, which have no normal out of the body
 };
 
-/// Of one group; in the plane z = 0. Groups of other dimensions than cells and facets measure zero.
-[[nodiscard]] MeshMeasure measure_group(const Mesh& mesh, const Group& group);
+/// Of one group; in the plane z = 0. Groups of other dimensions than cells and facets measure zero. Of an axisymmetric
+/// body the size is that of the rings, and means over the section are weighted with them.
+[[nodiscard]] MeshMeasure measure_group(const Mesh& mesh, const Group& group, bool axisymmetric = false);
 
 /// Per cell, numbered through all blocks: its smallest height, as if it were straight: d V/A of a simplex with the
 /// largest facet's area A, V/A of other cells.

@@ -6,10 +6,36 @@
 
 #include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/parallel.hpp"
+#include "ricochet/fem/cell_integration.hpp"
 
 namespace ricochet {
 
 namespace {
+
+/// Where means over the cells of axisymmetric bodies are the values of linear functions: their centres of gravity as
+/// rings, with the rule of the stress.
+Points centres_of_rings(const Body& body) {
+  Points result(2, body.mesh->cell_count());
+  Index number = 0;
+  for (const CellBlock& block : body.mesh->cells) {
+    const BlockIntegration rule = stiffness_integration(block.shape, body.mesh->degree, body.space->degree, true);
+    for (Index cell = 0; cell < block.size(); ++cell, ++number) {
+      const Index* const nodes = block.cell(cell);
+      double volume = 0.0;
+      result.col(number).setZero();
+      for (Index q = 0; q < rule.rule.weights.size(); ++q) {
+        const Matrix& gradients = rule.geometry.gradients[static_cast<std::size_t>(q)];
+        const double weight = rule.rule.weights[q] * jacobian<2>(body.mesh->nodes, nodes, gradients).determinant() *
+                              rule.ring(body.mesh->nodes, nodes, q);
+        for (int k = 0; k < block.nodes_per_cell; ++k)
+          result.col(number) += weight * rule.geometry.values(k, q) * body.mesh->nodes.col(nodes[k]);
+        volume += weight;
+      }
+      result.col(number) /= volume;
+    }
+  }
+  return result;
+}
 
 /// A node takes in the cells around its cells so often, at most.
 constexpr int widest_patch = 3;
@@ -37,6 +63,7 @@ class Recovery {
         centres_.col(number) = centre / block.nodes_per_cell;
       }
     }
+    if (is_axisymmetric(body)) centres_ = centres_of_rings(body);
     for (std::size_t i = 1; i < count.size(); ++i) count[i] += count[i - 1];
     first_ = count;
     cells_.resize(static_cast<std::size_t>(first_.back()));

@@ -11,6 +11,7 @@ class PointLaw {
       : law_(&law), plane_stress_(plane_stress), is_linear_(law.is_linear()) {}
 
   [[nodiscard]] bool is_linear() const { return is_linear_; }
+  [[nodiscard]] bool is_plane_stress() const { return plane_stress_; }
   /// The strain that the law has at a displacement gradient; of plane stress with the strain across the plane at which
   /// there is no stress across it (NaN where there is none).
   [[nodiscard]] Tensor strain(const Tensor& gradient) const;

@@ -24,13 +24,15 @@ void for_each_block(const Body& body, const Visit& visit) {
 template <int d>
 void block_volumes(const Body& body, std::size_t block, Index first_cell, Vector& volumes) {
   const CellBlock& geometry = body.mesh->cells[block];
-  const BlockIntegration integration = stiffness_integration(geometry.shape, body.mesh->degree, body.space->degree);
+  const BlockIntegration integration =
+      stiffness_integration(geometry.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body));
   for (Index cell = 0; cell < geometry.size(); ++cell) {
     double volume = 0.0;
     for (Index q = 0; q < integration.rule.weights.size(); ++q) {
       const auto map = jacobian<d>(body.mesh->nodes, geometry.cell(cell),
                                    integration.geometry.gradients[static_cast<std::size_t>(q)]);
-      volume += integration.rule.weights[q] * std::abs(map.determinant());
+      volume += integration.rule.weights[q] * std::abs(map.determinant()) *
+                integration.ring(body.mesh->nodes, geometry.cell(cell), q);
     }
     volumes[first_cell + cell] = volume;
   }
@@ -50,13 +52,18 @@ class StressLaw {
       : has_out_of_plane_stress_(d == 2 && !is_plane_stress(body)),
         elasticity_(linear_law(body, material_of(body, cell))) {}
 
-  [[nodiscard]] double energy_density(const Tensor& strain) const { return elasticity_.energy(strain); }
-  void write_stress(const Tensor& strain, double* to) const {
+  /// `hoop`: the strain normal to the plane of an axisymmetric body; zero in others.
+  [[nodiscard]] double energy_density(const Tensor& strain, double hoop) const {
+    return elasticity_.energy(strain) + elasticity_.hoop_energy(strain, hoop);
+  }
+  void write_stress(const Tensor& strain, double hoop, double* to) const {
     Tensor in_space;
     elasticity_.stress(strain, in_space);
+    in_space.diagonal().array() += elasticity_.hoop_pressure(hoop);
     Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();
     stress.template topLeftCorner<d, d>() = in_space;
-    if (has_out_of_plane_stress_) stress(2, 2) = elasticity_.out_of_plane_stress(strain);
+    if (has_out_of_plane_stress_)
+      stress(2, 2) = elasticity_.out_of_plane_stress(strain) + elasticity_.hoop_stress(hoop);
     for (int i = 0; i < 3; ++i) {
       for (int j = i; j < 3; ++j) *to++ = stress(i, j);
     }
@@ -83,7 +90,9 @@ Eigen::Matrix<double, d, d> simplex_strain(const Points& positions, const Index*
   return symmetric<d>(differences * edges.inverse());
 }
 
+/// With one strain in all of the cell.
 bool has_straight_simplices(const Body& body, CellShape shape) {
+  if (is_axisymmetric(body)) return false;
   const bool simplex = shape == CellShape::triangle || shape == CellShape::tetrahedron;
   return simplex && body.mesh->degree == 1 && body.space->degree == 1;
 }
@@ -98,8 +107,8 @@ CellStress::CellStress(const Body& body) : body_(body) {
   for (const CellBlock& block : body.mesh->cells) {
     const bool simple = has_straight_simplices(body, block.shape);
     integrations_.push_back(simple ? nullptr
-                                   : std::make_unique<const BlockIntegration>(
-                                         stiffness_integration(block.shape, body.mesh->degree, body.space->degree)));
+                                   : std::make_unique<const BlockIntegration>(stiffness_integration(
+                                         block.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body))));
   }
 }
 
@@ -112,8 +121,18 @@ namespace {
 template <int d>
 struct CellMeans {
   Eigen::Matrix<double, d, d> strain = Eigen::Matrix<double, d, d>::Zero();
+  double hoop = 0.0;
   double energy_density = 0.0;
 };
+
+/// u_x/x at a point of the rule.
+double hoop_strain(const BlockIntegration& integration, const Points& positions, const Index* geometry,
+                   const Index* nodes, Index q, const Vector& displacement) {
+  const Matrix& values = integration.displacement.values;
+  double radial = 0.0;
+  for (Index i = 0; i < values.rows(); ++i) radial += values(i, q) * displacement[nodes[i] * 2];
+  return radial / integration.radius(positions, geometry, q);
+}
 
 template <int d>
 CellMeans<d> integrate(const BlockIntegration& integration, const Points& positions, const Index* geometry,
@@ -127,12 +146,18 @@ CellMeans<d> integrate(const BlockIntegration& integration, const Points& positi
     for (Index i = 0; i < shape.rows(); ++i)
       reference += displacement.segment<d>(nodes[i] * d) * shape.block<1, d>(i, 0);
     const Eigen::Matrix<double, d, d> strain = symmetric<d>(reference * map.inverse());
-    const double weight = integration.rule.weights[static_cast<Index>(q)] * std::abs(map.determinant());
+    const auto point = static_cast<Index>(q);
+    const double hoop =
+        integration.axisymmetric ? hoop_strain(integration, positions, geometry, nodes, point, displacement) : 0.0;
+    const double weight =
+        integration.rule.weights[point] * std::abs(map.determinant()) * integration.ring(positions, geometry, point);
     volume += weight;
     result.strain += weight * strain;
-    result.energy_density += weight * law.energy_density(strain);
+    result.hoop += weight * hoop;
+    result.energy_density += weight * law.energy_density(strain, hoop);
   }
   result.strain /= volume;
+  result.hoop /= volume;
   result.energy_density /= volume;
   return result;
 }
@@ -148,7 +173,7 @@ void visit_cells(const Body& body, const BlockIntegration* integration, std::siz
     CellMeans<d> means;
     if (integration == nullptr) {
       means.strain = simplex_strain<d>(body.space->nodes, cells.cell(cell), displacement);
-      means.energy_density = law.energy_density(means.strain);
+      means.energy_density = law.energy_density(means.strain, 0.0);
     } else {
       means = integrate<d>(*integration, body.mesh->nodes, geometry.cell(cell), cells.cell(cell), law, displacement);
     }
@@ -173,7 +198,7 @@ void CellStress::evaluate_block(std::size_t block, Index first_cell, const Vecto
   parallel_ranges(body_.space->cells[block].size(), [&](Index first, Index last) {
     visit_cells<d>(body_, integrations_[block].get(), block, first_cell, displacement, first, last,
                    [&](Index cell, const StressLaw<d>& law, const CellMeans<d>& means) {
-                     law.write_stress(means.strain, stress + tensor_components * cell);
+                     law.write_stress(means.strain, means.hoop, stress + tensor_components * cell);
                      energy_density[cell] = means.energy_density;
                    });
   });
@@ -198,7 +223,7 @@ LargestOfCells CellStress::largest_in_block(std::size_t block, Index first_cell,
     visit_cells<d>(body_, integrations_[block].get(), block, first_cell, displacement, first, last,
                    [&](Index cell, const StressLaw<d>& law, const CellMeans<d>& means) {
                      std::array<double, tensor_components> stress;
-                     law.write_stress(means.strain, stress.data());
+                     law.write_stress(means.strain, means.hoop, stress.data());
                      largest += LargestOfCells{von_mises_stress(stress.data()), first_cell + cell};
                    });
     return largest;

@@ -26,7 +26,8 @@ struct LargestOfCells {
 };
 
 /// Means over each cell of the stress σ = λ tr ε I + 2μ ε and of ½ σ : ε, by the quadrature of the stiffness: the sum
-/// of the energy densities times the volumes of the cells is ½UᵀKU. In the plane σ_zz is that of plane strain, or zero.
+/// of the energy densities times the volumes of the cells is ½UᵀKU. In the plane σ_zz is that of plane strain, or zero;
+/// in axisymmetric bodies it is the hoop stress.
 /// Of laws of finite strain the Cauchy stress, and the energy per undeformed volume.
 class CellStress {
  public:
@@ -59,7 +60,7 @@ class CellStress {
 /// Eigenvalues, largest first.
 [[nodiscard]] std::array<double, 3> principal_stresses(const double* stress);
 
-/// Volume of every cell (area in the plane), numbered through all blocks.
+/// Volume of every cell (area in the plane, volume of the ring in axisymmetric bodies), numbered through all blocks.
 [[nodiscard]] Vector cell_volumes(const Body& body);
 
 }  // namespace ricochet

@@ -98,7 +98,7 @@ std::vector<Index> boundary_at(const Case& input, const std::string& key_path, c
            fmt::format("group \"{}\" is not on the surface of the body: its elements {} lie between two cells", name,
                        facet_tags(mesh, interior)));
   }
-  return group.members;
+  return facets_off_axis(input, key_path, mesh, group);
 }
 
 /// Supports at tied nodes are left out: these follow the other surface, which is supported there, too, or is not.
@@ -156,6 +156,7 @@ void add_supports(const Case& input, Model& model) {
       }
     }
   }
+  add_axis_supports(input, model);
   supports.finish();
   tell_of_supports_at_ties(model, tied);
 }
@@ -246,11 +247,15 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   std::vector<NamedMesh> files = read_mesh_files(input);
   const double read_seconds = timer.restart();
   check_dimensions(input, files.front().mesh.dimension);
+  check_axisymmetry(input, files.front().mesh.dimension);
   model->mesh = put_together(input, std::move(files));
+  place_on_axis(input, model->mesh);
   complete_groups(input, model->mesh);
   model->space = make_displacement_space(model->mesh, input.mesh.degree);
   model->contains_rotations = input.mesh.degree > 1 || !is_curved(model->mesh);
-  if (!model->contains_rotations) {
+  if (is_axisymmetric(input)) {
+    model->contains_rotations = false;
+  } else if (!model->contains_rotations) {
     log::warning(
         "the mesh has curved cells but the displacement is of degree 1: on curved cells its functions do not contain "
         "rigid rotations, so angular momentum is kept only to the order h²; use mesh.degree = 2 or a straight mesh");

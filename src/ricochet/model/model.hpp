@@ -27,7 +27,7 @@ struct Model {
   SemidiscreteProblem problem;
   std::string mass_built;  ///< the name of the construction; for "equivalent" the one that it chose
   InitialConditions initial;
-  bool contains_rotations = true;                ///< false: degree 1 on curved cells
+  bool contains_rotations = true;                ///< false: degree 1 on curved cells, or axisymmetric
   std::vector<Probe> probes;                     ///< the nodes that are watched, those of segments too
   std::vector<std::shared_ptr<Sensor>> sensors;  ///< with a column in history.csv
   HistoryBodies history_bodies;                  ///< with columns of their own

@@ -111,6 +111,7 @@ void collect_contacts(const Case& input, Model& model) {
     } catch (const Error& problem) {
       refuse(input, "obstacle." + section.name, problem.what());
     }
+    check_axisymmetric_obstacle(input, section.name, *model.obstacles.back());
     by_name[section.name] = model.obstacles.back().get();
   }
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {

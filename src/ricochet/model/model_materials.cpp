@@ -11,6 +11,11 @@ namespace ricochet {
 
 namespace {
 
+PlaneState plane_state(const Case& input) {
+  if (is_axisymmetric(input)) return PlaneState::axisymmetric;
+  return input.mesh.plane == "stress" ? PlaneState::stress : PlaneState::strain;
+}
+
 /// Poisson's ratio from which on a mean dilatation is taken, and from which on cells without one lock. (Got back from λ
 /// and μ, 0.45 itself is a little more or less.)
 constexpr double mean_from = 0.4, locks_from = 0.45 * (1.0 - 1e-9);
@@ -60,8 +65,8 @@ void require_one_kind_of_law(const Case& input, const Model& model) {
 
 void assign_materials(const Case& input, Model& model) {
   const Mesh& mesh = model.mesh;
-  model.body =
-      Body{&mesh, &model.space, input.mesh.plane == "stress" ? PlaneState::stress : PlaneState::strain, {}, {}};
+  model.body = Body{&mesh, &model.space, plane_state(input), {}, {}};
+  model.problem.axisymmetric = is_axisymmetric(model.body);
   model.body.cell_material.assign(static_cast<std::size_t>(mesh.cell_count()), -1);
   for (std::size_t i = 0; i < input.materials.size(); ++i) {
     const MaterialSection& section = input.materials[i];

@@ -35,7 +35,22 @@ void complete_groups(const Case& input, Mesh& mesh);
 [[nodiscard]] const Group& group_at(const Case& input, const std::string& key_path, const Mesh& mesh,
                                     const std::string& name, int dimension);
 
-/// Facets of a boundary group; refuses there when some lie inside the body.
+[[nodiscard]] inline bool is_axisymmetric(const Case& input) {
+  return input.mesh.plane == "axisymmetric";
+}
+/// Refuses what axisymmetric bodies cannot do: translations and forces of gravity across the axis, spins.
+void check_axisymmetry(const Case& input, int dimension);
+/// The same of an obstacle that moves.
+void check_axisymmetric_obstacle(const Case& input, const std::string& name, const Obstacle& obstacle);
+/// Puts the nodes of an axisymmetric body that are on the axis at exactly x = 0; refuses those beyond it.
+void place_on_axis(const Case& input, Mesh& mesh);
+/// Of a group of facets those that are a surface of the body, not a part of its axis.
+[[nodiscard]] std::vector<Index> facets_off_axis(const Case& input, const std::string& key_path, const Mesh& mesh,
+                                                 const Group& group);
+/// Holds the nodes on the axis there.
+void add_axis_supports(const Case& input, Model& model);
+
+/// Facets of a boundary group, without those on an axis; refuses there when some lie inside the body.
 [[nodiscard]] std::vector<Index> boundary_at(const Case& input, const std::string& key_path, const Mesh& mesh,
                                              const std::string& name);
 

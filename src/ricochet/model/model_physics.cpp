@@ -199,6 +199,12 @@ void assemble_operators(const Case& input, Model& model) {
                                              model.space.nodes);
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
+  if (!model.problem.internal_force->is_linear() && !scheme->takes_nonlinear_force()) {
+    refuse(input, "time.scheme",
+           fmt::format("scheme \"{}\" needs the linear material law; \"reduced-kane\", the default, takes those of "
+                       "finite strain, too",
+                       input.time.scheme));
+  }
   if (input.time.adaptive) {
     require_changing_steps(*scheme,
                            fmt::format("{}: scheme \"{}\"", input.where("time.step").text(), input.time.scheme));

@@ -41,7 +41,7 @@ BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
     const auto count = std::count(held.begin(), held.end(), true);
     if (count == 1 && d == 3) body.axis = static_cast<int>(std::find(held.begin(), held.end(), true) - held.begin());
     for (const Index node : members) body_of_node_[static_cast<std::size_t>(node)] = static_cast<int>(bodies_.size());
-    if (count == 0 || body.axis >= 0) {
+    if (!problem.axisymmetric && (count == 0 || body.axis >= 0)) {
       const auto size = static_cast<Index>(members.size());
       const Index stride = std::max(Index{1}, size / most_fitted);
       for (Index i = 0; i < size; i += stride) body.fitted.push_back(members[static_cast<std::size_t>(i)]);

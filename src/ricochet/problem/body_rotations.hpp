@@ -11,7 +11,7 @@ namespace ricochet {
 /// The rotation R of a body is that which fits its places x best in the sense of least squares,
 /// Σ |x_a − x̄ − R (X_a − X̄)|² over nodes: the orthogonal part of Σ (x_a − x̄)(X_a − X̄)ᵀ. Bodies that supports hold do
 /// not turn as a whole, and have R = I; where these hold one component in space alone, as on a plane of symmetry, a
-/// body turns about that axis.
+/// body turns about that axis. Axisymmetric bodies do not turn.
 class BodyRotations {
  public:
   /// Bodies are the connected components of the graph of K. Keeps a reference.

@@ -50,6 +50,7 @@ RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
     : dimension_(static_cast<int>(nodes.rows())), positions_(nodes.rows(), nodes.cols()) {
   find_bodies(nodes, stiffness);
   keep_rotations_that_strain(stiffness);
+  if (dimension_ == 2) keep_translations_that_strain(stiffness);
   motions_.resize(bodies_.size());
 }
 
@@ -92,27 +93,44 @@ RigidMotion::Body RigidMotion::make_body(const Points& nodes, const std::vector<
   return body;
 }
 
-/// Linear functions on curved cells do not contain rotations: K R is not zero there, and K U would not be that of U.
-void RigidMotion::keep_rotations_that_strain(const SparseMatrix& stiffness) {
+std::size_t RigidMotion::body_of(std::size_t node) const {
+  return body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[node]);
+}
+
+std::vector<char> RigidMotion::strained_by(const Vector& motion, const SparseMatrix& stiffness) const {
   constexpr double rounding = 1e-9;
   const Index d = dimension_;
   std::vector<char> strained(static_cast<std::size_t>(positions_.cols()), 0);
-  for (Index axis = d == 2 ? 2 : 0; axis < 3; ++axis) {
-    const Vector rotation = rotation_about(axis, positions_);
-    parallel_ranges(positions_.cols(), [&](Index first, Index last) {
-      for (Index dof = first * d; dof < last * d; ++dof) {
-        double force = 0.0, terms = 0.0;
-        for (SparseMatrix::InnerIterator entry(stiffness, dof); entry; ++entry) {
-          force += entry.value() * rotation[entry.row()];
-          terms += std::abs(entry.value() * rotation[entry.row()]);
-        }
-        if (std::abs(force) > rounding * terms) strained[static_cast<std::size_t>(dof / d)] = 1;
+  parallel_ranges(positions_.cols(), [&](Index first, Index last) {
+    for (Index dof = first * d; dof < last * d; ++dof) {
+      double force = 0.0, terms = 0.0;
+      for (SparseMatrix::InnerIterator entry(stiffness, dof); entry; ++entry) {
+        force += entry.value() * motion[entry.row()];
+        terms += std::abs(entry.value() * motion[entry.row()]);
       }
-    });
+      if (std::abs(force) > rounding * terms) strained[static_cast<std::size_t>(dof / d)] = 1;
+    }
+  });
+  return strained;
+}
+
+/// Linear functions on curved cells do not contain rotations: K R is not zero there, and K U would not be that of U.
+void RigidMotion::keep_rotations_that_strain(const SparseMatrix& stiffness) {
+  for (Index axis = dimension_ == 2 ? 2 : 0; axis < 3; ++axis) {
+    const std::vector<char> strained = strained_by(rotation_about(axis, positions_), stiffness);
+    for (std::size_t node = 0; node < strained.size(); ++node) {
+      if (strained[node] != 0) bodies_[body_of(node)].inverse_inertia.setZero();
+    }
   }
+}
+
+/// Of an axisymmetric body, away from its axis.
+void RigidMotion::keep_translations_that_strain(const SparseMatrix& stiffness) {
+  Vector across = Vector::Zero(positions_.size());
+  for (Index node = 0; node < positions_.cols(); ++node) across[node * dimension_] = 1.0;
+  const std::vector<char> strained = strained_by(across, stiffness);
   for (std::size_t node = 0; node < strained.size(); ++node) {
-    const std::size_t body = body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[node]);
-    if (strained[node] != 0) bodies_[body].inverse_inertia.setZero();
+    if (strained[node] != 0) bodies_[body_of(node)].moves_across = false;
   }
 }
 
@@ -130,6 +148,7 @@ RigidMotion::Motion RigidMotion::fit(const Body& body, const Vector& displacemen
   moment -= cross<d>(body.position_sum, mean);  // Σ x × (u − mean)
   Motion motion;
   motion.translation.template head<d>() = mean;
+  if (!body.moves_across) motion.translation[0] = 0.0;
   motion.rotation.template tail<rotations>() =
       body.inverse_inertia.template topLeftCorner<rotations, rotations>() * moment;
   return motion;
@@ -145,9 +164,7 @@ void RigidMotion::fit_bodies(const Vector& displacement) const {
 /// Of the displacement that bodies were fitted to last.
 template <int d>
 Eigen::Matrix<double, d, 1> RigidMotion::rigid_part(Index node) const {
-  const std::size_t body =
-      body_of_node_.empty() ? 0 : static_cast<std::size_t>(body_of_node_[static_cast<std::size_t>(node)]);
-  const Motion& motion = motions_[body];
+  const Motion& motion = motions_[body_of(static_cast<std::size_t>(node))];
   const Eigen::Matrix<double, d, 1> x = positions_.col(node).template head<d>();
   Eigen::Matrix<double, d, 1> turned;
   if constexpr (d == 2) {

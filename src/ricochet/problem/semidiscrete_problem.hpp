@@ -21,6 +21,9 @@ namespace ricochet {
 
 struct SemidiscreteProblem {
   int dimension = 2;
+  /// Of a section through bodies that are the same all round the axis x = 0: their only rigid motion is the translation
+  /// along it, and forces, momenta and impulses across it cancel over the ring.
+  bool axisymmetric = false;
   Points nodes;     ///< reference positions, d × nodes
   NodeMatrix mass;  ///< M, or M₀ of an equivalent mass
   Damping damping;

@@ -146,10 +146,14 @@ void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
   }
   if (!problem_.mass.is_scalar()) problem_.mass.multiply(velocity, momentum_);
   const Vector& values = problem_.mass.is_scalar() ? velocity : momentum_;
-  const Momenta sum = parallel_sum<Momenta>(node_weight_.size(), [&](Index first, Index last) {
+  Momenta sum = parallel_sum<Momenta>(node_weight_.size(), [&](Index first, Index last) {
     return problem_.dimension == 2 ? momenta_of<2>(node_weight_, node_arm_, values, first, last)
                                    : momenta_of<3>(node_weight_, node_arm_, values, first, last);
   });
+  if (problem_.axisymmetric) {  // over the ring these cancel
+    sum.linear[0] = 0.0;
+    sum.angular.setZero();
+  }
   // The order of the columns.
   append(sum.linear.head(problem_.dimension), row_);
   append(problem_.dimension == 2 ? sum.angular.tail(1) : sum.angular.head(3), row_);
@@ -162,7 +166,7 @@ void HistoryRecorder::sum_of_bodies(const Vector& values) {
   for (Index node = 0; node < node_weight_.size(); ++node) {
     double* const own =
         body_momentum_.data() + d * static_cast<std::size_t>(bodies_.of_node[static_cast<std::size_t>(node)]);
-    for (std::size_t k = 0; k < d; ++k)
+    for (std::size_t k = problem_.axisymmetric ? 1 : 0; k < d; ++k)
       own[k] += node_weight_[node] * values[node * problem_.dimension + static_cast<Index>(k)];
   }
 }

@@ -83,6 +83,10 @@ void ImpactRecorder::find_forces(const StepForces& acting, const ObstacleMotion&
       force.leading = point;
       force.leading_size = size;
     }
+    if (problem_.axisymmetric) {
+      add_along_axis(point, part, own, acting, travel, force);
+      continue;
+    }
     force.all.head(d) += own;
     force.normal.head(d) += part * acting.acting_normal()[point] * acting.rows->normal(point);
     force.pressing += pressing;
@@ -90,6 +94,18 @@ void ImpactRecorder::find_forces(const StepForces& acting, const ObstacleMotion&
     force.travel += pressing * travel.normal[point];
     force.sliding.head(d) += pressing * acting.rows->along_tangents(point, travel.tangential);
   }
+}
+
+/// What is left of a point's force, and of its obstacle's motion, over the ring: of rings that press on a cone, the
+/// part along the axis.
+void ImpactRecorder::add_along_axis(Index point, double part, const SpaceVector& own, const StepForces& acting,
+                                    const ObstacleMotion& travel, Force& force) const {
+  const double reaction = acting.acting_normal()[point], slope = acting.rows->normal(point)[1];
+  force.all[1] += own[1];
+  force.normal[1] += part * reaction * slope;
+  const double pressing = std::abs(part) * reaction;
+  force.pressing += pressing * std::abs(slope);
+  if (travel.normal.size() > 0) force.travel += pressing * travel.normal[point];
 }
 
 void ImpactRecorder::find_other_forces() {

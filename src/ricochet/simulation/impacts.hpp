@@ -20,6 +20,8 @@
 /// momenta to rounding where a multiplier faces two bodies, too. The first of two bodies is that of the `group` of
 /// their first contact, as the case names it.
 ///
+/// Over the ring of an axisymmetric body what acts across its axis cancels: forces and impulses are those along it.
+///
 /// It begins half a step before the first instant with a force and ends half a step after the last one. `before` and
 /// `after` are the states (at the scheme's instant of energies) at the ends of its steps, so that
 /// m (v_after − v_before) = impulse + that of loads, supports and damping in the same steps, to rounding; the impulse
@@ -115,6 +117,8 @@ class ImpactRecorder {
   void add_part(Index point, int body, int other, const std::string& obstacle, double part);
   void find_forces(const StepForces& acting, const ObstacleMotion& travel, std::vector<Force>& forces) const;
   void find_other_forces();
+  void add_along_axis(Index point, double part, const SpaceVector& own, const StepForces& acting,
+                      const ObstacleMotion& travel, Force& force) const;
   [[nodiscard]] Acting acting_in(std::size_t place) const;
   void take_velocity(const State& state, Vector& velocity);
   void enter_place(std::size_t place, double instant);

@@ -100,10 +100,18 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const 
   return sum;
 }
 
+void MomentumAccount::add_impulse(double weight, const Resultant& resultant) {
+  if (problem_.axisymmetric) {
+    impulse_.force[1] += weight * resultant.force[1];
+    return;
+  }
+  impulse_.force += weight * resultant.force;
+  impulse_.moment += weight * resultant.moment;
+}
+
 void MomentumAccount::enter_step(const State& state) {
   const auto enter = [this](const Sum& sum, double weight) {
-    impulse_.force += scheme_.step() * weight * sum.total.force;
-    impulse_.moment += scheme_.step() * weight * sum.total.moment;
+    add_impulse(scheme_.step() * weight, sum.total);
     size_ += scheme_.step() * weight * sum.size;
   };
   if (finite_strain_) {
@@ -119,8 +127,7 @@ void MomentumAccount::enter_step(const State& state) {
   for (const StepPart& part : scheme_.other_parts()) enter(resultant(part.forces), part.weight);
   previous_ = current;
   const Resultant now = algorithmic(state);
-  impulse_.force -= scheme_.step() * (now.force - algorithmic_.force);
-  impulse_.moment -= scheme_.step() * (now.moment - algorithmic_.moment);
+  add_impulse(-scheme_.step(), {now.force - algorithmic_.force, now.moment - algorithmic_.moment});
   algorithmic_ = now;
 }
 

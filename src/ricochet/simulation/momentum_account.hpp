@@ -7,7 +7,9 @@
 /// A rigid velocity does no work on the stress, so its product with the momentum equation is the balance of momentum:
 /// over a step P₁ − P₀ = h (w₀ F₀ + w₁ F₁), with the resultants F of the loads, obstacles, supports and damping at the
 /// two ends and the scheme's weights (WorkRule). The same for moments about the origin with reference positions. It
-/// holds to rounding where the displacement's functions contain rigid rotations: not for degree 1 on curved cells.
+/// holds to rounding where the displacement's functions contain rigid rotations: not for degree 1 on curved cells. Of
+/// an axisymmetric body only forces along its axis have an impulse: the others cancel over the ring, and so do all
+/// moments.
 /// At finite strain moments are about current positions, those of forces at the middle of the step: for schemes whose
 /// internal forces are of that middle (Scheme::keeps_moments_at_finite_strain).
 namespace ricochet {
@@ -44,6 +46,7 @@ class MomentumAccount {
   [[nodiscard]] Resultant algorithmic(const State& state);
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;
   void take_positions(const Vector& displacement);
+  void add_impulse(double weight, const Resultant& resultant);
 
   const SemidiscreteProblem& problem_;
   const Scheme& scheme_;

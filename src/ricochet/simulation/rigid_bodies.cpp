@@ -18,7 +18,11 @@ RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> bo
     nodes[b] += 1.0;
   }
   for (std::size_t b = 0; b < nodes.size(); ++b) origin_[b] /= nodes[b];
-  measure();
+  if (problem.axisymmetric) {
+    measure_round_axis();
+  } else {
+    measure();
+  }
 }
 
 Eigen::Vector3d RigidBodies::arm(Index node) const {
@@ -73,6 +77,30 @@ void RigidBodies::measure() {
   }
 }
 
+/// Of the whole solid, with the moments xᵀmx, yᵀmy, yᵀm1 of M = m ⊗ I, x the distance from the axis.
+void RigidBodies::measure_round_axis() {
+  for (Eigen::Vector3d& origin : origin_) origin[0] = 0.0;
+  Vector places(problem_.dof_count());
+  for (Index node = 0; node < problem_.nodes.cols(); ++node) places.segment(node * 2, 2) = arm(node).head(2);
+  problem_.mass.multiply(places, momentum_);
+  const Vector moments = momentum_;
+  problem_.mass.multiply(Vector::Ones(problem_.dof_count()), momentum_);
+  std::vector<double> along(bodies_.size(), 0.0), squared(bodies_.size(), 0.0), across(bodies_.size(), 0.0);
+  for (Index node = 0; node < problem_.nodes.cols(); ++node) {
+    const auto b = static_cast<std::size_t>(body_of_node(node));
+    bodies_[b].mass += momentum_[node * 2 + 1];
+    along[b] += moments[node * 2 + 1];
+    across[b] += places[node * 2] * moments[node * 2];
+    squared[b] += places[node * 2 + 1] * moments[node * 2 + 1];
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const double offset = along[b] / bodies_[b].mass;
+    bodies_[b].centre = origin_[b] + offset * Eigen::Vector3d::UnitY();
+    const double transverse = 0.5 * across[b] + squared[b] - bodies_[b].mass * offset * offset;
+    bodies_[b].inertia.diagonal() << transverse, across[b], transverse;
+  }
+}
+
 /// Centres and inertia at current positions x, from Σ x_a (M x)_aᵀ about each body's origin.
 void RigidBodies::measure_at(const Vector& displacement) {
   const int d = problem_.dimension;
@@ -114,7 +142,8 @@ const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity,
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const RigidBody& body = bodies_[b];
     const Eigen::Matrix3d& inertia = displacement != nullptr ? inertia_[b] : body.inertia;
-    const Eigen::Vector3d angular_momentum = motion_[b].spin;
+    if (problem_.axisymmetric) motion_[b].velocity[0] = 0.0;
+    const Eigen::Vector3d angular_momentum = problem_.axisymmetric ? Eigen::Vector3d::Zero() : motion_[b].spin;
     motion_[b].velocity /= body.mass;
     if (d == 2) {
       motion_[b].spin = {0.0, 0.0, angular_momentum[2] / inertia(2, 2)};

@@ -25,6 +25,7 @@ class RigidBodies {
   [[nodiscard]] Eigen::Vector3d arm(Index node) const;
   void measure();
   void measure_at(const Vector& displacement);
+  void measure_round_axis();
 
   const SemidiscreteProblem& problem_;
   std::vector<int> body_of_node_;

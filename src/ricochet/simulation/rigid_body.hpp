@@ -5,7 +5,8 @@
 /// @file What a body is and how it moves, as a rigid one.
 namespace ricochet {
 
-/// Reference configuration; in the plane z = 0, and per unit of thickness.
+/// Reference configuration; in the plane z = 0, and per unit of thickness. An axisymmetric body is the whole solid: its
+/// centre is on the axis, and its inertia that in space.
 struct RigidBody {
   double mass = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -14,7 +15,7 @@ struct RigidBody {
 
 /// Mean motion of a body and its energies.
 struct RigidMotionState {
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the centre of mass: momentum / mass
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the centre of mass: momentum / mass; along an axis
   /// Angular momentum about the centre of mass, solved with the inertia about it; reference positions.
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();
   double kinetic_energy = 0.0;        ///< of the whole motion, ½VᵀMV

@@ -34,7 +34,7 @@ class FreeMotions {
       in_body_[static_cast<std::size_t>(node)] = 1;
       size_ = std::max(size_, (problem.nodes.col(node) - centre_).norm());
     }
-    const Index all = size_ > 0.0 ? (d_ == 2 ? 3 : 6) : d_;
+    const Index all = size_ > 0.0 && !problem.axisymmetric ? (d_ == 2 ? 3 : 6) : d_;
     leave_to_supports(members, all);
     if (count() > 0 && all > d_ && rotations_strain(members)) leave_to_supports(members, d_);
   }
@@ -88,6 +88,7 @@ class FreeMotions {
   /// The combinations of the first so many motions that stand still where the body is held.
   void leave_to_supports(const std::vector<Index>& members, Index motions) {
     Matrix square = Matrix::Zero(motions, motions);
+    if (problem_.axisymmetric) square(0, 0) = 1.0;  // its rings hold it across the axis
     for (const Index node : members) {
       for (Index dof = node * d_; dof < (node + 1) * d_; ++dof) {
         if (!problem_.supports.contains(dof)) continue;

@@ -136,7 +136,7 @@ const StageSolution& Simulation::solve(std::size_t number) {
                 "(reduced-kane with mass \"equivalent\")");
   }
   iterations_ += solution.iterations;
-  if (dofs != StageDofs::contact) newton_rounds_ += solution.rounds;
+  if (!problem_.internal_force->is_linear() && dofs != StageDofs::contact) newton_rounds_ += solution.rounds;
   return solution;
 }
 

@@ -129,7 +129,6 @@ class StagesStepSolver final : public StepSolver {
                  const StepSolverOptions& options) {
     const SolverMethod before = options.chosen.empty() ? SolverMethod::automatic : options.chosen[methods_.size()];
     ChosenMethod chosen{.method = options.method, .reason = "the case asks for it"};
-    if (frame_) chosen = require_direct(options);
     AnalysedOperator analysed;
     Timer timer;
     if (options.method == SolverMethod::automatic && before == SolverMethod::iterative) {
@@ -138,7 +137,7 @@ class StagesStepSolver final : public StepSolver {
       log::info("solved by iterations, as when the run began");
     } else if (chosen.method != SolverMethod::iterative || coefficients.dofs == StageDofs::contact) {
       analysed = analyse_operator(problem, coefficients);
-      if (!frame_) chosen = choose_method(problem, analysed.factor.predicted(), coefficients, options);
+      chosen = choose_method(problem, analysed.factor.predicted(), coefficients, options);
       if (before == SolverMethod::direct && chosen.method != before) {
         chosen.method = before;
         chosen.reason = kept;
@@ -160,15 +159,6 @@ class StagesStepSolver final : public StepSolver {
     }
     if (frame_) stages_.back() = make_turned_stage(std::move(stages_.back()), *frame_);
     methods_.push_back(chosen);
-  }
-
-  /// A factor turns with the bodies; what conjugate gradients are preconditioned with does not.
-  static ChosenMethod require_direct(const StepSolverOptions& options) {
-    if (options.method == SolverMethod::iterative) {
-      throw Error(ErrorKind::invalid_input,
-                  "solver.method = \"iterative\" needs linear material laws: leave it out, or set it to \"direct\"");
-    }
-    return {.method = SolverMethod::direct, .reason = "the stiffness follows the motion"};
   }
 
   const SemidiscreteProblem& problem_;

@@ -24,7 +24,8 @@ TEST(MalformedCase, Values) {
       {2, "file = \"a.msh\"\ndegree = 3", "3:10: \"degree\" must be 1 or 2; found the integer 3"},
       {2, "file = \"a.msh\"\nscale = 0.0", "3:9: \"scale\" must be a positive number; found the number 0.0"},
       {2, "file = \"a.msh\"\nplane = \"stres\"",
-       "3:9: \"plane\" must be \"strain\" or \"stress\"; found the text \"stres\"; did you mean \"stress\"?"},
+       "3:9: \"plane\" must be one of \"strain\", \"stress\" or \"axisymmetric\"; found the text \"stres\"; did you "
+       "mean \"stress\"?"},
       {2, "file = \"a.msh\"\nsize = 0.1",
        "3:8: \"size\" is for geometry that is still to be meshed; \"a.msh\" is a mesh already"},
       {2, "file = \"a.MSH\"\nsize = 0.1",

@@ -202,6 +202,7 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"material.0.group", "body"},
                                                              {"material.0.density", "1"},
                                                              {"material.0.law", "linear"},
+                                                             {"material.0.dilatation", "automatic"},
                                                              {"material.0.lambda", "1"},
                                                              {"material.0.mu", "1"},
                                                              {"material.0.damping.mass", "0"},

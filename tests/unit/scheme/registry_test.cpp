@@ -81,6 +81,8 @@ TEST_F(OutsideScheme, IsReadFromACaseAndMadeWithItsParameter) {
   struct NoStages final : StageSolve {
     Stage& stage(std::size_t) override { throw std::logic_error("it has no stage"); }
     const StageSolution& solve(std::size_t) override { throw std::logic_error("it has no stage"); }
+    void follow(const Vector&) override {}
+    void renew(const Vector&, const Vector&) override {}
   } stages;
   State state;
   state.displacement = Vector::Zero(2);

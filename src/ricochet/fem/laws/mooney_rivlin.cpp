@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-
 #include "ricochet/fem/finite_strain.hpp"
 
 namespace ricochet {
@@ -25,7 +23,7 @@ class MooneyRivlin final : public MaterialLaw {
   [[nodiscard]] double energy(const Tensor& strain) const override {
     const Shape shape(strain);
     const double stretch = 1.0 + shape.mean, square = shape.deviator.squaredNorm();
-    const double q = (2.0 * stretch * square - 8.0 * shape.deviator.determinant()) / (1.0 + shape.s);
+    const double q = (2.0 * stretch * square - 8.0 * determinant(shape.deviator)) / (1.0 + shape.s);
     const double logarithm = std::log1p(q) / 3.0;
     const double of_second = std::log1p(-2.0 / 3.0 * square / (stretch * stretch));
     return 3.0 * (first_ * std::expm1(logarithm) + second_ * std::expm1(2.0 * logarithm + of_second)) +
@@ -68,7 +66,7 @@ class MooneyRivlin final : public MaterialLaw {
     explicit Shape(const Tensor& strain)
         : mean(2.0 / 3.0 * strain.trace()),
           deviator(strain - 0.5 * mean * Tensor::Identity()),
-          inverse((Tensor::Identity() + 2.0 * strain).inverse()),
+          inverse(inverse_metric(strain)),
           s(determinant_change(2.0 * strain)) {}
     double mean;
     Tensor deviator, inverse;  ///< D, C⁻¹
@@ -80,14 +78,20 @@ class MooneyRivlin final : public MaterialLaw {
 };
 
 std::vector<Key> mooney_rivlin_keys() {
-  return {{.name = "c10", .type = KeyType::number, .unit = "stress", .doc = "Of the first invariant; c10 + c01 > 0."},
+  return {{.name = "c10",
+           .type = KeyType::number,
+           .unit = "stress",
+           .required = true,
+           .doc = "Of the first invariant; c10 + c01 > 0."},
           {.name = "c01",
            .type = KeyType::number,
            .unit = "stress",
+           .required = true,
            .doc = "Of the second invariant; the shear modulus at zero strain is 2 (c10 + c01)."},
           {.name = "bulk_modulus",
            .type = KeyType::number,
            .unit = "stress",
+           .required = true,
            .range = positive,
            .doc = "Bulk modulus at zero strain."}};
 }

@@ -1,5 +1,3 @@
-#include <Eigen/LU>
-
 #include "ricochet/fem/finite_strain.hpp"
 #include "ricochet/fem/laws/elastic_constants.hpp"
 
@@ -25,12 +23,15 @@ class NeoHookean final : public MaterialLaw {
   }
   void stress(const Tensor& strain, Tensor& result) const override {
     const double s = determinant_change(2.0 * strain);
-    const Tensor inverse = (Tensor::Identity() + 2.0 * strain).inverse();
-    result.noalias() = 2.0 * mu_ * strain * inverse;
-    result = 0.5 * (result + result.transpose()).eval() + volume_.stress_factor(s) * inverse;
+    const Tensor inverse = inverse_metric(strain);
+    const Tensor along = product(strain, inverse);
+    const double pressure = volume_.stress_factor(s);
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) result(i, j) = mu_ * (along(i, j) + along(j, i)) + pressure * inverse(i, j);
+    }
   }
   void tangent(const Tensor& strain, StressTangent& result) const override {
-    const Tensor inverse = (Tensor::Identity() + 2.0 * strain).inverse();
+    const Tensor inverse = inverse_metric(strain);
     result.setZero();
     add_symmetric_product(inverse, 2.0 * mu_, result);
     volume_.add_tangent(determinant_change(2.0 * strain), inverse, result);

@@ -33,7 +33,8 @@ def element_kind(name, fail):
     if re.match(r"B[23][123]", name):
         return LINES["3" if name[2] == "2" else "2"]
     if re.match(r"(DC|C)?CAX|CGAX|MAX|SAX|DCAX", name):
-        fail(f"elements of type {name}: axisymmetric bodies are not supported; mesh the plane or the solid body")
+        fail(f"elements of type {name}: write the section of an axisymmetric body with CPE3, CPE4 or CPE6, and give "
+             "mesh.plane = \"axisymmetric\"")
     if re.match(r"(C|DC|AC)(3D|PS|PE)", name):
         fail(f"elements of type {name} are not supported; use C3D4, C3D10 or C3D8, in the plane CPS3 or CPE3, CPS6 or "
              "CPE6, CPS4 or CPE4")

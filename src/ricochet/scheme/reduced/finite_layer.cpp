@@ -18,6 +18,8 @@ namespace {
 constexpr std::size_t layer_stage = MasslessLayer::layer_stage;
 /// What the balance of energy of a step may lack, relative to kinetic and elastic energy.
 constexpr double energy_tolerance = 1e-15;
+/// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
+constexpr double near_solution = 1e-2;
 /// σ is about half of the change of a strain; one that is larger means that steps are far too long.
 constexpr double largest_sigma = 1.0;
 
@@ -72,12 +74,13 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
 }
 
 /// f̄, p, f(u₁), and σ from the balance of energy at these.
-void FiniteLayer::evaluate(const SemidiscreteProblem& problem, const State& state) {
+void FiniteLayer::evaluate(const SemidiscreteProblem& problem, const State& state, bool near) {
   const InternalForce& elastic = *problem.internal_force;
   increment_ = end_ - state.displacement;
   elastic.mean_force(middle_, increment_, force_);
-  elastic.strain_force(middle_, increment_, strain_force_);
   if (layer_) layer_->evaluate(end_, end_force_);
+  if (near || sigma_ != 0.0) elastic.strain_force(middle_, increment_, strain_force_);
+  if (!near) return;
   energy_ = elastic.energy(end_);
   // ΔW − L₁·Δ_c and Ψ(u_f1) − Ψ(u_f0), which differ by ρ·HΔ_c − d.
   const double at_end = work_at_end_ - dissipation_;
@@ -110,7 +113,8 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   stage.force_place.resize(0);
   product_ = middle_ - base_;
   problem.mass.multiply(product_, right_);
-  stage.right_hand_side = load_ - force_ - sigma_ * strain_force_ - (4.0 / (step * step)) * right_;
+  stage.right_hand_side = load_ - force_ - (4.0 / (step * step)) * right_;
+  if (sigma_ != 0.0) stage.right_hand_side -= sigma_ * strain_force_;
   if (problem.has_damping()) {
     product_ = middle_ - state.displacement;
     problem.damping.evaluate(product_, damping_force_);
@@ -230,11 +234,11 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
 }
 
-void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, const State& state) {
+void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, const State& state, bool near) {
   constexpr int most_halvings = 5;
   for (int halving = 0;; ++halving) {
     try {
-      evaluate(problem, state);
+      evaluate(problem, state, near);
       return;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
@@ -249,7 +253,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
   const std::size_t number = MasslessLayer::midpoint_stage(problem);
   start(problem, step, state);
   stages.follow(base_);
-  evaluate(problem, state);
+  evaluate(problem, state, false);
   progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
                   (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
   progress_.forget_rounds();
@@ -271,7 +275,8 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
     solution = &stages.solve(number);
     const Round round = correct(problem, state, *solution);
     if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, *solution);
-    halve_where_inverted(problem, state);
+    const bool near = round.correction <= near_solution * round.increment || converged;
+    halve_where_inverted(problem, state, near);
     // Rounding of forces and energies may leave more.
     const bool balanced = std::abs(lacking_) <= energy_tolerance * (kinetic + energy_start_ + energy_) ||
                           (converged && std::abs(lacking_) > 0.5 * lacked);
@@ -285,7 +290,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
                       lacking_ / (kinetic + energy_start_ + energy_), end_weight_));
     }
     converged = converged || advice == NewtonProgress::Advice::done;
-    if (converged && balanced) break;
+    if (converged && near && balanced) break;
     if (converged) continue;
     if (advice == NewtonProgress::Advice::failed) {
       throw Error(ErrorKind::not_converged,

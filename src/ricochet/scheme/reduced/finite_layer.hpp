@@ -48,8 +48,8 @@ class FiniteLayer {
   };
   void start(const SemidiscreteProblem& problem, double step, const State& state);
   void take_loads(const SemidiscreteProblem& problem, double step, const State& state);
-  /// Forces at the middle and at the end, and what the energy lacks; then σ for it.
-  void evaluate(const SemidiscreteProblem& problem, const State& state);
+  /// Forces at the middle and at the end; near the solution also what the energy lacks, and σ for it.
+  void evaluate(const SemidiscreteProblem& problem, const State& state, bool near);
   void choose_sigma(double asked);
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
@@ -62,7 +62,7 @@ class FiniteLayer {
   void finish(const SemidiscreteProblem& problem, double step, State& state, const Stage& stage,
               const StageSolution& solution, Vector& increment);
   const Vector& solve_layer(const SemidiscreteProblem& problem, StageSolve& stages);
-  void halve_where_inverted(const SemidiscreteProblem& problem, const State& state);
+  void halve_where_inverted(const SemidiscreteProblem& problem, const State& state, bool near);
 
   std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes alone
   NewtonProgress progress_;

@@ -21,6 +21,7 @@ class BoundarySensor final : public Sensor {
     };
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+      if (problem.axisymmetric && dof % d == 0 && problem.nodes(0, dof / d) == 0.0) continue;  // of the axis itself
       if (inside[static_cast<std::size_t>(dof / d)] != 0) supports_.push_back({i, dof % d, arm(dof / d)});
     }
     // Of a point's force the part Σ c_ij acts on these nodes, with the moment Σ c_ij X_j × force.
@@ -58,6 +59,7 @@ class BoundarySensor final : public Sensor {
       force += point.part * own;
       moment += point.arm.cross(own);
     }
+    if (problem_.axisymmetric) moment.setZero();  // over the ring they cancel
     append(force.head(d), row);
     append(moment.tail(d == 2 ? 1 : 3), row);
   }

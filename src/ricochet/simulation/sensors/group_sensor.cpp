@@ -16,23 +16,25 @@ struct WeightedNode {
   double weight;
 };
 
-/// ∫ φ_i over some cells of one dimension, numbered through all blocks. `measure`: of a cell, per reference measure.
+/// ∫ φ_i over some cells of one dimension, numbered through all blocks. `measure`: of a cell, per reference measure,
+/// in the plane of axisymmetric bodies.
 template <class Measure>
-std::vector<WeightedNode> weighted_nodes(const std::vector<CellBlock>& geometry, const std::vector<CellBlock>& cells,
-                                         int geometry_degree, int displacement_degree,
-                                         const std::vector<Index>& members, const Ranks& ranks,
-                                         const Measure& measure) {
+std::vector<WeightedNode> weighted_nodes(const Body& body, const std::vector<CellBlock>& geometry,
+                                         const std::vector<CellBlock>& cells, const std::vector<Index>& members,
+                                         const Ranks& ranks, const Measure& measure) {
   std::map<Index, double> weights;
   Index first = 0;
   auto member = members.begin();
+  const int geometry_degree = body.mesh->degree, displacement_degree = body.space->degree;
+  const bool axisymmetric = is_axisymmetric(body);
   for (std::size_t b = 0; b < cells.size(); ++b) {
-    const int degree = product_quadrature_degree(cells[b].shape, geometry_degree, displacement_degree);
-    const BlockIntegration integration(cells[b].shape, geometry_degree, displacement_degree, degree);
+    const int degree = product_quadrature_degree(cells[b].shape, geometry_degree, displacement_degree, axisymmetric);
+    const BlockIntegration integration(cells[b].shape, geometry_degree, displacement_degree, degree, axisymmetric);
     for (; member != members.end() && *member < first + cells[b].size(); ++member) {
       const Index local = *member - first;
       for (Index q = 0; q < integration.rule.weights.size(); ++q) {
         const double weight =
-            integration.rule.weights[q] *
+            integration.rule.weights[q] * integration.ring(body.mesh->nodes, geometry[b].cell(local), q) *
             measure(geometry[b].cell(local), integration.geometry.gradients[static_cast<std::size_t>(q)]);
         for (int i = 0; i < cells[b].nodes_per_cell; ++i)
           weights[cells[b].cell(local)[i]] += weight * integration.displacement.values(i, q);
@@ -124,7 +126,7 @@ class GroupSensor final : public Sensor {
 
 template <int d>
 std::vector<WeightedNode> nodes_of_cells(const Body& body, const std::vector<Index>& cells, const Ranks& ranks) {
-  return weighted_nodes(body.mesh->cells, body.space->cells, body.mesh->degree, body.space->degree, cells, ranks,
+  return weighted_nodes(body, body.mesh->cells, body.space->cells, cells, ranks,
                         [&](const Index* nodes, const Matrix& gradients) {
                           return std::abs(jacobian<d>(body.mesh->nodes, nodes, gradients).determinant());
                         });
@@ -132,7 +134,7 @@ std::vector<WeightedNode> nodes_of_cells(const Body& body, const std::vector<Ind
 
 template <int d>
 std::vector<WeightedNode> nodes_of_facets(const Body& body, const std::vector<Index>& facets, const Ranks& ranks) {
-  return weighted_nodes(body.mesh->facets, body.space->facets, body.mesh->degree, body.space->degree, facets, ranks,
+  return weighted_nodes(body, body.mesh->facets, body.space->facets, facets, ranks,
                         [&](const Index* nodes, const Matrix& gradients) {
                           return facet_measure<d>(jacobian<d, d - 1>(body.mesh->nodes, nodes, gradients));
                         });
