@@ -266,6 +266,11 @@ class SemanticErrors(TestCase):
         newmark = 'scheme = "newmark"\npreset = "trapezoidal"\n'
         self.refuse(with_law(block_case(), "neo-hookean").replace(newmark, 'scheme = "bathe"\n'), '"bathe"',
                     "linear", "reduced-kane")
+        # Squeezed to less than nothing: only a run sees that.
+        turned = with_law(block_case(), "neo-hookean") + '[initial]\ndisplacement = ["-1.5*x", "0"]\n'
+        status = run("run", self.write("case.toml", turned), "-o", self.folder / "turned")
+        self.assertEqual(status.returncode, 2)
+        self.assertIn("turned inside out", status.stderr)
         # One of two materials is linear.
         halves = with_law(MIXED, "neo-hookean").replace('group = "all"', 'group = "left half"', 1)
         status = run("validate", self.write("case.toml", halves + '[[material]]\ngroup = "all"\ndensity = 1.0\n'

@@ -149,6 +149,30 @@ TEST(FiniteStrain, BouncingBalances) {
   }
 }
 
+/// Round an axis the same: energy is exact, and only what goes along the axis has momentum.
+TEST(FiniteStrain, AxisymmetricBodiesBounceWithExactEnergy) {
+  std::string text = case_of({.scheme = "mean-reaction", .height = 0.05}, "[\"0.03*x*sin(3*y)\", \"0.02*sin(5*y)\"]",
+                             "[\"0\", \"-0.5\"]");
+  text.insert(text.find("[[material]]"), "plane = \"axisymmetric\"\n");
+  CaseRun run(text);
+  const double start = energy_of(run);
+  MomentumAccount momentum(run.problem(), run.scheme(), run.state());
+  Vector first, now;
+  run.problem().mass.multiply(run.state().velocity, first);
+  const auto along = [](const Vector& values) { return Vector(values.reshaped(2, values.size() / 2).row(1)).sum(); };
+  double largest_force = 0.0;
+  run.run(
+      [&] {
+        EXPECT_NEAR(energy_of(run), start, 1e-11 * start);
+        momentum.enter_step(run.state());
+        run.problem().mass.multiply(run.state().velocity, now);
+        EXPECT_NEAR(along(now) - along(first), momentum.impulse().force[1], 1e-11);
+        largest_force = std::max(largest_force, run.state().forces.normal_reaction.sum());
+      },
+      false);
+  EXPECT_GT(largest_force, 1.0);
+}
+
 /// A rigid spin has no strain, however far a step turns: bodies do not swell. (They are stretched by ρω²L²/E alone.)
 TEST(FiniteStrain, ARigidSpinDoesNotSwell) {
   for (const int dimension : {2, 3}) {

@@ -218,6 +218,20 @@ void warn_of_closed_gaps(const SemidiscreteProblem& problem, const Vector& press
   }
 }
 
+namespace {
+
+void require_upright_cells(const SemidiscreteProblem& problem, const Vector& displacement) {
+  if (problem.internal_force->is_linear()) return;
+  Vector force;
+  try {
+    problem.internal_force->evaluate(displacement, force);
+  } catch (const Error& error) {
+    throw Error(ErrorKind::invalid_input, fmt::format("initial.displacement: {}", error.what()));
+  }
+}
+
+}  // namespace
+
 State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial, double step,
                           const StepSolverOptions& options) {
   State state;
@@ -233,6 +247,7 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
     warn_of_closed_gaps(problem, pressed);
   } else {
     state.displacement = initial.displacement;
+    require_upright_cells(problem, state.displacement);
   }
   state.velocity = initial.velocity;
   state.acceleration.setZero(problem.dof_count());
