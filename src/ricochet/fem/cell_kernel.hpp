@@ -180,7 +180,6 @@ class CellKernel {
   }
 
   [[nodiscard]] bool has_dilatation() const { return volume_.modulus > 0.0; }
-  [[nodiscard]] const PointLaw& law() const { return law_; }
   [[nodiscard]] int points() const { return block_.points; }
   [[nodiscard]] int nodes() const { return block_.nodes; }
 

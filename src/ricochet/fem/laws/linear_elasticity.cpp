@@ -1,30 +1,17 @@
-#include "ricochet/fem/finite_strain.hpp"
 #include "ricochet/fem/laws/elastic_constants.hpp"
+#include "ricochet/fem/laws/quadratic_law.hpp"
 
 namespace ricochet {
 
 namespace {
 
-/// W = ½λ (tr ε)² + μ ε : ε of the small strain ε.
-class LinearElasticityLaw final : public MaterialLaw {
+/// Of the small strain.
+class LinearElasticityLaw final : public QuadraticLaw {
  public:
-  LinearElasticityLaw(double lambda, double mu) : constants_{lambda, mu} {}
-
-  [[nodiscard]] double lambda() const override { return constants_.lambda; }
-  [[nodiscard]] double mu() const override { return constants_.mu; }
+  using QuadraticLaw::QuadraticLaw;
   [[nodiscard]] std::optional<IsotropicElasticity> constant_tangent(bool plane_stress) const override {
-    return IsotropicElasticity::of(constants_.lambda, constants_.mu, plane_stress);
+    return IsotropicElasticity::of(lambda(), mu(), plane_stress);
   }
-  [[nodiscard]] double energy(const Tensor& strain) const override { return constants_.energy(strain); }
-  void stress(const Tensor& strain, Tensor& result) const override { constants_.stress(strain, result); }
-  void tangent(const Tensor&, StressTangent& result) const override {
-    result.setZero();
-    add_dyad(Tensor::Identity(), Tensor::Identity(), constants_.lambda, result);
-    add_symmetric_product(Tensor::Identity(), 2.0 * constants_.mu, result);
-  }
-
- private:
-  IsotropicElasticity constants_;
 };
 
 }  // namespace
