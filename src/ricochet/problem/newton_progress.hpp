@@ -19,7 +19,7 @@ class NewtonProgress {
   /// `rounding`: of positions, the least correction that means something.
   void start(double rounding) {
     rounding_ = rounding;
-    renewals_ = 0;
+    renewals_ = all_rounds_ = 0;
     restart();
   }
   /// After a new factor.
@@ -55,7 +55,6 @@ class NewtonProgress {
   }
   void count_renewal() { ++renewals_; }
   [[nodiscard]] int rounds() const { return all_rounds_; }
-  void forget_rounds() { all_rounds_ = 0; }
 
  private:
   static constexpr double tolerance = 1e-13;       ///< of the increment

@@ -69,7 +69,6 @@ void NewtonRounds::solve(const OperatorCoefficients& coefficients, const SolveLi
   total_.setZero(problem_.dof_count());
   const double size = problem_.nodes.cwiseAbs().maxCoeff() + place_.lpNorm<Eigen::Infinity>();
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size);
-  progress_.forget_rounds();
   int iterations = 0;
   while (true) {
     solve_linear(stage, solution);

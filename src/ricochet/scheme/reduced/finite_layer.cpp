@@ -8,14 +8,12 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
-#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/reduced/massless_layer.hpp"
 
 namespace ricochet {
 
 namespace {
 
-constexpr std::size_t layer_stage = MasslessLayer::layer_stage;
 /// What the balance of energy of a step may lack, relative to kinetic and elastic energy.
 constexpr double energy_tolerance = 1e-15;
 /// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
@@ -42,7 +40,7 @@ std::vector<OperatorCoefficients> FiniteLayer::operators(const SemidiscreteProbl
                                                          ReactionMean mean) {
   OperatorCoefficients midpoint{.mass = 4.0 / (step * step), .stiffness = 1.0, .damping = 2.0 / step};
   if (problem.contact_dofs.empty()) return {midpoint};
-  midpoint.layer = static_cast<int>(layer_stage);
+  midpoint.layer = static_cast<int>(MasslessLayer::layer_stage);
   midpoint.mean = mean;
   return {{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact}, midpoint};
 }
@@ -64,8 +62,8 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   base_ = state.displacement + (0.5 * step) * state.velocity;
   middle_ = base_;
   end_ = state.displacement + step * state.velocity;
-  increment_ = end_ - state.displacement;
   relaxed_ = state.displacement;
+  layer_energy_start_.reset();
   sigma_before_ = asked_before_ = std::numeric_limits<double>::quiet_NaN();
   sigma_ = lacking_ = end_weight_ = dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
   nodal_.setZero(problem.dof_count());
@@ -110,7 +108,6 @@ void FiniteLayer::choose_sigma(double asked) {
 
 /// b of the stage: what is missing at the middle.
 void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage) {
-  stage.force_place.resize(0);
   product_ = middle_ - base_;
   problem.mass.multiply(product_, right_);
   stage.right_hand_side = load_ - force_ - (4.0 / (step * step)) * right_;
@@ -124,36 +121,14 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   equations_.prescribe(problem, state.time + step, half_way, stage);
 }
 
-/// A_cc⁻¹ of right_ on contact dofs.
-const Vector& FiniteLayer::solve_layer(const SemidiscreteProblem& problem, StageSolve& stages) {
-  Stage& stage = stages.stage(layer_stage);
-  stage.force_place.resize(0);
-  if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
-  for (const Index dof : problem.contact_dofs) stage.right_hand_side[dof] = right_[dof];
-  stage.prescribed.setZero(problem.supports.size());
-  stage.motion.reset();
-  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 0);
-  return stages.solve(layer_stage).increment;
-}
-
 /// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ − f_c(u₁) − 2 b_c).
 void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                   const State& state, StageSolve& stages, Stage& stage) {
   right_ = load_ - end_force_ - 2.0 * stage.right_hand_side;
-  const Vector& shift = solve_layer(problem, stages);
+  layer_right_ = right_(problem.contact_dofs);
+  const Vector& shift = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
-  const StepStart at_start{state.displacement, state.time};
-  require_no_penetration(problem, end_, state.time + step, stage, &at_start);
-  stage.gap_factor = 2.0;
-  product_ = 0.5 * (state.displacement + end_);
-  if (problem.has_moving_obstacles()) equations_.observe_obstacles(problem, state.time + 0.5 * step, product_);
-  rate_ = (end_ - state.displacement) / step;
-  equations_.require_friction(problem, rate_, 2.0 / step, stage);
-  stick_.require(problem, state, step, stage);
-  if (mean == ReactionMean::end) return;
-  problem.gaps(state.displacement, state.time, stage.start_gap);
-  stage.start_normal_reaction = state.forces.normal_reaction;
-  stage.start_tangential_reaction = state.forces.tangential_reaction;
+  contact_.require(problem, mean, step, state, end_, equations_, stage);
 }
 
 /// x += δ, u₁ += 2δ, on contact nodes 2m.
@@ -189,13 +164,14 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   }
   layer_->evaluate(relaxed_, end_force_);
   right_ = load_ + nodal_ - end_force_;
-  const Vector& change = solve_layer(problem, stages);
+  layer_right_ = right_(problem.contact_dofs);
+  const Vector& change = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) relaxed_[dof] += change[dof];
   // d: both energies are of the cells at contact nodes, as the others are the same.
   product_ = relaxed_ - state.displacement;
   right_ = load_ + nodal_;
-  dissipation_ =
-      on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - layer_->energy(state.displacement));
+  if (!layer_energy_start_) layer_energy_start_ = layer_->energy(state.displacement);
+  dissipation_ = on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
   product_ = end_ - state.displacement;
   work_at_end_ = on_contact(problem, nodal_, product_) -
                  obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step);
@@ -225,7 +201,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
     problem.damping.evaluate(increment, state.forces.damping_force);
     state.forces.damping_force *= 1.0 / step;
   }
-  stick_.learn(problem, before_, state);
+  contact_.learn(problem, before_, state);
   energy_step_ = state.step + 1;
   kept_energy_ = energy_;
   corrections_ = {.numerical_dissipation = end_weight_ * dissipation_, .integration_error = lacking_};
@@ -256,7 +232,6 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
   evaluate(problem, state, false);
   progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
                   (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
-  progress_.forget_rounds();
   Stage& stage = stages.stage(number);
   const StageSolution* solution = nullptr;
   const double kinetic = 0.5 * problem.mass.form(state.velocity);

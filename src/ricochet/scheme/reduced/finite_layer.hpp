@@ -1,9 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "ricochet/problem/newton_progress.hpp"
-#include "ricochet/scheme/reduced/stick_memory.hpp"
+#include "ricochet/scheme/reduced/end_contact.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -61,16 +62,16 @@ class FiniteLayer {
                     const Stage& stage, const StageSolution& solution);
   void finish(const SemidiscreteProblem& problem, double step, State& state, const Stage& stage,
               const StageSolution& solution, Vector& increment);
-  const Vector& solve_layer(const SemidiscreteProblem& problem, StageSolve& stages);
   void halve_where_inverted(const SemidiscreteProblem& problem, const State& state, bool near);
 
   std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes alone
   NewtonProgress progress_;
-  StickMemory stick_;
+  EndContact contact_;
   StepEquations equations_;
   StepCorrections corrections_;
-  long energy_step_ = -1;     ///< the step whose end is known already
-  double kept_energy_ = 0.0;  ///< W there
+  long energy_step_ = -1;                     ///< the step whose end is known already
+  double kept_energy_ = 0.0;                  ///< W there
+  std::optional<double> layer_energy_start_;  ///< of the cells at contact nodes, once it is asked for
   double energy_ = 0.0, energy_start_ = 0.0, sigma_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
   /// σ of the round before and what the balance of energy asked for then; NaN before the second round.
   double sigma_before_ = 0.0, asked_before_ = 0.0;
@@ -78,7 +79,7 @@ class FiniteLayer {
   ObstacleMotion obstacle_;
   Vector load_, end_load_, base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
   Vector relaxed_;  ///< u_f0 with the contact nodes that attain Ψ(u_f0; ρ)
-  Vector product_, right_, rate_, damping_force_, before_, last_middle_, last_end_;
+  Vector product_, right_, layer_right_, damping_force_, before_, last_middle_, last_end_;
 };
 
 }  // namespace ricochet

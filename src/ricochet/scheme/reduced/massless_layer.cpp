@@ -130,12 +130,6 @@ const Vector& MasslessLayer::solve_layer(const SemidiscreteProblem& problem, con
   return stages.solve(layer_stage).increment;
 }
 
-void MasslessLayer::require_mean(const SemidiscreteProblem& problem, const State& state, Stage& stage) const {
-  problem.gaps(state.displacement, state.time, stage.start_gap);
-  stage.start_normal_reaction = state.forces.normal_reaction;
-  stage.start_tangential_reaction = state.forces.tangential_reaction;
-}
-
 void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean, State& state, StageSolve& stages,
                             Vector& increment) {
   if (finite_) {
@@ -154,15 +148,7 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
     const Vector& shift = solve_layer(problem, right_, stages);
     for (const Index dof : problem.contact_dofs) contact_base_[dof] -= weight * shift[dof];
   }
-  const StepStart start{state.displacement, state.time};
-  require_no_penetration(problem, contact_base_, state.time + h, stage, &start);
-  stage.gap_factor = 2.0;
-  middle_ = 0.5 * (state.displacement + contact_base_);
-  if (problem.has_moving_obstacles()) equations_.observe_obstacles(problem, state.time + 0.5 * h, middle_);
-  rate_ = (contact_base_ - state.displacement) / h;
-  equations_.require_friction(problem, rate_, 2.0 / h, stage);
-  stick_.require(problem, state, h, stage);
-  if (mean != ReactionMean::end) require_mean(problem, state, stage);
+  contact_.require(problem, mean, h, state, contact_base_, equations_, stage);
 
   const StageSolution& solution = stages.solve(midpoint_stage(problem));
   increment = h * state.velocity + 2.0 * solution.increment;
@@ -171,7 +157,7 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
   before_ = state.displacement;
   move(problem, solution.increment, increment, state);
   take_forces(problem, stage, solution, increment, state);
-  stick_.learn(problem, before_, state);
+  contact_.learn(problem, before_, state);
   if (has_layer) correct(problem, mean, stage, solution, increment, state, stages);
 }
 

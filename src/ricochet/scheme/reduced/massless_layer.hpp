@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "ricochet/scheme/contact_stiffness.hpp"
+#include "ricochet/scheme/reduced/end_contact.hpp"
 #include "ricochet/scheme/reduced/finite_layer.hpp"
-#include "ricochet/scheme/reduced/stick_memory.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -67,7 +67,7 @@ class MasslessLayer {
   /// Forces on contact nodes alone, per contact dof, that nothing else moves: the right-hand side of the layer's stage.
   static void set_layer_force(const SemidiscreteProblem& problem, const Vector& force, Stage& stage);
   /// Solves with the layer's operator, no contact: the solution's increment, per dof. `right`: per contact dof.
-  const Vector& solve_layer(const SemidiscreteProblem& problem, const Vector& right, StageSolve& stages);
+  static const Vector& solve_layer(const SemidiscreteProblem& problem, const Vector& right, StageSolve& stages);
   /// u₁, v₁ from δ of the midpoint's stage and the increment of the step.
   void move(const SemidiscreteProblem& problem, const Vector& solution, const Vector& increment, State& state) const;
   /// Forces of the step; loads are those of the balance.
@@ -82,7 +82,6 @@ class MasslessLayer {
 
  private:
   void find_damping(const SemidiscreteProblem& problem);
-  void require_mean(const SemidiscreteProblem& problem, const State& state, Stage& stage) const;
   [[nodiscard]] double load_work_of_mean(const SemidiscreteProblem& problem, double mu, double at_end,
                                          StageSolve& stages);
   void correct(const SemidiscreteProblem& problem, ReactionMean mean, const Stage& stage, const StageSolution& solution,
@@ -93,11 +92,11 @@ class MasslessLayer {
   bool damps_ = false, one_damping_ = true;
   double eta_ = 0.0;                         ///< of one_damping_
   ContactStiffness stiffness_, layer_rows_;  ///< K_c; K_c + 2C_c/h, where there are several η
-  StickMemory stick_;
+  EndContact contact_;
   StepEquations equations_;
   StepCorrections corrections_;
   std::optional<FiniteLayer> finite_;  ///< where the internal force is not linear
-  Vector load_, next_varying_, base_, residual_, load_change_, right_, contact_base_, rate_, middle_, before_;
+  Vector load_, next_varying_, base_, residual_, load_change_, right_, contact_base_, middle_, before_;
   Vector row_force_, of_layer_, nodal_, gap_change_, slip_change_, normal_, tangential_;
 };
 

@@ -1,0 +1,23 @@
+#include "ricochet/scheme/reduced/end_contact.hpp"
+
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+void EndContact::require(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
+                         const Vector& place, StepEquations& equations, Stage& stage) {
+  const StepStart start{state.displacement, state.time};
+  require_no_penetration(problem, place, state.time + step, stage, &start);
+  stage.gap_factor = 2.0;
+  middle_ = 0.5 * (state.displacement + place);
+  if (problem.has_moving_obstacles()) equations.observe_obstacles(problem, state.time + 0.5 * step, middle_);
+  rate_ = (place - state.displacement) / step;
+  equations.require_friction(problem, rate_, 2.0 / step, stage);
+  stick_.require(problem, state, step, stage);
+  if (mean == ReactionMean::end) return;
+  problem.gaps(state.displacement, state.time, stage.start_gap);
+  stage.start_normal_reaction = state.forces.normal_reaction;
+  stage.start_tangential_reaction = state.forces.tangential_reaction;
+}
+
+}  // namespace ricochet
