@@ -5,6 +5,7 @@
 
 #include "ricochet/contact/body_contact.hpp"
 #include "ricochet/contact/boundary_nodes.hpp"
+#include "ricochet/contact/turning_normal.hpp"
 #include "ricochet/fem/tied_nodes.hpp"
 
 /// @file What a contact boundary is put together from. Not part of the public interface.
@@ -22,13 +23,15 @@ struct BoundaryPatch {
   std::vector<TiedNodes::Weights> free_traces;
   std::vector<int> numbers;              ///< of the kept multipliers among all contact points
   std::vector<BodyContact::Node> nodes;  ///< of a pair of bodies: those of both sides
-  std::vector<Index> reached;            ///< nodes that traces reach, tied ones, too
+  /// Between bodies of finite strain, of each: its direction.
+  std::vector<TurningNormal> turning;
+  std::vector<Index> reached;  ///< nodes that traces reach, tied ones, too
   /// Pressures at the nodes of the group, and of the other side: entries (node, kept multiplier, value).
   std::vector<Eigen::Triplet<double>> recovery, opposite_recovery;
 
   [[nodiscard]] int first_pair() const { return facets.parts.front().pair; }
-  /// Obstacles whose gap is a linear function of the position, and bodies: rows do not change.
-  [[nodiscard]] bool is_flat() const { return obstacle == nullptr || obstacle->is_flat(); }
+  /// At obstacles whose gap is no linear function of the position, and between bodies of finite strain.
+  [[nodiscard]] bool follows_motion() const { return obstacle != nullptr ? !obstacle->is_flat() : !turning.empty(); }
 };
 
 /// Each with its multipliers, conditions and numbers, which are by node (a facet counts as its first one), then by
@@ -41,6 +44,21 @@ struct BoundaryPatch {
 
 /// Normals and gaps of the kept multipliers of a patch at an obstacle.
 void take_obstacle_conditions(const Body& body, BoundaryPatch& patch);
+
+/// Between bodies of finite strain, the directions of the kept multipliers, by the facets around them whose vertices
+/// are contact nodes and not tied: own ones, or where there are none those of the other side. Multipliers without such
+/// facets, and those on an axis, keep the direction of the start; of the others that keep it the log says how many.
+void find_turning_normals(const Body& body, const std::vector<ContactPair>& pairs,
+                          const std::vector<std::unique_ptr<BoundaryPatch>>& patches);
+
+/// What makes the rows of these patches follow the motion; null: nothing does.
+[[nodiscard]] std::unique_ptr<ContactGeometry> turn_with_bodies(
+    const Body& body, const std::vector<ContactPair>& pairs, const std::vector<std::unique_ptr<BoundaryPatch>>& patches,
+    const FreeComponent& is_free, const ContactBoundary& boundary);
+
+/// The node whose supports decide along which tangents there is friction; between bodies it may be of either.
+[[nodiscard]] Index freest_node(const BoundaryPatch& patch, std::size_t kept, int dimension,
+                                const FreeComponent& is_free);
 
 /// The nodes that traces reach, and what is reported at them.
 void fill_boundary_nodes(const std::vector<std::unique_ptr<BoundaryPatch>>& patches, const BoundaryNodes& all,

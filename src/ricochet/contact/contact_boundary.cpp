@@ -41,25 +41,6 @@ void resize(ContactBoundary& boundary, ContactRows& rows, Index count) {
   boundary.friction_bound.resize(count);
 }
 
-/// The node whose supports decide along which tangents there is friction; between bodies it may be of either.
-Index freest_node(const Multiplier& multiplier, const TiedNodes::Weights& trace, const PointConditions& conditions,
-                  int dimension, const FreeComponent& is_free) {
-  if (multiplier.node >= 0 && conditions.opposite.empty()) return multiplier.node;
-  Index freest = -1;
-  int most = -1;
-  for (const auto* const nodes : {&trace, &conditions.opposite}) {
-    for (const auto& [node, weight] : *nodes) {
-      int free = 0;
-      for (int k = 0; k < dimension; ++k) free += is_free(node, k) ? 1 : 0;
-      if (free > most) {
-        most = free;
-        freest = node;
-      }
-    }
-  }
-  return freest;
-}
-
 /// Multipliers in stress units need positive weights; a nodal force needs one only where friction is a stress.
 void check_weights(const BoundaryPatch& patch, const std::vector<ContactPair>& pairs) {
   if (patch.obstacle == nullptr) return;  // points that are hardly covered have been left out
@@ -101,9 +82,15 @@ class Operators {
  public:
   explicit Operators(int dimension) : d_(dimension) {}
 
+  /// `follows`: rows follow the motion, and a row of G may then have entries at some more nodes.
   void add(int point, const Multiplier& multiplier, const TiedNodes::Weights& free_trace,
-           const PointConditions& conditions, const ContactTangents& tangents, bool is_flat) {
+           const PointConditions& conditions, const ContactTangents& tangents, bool follows,
+           const std::vector<Index>& more_nodes) {
+    const bool is_flat = !follows;
     for (const auto& [node, weight] : multiplier.trace) own_.emplace_back(point, static_cast<int>(node), weight);
+    for (const Index node : more_nodes) {
+      for (int k = 0; k < d_; ++k) gap_.emplace_back(point, static_cast<int>(node) * d_ + k, 0.0);
+    }
     for (const auto& [node, weight] : free_trace) add_node(point, node, weight, conditions.normal, tangents, is_flat);
     for (const auto& [node, weight] : conditions.opposite)
       add_node(point, node, -weight, conditions.normal, tangents, is_flat);
@@ -146,8 +133,7 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
     const PointConditions& conditions = patch.conditions[i];
     const int number = patch.numbers[i];
     const ContactTangents tangents =
-        tangents_at(freest_node(multiplier, patch.free_traces[i], conditions, boundary.dimension, is_free),
-                    conditions.normal, is_free);
+        tangents_at(freest_node(patch, i, boundary.dimension, is_free), conditions.normal, is_free);
     boundary.pair[static_cast<std::size_t>(number)] = multiplier.pair;
     boundary.initial_gap[number] = conditions.gap;
     rows.gap_rounding[number] = conditions.gap_rounding;
@@ -159,19 +145,21 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
     }
     boundary.weights[number] = multiplier.weight;
     boundary.net[number] = patch.obstacle != nullptr ? 1.0 : 0.0;
-    operators.add(number, multiplier, patch.free_traces[i], conditions, tangents, patch.is_flat());
+    operators.add(number, multiplier, patch.free_traces[i], conditions, tangents, patch.follows_motion(),
+                  patch.turning.empty() ? std::vector<Index>{} : patch.turning[i].nodes());
   }
 }
 
-/// Points and nodes at curved obstacles, where gaps and normals follow the motion.
-void follow_curved_obstacles(const Body& body, const Patches& patches, const std::vector<ContactPair>& pairs,
-                             const FreeComponent& is_free, ContactRows& rows, ContactBoundary& boundary) {
+/// Points and nodes at curved obstacles; null: there are none.
+std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const Patches& patches,
+                                                         const std::vector<ContactPair>& pairs,
+                                                         const FreeComponent& is_free,
+                                                         const ContactBoundary& boundary) {
   CurvedContactData data;
   for (const auto& patch : patches) {
-    if (patch->is_flat()) continue;
+    if (patch->obstacle == nullptr || patch->obstacle->is_flat()) continue;
     for (std::size_t i = 0; i < patch->kept.size(); ++i) {
-      const Index node =
-          freest_node(patch->kept[i], patch->free_traces[i], patch->conditions[i], boundary.dimension, is_free);
+      const Index node = freest_node(*patch, i, boundary.dimension, is_free);
       CurvedContactData::Point point{patch->numbers[i], patch->obstacle, {}};
       for (int k = 0; k < boundary.dimension; ++k) point.is_free[static_cast<std::size_t>(k)] = is_free(node, k);
       data.points.push_back(point);
@@ -182,12 +170,23 @@ void follow_curved_obstacles(const Body& body, const Patches& patches, const std
     if (obstacle != nullptr && !obstacle->is_flat())
       data.nodes.push_back({static_cast<Index>(i), boundary.nodes[i], obstacle});
   }
-  if (data.points.empty()) return;
-  rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
+  if (data.points.empty()) return nullptr;
   data.node_positions = body.space->nodes;
   data.node_normals = boundary.node_normals;
   data.trace = boundary.trace;
-  boundary.geometry = make_curved_contact(std::move(data));
+  return make_curved_contact(std::move(data));
+}
+
+/// Points and nodes where gaps and normals follow the motion.
+void follow_motion(const Body& body, const Patches& patches, const std::vector<ContactPair>& pairs,
+                   const FreeComponent& is_free, ContactRows& rows, ContactBoundary& boundary) {
+  std::vector<std::unique_ptr<ContactGeometry>> parts;
+  parts.push_back(follow_curved_obstacles(body, patches, pairs, is_free, boundary));
+  parts.push_back(turn_with_bodies(body, pairs, patches, is_free, boundary));
+  std::erase(parts, nullptr);
+  if (parts.empty()) return;
+  rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
+  boundary.geometry = combine(std::move(parts));
   // Gaps at the start are those that the rows are the derivatives of.
   Vector gap = boundary.initial_gap;
   boundary.geometry->gaps(Vector::Zero(body.space->dof_count()), 0.0, gap);
@@ -196,6 +195,24 @@ void follow_curved_obstacles(const Body& body, const Patches& patches, const std
 }
 
 }  // namespace
+
+Index freest_node(const BoundaryPatch& patch, std::size_t kept, int dimension, const FreeComponent& is_free) {
+  const PointConditions& conditions = patch.conditions[kept];
+  if (patch.kept[kept].node >= 0 && conditions.opposite.empty()) return patch.kept[kept].node;
+  Index freest = -1;
+  int most = -1;
+  for (const auto* const nodes : {&patch.free_traces[kept], &conditions.opposite}) {
+    for (const auto& [node, weight] : *nodes) {
+      int free = 0;
+      for (int k = 0; k < dimension; ++k) free += is_free(node, k) ? 1 : 0;
+      if (free > most) {
+        most = free;
+        freest = node;
+      }
+    }
+  }
+  return freest;
+}
 
 std::vector<Index> ContactBoundary::unique_nodes() const {
   std::vector<Index> result(trace.innerIndexPtr(), trace.innerIndexPtr() + trace.nonZeros());
@@ -211,6 +228,7 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
   if (held_nodes != nullptr) *held_nodes = nodes.held_count();
   std::vector<PairFacing> found;
   const Patches patches = make_patches(body, pairs, nodes, is_free, facings != nullptr ? *facings : found);
+  if (has_finite_strain(body)) find_turning_normals(body, pairs, patches);
   ContactBoundary boundary;
   boundary.dimension = body.space->dimension;
   boundary.facets = facets_of(pairs);
@@ -226,7 +244,7 @@ ContactBoundary make_contact_boundary(const Body& body, const std::vector<Contac
   }
   operators.finish(count, body.space->node_count(), boundary, *rows);
   fill_boundary_nodes(patches, nodes, body, pairs, boundary);
-  follow_curved_obstacles(body, patches, pairs, is_free, *rows, boundary);
+  follow_motion(body, patches, pairs, is_free, *rows, boundary);
   boundary.rows = rows;
   return boundary;
 }

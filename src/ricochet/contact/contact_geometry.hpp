@@ -30,8 +30,20 @@ class ContactGeometry {
   /// from touching beside what gaps have changed since the last look keep theirs. `start`: rows are those of the step
   /// from there, null: of that instant.
   virtual void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const = 0;
-  /// Makes them those that had these normals (d × points) and gaps.
-  virtual void restore(const Points& normals, const Vector& gap, ContactRows& rows) const = 0;
+  /// Adds what the forces of reactions are at a place beyond those of the rows, where rows are those of a step: between
+  /// bodies a couple that takes back their moment about that place. Nothing at obstacles. `tangential` may be empty.
+  virtual void add_couples(const Vector& /*place*/, const ContactRows& /*rows*/, const Vector& /*normal*/,
+                           const Vector& /*tangential*/, Vector& /*force*/) const {}
+  /// Whether node_normal() knows a node of the contact boundary better than the start does.
+  [[nodiscard]] virtual bool has_node(Index entry) const = 0;
+  /// What normals do not tell of rows, a fixed number of values; none where rows are the trace times the normal.
+  [[nodiscard]] virtual Index row_value_count() const { return 0; }
+  [[nodiscard]] virtual Vector row_values(const ContactRows&) const { return {}; }
+  /// Makes them those that had these normals (d × points), gaps and values.
+  virtual void restore(const Points& normals, const Vector& gap, const Vector& row_values, ContactRows& rows) const = 0;
 };
+
+/// Several of them, each of points and nodes of its own.
+[[nodiscard]] std::unique_ptr<ContactGeometry> combine(std::vector<std::unique_ptr<ContactGeometry>> parts);
 
 }  // namespace ricochet

@@ -1,6 +1,7 @@
 #include "ricochet/contact/curved_contact.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ricochet/contact/contact_directions.hpp"
 
@@ -26,17 +27,21 @@ class CurvedContact final : public ContactGeometry {
   }
 
   [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const override {
-    const auto curved = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
-                                         [](const CurvedContactData::Node& node, Index e) { return node.entry < e; });
-    if (curved == data_.nodes.end() || curved->entry != entry) return data_.node_normals.col(entry);
-    return curved->obstacle->normal(position(*curved, displacement, time));
+    const CurvedContactData::Node* const curved = find_node(entry);
+    return curved != nullptr ? curved->obstacle->normal(position(*curved, displacement, time))
+                             : SpaceVector(data_.node_normals.col(entry));
   }
+
+  [[nodiscard]] bool has_node(Index entry) const override { return find_node(entry) != nullptr; }
 
   void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const override {
     ++revision_;
     gap_ = rows.gap;
     gaps(displacement, time, rows.gap);
-    const double reach = ahead * (rows.gap - gap_).lpNorm<Eigen::Infinity>();
+    double change = 0.0;
+    for (const CurvedContactData::Point& point : data_.points)
+      change = std::max(change, std::abs(rows.gap[point.number] - gap_[point.number]));
+    const double reach = ahead * change;
     for (const CurvedContactData::Point& point : data_.points) {
       if (rows.gap[point.number] > std::max(reach, rows.gap_rounding[point.number])) continue;
       const SpaceVector at = position(point, displacement, time);
@@ -48,13 +53,19 @@ class CurvedContact final : public ContactGeometry {
     }
   }
 
-  void restore(const Points& normals, const Vector& gap, ContactRows& rows) const override {
+  void restore(const Points& normals, const Vector& gap, const Vector&, ContactRows& rows) const override {
     ++revision_;
     rows.gap = gap;
     for (const CurvedContactData::Point& point : data_.points) write_rows(point, normals.col(point.number), rows);
   }
 
  private:
+  /// Null: none at a curved obstacle.
+  [[nodiscard]] const CurvedContactData::Node* find_node(Index entry) const {
+    const auto found = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
+                                        [](const CurvedContactData::Node& node, Index e) { return node.entry < e; });
+    return found != data_.nodes.end() && found->entry == entry ? &*found : nullptr;
+  }
   [[nodiscard]] SpaceVector node_position(Index node, const Vector& displacement) const {
     const Index d = data_.node_positions.rows();
     return data_.node_positions.col(node) + displacement.segment(node * d, d);

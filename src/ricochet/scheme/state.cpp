@@ -5,7 +5,7 @@
 
 namespace ricochet {
 
-void save(const State& state, Snapshot& snapshot, const std::string& name) {
+void save(const SemidiscreteProblem& problem, const State& state, Snapshot& snapshot, const std::string& name) {
   snapshot.save(name + ".step", static_cast<std::int64_t>(state.step));
   snapshot.save(name + ".time", state.time);
   snapshot.save(name + ".displacement", state.displacement);
@@ -23,6 +23,8 @@ void save(const State& state, Snapshot& snapshot, const std::string& name) {
   const Points& normals = state.forces.rows->normals;
   snapshot.save(name + ".normals", follows ? Vector(normals.reshaped()) : Vector());
   snapshot.save(name + ".gap", follows ? state.forces.rows->gap : Vector());
+  if (follows && problem.contact.geometry->row_value_count() > 0)
+    snapshot.save(name + ".row_values", problem.contact.geometry->row_values(*state.forces.rows));
   snapshot.save(name + ".contact_status", state.contact_status);
   snapshot.save(name + ".obstacle_increment.normal", state.obstacle_increment.normal);
   snapshot.save(name + ".obstacle_increment.tangential", state.obstacle_increment.tangential);
@@ -70,8 +72,10 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   if (problem.contact.follows_motion()) {
     const auto rows = std::make_shared<ContactRows>(*problem.contact.rows);
     const Vector& normals = snapshot.reals(name + ".normals", points * problem.dimension);
+    const Index values = problem.contact.geometry->row_value_count();
     problem.contact.geometry->restore(normals.reshaped(problem.dimension, points),
-                                      snapshot.reals(name + ".gap", points), *rows);
+                                      snapshot.reals(name + ".gap", points),
+                                      values > 0 ? snapshot.reals(name + ".row_values", values) : Vector(), *rows);
     state.forces.rows = rows;
   }
   state.contact_status = snapshot.statuses(name + ".contact_status", points);
@@ -81,8 +85,11 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   state.obstacle_increment.in_space = in_space.reshaped(problem.dimension, in_space.size() / problem.dimension);
   state.iterations = static_cast<int>(snapshot.integer(name + ".iterations"));
   state.newton_rounds = static_cast<int>(snapshot.integer(name + ".newton_rounds"));
+  const ContactRows& rows = *problem.contact.rows;
+  const Index row_values = rows.gap_operator.nonZeros() + rows.tangential_trace.nonZeros();
   for (const std::string& key : snapshot.texts(name + ".memory"))
-    state.memory[key] = memory(snapshot, name + ".memory." + key, {dofs, problem.supports.size(), tangents});
+    state.memory[key] =
+        memory(snapshot, name + ".memory." + key, {dofs, problem.supports.size(), tangents, row_values});
   return state;
 }
 

@@ -46,11 +46,11 @@ struct State {
   int iterations = 0;     ///< of the contact solver in the last step
   int newton_rounds = 0;  ///< linear stages that the last step took for an internal force that is not linear
   /// What a scheme remembers besides, by name, so that a checkpoint can write it: of a length per dof, per supported
-  /// dof, or (d−1) per contact point.
+  /// dof, (d−1) per contact point, or per value of the rows of G and B_T.
   std::map<std::string, Vector> memory;
 };
 
-void save(const State& state, Snapshot& snapshot, const std::string& name);
+void save(const SemidiscreteProblem& problem, const State& state, Snapshot& snapshot, const std::string& name);
 /// Throws Error(invalid_input) where the sizes are not those of this problem.
 [[nodiscard]] State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, const std::string& name);
 

@@ -71,6 +71,22 @@ Resultant MomentumAccount::of_nodes(const Vector& force) const {
   return result;
 }
 
+/// Of the points between bodies about where nodes are: what their rows leave (turning_pairs.hpp).
+Eigen::Vector3d MomentumAccount::moment_between_bodies(const StepForces& forces) const {
+  Vector normal = forces.acting_normal(), tangential = forces.acting_tangential();
+  const Index tangents = problem_.dimension - 1;
+  for (Index i = 0; i < normal.size(); ++i) {
+    if (problem_.contact.between_bodies(i)) continue;
+    normal[i] = 0.0;
+    if (tangential.size() > 0) tangential.segment(i * tangents, tangents).setZero();
+  }
+  Vector force = Vector::Zero(problem_.dof_count());
+  forces.rows->add_force(normal, tangential, force);
+  if (const Vector* const place = scheme_.place_of_forces())
+    problem_.contact.geometry->add_couples(*place, *forces.rows, normal, tangential, force);
+  return of_nodes(force).moment;
+}
+
 MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const {
   const Index d = problem_.dimension;
   Sum sum;
@@ -80,14 +96,20 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const 
     sum.size += part.force.norm();
   };
   Resultant contact, supports;
+  bool presses_bodies = false;
   for (Index i = 0; i < forces.acting_normal().size(); ++i) {
     // Under Tresca's law a point without pressure may still carry friction.
     if (!carries_acting_force(forces, i)) continue;
+    if (finite_strain_ && problem_.contact.between_bodies(i)) {
+      presses_bodies = true;
+      continue;
+    }
     // Between bodies nothing is left but the moment of forces that do not act along the gap.
     const Eigen::Vector3d force = in_space(acting_contact_force(forces, i));
     contact.force += problem_.contact.net[i] * force;
     contact.moment += in_space(arms_.col(i)).cross(force);
   }
+  if (presses_bodies) contact.moment += moment_between_bodies(forces);
   include(contact);
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
     const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];

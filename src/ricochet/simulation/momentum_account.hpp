@@ -42,6 +42,7 @@ class MomentumAccount {
     Resultant total;
     double size = 0.0;
   };
+  [[nodiscard]] Eigen::Vector3d moment_between_bodies(const StepForces& forces) const;
   [[nodiscard]] Sum resultant(const StepForces& forces) const;
   [[nodiscard]] Resultant algorithmic(const State& state);
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;

@@ -80,7 +80,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
 }
 
 void Simulation::save(Snapshot& snapshot) const {
-  ricochet::save(state_, snapshot, "state");
+  ricochet::save(problem_, state_, snapshot, "state");
   Snapshot::Integers numbers;
   for (const auto& [number, level] : levels_) {
     numbers.push_back(number);

@@ -12,16 +12,12 @@
 namespace ricochet {
 
 SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs)
-    : problem_(problem),
-      pairs_(pairs),
-      limit_(slip_limits(body, problem.contact, pairs)),
-      normals_(problem.contact.rows ? problem.contact.rows->normals : Points()) {
+    : problem_(problem), pairs_(pairs), limit_(slip_limits(body, problem.contact, pairs)) {
   const ContactBoundary& contact = problem.contact;
   for (std::size_t number = 0; number < pairs.size(); ++number) {
     if (!pairs[number].has_two_sides()) continue;
     Largest largest;
     largest.contact = static_cast<int>(number);
-    if (pairs[number].pair_at.size() > 0) largest.pair_at.head(problem.dimension) = pairs[number].pair_at;
     for (Index point = 0; point < contact.size(); ++point) {
       if (contact.pair[static_cast<std::size_t>(point)] != largest.contact) continue;
       points_.push_back(point);
@@ -31,15 +27,15 @@ SlidingWatch::SlidingWatch(const Body& body, const SemidiscreteProblem& problem,
   }
 }
 
-/// Of the means of both sides: across the normal of the start.
-double SlidingWatch::slip_of(Index point, const Eigen::Vector3d& pair_at, const Vector& displacement) const {
+/// Of the mean vector across the gap what is along the surface: where facets were paired it is along the normal.
+double SlidingWatch::slip_of(Index point, const State& state) const {
   const Index d = problem_.dimension;
-  Eigen::Vector3d moved = -pair_at, normal = Eigen::Vector3d::Zero();
+  SpaceVector apart = SpaceVector::Zero(d);
   problem_.contact.visit_nodes(point, [&](Index node, double weight) {
-    for (Index k = 0; k < d; ++k) moved[k] += weight * displacement[node * d + k];
+    apart += weight * (problem_.nodes.col(node) + state.displacement.segment(node * d, d));
   });
-  for (Index k = 0; k < d; ++k) normal[k] = normals_(k, point);
-  return (moved - moved.dot(normal) * normal).norm();
+  const SpaceVector normal = state.forces.rows->normal(point);
+  return (apart - apart.dot(normal) * normal).norm();
 }
 
 void SlidingWatch::look(const State& state) {
@@ -47,7 +43,7 @@ void SlidingWatch::look(const State& state) {
     const Index point = points_[i];
     if (!(state.forces.normal_reaction[point] > 0.0)) continue;
     Largest& largest = largest_[at_[i]];
-    const double slip = slip_of(point, largest.pair_at, state.displacement);
+    const double slip = slip_of(point, state);
     if (!(slip > largest.ratio * limit_[point])) continue;
     largest.ratio = slip / limit_[point];
     largest.slip = slip;

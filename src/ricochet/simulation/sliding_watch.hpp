@@ -30,19 +30,17 @@ class SlidingWatch {
   /// Of a contact between bodies.
   struct Largest {
     int contact = 0;
-    Eigen::Vector3d pair_at = Eigen::Vector3d::Zero();  ///< slip is measured from there
     double ratio = 0.0, slip = 0.0, limit = 0.0, time = 0.0, time_beyond = 0.0;
     Index point = -1;
     bool is_beyond = false;
   };
-  [[nodiscard]] double slip_of(Index point, const Eigen::Vector3d& pair_at, const Vector& displacement) const;
+  [[nodiscard]] double slip_of(Index point, const State& state) const;
   [[nodiscard]] std::vector<double> place_of(Index point) const;
   void tell(const Largest& largest) const;
 
   const SemidiscreteProblem& problem_;
   const std::vector<ContactPair>& pairs_;
   Vector limit_;                 ///< per point
-  Points normals_;               ///< at the start
   std::vector<Index> points_;    ///< between bodies
   std::vector<std::size_t> at_;  ///< of these: in largest_
   std::vector<Largest> largest_;

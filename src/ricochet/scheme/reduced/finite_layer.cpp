@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/reduced/massless_layer.hpp"
 
 namespace ricochet {
@@ -66,6 +67,9 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   layer_energy_start_.reset();
   sigma_before_ = asked_before_ = std::numeric_limits<double>::quiet_NaN();
   sigma_ = lacking_ = end_weight_ = dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
+  last_solution_ = nullptr;
+  if (problem.contact.follows_motion()) lagged_.start(state);
+  row_force_.setZero(problem.dof_count());
   nodal_.setZero(problem.dof_count());
   mean_nodal_.setZero(problem.dof_count());
   energy_start_ = energy_step_ == state.step ? kept_energy_ : problem.internal_force->energy(state.displacement);
@@ -95,7 +99,7 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, const State& stat
 /// The balance at the last places asks for a σ, and the places depend on σ: what two rounds say of that tells where
 /// both agree (the secant method).
 void FiniteLayer::choose_sigma(double asked) {
-  constexpr double steepest = 4.0, least_left = 0.2;
+  constexpr double steepest = 4.0, least_left = 0.002;
   const double slope = (asked - asked_before_) / (sigma_ - sigma_before_);
   const double used = sigma_;
   double next = asked;
@@ -117,18 +121,33 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
     problem.damping.evaluate(product_, damping_force_);
     stage.right_hand_side -= (2.0 / step) * damping_force_;
   }
+  if (problem.contact.follows_motion() && last_solution_ != nullptr) {
+    row_force_.setZero();
+    lagged_.add_difference(last_solution_->normal_reaction, last_solution_->tangential_reaction, row_force_);
+    stage.right_hand_side += row_force_;
+    problem.contact.geometry->add_couples(middle_, *lagged_.exact(), last_solution_->acting_normal(),
+                                          last_solution_->acting_tangential(), stage.right_hand_side);
+  }
   const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
   equations_.prescribe(problem, state.time + step, half_way, stage);
 }
 
-/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ − f_c(u₁) − 2 b_c).
+/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ − f_c(u₁) − 2 b_c), where b has no force of lagged rows
+/// and L₁ has.
 void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                   const State& state, StageSolve& stages, Stage& stage) {
-  right_ = load_ - end_force_ - 2.0 * stage.right_hand_side;
+  right_ = load_ - end_force_ - 2.0 * stage.right_hand_side + row_force_;
   layer_right_ = right_(problem.contact_dofs);
   const Vector& shift = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
+  lagged_.let_go();
   contact_.require(problem, mean, step, state, end_, equations_, stage);
+  if (!problem.contact.follows_motion()) return;
+  // Conditions are linear about the end of the round before: −m there, in place of δ = 0.
+  product_.setZero();
+  for (const Index dof : problem.contact_dofs) product_[dof] = 0.5 * (last_end_[dof] - end_[dof]);
+  linearize_contact(problem, product_, stage);
+  lagged_.take_over(product_, stage);
 }
 
 /// x += δ, u₁ += 2δ, on contact nodes 2m.
@@ -152,6 +171,10 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   stage.rows->add_force(solution.normal_reaction, solution.tangential_reaction, nodal_);
   mean_nodal_.setZero();
   stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), mean_nodal_);
+  if (problem.contact.follows_motion()) {
+    problem.contact.geometry->add_couples(middle_, *stage.rows, solution.acting_normal(), solution.acting_tangential(),
+                                          mean_nodal_);
+  }
   obstacle_work_ = obstacle_work(*stage.rows, solution.acting_normal(), solution.acting_tangential(), step);
   end_weight_ = solution.end_weight;
   dissipation_ = work_at_end_ = 0.0;
@@ -202,6 +225,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
     state.forces.damping_force *= 1.0 / step;
   }
   contact_.learn(problem, before_, state);
+  if (problem.contact.follows_motion()) lagged_.remember(state);
   energy_step_ = state.step + 1;
   kept_energy_ = energy_;
   corrections_ = {.numerical_dissipation = end_weight_ * dissipation_, .integration_error = lacking_};
@@ -248,7 +272,11 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
       require_contact(problem, mean, step, state, stages, stage);
     }
     solution = &stages.solve(number);
+    last_solution_ = solution;
+    if (lagged_.exact() != nullptr) stage.rows = lagged_.exact();
     const Round round = correct(problem, state, *solution);
+    const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
+    converged = converged || advice == NewtonProgress::Advice::done;
     if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, *solution);
     const bool near = round.correction <= near_solution * round.increment || converged;
     halve_where_inverted(problem, state, near);
@@ -256,7 +284,6 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
     const bool balanced = std::abs(lacking_) <= energy_tolerance * (kinetic + energy_start_ + energy_) ||
                           (converged && std::abs(lacking_) > 0.5 * lacked);
     lacked = std::abs(lacking_);
-    const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
     if (log::enabled(log::Level::debug)) {
       log::debug(
           fmt::format("Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
@@ -264,7 +291,6 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
                       progress_.rounds(), round.correction, round.increment, sigma_,
                       lacking_ / (kinetic + energy_start_ + energy_), end_weight_));
     }
-    converged = converged || advice == NewtonProgress::Advice::done;
     if (converged && near && balanced) break;
     if (converged) continue;
     if (advice == NewtonProgress::Advice::failed) {

@@ -5,6 +5,7 @@
 
 #include "ricochet/problem/newton_progress.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
+#include "ricochet/scheme/reduced/lagged_rows.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -67,6 +68,8 @@ class FiniteLayer {
   std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes alone
   NewtonProgress progress_;
   EndContact contact_;
+  LaggedRows lagged_;                             ///< where rows follow the motion
+  const StageSolution* last_solution_ = nullptr;  ///< of the round before in this step
   StepEquations equations_;
   StepCorrections corrections_;
   long energy_step_ = -1;                     ///< the step whose end is known already
@@ -80,6 +83,7 @@ class FiniteLayer {
   Vector load_, end_load_, base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
   Vector relaxed_;  ///< u_f0 with the contact nodes that attain Ψ(u_f0; ρ)
   Vector product_, right_, layer_right_, damping_force_, before_, last_middle_, last_end_;
+  Vector row_force_;  ///< of the reactions along rows that the solver had not
 };
 
 }  // namespace ricochet

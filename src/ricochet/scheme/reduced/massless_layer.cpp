@@ -45,7 +45,8 @@ void MasslessLayer::require_frictionless_planes(const SemidiscreteProblem& probl
     throw Error(ErrorKind::invalid_input, fmt::format("scheme \"{}\" {}; use scheme \"reduced-kane\"", scheme_, what));
   };
   if (problem.contact.has_friction()) refuse("takes no friction: its balance of energy has no sign with it");
-  if (problem.contact.follows_motion()) refuse("takes planes only: it needs gaps that are linear in the motion");
+  if (problem.contact.follows_motion())
+    refuse("takes planes only, and bodies at small strain: it needs gaps that are linear in the motion");
   if (damps_contact_nodes())
     refuse("takes no stiffness damping at contact nodes, whose place must be a function of the others'");
 }

@@ -25,9 +25,9 @@ class ReducedKane final : public EndScheme {
     if (weight_ == "end" || problem.contact_dofs.empty() || has_mean(problem)) return;
     if (weight_ == "automatic" && problem.contact.has_friction()) return;
     if (std::exchange(told_, true)) return;  // `validate` analyses first, and then starts a run
-    log::info(fmt::format(
-        "time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,
-        problem.contact.follows_motion() ? "an obstacle is curved" : "there is stiffness damping at contact nodes"));
+    log::info(fmt::format("time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,
+                          problem.contact.follows_motion() ? "contact directions follow the motion"
+                                                           : "there is stiffness damping at contact nodes"));
   }
 
  private:

@@ -1,0 +1,90 @@
+#include "ricochet/contact/turning_normal.hpp"
+
+#include <cmath>
+
+#include "ricochet/mesh/reference_cell.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Cosine of the angle between a facet's normal and a direction below which the facet says nothing about it.
+constexpr double least_cosine = 0.2;
+
+}  // namespace
+
+TurningNormal::TurningNormal(const Vector& direction) {
+  constant_.head(direction.size()) = direction;
+}
+
+TurningNormal::TurningNormal(const DisplacementSpace& space, const std::vector<Index>& facets,
+                             const Vector& direction) {
+  Three wanted = Three::Zero();
+  wanted.head(direction.size()) = direction;
+  for (const Index facet : facets) add_facet(space, facet, wanted);
+  if (crosses_.empty()) {
+    constant_ = wanted;
+  } else {
+    fit(space, wanted);
+  }
+}
+
+void TurningNormal::add_facet(const DisplacementSpace& space, Index facet, const Three& direction) {
+  const PlaceInBlocks place = locate_facet(space, facet);
+  const CellBlock& block = space.facets[place.block];
+  const Index* const nodes = block.cell(place.local);
+  Cross area;
+  if (space.dimension == 2) {
+    area = {{nodes[0], nodes[1]}, {}, 1.0};
+  } else if (block.shape == CellShape::triangle) {
+    area = {{nodes[0], nodes[1]}, {nodes[0], nodes[2]}, 0.5};
+  } else {
+    // The diagonals; vertices of quadrilaterals are numbered like a table (reference_cell.hpp).
+    area = {{nodes[0], nodes[3]}, {nodes[1], nodes[2]}, 0.5};
+  }
+  const Three value = area.factor * vector(area.one, space.nodes, {}).cross(vector(area.other, space.nodes, {}));
+  const double cosine = value.dot(direction) / value.norm();
+  if (!(std::abs(cosine) > least_cosine)) return;
+  if (cosine < 0.0) area.factor = -area.factor;
+  crosses_.push_back(area);
+}
+
+/// s and β_k.
+void TurningNormal::fit(const DisplacementSpace& space, const Three& direction) {
+  Eigen::Matrix3d basis;
+  basis.col(0) = at(space.nodes, {});
+  const Edge one = crosses_.front().one, other = crosses_.front().other;
+  basis.col(1) = vector(one, space.nodes, {});
+  basis.col(2) = vector(other, space.nodes, {});
+  const Eigen::Vector3d lengths = basis.colwise().norm();
+  const Three factors =
+      (basis * lengths.cwiseInverse().asDiagonal()).partialPivLu().solve(direction).cwiseQuotient(lengths);
+  for (Cross& cross : crosses_) cross.factor *= factors[0];
+  lines_ = {{one, factors[1]}};
+  if (other.from >= 0) lines_.push_back({other, factors[2]});
+}
+
+std::vector<Index> TurningNormal::nodes() const {
+  std::vector<Index> result;
+  const auto add = [&result](const Edge& edge) {
+    if (edge.from < 0) return;
+    result.push_back(edge.from);
+    result.push_back(edge.to);
+  };
+  for (const Cross& cross : crosses_) {
+    add(cross.one);
+    add(cross.other);
+  }
+  return result;
+}
+
+TurningNormal::Three TurningNormal::at(const Points& nodes, const Vector& displacement) const {
+  Three result = constant_;
+  for (const Cross& cross : crosses_) {
+    result += cross.factor * vector(cross.one, nodes, displacement).cross(vector(cross.other, nodes, displacement));
+  }
+  for (const Line& line : lines_) result += line.factor * vector(line.edge, nodes, displacement);
+  return result;
+}
+
+}  // namespace ricochet

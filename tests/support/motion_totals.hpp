@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "support/case_run.hpp"
+
+/// @file What a motion has as a whole, from the mass and the state alone.
+namespace ricochet::test_support {
+
+/// About the origin and current positions.
+struct Momenta {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+  explicit Momenta(const CaseRun& run) {
+    const SemidiscreteProblem& problem = run.problem();
+    const Index d = problem.dimension;
+    Vector momentum;
+    problem.mass.multiply(run.state().velocity, momentum);
+    for (Index node = 0; node < problem.nodes.cols(); ++node) {
+      Eigen::Vector3d place = Eigen::Vector3d::Zero(), own = Eigen::Vector3d::Zero();
+      place.head(d) = problem.nodes.col(node) + run.state().displacement.segment(node * d, d);
+      own.head(d) = momentum.segment(node * d, d);
+      linear += own;
+      angular += place.cross(own);
+    }
+  }
+};
+
+/// Kinetic and elastic energy, less the work of constant loads.
+[[nodiscard]] inline double energy_of(const CaseRun& run) {
+  return 0.5 * run.problem().mass.form(run.state().velocity) +
+         run.problem().internal_force->energy(run.state().displacement) -
+         run.problem().loads.constant().dot(run.state().displacement);
+}
+
+}  // namespace ricochet::test_support
