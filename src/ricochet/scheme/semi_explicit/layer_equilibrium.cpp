@@ -1,0 +1,105 @@
+#include "ricochet/scheme/semi_explicit/layer_equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+namespace {
+
+double largest_on_contact(const SemidiscreteProblem& problem, const Vector& values) {
+  double largest = 0.0;
+  for (const Index dof : problem.contact_dofs) {
+    if (!std::isfinite(values[dof])) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, std::abs(values[dof]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+void LayerEquilibrium::analyse(const SemidiscreteProblem& problem) {
+  if (problem.contact_dofs.empty()) return;
+  std::vector<char> wanted(static_cast<std::size_t>(problem.nodes.cols()), 0);
+  for (const Index dof : problem.contact_dofs) wanted[static_cast<std::size_t>(dof / problem.dimension)] = 1;
+  layer_ = problem.internal_force->near(wanted);
+  reach_ = problem.nodes.cwiseAbs().maxCoeff();
+}
+
+/// f at the end. Where a correction turns a cell inside out half of it is taken, and half of that.
+void LayerEquilibrium::evaluate(const SemidiscreteProblem& problem, const State& state, const Vector* correction,
+                                Vector& increment, Vector& end) {
+  constexpr int most_halvings = 5;
+  double part = 1.0;
+  for (int halving = 0;; ++halving) {
+    try {
+      layer_->evaluate(end, force_);
+      return;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged || correction == nullptr || halving == most_halvings) throw;
+    }
+    part *= 0.5;
+    for (const Index dof : problem.contact_dofs) {
+      increment[dof] -= part * (*correction)[dof];
+      end[dof] = state.displacement[dof] + increment[dof];
+    }
+  }
+}
+
+void LayerEquilibrium::require(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
+                               const StepEquations& equations, const Vector& increment, const Vector& end,
+                               Stage& stage) {
+  for (const Index dof : problem.contact_dofs) stage.right_hand_side[dof] = load[dof] - force_[dof];
+  require_no_penetration(problem, end, state.time + step, stage);
+  if (!problem.contact.has_friction()) return;
+  rate_ = increment / step;
+  equations.require_friction(problem, rate_, 1.0 / step, stage);
+}
+
+const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem, const State& state, const Vector& load,
+                                             double step, StageSolve& stages, StepEquations& equations,
+                                             Vector& increment, Vector& end) {
+  if (problem.contact_dofs.empty()) return nullptr;
+  stages.follow(end);
+  if (problem.has_moving_obstacles()) {
+    middle_ = state.displacement + 0.5 * increment;
+    equations.observe_obstacles(problem, state.time + 0.5 * step, middle_);
+  }
+  Stage& stage = stages.stage(0);
+  if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
+  stage.prescribed.setZero(problem.supports.size());  // supported nodes are where they are prescribed
+  progress_.start(4.0 * std::numeric_limits<double>::epsilon() * (reach_ + largest_on_contact(problem, end)));
+  evaluate(problem, state, nullptr, increment, end);
+  while (true) {
+    require(problem, state, load, step, equations, increment, end, stage);
+    const StageSolution& solution = stages.solve(0);
+    const double correction = largest_on_contact(problem, solution.increment);
+    if (std::isfinite(correction)) {
+      for (const Index dof : problem.contact_dofs) {
+        increment[dof] += solution.increment[dof];
+        end[dof] = state.displacement[dof] + increment[dof];
+      }
+    }
+    const NewtonProgress::Advice advice = progress_.judge(correction, largest_on_contact(problem, increment));
+    if (advice == NewtonProgress::Advice::done) return &solution;
+    if (advice == NewtonProgress::Advice::failed) {
+      throw Error(ErrorKind::not_converged,
+                  fmt::format("Newton's method found no equilibrium of the contact nodes in {} iterations (the last "
+                              "correction moves a node by {:.3g})",
+                              progress_.rounds(), correction));
+    }
+    evaluate(problem, state, &solution.increment, increment, end);
+    if (advice != NewtonProgress::Advice::renew) continue;
+    stages.renew(end, end);
+    progress_.count_renewal();
+    progress_.restart();
+  }
+}
+
+}  // namespace ricochet
