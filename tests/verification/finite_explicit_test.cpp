@@ -30,7 +30,7 @@ std::string block(int dimension) {
                         : mesh_geometry("finite-block-3d",
                                         "Box(1) = {0, 0, 0, 1, 0.5, 0.6};\nPhysical Volume(\"body\") = {1};\n"
                                         "Physical Surface(\"bottom\") = {3};\n",
-                                        0.2, 1);
+                                        0.15, 1);
 }
 
 struct Flight {
@@ -133,7 +133,8 @@ TEST(FiniteExplicit, TheEnergyOfALongFlightIsBounded) {
     std::printf("step %.4f: energy off by %.3e of it in the first 1000 steps, %.3e in the last\n", step,
                 of_first / start, of_last / start);
     EXPECT_LT(of_last, 1.5 * of_first);
-    EXPECT_LT(of_first, 0.02 * start);
+    // Of a vibration (h²/8) AᵀMA is at most (h/h_c)² of the elastic energy.
+    EXPECT_LT(of_first, std::pow(step / run.scheme().critical_step(), 2) * start);
     if (before > 0.0) {
       EXPECT_NEAR(before / of_first, 4.0, 1.0);
     }
@@ -225,7 +226,7 @@ TEST(FiniteExplicit, BouncingBalances) {
   }
 }
 
-/// With gravity, a support and damping the impulses are those of all forces.
+/// With gravity, friction and damping the impulses are those of all forces.
 TEST(FiniteExplicit, MomentaChangeByTheImpulsesOfAllForces) {
   std::string text = case_of({.height = 0.02, .steps = 300.0, .more = "friction = 0.3\n"}, stretched(2), falling(2));
   text.insert(text.find("[obstacle"), "damping = { mass = 0.3 }\n");
@@ -246,7 +247,8 @@ TEST(FiniteExplicit, MomentaChangeByTheImpulsesOfAllForces) {
       false);
 }
 
-/// With fine steps, the motion of reduced-kane with the same mass.
+/// With fine steps, the motion of reduced-kane with the same mass: differences are of second order without friction, and
+/// of first order with friction, where the reactions of the end act there.
 TEST(FiniteExplicit, ConvergesToReducedKane) {
   for (const std::string friction : {"", "friction = 0.4\n"}) {
     double before = INFINITY;
@@ -265,11 +267,11 @@ TEST(FiniteExplicit, ConvergesToReducedKane) {
       }
       std::printf("step %g %s: displacements differ by %.2e, impulses by %.2e of them\n", step, friction.c_str(),
                   difference, of_left / of_right - 1.0);
-      EXPECT_LT(difference, 0.6 * before);
+      EXPECT_LT(difference, (friction.empty() ? 0.4 : 0.6) * before);
       EXPECT_NEAR(of_left / of_right, 1.0, 0.02);
       before = difference;
     }
-    EXPECT_LT(before, 1e-3);
+    EXPECT_LT(before, 5e-3);
   }
 }
 
@@ -360,7 +362,7 @@ TEST(FiniteExplicit, AStepThatBecomesTooLongEndsTheRunBeforeItBlowsUp) {
 /// Cells that a step turns inside out are named, with the critical step and what to do.
 TEST(FiniteExplicit, InvertedCellsAreNamed) {
   const double rest = critical_of_rest(press(1.0, 1e-4, 1e-3));
-  CaseRun run(press(60.0, 0.5 * rest, 0.1));
+  CaseRun run(press(25.0, 0.3 * rest, 0.1));
   try {
     while (run.session().step()) continue;
     FAIL() << "no error";
@@ -369,6 +371,7 @@ TEST(FiniteExplicit, InvertedCellsAreNamed) {
     EXPECT_EQ(error.kind(), ErrorKind::not_converged);
     std::printf("%s\n", message.c_str());
     EXPECT_NE(message.find("step "), std::string::npos) << message;
+    EXPECT_NE(message.find("cell "), std::string::npos) << message;
     EXPECT_NE(message.find("critical step"), std::string::npos) << message;
     EXPECT_NE(message.find("time.step"), std::string::npos) << message;
   }

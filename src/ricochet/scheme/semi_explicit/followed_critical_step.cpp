@@ -47,8 +47,17 @@ double critical_of(double eigenvalue) {
 }  // namespace
 
 void FollowedCriticalStep::analyse(const SemidiscreteProblem& problem, double undeformed) {
+  inverse_root_ = inverse_root_mass(problem, exponent_);
+  smallest_ = undeformed;
+  find_pairs(problem);
+}
+
+void FollowedCriticalStep::find_pairs(const SemidiscreteProblem& problem) {
   const SparseMatrix tangent = problem.internal_force->tangent();
   const Index d = problem.dimension;
+  const Vector by_mass = tangent.diagonal().cwiseProduct(inverse_root_.cwiseAbs2());
+  const Vector stiffness = by_mass.reshaped(d, problem.nodes.cols()).colwise().maxCoeff();
+  const double stiffest = stiffness.size() > 0 ? stiffness.maxCoeff() : 0.0;
   pairs_.clear();
   shortest_ = std::numeric_limits<double>::infinity();
   for (Index second = 0; second < problem.nodes.cols(); ++second) {
@@ -58,12 +67,12 @@ void FollowedCriticalStep::analyse(const SemidiscreteProblem& problem, double un
       if (first >= second) break;
       if (first == last) continue;
       last = first;
-      pairs_.push_back({first, second});
+      const double stiffer = std::max(stiffness[first], stiffness[second]);
+      if (stiffer == 0.0) continue;
+      pairs_.push_back({first, second, stiffer / stiffest});
       shortest_ = std::min(shortest_, (problem.nodes.col(first) - problem.nodes.col(second)).norm());
     }
   }
-  inverse_root_ = inverse_root_mass(problem, exponent_);
-  smallest_ = undeformed;
 }
 
 void FollowedCriticalStep::start(const SemidiscreteProblem& problem, double step, bool check, State& state) {
@@ -72,6 +81,7 @@ void FollowedCriticalStep::start(const SemidiscreteProblem& problem, double step
   if (check && (step >= critical || step <= near_fraction * smallest_)) check_critical_step(scheme_, step, critical);
   state.memory[critical_numbers].setZero(State::memory_numbers);
   state.memory[critical_numbers][smallest_found] = critical;
+  state.memory[critical_numbers][told_near] = check && step > near_fraction * critical ? 1.0 : 0.0;
   state.memory[critical_mode].setZero(problem.dof_count());
   take(critical, state);
 }
@@ -108,7 +118,7 @@ void FollowedCriticalStep::require_stable(const SemidiscreteProblem& problem, do
                           careful_fraction * critical));
 }
 
-/// The largest relative change of a distance of neighbours since the last check.
+/// The largest relative change of a distance of neighbours since the last check, by its weight.
 double FollowedCriticalStep::change_since(const SemidiscreteProblem& problem, const State& state) const {
   const Vector& before = state.memory.at(critical_place);
   const double* const u = state.displacement.data();
@@ -125,7 +135,8 @@ double FollowedCriticalStep::change_since(const SemidiscreteProblem& problem, co
   const Largest largest = parallel_sum<Largest>(static_cast<Index>(pairs_.size()), [&](Index begin, Index end) {
     Largest part;
     for (Index i = begin; i < end; ++i) {
-      const Index a = d * pairs_[static_cast<std::size_t>(i)].first, b = d * pairs_[static_cast<std::size_t>(i)].second;
+      const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+      const Index a = d * pair.first, b = d * pair.second;
       double length = 0.0, change = 0.0;
       for (Index k = 0; k < d; ++k) {
         const double at = x[b + k] - x[a + k];
@@ -133,7 +144,7 @@ double FollowedCriticalStep::change_since(const SemidiscreteProblem& problem, co
         length += then * then;
         change += (now_at - then) * (now_at + then);
       }
-      part.value = std::max(part.value, std::abs(change) / length);
+      part.value = std::max(part.value, pair.weight * std::abs(change) / length);
     }
     return part;
   });

@@ -11,8 +11,9 @@
 ///
 /// At the start λ is bounded from above as for the linear body, with K at the starting displacement. Then it is
 /// followed. A check is due where the distance of two neighbouring nodes has changed, since the last check, by more
-/// than 2 %, or by a third of the room h/h_c leaves where that is more: such distances know no rotation, and all of
-/// them are looked at after every step. It is also due where the highest frequencies carry much of the energy,
+/// than 2 %, or by a third of the room 1 − h/h_c where that is more: such distances know no rotation, and all of
+/// them are looked at after every step. Changes count in the proportion of k/m, k the largest diagonal entry of K of a
+/// node and m its mass, to that of the stiffest node of all: soft cells must change more to matter. It is also due where the highest frequencies carry much of the energy,
 /// (h²/8) AᵀMA > ½ (T + |W|): what a step that is too long does first. A check takes some steps of Lanczos' method from
 /// the last eigenvector and a random part, by differences of forces,
 ///   K(u) x ≈ [f(u + εx) − f(u)]/ε,
@@ -45,7 +46,9 @@ class FollowedCriticalStep {
  private:
   struct Pair {
     Index first, second;  ///< nodes
+    double weight;        ///< at most 1: how near the stiffest of them is to the stiffest node of all, undeformed
   };
+  void find_pairs(const SemidiscreteProblem& problem);
   [[nodiscard]] bool is_due(const SemidiscreteProblem& problem, double step, double energy, const State& state) const;
   [[nodiscard]] double change_since(const SemidiscreteProblem& problem, const State& state) const;
   [[nodiscard]] double find(const SemidiscreteProblem& problem, const Vector& force, State& state);

@@ -13,6 +13,13 @@ namespace ricochet {
 
 namespace {
 
+/// Key of State::memory; its first number is the step from which on the factor may be made anew.
+constexpr const char* layer_renewal = "layer_renewal";
+/// Iterations that are many, and steps that a new factor is kept for: it costs as much as some tens of evaluations of
+/// the internal force.
+constexpr int many_rounds = 8;
+constexpr double kept_steps = 100.0;
+
 double largest_on_contact(const SemidiscreteProblem& problem, const Vector& values) {
   double largest = 0.0;
   for (const Index dof : problem.contact_dofs) {
@@ -30,6 +37,18 @@ void LayerEquilibrium::analyse(const SemidiscreteProblem& problem) {
   for (const Index dof : problem.contact_dofs) wanted[static_cast<std::size_t>(dof / problem.dimension)] = 1;
   layer_ = problem.internal_force->near(wanted);
   reach_ = problem.nodes.cwiseAbs().maxCoeff();
+}
+
+void LayerEquilibrium::start(State& state) const {
+  if (layer_) state.memory[layer_renewal].setZero(State::memory_numbers);
+}
+
+void LayerEquilibrium::renew_where_slow(const SemidiscreteProblem& problem, State& state, StageSolve& stages) {
+  if (problem.contact_dofs.empty() || progress_.rounds() <= many_rounds) return;
+  double& from = state.memory.at(layer_renewal)[0];
+  if (static_cast<double>(state.step) < from) return;
+  from = static_cast<double>(state.step) + kept_steps;
+  stages.renew(state.displacement, state.displacement);
 }
 
 /// f at the end. Where a correction turns a cell inside out half of it is taken, and half of that.

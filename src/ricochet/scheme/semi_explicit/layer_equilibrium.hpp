@@ -18,10 +18,15 @@ namespace ricochet {
 class LayerEquilibrium {
  public:
   void analyse(const SemidiscreteProblem& problem);
+  void start(State& state) const;
   /// Moves contact nodes: `end` is the displacement at the end of the step and `increment` that of the step, of all
   /// dofs. Returns null where there is no contact dof. Throws Error(not_converged).
   const StageSolution* solve(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
                              StageSolve& stages, StepEquations& equations, Vector& increment, Vector& end);
+
+  /// After a step: makes the factor anew where that one took many iterations and the factor was not made a short time
+  /// ago, so that the next steps take fewer. What it took is in the tangent of the whole body.
+  void renew_where_slow(const SemidiscreteProblem& problem, State& state, StageSolve& stages);
 
  private:
   void require(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,

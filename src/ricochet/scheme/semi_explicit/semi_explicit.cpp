@@ -78,7 +78,9 @@ class SemiExplicit final : public Scheme {
   void start(const SemidiscreteProblem& problem, State& state, StageSolve&) override {
     problem.internal_force->evaluate(state.displacement, state.memory[force_memory]);
     start_supports(problem, motion_.mass(), step(), state);
-    if (followed_) followed_->start(problem, step(), !at_any_step_, state);
+    if (!followed_) return;
+    followed_->start(problem, step(), !at_any_step_, state);
+    layer_.start(state);
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
@@ -98,7 +100,9 @@ class SemiExplicit final : public Scheme {
     for (const Index dof : problem.massless_dofs) state.velocity[dof] = increment[dof] / h;
     if (problem.loads.varies()) state.forces.varying_load = varying_;
     if (problem.has_damping()) state.forces.damping_force = motion_.damping().cwiseProduct(state.velocity);
-    if (followed_ && !at_any_step_) followed_->follow(problem, h, state.memory.at(force_memory), energy_, state);
+    if (!followed_) return;
+    layer_.renew_where_slow(problem, state, stages);
+    if (!at_any_step_) followed_->follow(problem, h, state.memory.at(force_memory), energy_, state);
   }
 
   [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
