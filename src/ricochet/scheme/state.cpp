@@ -82,8 +82,8 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   state.iterations = static_cast<int>(snapshot.integer(name + ".iterations"));
   state.newton_rounds = static_cast<int>(snapshot.integer(name + ".newton_rounds"));
   for (const std::string& key : snapshot.texts(name + ".memory"))
-    state.memory[key] = memory(snapshot, name + ".memory." + key, 
-                               {dofs, problem.supports.size(), tangents, State::memory_numbers});
+    state.memory[key] =
+        memory(snapshot, name + ".memory." + key, {dofs, problem.supports.size(), tangents, State::memory_numbers});
   return state;
 }
 

@@ -27,11 +27,11 @@ constexpr const char* critical_mode = "critical_step.mode";           ///< eigen
 enum CriticalNumbers : Index { last_found, smallest_found, told_near, found_at, evaluations_made };
 
 /// Products of a check.
-constexpr int products = 10;
+constexpr int products = 8;
 /// Of the random part of its start, relative to the last eigenvector.
 constexpr double random_part = 0.3;
 /// Change of a distance that a check is worth, relative to it, and part of the room that is left.
-constexpr double least_change = 0.02, part_of_room = 1.0 / 3.0;
+constexpr double least_change = 0.02, part_of_room = 0.5, most_change = 0.15;
 /// Part of the energy that the highest frequencies have where something is wrong, and steps between such checks.
 constexpr double high_frequency_part = 0.5;
 constexpr double rest_between = 16.0;
@@ -100,7 +100,8 @@ std::string FollowedCriticalStep::place(const SemidiscreteProblem& problem, cons
   Index at = 0;
   if (mode.size() == 0 || mode.cwiseProduct(inverse_root_).cwiseAbs().maxCoeff(&at) == 0.0) return "";
   const Index node = at / problem.dimension;
-  const Vector where = problem.nodes.col(node) + state.displacement.segment(node * problem.dimension, problem.dimension);
+  const Vector where =
+      problem.nodes.col(node) + state.displacement.segment(node * problem.dimension, problem.dimension);
   return fmt::format(" by the cells at the node now at ({:.6g})", fmt::join(where, ", "));
 }
 
@@ -109,13 +110,13 @@ void FollowedCriticalStep::require_stable(const SemidiscreteProblem& problem, do
   smallest_ = numbers[smallest_found];
   const double critical = numbers[last_found];
   if (step < critical) return;
-  throw Error(ErrorKind::not_converged,
-              fmt::format("the bodies are deformed so far that the critical step of \"{}\" is {:.6g} (made{}): "
-                          "time.step = {:.6g} is {:.3g} times that, and the motion would grow without bound; set "
-                          "time.step = {:.3g} or less, as it may fall further, or use scheme \"reduced-kane\", which "
-                          "is stable for any step",
-                          scheme_, critical, place(problem, state), step, step / critical,
-                          careful_fraction * critical));
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format("the bodies are deformed so far that the critical step of \"{}\" is {:.6g} (made{}): "
+                  "time.step = {:.6g} is {:.3g} times that, and the motion would grow without bound; set "
+                  "time.step = {:.3g} or less, as it may fall further, or use scheme \"reduced-kane\", which "
+                  "is stable for any step",
+                  scheme_, critical, place(problem, state), step, step / critical, careful_fraction * critical));
 }
 
 /// The largest relative change of a distance of neighbours since the last check, by its weight.
@@ -155,7 +156,7 @@ bool FollowedCriticalStep::is_due(const SemidiscreteProblem& problem, double ste
                                   const State& state) const {
   const Vector& numbers = state.memory.at(critical_numbers);
   const double room = 1.0 - step / numbers[last_found];
-  if (change_since(problem, state) > std::max(least_change, part_of_room * room)) return true;
+  if (change_since(problem, state) > std::clamp(part_of_room * room, least_change, most_change)) return true;
   if (static_cast<double>(state.step) < numbers[found_at] + rest_between) return false;
   const double high = 0.125 * step * step * problem.mass.form(state.acceleration);
   return high > high_frequency_part * (0.5 * problem.mass.form(state.velocity) + std::abs(energy));
@@ -193,18 +194,18 @@ void FollowedCriticalStep::follow(const SemidiscreteProblem& problem, double ste
   Vector& numbers = state.memory.at(critical_numbers);
   numbers[evaluations_made] += products;
   if (log::enabled(log::Level::debug)) {
-    log::debug(fmt::format("critical step {:.6g}{}: the step is {:.3g} of it; {:.0f} evaluations of the internal force "
-                           "so far for that",
-                           critical, place(problem, state), step / critical, numbers[evaluations_made]));
+    log::debug(
+        fmt::format("critical step {:.6g}{}: the step is {:.3g} of it; {:.0f} evaluations of the internal force "
+                    "so far for that",
+                    critical, place(problem, state), step / critical, numbers[evaluations_made]));
   }
   if (step < near_fraction * critical || step >= critical || numbers[told_near] != 0.0) return;
   numbers[told_near] = 1.0;
-  log::warning(
-      fmt::format("scheme \"{}\": at t = {:.6g} the bodies are deformed so far that the critical step is {:.6g} "
-                  "(made{}); time.step = {:.6g} is {:.3g} of it, and the run ends where it is more than all; take "
-                  "{:.3g} or less",
-                  scheme_, state.time + step, critical, place(problem, state), step, step / critical,
-                  careful_fraction * critical));
+  log::warning(fmt::format(
+      "scheme \"{}\": at t = {:.6g} the bodies are deformed so far that the critical step is {:.6g} "
+      "(made{}); time.step = {:.6g} is {:.3g} of it, and the run ends where it is more than all; take "
+      "{:.3g} or less",
+      scheme_, state.time + step, critical, place(problem, state), step, step / critical, careful_fraction * critical));
 }
 
 std::string FollowedCriticalStep::explain(const SemidiscreteProblem& problem, double step, const State& state) const {

@@ -11,11 +11,12 @@
 ///
 /// At the start λ is bounded from above as for the linear body, with K at the starting displacement. Then it is
 /// followed. A check is due where the distance of two neighbouring nodes has changed, since the last check, by more
-/// than 2 %, or by a third of the room 1 − h/h_c where that is more: such distances know no rotation, and all of
-/// them are looked at after every step. Changes count in the proportion of k/m, k the largest diagonal entry of K of a
-/// node and m its mass, to that of the stiffest node of all: soft cells must change more to matter. It is also due where the highest frequencies carry much of the energy,
-/// (h²/8) AᵀMA > ½ (T + |W|): what a step that is too long does first. A check takes some steps of Lanczos' method from
-/// the last eigenvector and a random part, by differences of forces,
+/// than 2 %, or by half of the room 1 − h/h_c where that is more, 15 % at most: such distances know no rotation, and
+/// all of them are looked at after every step. Changes count in the proportion of k/m, k the largest diagonal entry of
+/// K of a node and m its mass, to that of the stiffest node of all: soft cells must change more to matter. It is also
+/// due where the highest frequencies carry much of the energy, (h²/8) AᵀMA > ½ (T + |W|): what a step that is too long
+/// does first. A check takes some steps of Lanczos' method from the last eigenvector and a random part, by differences
+/// of forces,
 ///   K(u) x ≈ [f(u + εx) − f(u)]/ε,
 /// each with one evaluation of the internal force, and takes θ/(1−ε) of critical_step.hpp for λ. A stiff place that is
 /// new is found as soon as it stands out of the spectrum; what is found is no bound, but a few per cent off at worst.
@@ -29,7 +30,8 @@ class FollowedCriticalStep {
 
   /// `undeformed`: the critical step of the undeformed body.
   void analyse(const SemidiscreteProblem& problem, double undeformed);
-  /// Of the starting state. Where the step is to be checked throws Error(invalid_input) where the step is too long for it.
+  /// Of the starting state. Where the step is to be checked throws Error(invalid_input) where the step is too long for
+  /// it.
   void start(const SemidiscreteProblem& problem, double step, bool check, State& state);
   /// Before a step, which is not taken where the step is beyond what was found last: throws Error(not_converged) that
   /// says where, and which step to take.

@@ -19,6 +19,8 @@ constexpr const char* layer_renewal = "layer_renewal";
 /// the internal force.
 constexpr int many_rounds = 8;
 constexpr double kept_steps = 100.0;
+/// Iterations after which they are accelerated.
+constexpr int plain_layer_rounds = 2;
 
 double largest_on_contact(const SemidiscreteProblem& problem, const Vector& values) {
   double largest = 0.0;
@@ -51,9 +53,19 @@ void LayerEquilibrium::renew_where_slow(const SemidiscreteProblem& problem, Stat
   stages.renew(state.displacement, state.displacement);
 }
 
-/// f at the end. Where a correction turns a cell inside out half of it is taken, and half of that.
-void LayerEquilibrium::evaluate(const SemidiscreteProblem& problem, const State& state, const Vector* correction,
-                                Vector& increment, Vector& end) {
+/// `place`: the increments of contact dofs.
+void LayerEquilibrium::move_to(const SemidiscreteProblem& problem, const State& state, const Vector& place,
+                               Vector& increment, Vector& end) {
+  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+    const Index dof = problem.contact_dofs[i];
+    increment[dof] = place[static_cast<Index>(i)];
+    end[dof] = state.displacement[dof] + increment[dof];
+  }
+}
+
+/// f at the end. Where the last change of places turns a cell inside out half of it is taken, and half of that.
+void LayerEquilibrium::evaluate(const SemidiscreteProblem& problem, const State& state, Vector& increment,
+                                Vector& end) {
   constexpr int most_halvings = 5;
   double part = 1.0;
   for (int halving = 0;; ++halving) {
@@ -61,13 +73,11 @@ void LayerEquilibrium::evaluate(const SemidiscreteProblem& problem, const State&
       layer_->evaluate(end, force_);
       return;
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::not_converged || correction == nullptr || halving == most_halvings) throw;
+      if (error.kind() != ErrorKind::not_converged || move_.size() == 0 || halving == most_halvings) throw;
     }
     part *= 0.5;
-    for (const Index dof : problem.contact_dofs) {
-      increment[dof] -= part * (*correction)[dof];
-      end[dof] = state.displacement[dof] + increment[dof];
-    }
+    point_ -= part * move_;
+    move_to(problem, state, point_, increment, end);
   }
 }
 
@@ -94,28 +104,39 @@ const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem,
   if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
   stage.prescribed.setZero(problem.supports.size());  // supported nodes are where they are prescribed
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * (reach_ + largest_on_contact(problem, end)));
-  evaluate(problem, state, nullptr, increment, end);
+  move_.resize(0);
+  point_ = increment(problem.contact_dofs);
+  evaluate(problem, state, increment, end);
+  acceleration_.restart();
+  double last = std::numeric_limits<double>::infinity();
   while (true) {
     require(problem, state, load, step, equations, increment, end, stage);
     const StageSolution& solution = stages.solve(0);
     const double correction = largest_on_contact(problem, solution.increment);
-    if (std::isfinite(correction)) {
-      for (const Index dof : problem.contact_dofs) {
-        increment[dof] += solution.increment[dof];
-        end[dof] = state.displacement[dof] + increment[dof];
-      }
+    image_ = point_;
+    if (std::isfinite(correction)) image_ += solution.increment(problem.contact_dofs);
+    const NewtonProgress::Advice advice = progress_.judge(correction, image_.lpNorm<Eigen::Infinity>());
+    if (advice == NewtonProgress::Advice::done) {
+      move_to(problem, state, image_, increment, end);
+      return &solution;
     }
-    const NewtonProgress::Advice advice = progress_.judge(correction, largest_on_contact(problem, increment));
-    if (advice == NewtonProgress::Advice::done) return &solution;
     if (advice == NewtonProgress::Advice::failed) {
       throw Error(ErrorKind::not_converged,
                   fmt::format("Newton's method found no equilibrium of the contact nodes in {} iterations (the last "
                               "correction moves a node by {:.3g})",
                               progress_.rounds(), correction));
     }
-    evaluate(problem, state, &solution.increment, increment, end);
+    if (correction > last) acceleration_.restart();
+    last = correction;
+    const bool accelerates = progress_.rounds() > plain_layer_rounds && advice != NewtonProgress::Advice::renew;
+    const Vector next = accelerates ? acceleration_.next(point_, image_) : image_;
+    move_ = next - point_;
+    point_ = next;
+    move_to(problem, state, point_, increment, end);
+    evaluate(problem, state, increment, end);
     if (advice != NewtonProgress::Advice::renew) continue;
     stages.renew(end, end);
+    acceleration_.restart();
     progress_.count_renewal();
     progress_.restart();
   }

@@ -32,15 +32,16 @@ constexpr const char* force_memory = "internal_force";
 ///
 /// One product with K in a step, and one with its contact rows.
 ///
-/// Where the internal force f = ∂W/∂u is no linear function of the displacement (finite strain) f_i(U) and f_c(U) are in
-/// the place of the products, the contact nodes' equilibrium takes Newton's method (layer_equilibrium.hpp), and a step one
-/// evaluation of f and one of W. The body without its contact nodes has the potential Ψ(u_i) = min over admissible u_c of
-/// W − L·u, and this is Störmer's and Verlet's scheme for it, so that
+/// Where the internal force f = ∂W/∂u is no linear function of the displacement (finite strain) f_i(U) and f_c(U) are
+/// in the place of the products, the contact nodes' equilibrium takes Newton's method (layer_equilibrium.hpp), and a
+/// step one evaluation of f and one of W. The body without its contact nodes has the potential Ψ(u_i) = min over
+/// admissible u_c of W − L·u, and this is Störmer's and Verlet's scheme for it, so that
 /// - energy: J − (h²/8)AᵀMA changes in a step by ½ΔUᵀ(F₀+F₁) and by ΔW − ½ΔUᵀ(f₀+f₁) (`integration_error`), of order h³
 ///   and of either sign: in flight it goes up and down and does not pile up, which is no proof of a bound;
-/// - momenta: ΔU = hV^{n+½} has no moment with V^{n+½}, and f has no resultant and no moment about the current positions,
-///   so Σ m x×V changes in a step by (h/2)(N₀+N₁), N the moment of all outer forces about the positions of their instant:
-///   exactly, as the resultant does.
+/// - momenta: ΔU = hV^{n+½} has no moment with V^{n+½}, and f has no resultant and no moment about the current
+/// positions,
+///   so Σ m x×V changes in a step by (h/2)(N₀+N₁), N the moment of all outer forces about the positions of their
+///   instant: exactly, as the resultant does.
 /// The critical step changes with the deformation (followed_critical_step.hpp): it is followed, and a step beyond it is
 /// not taken.
 class SemiExplicit final : public Scheme {
