@@ -132,7 +132,7 @@ struct RunSummary {
   std::string solver_reason;          ///< why that one
   double step = 0.0, end_time = 0.0;  ///< of adaptive steps the longest possible
   double critical_step =
-      std::numeric_limits<double>::infinity();  ///< above it the scheme is unstable; the smallest so far; none if infinite
+      std::numeric_limits<double>::infinity();  ///< above it the scheme is unstable; none if infinite
   std::optional<AdaptiveSteps> adaptive = {};   ///< none where all steps are of one length, `step`
   long steps = 0;
   long all_steps = 0;                                ///< that were asked for

@@ -155,6 +155,7 @@ double FollowedCriticalStep::change_since(const SemidiscreteProblem& problem, co
 bool FollowedCriticalStep::is_due(const SemidiscreteProblem& problem, double step, double energy,
                                   const State& state) const {
   const Vector& numbers = state.memory.at(critical_numbers);
+  if (!std::isfinite(numbers[last_found])) return false;  // nothing has both mass and freedom
   const double room = 1.0 - step / numbers[last_found];
   if (change_since(problem, state) > std::clamp(part_of_room * room, least_change, most_change)) return true;
   if (static_cast<double>(state.step) < numbers[found_at] + rest_between) return false;
