@@ -87,8 +87,15 @@ void print_steps(const Case& input, const Model& model, const ConnectedBodies& c
   const double step = input.time.step;
   if (const std::optional<double> critical = make_scheme(input.time)->stability_limit(model.problem)) {
     fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", *critical, step / *critical);
-    fmt::print("  suggested step {:.2g}: nine tenths of the critical one, above which {} is unstable\n",
-               two_digits(0.9 * *critical), input.time.scheme);
+    if (model.problem.internal_force->is_linear()) {
+      fmt::print("  suggested step {:.2g}: nine tenths of the critical one, above which {} is unstable\n",
+                 two_digits(0.9 * *critical), input.time.scheme);
+    } else {
+      fmt::print(
+          "  suggested step {:.2g}: seven tenths of the critical one of the undeformed mesh, above which {} is "
+          "unstable; it falls where cells are squeezed, and the run follows it\n",
+          two_digits(0.7 * *critical), input.time.scheme);
+    }
     return;
   }
   const double median = times[times.size() / 2];

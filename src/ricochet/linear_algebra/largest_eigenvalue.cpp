@@ -69,4 +69,32 @@ EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(c
   return bounds;
 }
 
+double improve_largest_eigenvalue(const std::function<void(const Vector&, Vector&)>& multiply, int products,
+                                  Vector& guess) {
+  Matrix basis(guess.size(), products);
+  Matrix projected = Matrix::Zero(products, products);  // its lower triangle
+  Vector current = guess / guess.norm(), next(guess.size());
+  Index count = 0;
+  while (true) {
+    basis.col(count) = current;
+    ++count;
+    multiply(current, next);
+    const auto known = basis.leftCols(count);
+    const Vector along = known.transpose() * next;
+    projected.row(count - 1).head(count) = along.transpose();
+    const double before = next.norm();
+    next -= known * along;
+    next -= known * (known.transpose() * next).eval();
+    const double length = next.norm();
+    if (count == products || !(length > 64.0 * std::numeric_limits<double>::epsilon() * before)) break;
+    current = next / length;
+  }
+  int exponent = 0;  // see above
+  std::frexp(projected.diagonal().cwiseAbs().maxCoeff(), &exponent);
+  projected = (projected.topLeftCorner(count, count) * std::ldexp(1.0, -exponent)).eval();
+  const SymmetricEigen eigen = symmetric_eigen(projected);
+  guess = basis.leftCols(count) * eigen.vectors.col(count - 1);
+  return std::ldexp(eigen.values[count - 1], exponent);
+}
+
 }  // namespace ricochet

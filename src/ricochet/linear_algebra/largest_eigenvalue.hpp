@@ -23,4 +23,11 @@ struct EigenvalueBounds {
                                                         const std::function<void(const Vector&, Vector&)>& multiply,
                                                         double spread = 0.02);
 
+/// A Ritz value θ ≤ λ_max of such an operator from some products, from a guess of the eigenvector, which need not have
+/// unit length and is not zero; leaves the unit Ritz vector there. Lanczos' method with vectors that are made
+/// orthogonal to all before, so that products may have small errors: those of differences, where the operator is a
+/// derivative. The values are those of the projection of the operator on its products.
+[[nodiscard]] double improve_largest_eigenvalue(const std::function<void(const Vector&, Vector&)>& multiply,
+                                                int products, Vector& guess);
+
 }  // namespace ricochet

@@ -202,7 +202,7 @@ void assemble_operators(const Case& input, Model& model) {
   if (!model.problem.internal_force->is_linear() && !scheme->takes_nonlinear_force()) {
     refuse(input, "time.scheme",
            fmt::format("scheme \"{}\" needs the linear material law; \"reduced-kane\", the default, takes those of "
-                       "finite strain, too",
+                       "finite strain, too, and so does \"semi-explicit\"",
                        input.time.scheme));
   }
   if (input.time.adaptive) {

@@ -116,6 +116,7 @@ void Run::write_checkpoint() {
 void Run::describe_progress(RunSummary& summary) const {
   recording_->describe(summary);
   summary.factor_entries = session_.simulation().factor_entries();
+  summary.critical_step = session_.scheme().critical_step();
   summary.steps = session_.simulation().state().step;
   if (const StepControl* const control = session_.simulation().control()) {
     summary.adaptive = AdaptiveSteps{.tolerance = input_.time.tolerance, .time = control->time()};

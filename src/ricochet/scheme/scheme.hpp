@@ -60,7 +60,8 @@ class Scheme {
   /// The same of what acted over a step: its middle where the forces shown are those of its end.
   [[nodiscard]] virtual double acting_instant() const { return force_instant(); }
   [[nodiscard]] virtual WorkRule work_rule() const { return {}; }
-  /// Steps below this one are stable; infinite without such a limit. Known after analyse().
+  /// Steps below this one are stable; infinite without such a limit. Known after analyse(); where it changes with the
+  /// deformation, the smallest so far.
   [[nodiscard]] virtual double critical_step() const { return std::numeric_limits<double>::infinity(); }
 
   // What others should know of it, so that nobody has to know it by name.
@@ -72,9 +73,9 @@ class Scheme {
   /// Its steps are right where the internal force is no linear function of the displacement.
   [[nodiscard]] virtual bool takes_nonlinear_force() const { return false; }
   /// Then its steps change the angular momentum about current positions by the moments of outer forces alone, about the
-  /// positions at the middle of the step.
+  /// positions where these act.
   [[nodiscard]] virtual bool keeps_moments_at_finite_strain() const { return false; }
-  /// The displacement at which the forces of the last step act then; null: half way.
+  /// The displacement at which the forces of the last step act then, those of its end that is; null: half way.
   [[nodiscard]] virtual const Vector* place_of_forces() const { return nullptr; }
   /// With a mass without inertia on contact nodes its contact forces create hardly any energy.
   [[nodiscard]] virtual bool suits_singular_mass() const { return false; }

@@ -46,7 +46,8 @@ struct State {
   int iterations = 0;     ///< of the contact solver in the last step
   int newton_rounds = 0;  ///< linear stages that the last step took for an internal force that is not linear
   /// What a scheme remembers besides, by name, so that a checkpoint can write it: of a length per dof, per supported
-  /// dof, (d−1) per contact point, or per value of the rows of G and B_T.
+  /// dof, (d−1) per contact point, per value of the rows of G and B_T, or `memory_numbers` of them.
+  static constexpr Index memory_numbers = 5;
   std::map<std::string, Vector> memory;
 };
 

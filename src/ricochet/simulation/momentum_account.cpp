@@ -136,13 +136,21 @@ void MomentumAccount::enter_step(const State& state) {
     add_impulse(scheme_.step() * weight, sum.total);
     size_ += scheme_.step() * weight * sum.size;
   };
+  const Resultant load_before = constant_load_;
+  bool at_both_ends = false;
   if (finite_strain_) {
     const Vector* const place = scheme_.place_of_forces();
+    at_both_ends = place != nullptr && rule_.previous_weight != 0.0;
     before_ = place != nullptr ? *place : Vector(0.5 * (before_ + state.displacement));
     take_positions(before_);
     before_ = state.displacement;
   }
-  enter({constant_load_, constant_load_.force.norm()}, 1.0);
+  if (at_both_ends) {
+    enter({load_before, load_before.force.norm()}, rule_.previous_weight);
+    enter({constant_load_, constant_load_.force.norm()}, rule_.current_weight);
+  } else {
+    enter({constant_load_, constant_load_.force.norm()}, 1.0);
+  }
   const Sum current = resultant(state.forces);
   if (rule_.previous_weight != 0.0) enter(previous_, rule_.previous_weight);
   enter(current, rule_.current_weight);

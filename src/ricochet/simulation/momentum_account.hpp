@@ -11,7 +11,8 @@
 /// an axisymmetric body only forces along its axis have an impulse: the others cancel over the ring, and so do all
 /// moments.
 /// At finite strain moments are about current positions, those of forces at the middle of the step: for schemes whose
-/// internal forces are of that middle (Scheme::keeps_moments_at_finite_strain).
+/// internal forces are of that middle (Scheme::keeps_moments_at_finite_strain); or, where the forces of both ends of a
+/// step act, about the positions at either.
 namespace ricochet {
 
 /// Resultant and moment, or momentum and angular momentum.

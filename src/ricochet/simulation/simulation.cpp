@@ -136,7 +136,9 @@ const StageSolution& Simulation::solve(std::size_t number) {
                 "(reduced-kane with mass \"equivalent\")");
   }
   iterations_ += solution.iterations;
-  if (!problem_.internal_force->is_linear() && dofs != StageDofs::contact) newton_rounds_ += solution.rounds;
+  // Contact nodes alone are part of other stages' rounds, where there are any.
+  const bool counts = dofs != StageDofs::contact || current_->stages.size() == 1;
+  if (!problem_.internal_force->is_linear() && counts) newton_rounds_ += solution.rounds;
   return solution;
 }
 
@@ -150,9 +152,10 @@ void Simulation::take_step() {
   try {
     scheme_.advance(problem_, state_, *this, increment_);
   } catch (const Error& problem) {
-    const std::string advice = problem.kind() == ErrorKind::not_converged
-                                   ? "; try a smaller time.step, or a finer mesh where contact begins"
-                                   : "";
+    const bool has_critical_step = std::isfinite(scheme_.critical_step());  // which a finer mesh makes shorter
+    const std::string advice = problem.kind() != ErrorKind::not_converged ? ""
+                               : has_critical_step                        ? "; try a smaller time.step"
+                                                   : "; try a smaller time.step, or a finer mesh where contact begins";
     throw Error(problem.kind(), fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}{}",
                                             state_.step + 1, state_.time + scheme_.step(), scheme_.step(),
                                             problem_.contact.size(), problem.what(), advice));

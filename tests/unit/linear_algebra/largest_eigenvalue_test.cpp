@@ -48,6 +48,36 @@ TEST(LargestEigenvalue, ScalesByPowersOfTwoToTheBit) {
   }
 }
 
+/// An eigenvalue that stands out is found from a random guess, one that has moved from its last vector, and no value is
+/// above the spectrum. Products with errors leave theirs.
+TEST(LargestEigenvalue, IsFollowedFromAGuess) {
+  const Index n = 2000;
+  Vector spectrum = Vector::LinSpaced(n, 0.0, 7.0);
+  const auto improve = [&](Vector& guess, double error) {
+    return improve_largest_eigenvalue(
+        [&](const Vector& x, Vector& y) {
+          y = spectrum.cwiseProduct(x);
+          for (Index i = 0; i < n; ++i) y[i] += error * (i % 2 == 0 ? x.norm() : -x.norm()) / std::sqrt(n);
+        },
+        8, guess);
+  };
+  Vector guess(n);
+  for (Index i = 0; i < n; ++i) guess[i] = std::sin(1.0 + 3.7 * static_cast<double>(i * i % 1009));
+  spectrum[17] = 10.0;
+  const double first = improve(guess, 0.0);
+  EXPECT_NEAR(first, 10.0, 0.1);
+  EXPECT_LE(first, 10.0 * (1.0 + 1e-13));
+  EXPECT_NEAR(guess.norm(), 1.0, 1e-12);
+  EXPECT_GT(std::abs(guess[17]), 0.9);
+  spectrum[17] = 10.3;
+  EXPECT_NEAR(improve(guess, 0.0), 10.3, 1e-3);
+  EXPECT_NEAR(improve(guess, 1e-6), 10.3, 1e-4);
+  spectrum *= 1e-12;  // of any size
+  EXPECT_NEAR(improve(guess, 0.0), 10.3e-12, 1e-16);
+  Vector one = Vector::Unit(n, 17);  // an eigenvector is an invariant space
+  EXPECT_NEAR(improve(one, 0.0), 10.3e-12, 1e-24);
+}
+
 TEST(LargestEigenvalue, OfNothingIsZero) {
   EXPECT_EQ(bounds_of(Vector::Zero(10)).upper, 0.0);
 }

@@ -14,6 +14,16 @@ void ExplicitMotion::analyse(const SemidiscreteProblem& problem, double step) {
   for (double& m : inverse_mass_) m = m > 0.0 ? 1.0 / m : 0.0;
 }
 
+void ExplicitMotion::predict(const SemidiscreteProblem& problem, double step, const State& state,
+                             Vector& increment) const {
+  increment = step * (state.velocity + (0.5 * step) * state.acceleration);
+  const Vector& next = state.memory.at(supported_next);
+  for (Index i = 0; i < problem.supports.size(); ++i) {
+    const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
+    increment[dof] = next[i] - state.displacement[dof];
+  }
+}
+
 /// One pass over memory.
 void ExplicitMotion::move(const SemidiscreteProblem& problem, const Vector& correction, double step, State& state,
                           Vector& increment) {

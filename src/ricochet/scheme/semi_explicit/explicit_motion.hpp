@@ -13,6 +13,8 @@ class ExplicitMotion {
   [[nodiscard]] const Vector& mass() const { return mass_; }
   [[nodiscard]] const Vector& damping() const { return damping_; }
 
+  /// The same increment hV^{n+½}, of contact dofs too, without the motion.
+  void predict(const SemidiscreteProblem& problem, double step, const State& state, Vector& increment) const;
   /// U^{n+1} = Uⁿ + hV^{n+½}, V^{n+½} = Vⁿ + (h/2)Aⁿ in the place of the velocity; `correction` is added on contact
   /// dofs, and supported dofs go where the state's memory says. `increment` receives U^{n+1} − Uⁿ.
   void move(const SemidiscreteProblem& problem, const Vector& correction, double step, State& state, Vector& increment);

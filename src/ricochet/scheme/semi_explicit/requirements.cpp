@@ -10,7 +10,6 @@
 namespace ricochet {
 
 void require_semi_explicit(const SemidiscreteProblem& problem, const std::string& scheme) {
-  require_linear(*problem.internal_force, "scheme \"" + scheme + "\"");
   const char* const advice = "set mass.type = \"equivalent-lumped\", or use scheme \"newmark\", which takes any mass";
   if (!problem.mass.is_diagonal()) {
     throw Error(ErrorKind::invalid_input,

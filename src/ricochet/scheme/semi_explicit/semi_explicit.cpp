@@ -1,8 +1,13 @@
+#include <fmt/format.h>
+
+#include "ricochet/base/error.hpp"
 #include "ricochet/scheme/critical_step.hpp"
 #include "ricochet/scheme/requirements.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/semi_explicit/contact_equilibrium.hpp"
 #include "ricochet/scheme/semi_explicit/explicit_motion.hpp"
+#include "ricochet/scheme/semi_explicit/followed_critical_step.hpp"
+#include "ricochet/scheme/semi_explicit/layer_equilibrium.hpp"
 #include "ricochet/scheme/semi_explicit/requirements.hpp"
 #include "ricochet/scheme/semi_explicit/supported_motion.hpp"
 
@@ -10,7 +15,7 @@ namespace ricochet {
 
 namespace {
 
-/// Key of State::memory: K U at the state.
+/// Key of State::memory: the internal force at the state.
 constexpr const char* force_memory = "internal_force";
 
 /// Central differences inside, contact nodes without inertia at the end of the step (D. Doyen, A. Ern, S. Piperno, SIAM
@@ -26,6 +31,19 @@ constexpr const char* force_memory = "internal_force";
 /// Stable for h < 2/√λ, λ the largest eigenvalue of M_ii⁻¹K_ii; see critical_step.hpp.
 ///
 /// One product with K in a step, and one with its contact rows.
+///
+/// Where the internal force f = ∂W/∂u is no linear function of the displacement (finite strain) f_i(U) and f_c(U) are
+/// in the place of the products, the contact nodes' equilibrium takes Newton's method (layer_equilibrium.hpp), and a
+/// step one evaluation of f and one of W. The body without its contact nodes has the potential Ψ(u_i) = min over
+/// admissible u_c of W − L·u, and this is Störmer's and Verlet's scheme for it, so that
+/// - energy: J − (h²/8)AᵀMA changes in a step by ½ΔUᵀ(F₀+F₁) and by ΔW − ½ΔUᵀ(f₀+f₁) (`integration_error`), of order h³
+///   and of either sign: in flight it goes up and down and does not pile up, which is no proof of a bound;
+/// - momenta: ΔU = hV^{n+½} has no moment with V^{n+½}, and f has no resultant and no moment about the current
+/// positions,
+///   so Σ m x×V changes in a step by (h/2)(N₀+N₁), N the moment of all outer forces about the positions of their
+///   instant: exactly, as the resultant does.
+/// The critical step changes with the deformation (followed_critical_step.hpp): it is followed, and a step beyond it is
+/// not taken.
 class SemiExplicit final : public Scheme {
  public:
   explicit SemiExplicit(double step, bool at_any_step = false) : Scheme(step), at_any_step_(at_any_step) {}
@@ -35,7 +53,10 @@ class SemiExplicit final : public Scheme {
     return {{0.0, 1.0, 0.0, StageDofs::contact}};
   }
   [[nodiscard]] WorkRule work_rule() const override { return {0.5, 0.5}; }
-  [[nodiscard]] double critical_step() const override { return critical_step_; }
+  [[nodiscard]] double critical_step() const override { return followed_ ? followed_->smallest() : critical_step_; }
+  [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
+  [[nodiscard]] bool keeps_moments_at_finite_strain() const override { return true; }
+  [[nodiscard]] const Vector* place_of_forces() const override { return &end_; }
   [[nodiscard]] long history_every() const override { return 2; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] std::optional<double> stability_limit(const SemidiscreteProblem& problem) const override {
@@ -48,26 +69,45 @@ class SemiExplicit final : public Scheme {
     if (!at_any_step_) check_critical_step("semi-explicit", step(), critical_step_);
     motion_.analyse(problem, step());
     contact_.analyse(problem);
+    followed_.reset();
+    if (problem.internal_force->is_linear()) return;
+    layer_.analyse(problem);
+    followed_.emplace("semi-explicit");
+    followed_->analyse(problem, critical_step_);
   }
 
   void start(const SemidiscreteProblem& problem, State& state, StageSolve&) override {
     problem.internal_force->evaluate(state.displacement, state.memory[force_memory]);
     start_supports(problem, motion_.mass(), step(), state);
+    if (!followed_) return;
+    followed_->start(problem, step(), !at_any_step_, state);
+    layer_.start(state);
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
     const double h = step();
     evaluate_loads(problem, state.time + h);
-    const StageSolution* const solution = solve_contact(problem, state, stages);
-    motion_.move(problem, solution != nullptr ? solution->increment : no_correction_, h, state, increment);
-    problem.internal_force->evaluate(state.displacement, state.memory.at(force_memory));
-    motion_.accelerate(state.memory.at(force_memory), load(problem), h, state);
-    if (solution != nullptr) equations_.take_contact(stages.stage(0), *solution, h, state);
+    if (followed_) {
+      advance_finite(problem, state, stages, increment);
+    } else {
+      const StageSolution* const solution = solve_contact(problem, state, stages);
+      motion_.move(problem, solution != nullptr ? solution->increment : no_correction_, h, state, increment);
+      problem.internal_force->evaluate(state.displacement, state.memory.at(force_memory));
+      motion_.accelerate(state.memory.at(force_memory), load(problem), h, state);
+      if (solution != nullptr) equations_.take_contact(stages.stage(0), *solution, h, state);
+    }
     supports_.advance(problem, motion_.mass(), motion_.damping(), state.memory.at(force_memory), load(problem),
                       increment, h, state);
     for (const Index dof : problem.massless_dofs) state.velocity[dof] = increment[dof] / h;
     if (problem.loads.varies()) state.forces.varying_load = varying_;
     if (problem.has_damping()) state.forces.damping_force = motion_.damping().cwiseProduct(state.velocity);
+    if (!followed_) return;
+    layer_.renew_where_slow(problem, state, stages);
+    if (!at_any_step_) followed_->follow(problem, h, state.memory.at(force_memory), energy_, state);
+  }
+
+  [[nodiscard]] StepCorrections step_corrections(const SemidiscreteProblem&) const override {
+    return {.integration_error = integration_error_};
   }
 
   [[nodiscard]] const Vector* internal_force(const State& state) const override {
@@ -87,6 +127,35 @@ class SemiExplicit final : public Scheme {
     return &stages.solve(0);
   }
 
+  /// Displacement, increment, force and acceleration at the end of the step, and the reactions. The state changes only
+  /// when all of them are known.
+  void advance_finite(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) {
+    const double h = step();
+    if (!at_any_step_) followed_->require_stable(problem, h, state);
+    Vector& force = state.memory.at(force_memory);
+    if (energy_step_ != state.step) energy_ = problem.internal_force->energy(state.displacement);
+    energy_step_ = -1;
+    const StageSolution* solution = nullptr;
+    try {
+      motion_.predict(problem, h, state, increment);
+      end_ = state.displacement + increment;
+      solution = layer_.solve(problem, state, load(problem), h, stages, equations_, increment, end_);
+      problem.internal_force->evaluate(end_, force_);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged) throw;
+      throw Error(error.kind(), fmt::format("{}; {}", error.what(), followed_->explain(problem, h, state)));
+    }
+    const double before = energy_;
+    energy_ = problem.internal_force->energy(end_);
+    energy_step_ = state.step + 1;
+    integration_error_ = (energy_ - before) - 0.5 * (increment.dot(force) + increment.dot(force_));
+    state.velocity += (0.5 * h) * state.acceleration;
+    state.displacement = end_;
+    force = force_;
+    motion_.accelerate(force, load(problem), h, state);
+    if (solution != nullptr) equations_.take_contact(stages.stage(0), *solution, h, state);
+  }
+
   void evaluate_loads(const SemidiscreteProblem& problem, double time) {
     if (!problem.loads.varies()) return;
     problem.loads.varying(time, varying_);
@@ -102,6 +171,12 @@ class SemiExplicit final : public Scheme {
   const Vector no_correction_;
   ExplicitMotion motion_;
   ContactEquilibrium contact_;
+  // At finite strain:
+  std::optional<FollowedCriticalStep> followed_;
+  LayerEquilibrium layer_;
+  Vector end_, force_;     ///< displacement at the end of the last step, and the internal force there
+  long energy_step_ = -1;  ///< that energy_ is of
+  double energy_ = 0.0, integration_error_ = 0.0;
   SupportedMotion supports_{contact_.contact_node_dofs()};
   StepEquations equations_;
 };

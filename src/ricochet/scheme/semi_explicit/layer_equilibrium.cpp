@@ -1,0 +1,145 @@
+#include "ricochet/scheme/semi_explicit/layer_equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/problem/contact_conditions.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Key of State::memory; its first number is the step from which on the factor may be made anew.
+constexpr const char* layer_renewal = "layer_renewal";
+/// Iterations that are many, and steps that a new factor is kept for: it costs as much as some tens of evaluations of
+/// the internal force.
+constexpr int many_rounds = 8;
+constexpr double kept_steps = 100.0;
+/// Iterations after which they are accelerated.
+constexpr int plain_layer_rounds = 2;
+
+double largest_on_contact(const SemidiscreteProblem& problem, const Vector& values) {
+  double largest = 0.0;
+  for (const Index dof : problem.contact_dofs) {
+    if (!std::isfinite(values[dof])) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, std::abs(values[dof]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+void LayerEquilibrium::analyse(const SemidiscreteProblem& problem) {
+  if (problem.contact_dofs.empty()) return;
+  std::vector<char> wanted(static_cast<std::size_t>(problem.nodes.cols()), 0);
+  for (const Index dof : problem.contact_dofs) wanted[static_cast<std::size_t>(dof / problem.dimension)] = 1;
+  layer_ = problem.internal_force->near(wanted);
+  reach_ = problem.nodes.cwiseAbs().maxCoeff();
+}
+
+void LayerEquilibrium::start(State& state) const {
+  if (layer_) state.memory[layer_renewal].setZero(State::memory_numbers);
+}
+
+void LayerEquilibrium::renew_where_slow(const SemidiscreteProblem& problem, State& state, StageSolve& stages) {
+  if (problem.contact_dofs.empty() || progress_.rounds() <= many_rounds) return;
+  double& from = state.memory.at(layer_renewal)[0];
+  if (static_cast<double>(state.step) < from) return;
+  from = static_cast<double>(state.step) + kept_steps;
+  stages.renew(state.displacement, state.displacement);
+}
+
+/// `place`: the increments of contact dofs.
+void LayerEquilibrium::move_to(const SemidiscreteProblem& problem, const State& state, const Vector& place,
+                               Vector& increment, Vector& end) {
+  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
+    const Index dof = problem.contact_dofs[i];
+    increment[dof] = place[static_cast<Index>(i)];
+    end[dof] = state.displacement[dof] + increment[dof];
+  }
+}
+
+/// f at the end. Where the last change of places turns a cell inside out half of it is taken, and half of that.
+void LayerEquilibrium::evaluate(const SemidiscreteProblem& problem, const State& state, Vector& increment,
+                                Vector& end) {
+  constexpr int most_halvings = 5;
+  double part = 1.0;
+  for (int halving = 0;; ++halving) {
+    try {
+      layer_->evaluate(end, force_);
+      return;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged || move_.size() == 0 || halving == most_halvings) throw;
+    }
+    part *= 0.5;
+    point_ -= part * move_;
+    move_to(problem, state, point_, increment, end);
+  }
+}
+
+void LayerEquilibrium::require(const SemidiscreteProblem& problem, const State& state, const Vector& load, double step,
+                               const StepEquations& equations, const Vector& increment, const Vector& end,
+                               Stage& stage) {
+  for (const Index dof : problem.contact_dofs) stage.right_hand_side[dof] = load[dof] - force_[dof];
+  require_no_penetration(problem, end, state.time + step, stage);
+  if (!problem.contact.has_friction()) return;
+  rate_ = increment / step;
+  equations.require_friction(problem, rate_, 1.0 / step, stage);
+}
+
+const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem, const State& state, const Vector& load,
+                                             double step, StageSolve& stages, StepEquations& equations,
+                                             Vector& increment, Vector& end) {
+  if (problem.contact_dofs.empty()) return nullptr;
+  stages.follow(end);
+  if (problem.has_moving_obstacles()) {
+    middle_ = state.displacement + 0.5 * increment;
+    equations.observe_obstacles(problem, state.time + 0.5 * step, middle_);
+  }
+  Stage& stage = stages.stage(0);
+  if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
+  stage.prescribed.setZero(problem.supports.size());  // supported nodes are where they are prescribed
+  progress_.start(4.0 * std::numeric_limits<double>::epsilon() * (reach_ + largest_on_contact(problem, end)));
+  move_.resize(0);
+  point_ = increment(problem.contact_dofs);
+  evaluate(problem, state, increment, end);
+  acceleration_.restart();
+  double last = std::numeric_limits<double>::infinity();
+  while (true) {
+    require(problem, state, load, step, equations, increment, end, stage);
+    const StageSolution& solution = stages.solve(0);
+    const double correction = largest_on_contact(problem, solution.increment);
+    image_ = point_;
+    if (std::isfinite(correction)) image_ += solution.increment(problem.contact_dofs);
+    const NewtonProgress::Advice advice = progress_.judge(correction, image_.lpNorm<Eigen::Infinity>());
+    if (advice == NewtonProgress::Advice::done) {
+      move_to(problem, state, image_, increment, end);
+      return &solution;
+    }
+    if (advice == NewtonProgress::Advice::failed) {
+      throw Error(ErrorKind::not_converged,
+                  fmt::format("Newton's method found no equilibrium of the contact nodes in {} iterations (the last "
+                              "correction moves a node by {:.3g})",
+                              progress_.rounds(), correction));
+    }
+    if (correction > last) acceleration_.restart();
+    last = correction;
+    const bool accelerates = progress_.rounds() > plain_layer_rounds && advice != NewtonProgress::Advice::renew;
+    const Vector next = accelerates ? acceleration_.next(point_, image_) : image_;
+    move_ = next - point_;
+    point_ = next;
+    move_to(problem, state, point_, increment, end);
+    evaluate(problem, state, increment, end);
+    if (advice != NewtonProgress::Advice::renew) continue;
+    stages.renew(end, end);
+    acceleration_.restart();
+    progress_.count_renewal();
+    progress_.restart();
+  }
+}
+
+}  // namespace ricochet
