@@ -41,7 +41,10 @@ class LoadPath {
   /// From a displacement to that with a part of loads and supports. Throws Error(not_converged).
   void advance(double part, StaticEquilibrium& at) {
     problem_.internal_force->evaluate(at.displacement, force_);
-    Stage stage = contact_stage(problem_, at.displacement, part * load_ - force_);
+    right_ = part * load_ - force_;
+    if (problem_.pressure) problem_.pressure->add_force(at.displacement, 0.0, right_, part);
+    Stage stage = contact_stage(problem_, at.displacement, right_);
+    stage.pressure_part = part;
     stage.force_place = at.displacement;
     for (Index i = 0; i < problem_.supports.size(); ++i)
       stage.prescribed[i] =
@@ -65,7 +68,7 @@ class LoadPath {
   double epsilon_;
   std::unique_ptr<StepSolver> solver_;
   StageSolution solution_;
-  Vector load_, supported_, force_, left_;
+  Vector load_, supported_, force_, right_, left_;
 };
 
 }  // namespace

@@ -23,6 +23,7 @@ constexpr double long_factorization = 1e11;
 constexpr const char* methods_entry = ".methods";  ///< of a snapshot
 constexpr const char* made_at_entry = ".made_at";
 constexpr const char* contact_made_at_entry = ".contact_made_at";
+constexpr const char* pressure_at_entry = ".pressure_at";
 constexpr const char* frame_entry = ".frame";
 constexpr const char* kept = "as when the run began";
 
@@ -69,6 +70,7 @@ class StagesStepSolver final : public StepSolver {
   }
   void renew(const Vector& displacement, const Vector& of_contact_nodes) override {
     try {
+      if (problem_.pressure) pressure_at_ = problem_.pressure->last();
       refactorize_all(displacement, of_contact_nodes);
       made_at_ = displacement;
       contact_made_at_ = of_contact_nodes;
@@ -105,6 +107,8 @@ class StagesStepSolver final : public StepSolver {
     if (frame_) {
       snapshot.save(name + made_at_entry, made_at_);
       snapshot.save(name + contact_made_at_entry, contact_made_at_);
+      if (problem_.pressure)
+        snapshot.save(name + pressure_at_entry, Vector(Eigen::Vector2d(pressure_at_.time, pressure_at_.part)));
       frame_->save(snapshot, name + frame_entry);
     }
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->save(snapshot, fmt::format("{}.{}", name, i));
@@ -112,6 +116,10 @@ class StagesStepSolver final : public StepSolver {
   void load(const Snapshot& snapshot, const std::string& name) override {
     if (frame_) {
       const Vector& made_at = snapshot.reals(name + made_at_entry, 0, problem_.dof_count());
+      if (problem_.pressure) {
+        const Vector& instant = snapshot.reals(name + pressure_at_entry, 2);
+        problem_.pressure->set_last({instant[0], instant[1]});
+      }
       if (made_at.size() > 0) renew(made_at, snapshot.reals(name + contact_made_at_entry, problem_.dof_count()));
       frame_->load(snapshot, name + frame_entry);
     }
@@ -163,8 +171,9 @@ class StagesStepSolver final : public StepSolver {
 
   const SemidiscreteProblem& problem_;
   std::vector<OperatorCoefficients> operators_;
-  std::unique_ptr<TurnedFrame> frame_;  ///< null where the internal force is linear
-  Vector made_at_, contact_made_at_;    ///< displacement of the factors; empty: the undeformed body
+  std::unique_ptr<TurnedFrame> frame_;     ///< null where the internal force is linear
+  Vector made_at_, contact_made_at_;       ///< displacement of the factors; empty: the undeformed body
+  FollowerPressure::Instant pressure_at_;  ///< likewise
   TangentRounds rounds_;
   NewtonRounds newton_;
   std::vector<std::unique_ptr<StageSolver>> stages_;
