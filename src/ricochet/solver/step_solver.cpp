@@ -69,13 +69,9 @@ class StagesStepSolver final : public StepSolver {
     stages_.at(number)->refactorize(displacement);
   }
   void renew(const Vector& displacement, const Vector& of_contact_nodes) override {
-    try {
-      if (problem_.pressure) pressure_at_ = problem_.pressure->last();
-      refactorize_all(displacement, of_contact_nodes);
-      made_at_ = displacement;
-      contact_made_at_ = of_contact_nodes;
-    } catch (const Error& problem) {
-      if (problem.kind() != ErrorKind::invalid_input) throw;
+    if (problem_.pressure) pressure_at_ = problem_.pressure->last();
+    if (!make_factors(displacement, of_contact_nodes) && !leave_pressure_out(displacement, of_contact_nodes) &&
+        !go_half_way(displacement, of_contact_nodes)) {
       made_at_.resize(0);
       contact_made_at_.resize(0);
       refactorize_all(made_at_, made_at_);
@@ -128,6 +124,30 @@ class StagesStepSolver final : public StepSolver {
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const override { return methods_; }
 
  private:
+  /// False where an operator is not positive definite.
+  bool make_factors(const Vector& displacement, const Vector& of_contact_nodes) {
+    try {
+      refactorize_all(displacement, of_contact_nodes);
+    } catch (const Error& problem) {
+      if (problem.kind() != ErrorKind::invalid_input) throw;
+      return false;
+    }
+    made_at_ = displacement;
+    contact_made_at_ = of_contact_nodes;
+    return true;
+  }
+  /// The stiffness of a pressure is symmetric but for the edges of its surface; what is left of those has no sign, and
+  /// may push a body that only contact holds.
+  bool leave_pressure_out(const Vector& displacement, const Vector& of_contact_nodes) {
+    if (!problem_.pressure) return false;
+    pressure_at_.part = 0.0;
+    problem_.pressure->set_last(pressure_at_);
+    return make_factors(displacement, of_contact_nodes);
+  }
+  /// Of a body that is squeezed against an obstacle the tangent may be indefinite, as contact is not in it.
+  bool go_half_way(const Vector& displacement, const Vector& of_contact_nodes) {
+    return problem_.supports.size() > 0 && make_factors(0.5 * displacement, 0.5 * of_contact_nodes);
+  }
   /// In their order: a layer is made before the stage that has it.
   void refactorize_all(const Vector& displacement, const Vector& of_contact_nodes) {
     for (std::size_t i = 0; i < stages_.size(); ++i)
