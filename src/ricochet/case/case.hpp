@@ -86,6 +86,11 @@ struct TractionSection {
   std::vector<Expression> value;  ///< of x, y, z, t: force per area of the undeformed boundary
 };
 
+struct PressureSection {
+  std::string group;
+  Expression value;  ///< of x, y, z, t: positive where it presses
+};
+
 struct LoadSection {
   std::vector<double> gravity;         ///< acceleration; empty: none
   std::vector<Expression> body_force;  ///< of x, y, z, t: force per volume; empty: none
@@ -184,6 +189,7 @@ struct Case {
   std::vector<ContactSection> contacts;
   std::vector<SupportSection> supports;
   std::vector<TractionSection> tractions;
+  std::vector<PressureSection> pressures;
   LoadSection load;
   InitialSection initial;
   std::vector<MotionSection> motions;  ///< those of parts first

@@ -22,9 +22,9 @@ Section top_section() {
 
 std::vector<Section> make_sections() {
   return {top_section(),     mesh_section(),    part_section(),     material_section(), obstacle_section(),
-          contact_section(), support_section(), traction_section(), load_section(),     initial_section(),
-          motion_section(),  mass_section(),    time_section(),     solver_section(),   probe_section(),
-          output_section(),  check_section(),   expect_section()};
+          contact_section(), support_section(), traction_section(), pressure_section(), load_section(),
+          initial_section(), motion_section(),  mass_section(),     time_section(),     solver_section(),
+          probe_section(),   output_section(),  check_section(),    expect_section()};
 }
 
 std::vector<std::string> types_with(const std::string& key, const std::vector<TypeKeys>& types) {

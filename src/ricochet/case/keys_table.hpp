@@ -31,6 +31,7 @@ template <class Type>
 [[nodiscard]] Section contact_section();
 [[nodiscard]] Section support_section();
 [[nodiscard]] Section traction_section();
+[[nodiscard]] Section pressure_section();
 [[nodiscard]] Section load_section();
 [[nodiscard]] Section initial_section();
 // keys_table_method.cpp: how.

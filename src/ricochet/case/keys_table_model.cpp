@@ -203,6 +203,25 @@ Section traction_section() {
           }};
 }
 
+Section pressure_section() {
+  return {
+      .name = "pressure",
+      .kind = SectionKind::list,
+      .doc = "Pressure on a part of the boundary.",
+      .keys = {
+          group_key("boundary facets", "boundary"),
+          {.name = "value",
+           .type = KeyType::formula,
+           .unit = "stress",
+           .required = true,
+           .variables = position_and_time,
+           .doc = "Positive where it presses. With laws of finite strain it stays normal to the surface and acts on "
+                  "the area that it has now; with the linear law it keeps the direction and the area of the start. "
+                  "In plane stress it is per undeformed thickness."},
+          parameters_key(),
+      }};
+}
+
 Section load_section() {
   return {.name = "load",
           .doc = "Forces on the whole body.",

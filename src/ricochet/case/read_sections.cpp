@@ -327,6 +327,8 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems) {
   for (const SectionReader& reader : sections.all("traction")) {
     result.tractions.push_back({reader.groups("group", result.group_lists), reader.formulas("value")});
   }
+  for (const SectionReader& reader : sections.all("pressure"))
+    result.pressures.push_back({reader.groups("group", result.group_lists), reader.formula("value")});
   const SectionReader load = sections.one("load");
   result.load = {load.vector("gravity"), load.formulas("body_force")};
   result.initial = read_initial(sections.one("initial"));

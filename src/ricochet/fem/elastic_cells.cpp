@@ -224,6 +224,17 @@ void ElasticCells::strain_force(const Vector& displacement, const Vector& increm
   });
 }
 
+namespace {
+
+/// In the order of XDMF.
+void write_tensor(const Tensor& tensor, double* to) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) *to++ = tensor(i, j);
+  }
+}
+
+}  // namespace
+
 void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const Vector& displacement, double* stress,
                                double& energy_density) const {
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
@@ -240,11 +251,26 @@ void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const
                           energy += weight * kernel.energy_at(q, strain);
                           mean += weight / determinant(deformation) * (deformation * second * deformation.transpose());
                         });
-    mean /= volume;
     energy_density = energy / volume;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = i; j < 3; ++j) *stress++ = mean(i, j);
+    write_tensor(mean / volume, stress);
+  });
+}
+
+void ElasticCells::cell_strain(std::size_t block, Index local, Index cell, const Vector& displacement,
+                               double* strain) const {
+  with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    CellKernel<d> kernel = blocks<d>().kernel(block, local, cell);
+    typename CellKernel<d>::LocalVector u;
+    kernel.gather(body_.space->cells[block].cell(local), displacement, u);
+    Tensor mean = Tensor::Zero();
+    double volume = 0.0;
+    for (int q = 0; q < kernel.points(); ++q) {
+      kernel.go_to(q);
+      volume += kernel.weight(q);
+      mean += kernel.weight(q) * kernel.motion_of(u).strain;
     }
+    write_tensor(mean / volume, strain);
   });
 }
 

@@ -53,6 +53,9 @@ class ElasticCells {
   /// volume. `stress`: 6, in the order of XDMF.
   void cell_stress(std::size_t block, Index local, Index cell, const Vector& displacement, double* stress,
                    double& energy_density) const;
+  /// Mean over one cell of Green's strain, weighted by the undeformed volume, with the strain across the plane of plane
+  /// stress and the hoop strain of axisymmetric bodies. `strain`: 6, in the order of XDMF.
+  void cell_strain(std::size_t block, Index local, Index cell, const Vector& displacement, double* strain) const;
 
  private:
   template <int d>

@@ -32,16 +32,18 @@ void check_length(const Case& input, const std::string& key_path, std::size_t le
 
 namespace {
 
-/// As check_length; in two dimensions "z" would silently be 0.
+/// In two dimensions "z" would silently be 0.
+void check_expression(const Case& input, const std::string& key_path, const Expression& value, int dimension) {
+  if (dimension != 2 || !value.depends_on_z()) return;
+  refuse(input, key_path,
+         fmt::format("the expression \"{}\" depends on z, but the mesh has dimension 2", value.text()));
+}
+
+/// As check_length, too.
 void check_expressions(const Case& input, const std::string& key_path, const std::vector<Expression>& value,
                        int dimension) {
   check_length(input, key_path, value.size(), dimension);
-  for (const Expression& component : value) {
-    if (dimension == 2 && component.depends_on_z()) {
-      refuse(input, key_path,
-             fmt::format("the expression \"{}\" depends on z, but the mesh has dimension 2", component.text()));
-    }
-  }
+  for (const Expression& component : value) check_expression(input, key_path, component, dimension);
 }
 
 }  // namespace
@@ -66,6 +68,9 @@ void check_dimensions(const Case& input, int dimension) {
   }
   for (std::size_t i = 0; i < input.tractions.size(); ++i) {
     check_expressions(input, fmt::format("traction.{}.value", i), input.tractions[i].value, dimension);
+  }
+  for (std::size_t i = 0; i < input.pressures.size(); ++i) {
+    check_expression(input, fmt::format("pressure.{}.value", i), input.pressures[i].value, dimension);
   }
   check_length(input, "load.gravity", input.load.gravity.size(), dimension);
   check_expressions(input, "load.body_force", input.load.body_force, dimension);

@@ -88,6 +88,7 @@ void complete_groups(const Case& input, Mesh& mesh) {
   }
   require_boundaries("support", input.supports);
   require_boundaries("traction", input.tractions);
+  require_boundaries("pressure", input.pressures);
   for (const MotionSection& motion : input.motions) {
     if (motion.part.empty()) groups.require(motion.section + ".group", motion.group, mesh.dimension);
   }

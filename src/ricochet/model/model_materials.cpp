@@ -61,6 +61,17 @@ void require_one_kind_of_law(const Case& input, const Model& model) {
   }
 }
 
+void refuse_stretches_of_small_strain(const Case& input, const Model& model) {
+  if (has_finite_strain(model.body)) return;
+  for (const std::string& name : input.output.fields) {
+    if (!name.starts_with("principal_stretch")) continue;
+    refuse(input, "output.fields",
+           fmt::format("\"{}\" is of laws of finite strain, and this case has the linear one, whose stretches are 1 + "
+                       "principal strain: leave it out, or set material.law",
+                       name));
+  }
+}
+
 }  // namespace
 
 void assign_materials(const Case& input, Model& model) {
@@ -85,6 +96,7 @@ void assign_materials(const Case& input, Model& model) {
     choose_dilatation(input, i, model);
   }
   require_one_kind_of_law(input, model);
+  refuse_stretches_of_small_strain(input, model);
   Index without = 0;
   for (const int material : model.body.cell_material) without += material < 0 ? 1 : 0;
   if (without > 0) {

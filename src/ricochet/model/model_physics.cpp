@@ -256,6 +256,39 @@ void add_force(const std::vector<Expression>& value, const std::function<void(co
   loads.add_constant(load);
 }
 
+/// Where the tangent is constant a pressure is the dead load that it is at the start.
+void add_dead_pressure(const FollowerPressure& pressure, const Expression& value, Loads& loads, Index dofs) {
+  if (value.depends_on_time()) {
+    loads.add_general([pressure](double time, Vector& load) { pressure.add_force(Vector(), time, load); });
+    return;
+  }
+  Vector load = Vector::Zero(dofs);
+  pressure.add_force(Vector(), 0.0, load);
+  loads.add_constant(load);
+}
+
+void add_pressures(const Case& input, Model& model) {
+  const bool follows = !model.problem.internal_force->is_linear();
+  const auto all = std::make_shared<FollowerPressure>(model.body);
+  for (std::size_t i = 0; i < input.pressures.size(); ++i) {
+    const PressureSection& section = input.pressures[i];
+    const std::vector<Index> facets =
+        boundary_at(input, fmt::format("pressure.{}.group", i), model.mesh, section.group);
+    FollowerPressure own(model.body);
+    own.add(facets, section.value);
+    try {
+      // A value that is none is told with its place.
+      Vector load = Vector::Zero(model.space.dof_count());
+      own.add_force(Vector(), 0.0, load);
+      if (!follows) add_dead_pressure(own, section.value, model.problem.loads, model.space.dof_count());
+    } catch (const Error& problem) {
+      refuse(input, fmt::format("pressure.{}.value", i), problem.what());
+    }
+    if (follows) all->add(facets, section.value);
+  }
+  if (!all->empty()) model.problem.pressure = all;
+}
+
 }  // namespace
 
 void add_loads(const Case& input, Model& model) {
@@ -301,6 +334,7 @@ void add_loads(const Case& input, Model& model) {
       refuse(input, fmt::format("traction.{}.value", i), problem.what());
     }
   }
+  add_pressures(input, model);
 }
 
 }  // namespace ricochet

@@ -9,6 +9,7 @@
 #include "ricochet/contact/contact_stress.hpp"
 #include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/damping.hpp"
+#include "ricochet/problem/follower_pressure.hpp"
 #include "ricochet/problem/internal_force.hpp"
 #include "ricochet/problem/loads.hpp"
 
@@ -29,6 +30,9 @@ struct SemidiscreteProblem {
   Damping damping;
   std::shared_ptr<const InternalForce> internal_force;
   Loads loads;
+  /// Loads that follow the surface, where the internal force is not linear; null: none. The varying load of a step
+  /// contains them.
+  std::shared_ptr<const FollowerPressure> pressure;
   Supports supports;
   ContactBoundary contact;
   /// Nodes that follow others: their rows of all matrices and loads are zero, and no stage solves for them. Null: none.

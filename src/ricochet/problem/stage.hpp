@@ -72,6 +72,9 @@ struct Stage {
   /// Where the internal force f is no linear function of the displacement: a place p with −f(p) in b, and A δ
   /// stands for αM δ + ηC δ + f(p + κδ) − f(p). Empty: A δ is what it is.
   Vector force_place;
+  /// The instant of the loads that follow the surface, and the part of them that acts: in b as they are at p, and anew
+  /// where p + κδ is.
+  double pressure_time = 0.0, pressure_part = 1.0;
   Vector prescribed;               ///< δ on supported dofs, in the order of Supports::dofs()
   std::vector<char> eligible;      ///< per contact point
   Vector gap_offset;               ///< q, per contact point
@@ -93,6 +96,7 @@ struct StageSolution {
   std::vector<ContactStatus> contact_status;  ///< per contact point
   int iterations = 0;                         ///< of the contact solver
   int rounds = 1;                             ///< linear stages that were solved, for an internal force that is none
+  Vector follower_load;                       ///< what follows the surface, at p + κδ; empty: nothing does
   Vector contact_increment;                   ///< m on contact nodes, where the operator has a layer; else empty
   /// ρ̄, where it is not ρ: then not empty.
   Vector mean_normal_reaction, mean_tangential_reaction;

@@ -8,6 +8,8 @@ void StepEquations::balance(const SemidiscreteProblem& problem, double time, con
   time_ = time;
   problem.internal_force->evaluate(base, force_);
   problem.loads.total(time, stage.right_hand_side);
+  if (problem.pressure) problem.pressure->add_force(base, time, stage.right_hand_side);
+  stage.pressure_time = time;
   stage.right_hand_side -= force_;
   if (!problem.internal_force->is_linear()) stage.force_place = base;
 }
@@ -71,7 +73,7 @@ void StepEquations::require_friction_over_step(const SemidiscreteProblem& proble
 void StepEquations::take_forces(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
                                 double step, const Vector& motion, double rate, State& state) const {
   take_contact(stage, solution, step, state);
-  take_loads(problem, motion, rate, state.forces);
+  take_loads(problem, solution, motion, rate, state.forces);
 }
 
 void StepEquations::take_contact(const Stage& stage, const StageSolution& solution, double step, State& state) const {
@@ -82,12 +84,13 @@ void StepEquations::take_contact(const Stage& stage, const StageSolution& soluti
 void StepEquations::take_part(const SemidiscreteProblem& problem, const Stage& stage, const StageSolution& solution,
                               double step, const Vector& motion, double rate, StepPart& part) const {
   take_reactions(stage, solution, step, part.forces, part.obstacle_increment);
-  take_loads(problem, motion, rate, part.forces);
+  take_loads(problem, solution, motion, rate, part.forces);
 }
 
-void StepEquations::take_loads(const SemidiscreteProblem& problem, const Vector& motion, double rate,
-                               StepForces& forces) const {
-  if (problem.loads.varies()) problem.loads.varying(time_, forces.varying_load);
+void StepEquations::take_loads(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& motion,
+                               double rate, StepForces& forces) const {
+  if (problem.loads.varies() || problem.pressure) problem.loads.varying(time_, forces.varying_load);
+  if (problem.pressure) forces.varying_load += solution.follower_load;
   if (!problem.has_damping()) return;
   problem.damping.evaluate(motion, forces.damping_force);
   forces.damping_force *= rate;

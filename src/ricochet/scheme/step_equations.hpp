@@ -12,7 +12,8 @@ namespace ricochet {
 /// and the forces that its solution leaves in the state. Keeps its storage from step to step.
 class StepEquations {
  public:
-  /// b = L(t) − f(base), f the internal force. M A has no part in b: bases are chosen so.
+  /// b = L(t) − f(base), f the internal force, with the loads that follow the surface as they are at the base. M A has
+  /// no part in b: bases are chosen so.
   void balance(const SemidiscreteProblem& problem, double time, const Vector& base, Stage& stage);
   /// b = load − f(base) − C v, with loads that are no instant's.
   void balance_with(const SemidiscreteProblem& problem, const Vector& load, const Vector& base, const Vector& velocity,
@@ -75,7 +76,8 @@ class StepEquations {
  private:
   /// Takes the damping force C v from the right-hand side.
   void resist(const SemidiscreteProblem& problem, const Vector& velocity, Stage& stage);
-  void take_loads(const SemidiscreteProblem& problem, const Vector& motion, double rate, StepForces& forces) const;
+  void take_loads(const SemidiscreteProblem& problem, const StageSolution& solution, const Vector& motion, double rate,
+                  StepForces& forces) const;
   void take_reactions(const Stage& stage, const StageSolution& solution, double step, StepForces& forces,
                       ObstacleMotion& travel) const;
 

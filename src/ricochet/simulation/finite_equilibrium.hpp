@@ -7,8 +7,8 @@ namespace ricochet {
 
 /// Loads and prescribed displacements grow from nothing in increments whose lengths follow Newton's method, which
 /// starts each with the tangent there; friction is that of the slips on this way. Bodies that only contact holds are
-/// treated by the proximal point method (static_equilibrium.hpp), which is repeated at the end until its own force is
-/// rounding. Throws Error(not_converged), with the part of the loads that was reached.
+/// treated by the proximal point method (static_equilibrium.hpp), of which each correction at the end is a round, until
+/// what is left of all forces is rounding. Throws Error(not_converged), with the part of the loads that was reached.
 [[nodiscard]] StaticEquilibrium finite_equilibrium(const SemidiscreteProblem& problem, const Vector& guess,
                                                    const StepSolverOptions& options);
 

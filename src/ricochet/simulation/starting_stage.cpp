@@ -11,6 +11,7 @@ double largest(const SemidiscreteProblem& problem, const Vector& values) {
 Vector residual_force(const SemidiscreteProblem& problem, const Vector& displacement, const Vector& velocity) {
   Vector load, internal;
   problem.loads.total(0.0, load);
+  if (problem.pressure) problem.pressure->add_force(displacement, 0.0, load);
   problem.internal_force->evaluate(displacement, internal);
   load -= internal;
   if (!problem.has_damping() || velocity.size() == 0) return load;

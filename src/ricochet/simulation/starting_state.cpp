@@ -263,7 +263,8 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   if (problem.has_singular_mass()) relax_contact_nodes(problem, step, options, state);
   find_acceleration(problem, support_acceleration, pressed, step, options, state);
   find_support_reaction(problem, state);
-  if (problem.loads.varies()) problem.loads.varying(0.0, state.forces.varying_load);
+  if (problem.loads.varies() || problem.pressure) problem.loads.varying(0.0, state.forces.varying_load);
+  if (problem.pressure) problem.pressure->add_force(state.displacement, 0.0, state.forces.varying_load);
   if (problem.has_damping()) problem.damping.evaluate(state.velocity, state.forces.damping_force);
   return state;
 }

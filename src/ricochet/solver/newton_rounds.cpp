@@ -11,7 +11,9 @@ namespace ricochet {
 
 void NewtonRounds::keep(const Stage& stage) {
   place_ = stage.force_place;
-  problem_.internal_force->evaluate(place_, force_at_place_);
+  pressure_time_ = stage.pressure_time;
+  pressure_part_ = stage.pressure_part;
+  evaluate(place_, force_at_place_);
   right_hand_side_ = stage.right_hand_side;
   prescribed_ = stage.prescribed;
   gap_offset_ = stage.gap_offset;
@@ -21,6 +23,14 @@ void NewtonRounds::keep(const Stage& stage) {
   velocity_ = stage.motion->velocity;
 }
 
+void NewtonRounds::evaluate(const Vector& displacement, Vector& force) {
+  problem_.internal_force->evaluate(displacement, force);
+  if (!problem_.pressure) return;
+  follower_load_.setZero(force.size());
+  problem_.pressure->add_force(displacement, pressure_time_, follower_load_, pressure_part_);
+  force -= follower_load_;
+}
+
 /// f(p + κδ). Where a correction turns a cell inside out half of it is taken, and half of that.
 void NewtonRounds::take_internal_force(double factor, const Vector& correction) {
   constexpr int most_halvings = 5;
@@ -28,7 +38,7 @@ void NewtonRounds::take_internal_force(double factor, const Vector& correction) 
   for (int halving = 0;; ++halving) {
     displacement_ = place_ + factor * total_;
     try {
-      problem_.internal_force->evaluate(displacement_, force_);
+      evaluate(displacement_, force_);
       return;
     } catch (const Error& problem) {
       if (problem.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
@@ -92,6 +102,11 @@ void NewtonRounds::solve(const OperatorCoefficients& coefficients, const SolveLi
     linearize(coefficients, stage);
   }
   solution.increment = total_;
+  if (problem_.pressure) {
+    displacement_ = place_ + coefficients.stiffness * total_;
+    solution.follower_load.setZero(total_.size());
+    problem_.pressure->add_force(displacement_, pressure_time_, solution.follower_load, pressure_part_);
+  }
   solution.iterations = iterations;
   solution.rounds = progress_.rounds();
 }

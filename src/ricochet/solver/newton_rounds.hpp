@@ -10,7 +10,8 @@
 namespace ricochet {
 
 /// Solves  αM δ + ηC δ + f(p + κδ) − f(p) = b + Hᵀρ  with the contact conditions of the stage by Newton's method with a
-/// factor that is kept: A d = residual + Hᵀρ, δ += d, the conditions on contact exact for δ + d in every round.
+/// factor that is kept (f without the loads that follow the surface, which are in b at p): A d = residual + Hᵀρ, δ +=
+/// d, the conditions on contact exact for δ + d in every round.
 class NewtonRounds {
  public:
   explicit NewtonRounds(const SemidiscreteProblem& problem) : problem_(problem) {}
@@ -26,11 +27,14 @@ class NewtonRounds {
   void keep(const Stage& stage);
   void linearize(const OperatorCoefficients& coefficients, Stage& stage);
   void take_internal_force(double factor, const Vector& correction);
+  /// f less the loads that follow the surface.
+  void evaluate(const Vector& displacement, Vector& force);
 
   const SemidiscreteProblem& problem_;
   NewtonProgress progress_;
-  Vector total_, displacement_, force_, product_;
+  Vector total_, displacement_, force_, product_, follower_load_;
   // Of the stage at δ = 0:
+  double pressure_time_ = 0.0, pressure_part_ = 1.0;
   Vector place_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_;
 };
 

@@ -9,6 +9,12 @@
 
 namespace ricochet {
 
+SparseMatrix stage_stiffness(const SemidiscreteProblem& problem, const Vector& displacement) {
+  SparseMatrix stiffness = problem.internal_force->tangent(displacement);
+  if (!problem.pressure || displacement.size() == 0) return stiffness;
+  return add_sparse(stiffness, problem.pressure->stiffness(displacement));
+}
+
 SparseMatrix combine_operator(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                               const Vector& displacement) {
   SparseMatrix result;
@@ -19,7 +25,7 @@ SparseMatrix combine_operator(const SemidiscreteProblem& problem, const Operator
     if (result.cols() > 0) add_sparse(result, term).swap(term);
     result.swap(term);
   };
-  add(coefficients.stiffness, [&] { return problem.internal_force->tangent(displacement); });
+  add(coefficients.stiffness, [&] { return stage_stiffness(problem, displacement); });
   add(coefficients.mass, [&] { return problem.mass.whole(); });
   if (problem.has_damping()) add(coefficients.damping, [&] { return problem.damping.matrix(); });
   return result;

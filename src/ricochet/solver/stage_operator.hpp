@@ -8,7 +8,10 @@
 /// @file The matrix of a stage and the dofs it is solved for.
 namespace ricochet {
 
-/// A = αM + κK(U) + ηC on all dofs; U empty: the undeformed body.
+/// K(U), with what loads that follow the surface add to it; U empty: the undeformed body, on which they do not act.
+[[nodiscard]] SparseMatrix stage_stiffness(const SemidiscreteProblem& problem, const Vector& displacement);
+
+/// A = αM + κK(U) + ηC on all dofs, with that K.
 [[nodiscard]] SparseMatrix combine_operator(const SemidiscreteProblem& problem,
                                             const OperatorCoefficients& coefficients, const Vector& displacement = {});
 

@@ -23,6 +23,7 @@ constexpr double long_factorization = 1e11;
 constexpr const char* methods_entry = ".methods";  ///< of a snapshot
 constexpr const char* made_at_entry = ".made_at";
 constexpr const char* contact_made_at_entry = ".contact_made_at";
+constexpr const char* pressure_at_entry = ".pressure_at";
 constexpr const char* frame_entry = ".frame";
 constexpr const char* kept = "as when the run began";
 
@@ -68,12 +69,9 @@ class StagesStepSolver final : public StepSolver {
     stages_.at(number)->refactorize(displacement);
   }
   void renew(const Vector& displacement, const Vector& of_contact_nodes) override {
-    try {
-      refactorize_all(displacement, of_contact_nodes);
-      made_at_ = displacement;
-      contact_made_at_ = of_contact_nodes;
-    } catch (const Error& problem) {
-      if (problem.kind() != ErrorKind::invalid_input) throw;
+    if (problem_.pressure) pressure_at_ = problem_.pressure->last();
+    if (!make_factors(displacement, of_contact_nodes) && !leave_pressure_out(displacement, of_contact_nodes) &&
+        !go_half_way(displacement, of_contact_nodes)) {
       made_at_.resize(0);
       contact_made_at_.resize(0);
       refactorize_all(made_at_, made_at_);
@@ -105,6 +103,8 @@ class StagesStepSolver final : public StepSolver {
     if (frame_) {
       snapshot.save(name + made_at_entry, made_at_);
       snapshot.save(name + contact_made_at_entry, contact_made_at_);
+      if (problem_.pressure)
+        snapshot.save(name + pressure_at_entry, Vector(Eigen::Vector2d(pressure_at_.time, pressure_at_.part)));
       frame_->save(snapshot, name + frame_entry);
     }
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->save(snapshot, fmt::format("{}.{}", name, i));
@@ -112,6 +112,10 @@ class StagesStepSolver final : public StepSolver {
   void load(const Snapshot& snapshot, const std::string& name) override {
     if (frame_) {
       const Vector& made_at = snapshot.reals(name + made_at_entry, 0, problem_.dof_count());
+      if (problem_.pressure) {
+        const Vector& instant = snapshot.reals(name + pressure_at_entry, 2);
+        problem_.pressure->set_last({instant[0], instant[1]});
+      }
       if (made_at.size() > 0) renew(made_at, snapshot.reals(name + contact_made_at_entry, problem_.dof_count()));
       frame_->load(snapshot, name + frame_entry);
     }
@@ -120,6 +124,30 @@ class StagesStepSolver final : public StepSolver {
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const override { return methods_; }
 
  private:
+  /// False where an operator is not positive definite.
+  bool make_factors(const Vector& displacement, const Vector& of_contact_nodes) {
+    try {
+      refactorize_all(displacement, of_contact_nodes);
+    } catch (const Error& problem) {
+      if (problem.kind() != ErrorKind::invalid_input) throw;
+      return false;
+    }
+    made_at_ = displacement;
+    contact_made_at_ = of_contact_nodes;
+    return true;
+  }
+  /// The stiffness of a pressure is symmetric but for the edges of its surface; what is left of those has no sign, and
+  /// may push a body that only contact holds.
+  bool leave_pressure_out(const Vector& displacement, const Vector& of_contact_nodes) {
+    if (!problem_.pressure) return false;
+    pressure_at_.part = 0.0;
+    problem_.pressure->set_last(pressure_at_);
+    return make_factors(displacement, of_contact_nodes);
+  }
+  /// Of a body that is squeezed against an obstacle the tangent may be indefinite, as contact is not in it.
+  bool go_half_way(const Vector& displacement, const Vector& of_contact_nodes) {
+    return problem_.supports.size() > 0 && make_factors(0.5 * displacement, 0.5 * of_contact_nodes);
+  }
   /// In their order: a layer is made before the stage that has it.
   void refactorize_all(const Vector& displacement, const Vector& of_contact_nodes) {
     for (std::size_t i = 0; i < stages_.size(); ++i)
@@ -163,8 +191,9 @@ class StagesStepSolver final : public StepSolver {
 
   const SemidiscreteProblem& problem_;
   std::vector<OperatorCoefficients> operators_;
-  std::unique_ptr<TurnedFrame> frame_;  ///< null where the internal force is linear
-  Vector made_at_, contact_made_at_;    ///< displacement of the factors; empty: the undeformed body
+  std::unique_ptr<TurnedFrame> frame_;     ///< null where the internal force is linear
+  Vector made_at_, contact_made_at_;       ///< displacement of the factors; empty: the undeformed body
+  FollowerPressure::Instant pressure_at_;  ///< likewise
   TangentRounds rounds_;
   NewtonRounds newton_;
   std::vector<std::unique_ptr<StageSolver>> stages_;

@@ -7,6 +7,7 @@ namespace ricochet {
 std::unique_ptr<FieldSource> make_motion_fields(const FieldContext& context);
 std::unique_ptr<FieldSource> make_contact_fields(const FieldContext& context);
 std::unique_ptr<FieldSource> make_stress_fields(const FieldContext& context);
+std::unique_ptr<FieldSource> make_stretch_fields(const FieldContext& context);
 
 namespace {
 
@@ -22,6 +23,7 @@ const std::vector<FieldRegistration>& registrations() {
       {{"stress", "von_mises", "principal_stress", "strain_energy_density", "nodal_stress", "nodal_von_mises",
         "nodal_principal_stress"},
        make_stress_fields},
+      {{"principal_stretch_1", "principal_stretch_2", "principal_stretch_3"}, make_stretch_fields},
   };
   return all;
 }

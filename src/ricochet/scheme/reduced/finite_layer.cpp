@@ -60,6 +60,7 @@ void FiniteLayer::take_loads(const SemidiscreteProblem& problem, double step, co
 
 void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const State& state) {
   take_loads(problem, step, state);
+  end_time_ = state.time + step;
   base_ = state.displacement + (0.5 * step) * state.velocity;
   middle_ = base_;
   end_ = state.displacement + step * state.velocity;
@@ -75,17 +76,27 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   energy_start_ = energy_step_ == state.step ? kept_energy_ : problem.internal_force->energy(state.displacement);
 }
 
+void FiniteLayer::evaluate_pressure(const SemidiscreteProblem& problem, const State& state) {
+  if (!problem.pressure) return;
+  pressure_middle_.setZero(middle_.size());
+  problem.pressure->add_mean_force(middle_, state.time, end_time_, pressure_middle_);
+  pressure_end_.setZero(layer_ ? end_.size() : 0);
+  if (layer_) problem.pressure->add_force(end_, end_time_, pressure_end_);
+}
+
 /// f̄, p, f(u₁), and σ from the balance of energy at these.
 void FiniteLayer::evaluate(const SemidiscreteProblem& problem, const State& state, bool near) {
   const InternalForce& elastic = *problem.internal_force;
   increment_ = end_ - state.displacement;
   elastic.mean_force(middle_, increment_, force_);
   if (layer_) layer_->evaluate(end_, end_force_);
+  evaluate_pressure(problem, state);
   if (near || sigma_ != 0.0) elastic.strain_force(middle_, increment_, strain_force_);
   if (!near) return;
   energy_ = elastic.energy(end_);
-  // ΔW − L₁·Δ_c and Ψ(u_f1) − Ψ(u_f0), which differ by ρ·HΔ_c − d.
-  const double at_end = work_at_end_ - dissipation_;
+  // ΔW − (L₁+P(x))·Δ_c and Ψ(u_f1) − Ψ(u_f0), which differ by (P(u₁)−P(x))·Δ_c + ρ·HΔ_c − d. What L₁ and P(x) do there
+  // is in the work of D, too.
+  const double at_end = pressure_work_ + work_at_end_ - dissipation_;
   const double wanted =
       (energy_ - energy_start_) - on_contact(problem, load_, increment_) - obstacle_work_ - end_weight_ * at_end;
   product_ = load_ + mean_nodal_;
@@ -115,6 +126,7 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   product_ = middle_ - base_;
   problem.mass.multiply(product_, right_);
   stage.right_hand_side = load_ - force_ - (4.0 / (step * step)) * right_;
+  if (problem.pressure) stage.right_hand_side += pressure_middle_;
   if (sigma_ != 0.0) stage.right_hand_side -= sigma_ * strain_force_;
   if (problem.has_damping()) {
     product_ = middle_ - state.displacement;
@@ -132,11 +144,12 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   equations_.prescribe(problem, state.time + step, half_way, stage);
 }
 
-/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ − f_c(u₁) − 2 b_c), where b has no force of lagged rows
-/// and L₁ has.
+/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c), where b has no force of lagged
+/// rows and L₁ has.
 void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                   const State& state, StageSolve& stages, Stage& stage) {
   right_ = load_ - end_force_ - 2.0 * stage.right_hand_side + row_force_;
+  if (problem.pressure) right_ += pressure_end_;
   layer_right_ = right_(problem.contact_dofs);
   const Vector& shift = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
@@ -177,7 +190,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   }
   obstacle_work_ = obstacle_work(*stage.rows, solution.acting_normal(), solution.acting_tangential(), step);
   end_weight_ = solution.end_weight;
-  dissipation_ = work_at_end_ = 0.0;
+  dissipation_ = work_at_end_ = pressure_work_ = 0.0;
   if (end_weight_ == 0.0 || (solution.normal_reaction.isZero(0.0) && state.forces.normal_reaction.isZero(0.0))) {
     if (!problem.loads.varies()) {
       relaxed_ = state.displacement;
@@ -186,16 +199,22 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
     }
   }
   layer_->evaluate(relaxed_, end_force_);
-  right_ = load_ + nodal_ - end_force_;
+  if (problem.pressure) nodal_at_end_ = nodal_ + pressure_end_;
+  const Vector& at_end = problem.pressure ? nodal_at_end_ : nodal_;
+  right_ = load_ + at_end - end_force_;
   layer_right_ = right_(problem.contact_dofs);
   const Vector& change = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) relaxed_[dof] += change[dof];
   // d: both energies are of the cells at contact nodes, as the others are the same.
   product_ = relaxed_ - state.displacement;
-  right_ = load_ + nodal_;
+  right_ = load_ + at_end;
   if (!layer_energy_start_) layer_energy_start_ = layer_->energy(state.displacement);
   dissipation_ = on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
   product_ = end_ - state.displacement;
+  if (problem.pressure) {
+    right_ = pressure_end_ - pressure_middle_;
+    pressure_work_ = on_contact(problem, right_, product_);
+  }
   work_at_end_ = on_contact(problem, nodal_, product_) -
                  obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step);
 }
@@ -220,6 +239,10 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   follow_without_inertia(problem, increment, step, state);
   equations_.take_contact(stage, solution, step, state);
   if (problem.loads.varies()) state.forces.varying_load = end_load_;
+  if (problem.pressure) {
+    if (!problem.loads.varies()) state.forces.varying_load.setZero(pressure_middle_.size());
+    state.forces.varying_load += pressure_middle_;
+  }
   if (problem.has_damping()) {
     problem.damping.evaluate(increment, state.forces.damping_force);
     state.forces.damping_force *= 1.0 / step;
@@ -228,7 +251,9 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   if (problem.contact.follows_motion()) lagged_.remember(state);
   energy_step_ = state.step + 1;
   kept_energy_ = energy_;
-  corrections_ = {.numerical_dissipation = end_weight_ * dissipation_, .integration_error = lacking_};
+  corrections_ = {.load_work = end_weight_ * pressure_work_,
+                  .numerical_dissipation = end_weight_ * dissipation_,
+                  .integration_error = lacking_};
   if (end_weight_ == 1.0) return;
   // The mean works nothing along the path; what of it is the end's works what that does.
   corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);

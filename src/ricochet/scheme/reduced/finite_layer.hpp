@@ -24,11 +24,13 @@
 /// and then
 ///   E₁ − E₀ = work of loads, supports and damping + μ (ρ·HΔ_c − d),
 ///   d = [W(u₀) − (L₁+Hᵀρ)·u_c0] − Ψ(u_f0; ρ) ≥ 0,   ρ·HΔ_c = −r_N·g₀ − Σ F r_N |Δy_T| ≤ 0 against planes.
-/// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that Ψ is a minimum, which is so
-/// while K_cc is positive definite between u₀ and it. Where W is quadratic in the displacement, σ = 0 and this is
-/// massless_layer.hpp. (The mean of strains is that of J. C. Simo and N. Tarnow, Z. Angew. Math. Phys. 43 (1992)
-/// 757–792; a number that makes a force of the middle keep energy that of O. Gonzalez, J. Nonlinear Sci. 6 (1996)
-/// 449–467.)
+/// Where a pressure P(u, t) follows the surface, P(x), of the mean of the pressures at both ends, is added to L̄ and to
+/// L₁ in the equations at x, so that all round a body it has neither resultant nor moment about x, and P(u₁) to L₁ in
+/// that at the end and in Ψ. It works P(x)·Δ, and μ (P_c(u₁) − P_c(x))·Δ_c besides. With μ = 0 energy is kept, with μ >
+/// 0 no step creates any: d ≥ 0 says no more than that Ψ is a minimum, which is so while K_cc is positive definite
+/// between u₀ and it. Where W is quadratic in the displacement, σ = 0 and this is massless_layer.hpp. (The mean of
+/// strains is that of J. C. Simo and N. Tarnow, Z. Angew. Math. Phys. 43 (1992) 757–792; a number that makes a force of
+/// the middle keep energy that of O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467.)
 namespace ricochet {
 
 class FiniteLayer {
@@ -49,6 +51,7 @@ class FiniteLayer {
     double increment = 0.0;   ///< of the step so far
   };
   void start(const SemidiscreteProblem& problem, double step, const State& state);
+  void evaluate_pressure(const SemidiscreteProblem& problem, const State& state);
   void take_loads(const SemidiscreteProblem& problem, double step, const State& state);
   /// Forces at the middle and at the end; near the solution also what the energy lacks, and σ for it.
   void evaluate(const SemidiscreteProblem& problem, const State& state, bool near);
@@ -79,9 +82,13 @@ class FiniteLayer {
   /// σ of the round before and what the balance of energy asked for then; NaN before the second round.
   double sigma_before_ = 0.0, asked_before_ = 0.0;
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
+  double end_time_ = 0.0;
+  double pressure_work_ = 0.0;  ///< (P_c(u₁) − P_c(x))·Δ_c
   ObstacleMotion obstacle_;
   Vector load_, end_load_, base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
-  Vector relaxed_;  ///< u_f0 with the contact nodes that attain Ψ(u_f0; ρ)
+  Vector nodal_at_end_;                    ///< Hᵀρ + P(u₁)
+  Vector pressure_middle_, pressure_end_;  ///< P(x) with the mean of the pressures at both ends, P(u₁); empty: none
+  Vector relaxed_;                         ///< u_f0 with the contact nodes that attain Ψ(u_f0; ρ)
   Vector product_, right_, layer_right_, damping_force_, before_, last_middle_, last_end_;
   Vector row_force_;  ///< of the reactions along rows that the solver had not
 };
