@@ -2,8 +2,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "ricochet/fem/material_law.hpp"
+#include "ricochet/fem/relaxation.hpp"
 
 /// @file What a body is made of.
 namespace ricochet {
@@ -21,8 +23,17 @@ struct Material {
   /// The dilatation's part of the energy is that of a mean over each cell (elastic_cells.hpp), where the law has such a
   /// part and the cell has more than one quadrature point.
   bool mean_dilatation = false;
+  /// Beside the law, which is what is left of them in the end. Of laws of finite strain, not in plane stress.
+  std::vector<RelaxationBranch> relaxation = {};
 
-  // At zero strain, in three dimensions:
+  /// Σ gμ: what the branches add to the shear modulus at an instant.
+  [[nodiscard]] double branch_mu() const {
+    double sum = 0.0;
+    for (const RelaxationBranch& branch : relaxation) sum += branch.modulus * mu();
+    return sum;
+  }
+
+  // Of the law at zero strain, in three dimensions:
   [[nodiscard]] double lambda() const { return law->lambda(); }  ///< Lamé's first parameter
   [[nodiscard]] double mu() const { return law->mu(); }          ///< shear modulus
   [[nodiscard]] double poisson() const { return lambda() / (2.0 * (lambda() + mu())); }

@@ -6,8 +6,16 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
+#include "ricochet/problem/viscous_force.hpp"
 
 namespace ricochet {
+
+SparseMatrix stage_stiffness(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                             const Vector& displacement) {
+  const ViscousForce* const viscous = problem.internal_force->viscous();
+  return viscous != nullptr ? viscous->step_tangent(displacement, coefficients.relaxation_step)
+                            : problem.internal_force->tangent(displacement);
+}
 
 SparseMatrix combine_operator(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                               const Vector& displacement) {
@@ -19,7 +27,7 @@ SparseMatrix combine_operator(const SemidiscreteProblem& problem, const Operator
     if (result.cols() > 0) add_sparse(result, term).swap(term);
     result.swap(term);
   };
-  add(coefficients.stiffness, [&] { return problem.internal_force->tangent(displacement); });
+  add(coefficients.stiffness, [&] { return stage_stiffness(problem, coefficients, displacement); });
   add(coefficients.mass, [&] { return problem.mass.whole(); });
   if (problem.has_damping()) add(coefficients.damping, [&] { return problem.damping.matrix(); });
   return result;

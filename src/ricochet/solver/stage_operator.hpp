@@ -11,6 +11,9 @@ namespace ricochet {
 /// A = αM + κK(U) + ηC on all dofs; U empty: the undeformed body.
 [[nodiscard]] SparseMatrix combine_operator(const SemidiscreteProblem& problem,
                                             const OperatorCoefficients& coefficients, const Vector& displacement = {});
+/// K(U) of it.
+[[nodiscard]] SparseMatrix stage_stiffness(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                                           const Vector& displacement);
 
 /// The dofs that a stage solves for, ascending: no supported ones, and of the others those that it names.
 [[nodiscard]] std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs);
