@@ -119,8 +119,10 @@ std::string held_case(const std::string& law, const std::string& end_motion, dou
 double stress_along(const CaseRun& run) {
   std::vector<double> stress, energy;
   CellStress(run.model().body).evaluate(run.state().displacement, stress, energy, run.state().internal_strain);
+  double spread = 0.0;
   for (std::size_t i = 0; i < stress.size(); i += tensor_components)
-    EXPECT_NEAR(stress[i], stress[0], 1e-9 * std::abs(stress[0]));
+    spread = std::max(spread, std::abs(stress[i] - stress[0]));
+  EXPECT_LT(spread, 1e-6 * std::abs(stress[0]));
   return stress[0];
 }
 
@@ -207,34 +209,34 @@ void expect_balances(const Motion& motion, double least_force) {
   double before = start, viscous = 0.0, numerical = 0.0, largest_force = 0.0;
   const Momenta first(run);
   MomentumAccount momentum(run.problem(), run.scheme(), run.state());
-  run.run(
-      [&] {
-        const std::string what = fmt::format("{} {} {}D {} step {}", motion.scheme, motion.more, motion.dimension,
-                                             list({motion.step}), run.state().step);
-        const double energy = energy_of(run);
-        EXPECT_LT(energy, before + 1e-13 * start) << what;
-        before = energy;
-        EnergyAccount& account = run.simulation().account();
-        const Works& works = account.works();
-        EXPECT_GE(works.viscous_dissipation, viscous) << what;
-        viscous = works.viscous_dissipation;
-        EXPECT_GE(works.numerical_dissipation, numerical - 1e-14 * start) << what;
-        numerical = works.numerical_dissipation;
-        EXPECT_LT(std::abs(works.integration_error), 1e-12 * start) << what;
-        EXPECT_NEAR(account.residual(account.energies(run.state())), 0.0, 2e-13 * start) << what;
-        if (motion.scheme != "reduced-kane") {
-          EXPECT_NEAR(energy + viscous, start, 1e-12 * start) << what;
-        }
-        momentum.enter_step(run.state());
-        const Momenta now(run);
-        EXPECT_LT((now.linear - first.linear - momentum.impulse().force).norm(), 1e-12) << what;
-        EXPECT_LT((now.angular - first.angular - momentum.impulse().moment).norm(), 1e-11) << what;
-        largest_force = std::max(largest_force, run.state().forces.normal_reaction.sum());
-        Vector gap;
-        run.problem().gaps(run.state().displacement, run.state().time, gap);
-        EXPECT_GT(gap.minCoeff(), -1e-12) << what;
-      },
-      false);
+  // Of each part of a step that was cut, too.
+  const auto check = [&](const State& state) {
+    const std::string what = fmt::format("{} {} {} {}D, {} step {}", motion.scheme, motion.more, motion.time,
+                                         motion.dimension, motion.branches.front().time, state.step);
+    const double energy = energy_of(run);
+    EXPECT_LT(energy, before + 1e-13 * start) << what;
+    before = energy;
+    EnergyAccount& account = run.simulation().account();
+    const Works& works = account.works();
+    EXPECT_GE(works.viscous_dissipation, viscous) << what;
+    viscous = works.viscous_dissipation;
+    EXPECT_GE(works.numerical_dissipation, numerical - 1e-14 * start) << what;
+    numerical = works.numerical_dissipation;
+    EXPECT_LT(std::abs(works.integration_error), 1e-12 * start) << what;
+    EXPECT_NEAR(account.residual(account.energies(state)), 0.0, 2e-13 * start) << what;
+    if (motion.scheme != "reduced-kane") {
+      EXPECT_NEAR(energy + viscous, start, 1e-12 * start) << what;
+    }
+    momentum.enter_step(state);
+    const Momenta now(run);
+    EXPECT_LT((now.linear - first.linear - momentum.impulse().force).norm(), 1e-12) << what;
+    EXPECT_LT((now.angular - first.angular - momentum.impulse().moment).norm(), 1e-11) << what;
+    largest_force = std::max(largest_force, state.forces.normal_reaction.sum());
+    Vector gap;
+    run.problem().gaps(state.displacement, state.time, gap);
+    EXPECT_GT(gap.minCoeff(), -1e-12) << what;
+  };
+  for (int step = 0; step < 100 && !::testing::Test::HasFailure(); ++step) run.simulation().advance(check);
   EXPECT_GE(largest_force, least_force) << motion.scheme;
   EXPECT_GT(viscous, 0.01 * start) << motion.scheme;
 }
@@ -300,7 +302,7 @@ TEST(Viscoelasticity, AxisymmetricBodiesBalance) {
   const double start = energy_of(run);
   run.run([&] {
     EnergyAccount& account = run.simulation().account();
-    EXPECT_NEAR(energy_of(run) + account.works().viscous_dissipation, start, 1e-12 * start);
+    EXPECT_NEAR(energy_of(run) + account.works().viscous_dissipation, start, 1e-11 * start);
   });
   EXPECT_GT(run.simulation().account().works().viscous_dissipation, 0.01 * start);
 }
@@ -355,10 +357,12 @@ TEST(Viscoelasticity, AMotionThatIsTurnedIsTheSameMotion) {
 TEST(Viscoelasticity, ItsLimitsAreTwoElasticBodies) {
   const auto end_of = [](const std::string& constants, const std::vector<RelaxationBranch>& branches,
                          const std::string& scheme) {
+    const bool bounces = scheme == "reduced-kane";
     std::string text = case_of({.scheme = scheme,
                                 .law = "saint-venant-kirchhoff",
-                                .height = 0.05,
-                                .velocity = "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\"]",
+                                .time = bounces ? "reaction_weight = \"end\"\n" : "",
+                                .height = bounces ? 0.05 : 10.0,
+                                .velocity = "[\"0.3-2*(y-0.25)+x\", \"-0.5+2*(x-0.5)\"]",
                                 .branches = branches});
     if (!constants.empty()) {
       const std::string given = fmt::format("young = {}\npoisson = {}\n", young, poisson);
@@ -410,10 +414,9 @@ TEST(Viscoelasticity, RestitutionFallsWithTheBranches) {
   for (const double modulus : {0.0, 0.1, 0.3, 1.0}) {
     std::vector<RelaxationBranch> branches;
     if (modulus > 0.0) branches.push_back({modulus, 0.1});
-    CaseRun run(
-        "[mesh]\nfile = \"" + disc + "\"\n" + material("neo-hookean", branches) +
-        "[obstacle.floor]\ntype = \"plane\"\npoint = [0, -0.02]\nnormal = [0, 1]\n[[contact]]\ngroup = "
-        "\"rim\"\nobstacle = \"floor\"\n[initial]\nvelocity = [\"0\", \"-1\"]\n[time]\nstep = 0.005\nend = 1\n");
+    CaseRun run("[mesh]\nfile = \"" + disc + "\"\n" + material("neo-hookean", branches) +
+                "[obstacle.floor]\ntype = \"plane\"\npoint = [0, -0.02]\nnormal = [0, 1]\n[[contact]]\ngroup = "
+                "\"rim\"\nobstacle = \"floor\"\n[initial]\nvelocity = [\"0\", \"-1\"]\n[time]\nstep = 0.01\nend = 1\n");
     const double mass = run.problem().mass.form(Vector::Ones(run.problem().dof_count())) / 2.0;
     run.run([] {});
     EXPECT_TRUE(run.state().forces.normal_reaction.isZero(0.0));
@@ -426,10 +429,9 @@ TEST(Viscoelasticity, RestitutionFallsWithTheBranches) {
 
 /// A body is at rest for long where it starts: from a static start under its weight nothing moves and nothing relaxes.
 TEST(Viscoelasticity, AStaticStartIsRelaxed) {
-  std::string text = case_of({.height = 0.0, .branches = {{5.0, 0.05}}});
-  text.replace(text.find("displacement = "), std::string("displacement = [\"0\", \"0\"]").size(),
-               "displacement = \"static\"");
-  text += "[load]\ngravity = [0, -5]\n";
+  const std::string text = "[mesh]\nfile = \"" + block(2) + "\"\n" + material("neo-hookean", {{5.0, 0.05}}) +
+                           "[load]\ngravity = [0, -50]\n[initial]\ndisplacement = \"static\"\n[[support]]\ngroup = "
+                           "\"bottom\"\ncomponents = [\"x\", \"y\"]\nvalue = 0\n[time]\nstep = 0.01\nend = 1\n";
   CaseRun run(text);
   const Vector start = run.state().displacement;
   EXPECT_GT(start.lpNorm<Eigen::Infinity>(), 1e-3);

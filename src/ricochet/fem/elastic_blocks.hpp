@@ -3,6 +3,7 @@
 #include "ricochet/fem/cell_assembly.hpp"
 #include "ricochet/fem/cell_kernel.hpp"
 #include "ricochet/fem/elastic_cells.hpp"
+#include "ricochet/fem/relaxation.hpp"
 
 /// @file What stays the same of the cells of a body with elastic energy. Not part of the public interface.
 namespace ricochet {

@@ -71,13 +71,15 @@ class ElasticCells {
   [[nodiscard]] Index internal_size() const { return internal_begin_.empty() ? 0 : internal_begin_.back(); }
   /// A = dev E: no branch has stress.
   void relax(const Vector& displacement, Vector& internal) const;
-  /// At a displacement where A is kept: of an instant.
-  void branch_force(const Vector& displacement, const Vector& internal, Vector& result) const;
+  /// Of an instant.
   [[nodiscard]] double branch_energy(const Vector& displacement, const Vector& internal) const;
   /// Of q̄, at the middle.
   void mean_branch_force(const BranchStep& step, Vector& result) const;
   /// Of q₁, at the end.
   void end_branch_force(const BranchStep& step, Vector& result) const;
+  /// ∫ of the potential of RelaxationRule::start_energy() at a displacement, and its forces.
+  [[nodiscard]] double start_branch_energy(const BranchStep& step, const Vector& displacement) const;
+  void start_branch_force(const BranchStep& step, const Vector& displacement, Vector& result) const;
   /// A₁, and the energy that the step dissipates, ≥ 0.
   [[nodiscard]] double advance_internal(const BranchStep& step, Vector& internal) const;
 

@@ -94,7 +94,7 @@ class CellStep {
  public:
   struct Point {
     Tensor middle_motion, end_motion;  ///< displacement gradients
-    Tensor middle, end;                ///< deviators of Ē and E₁
+    Tensor start, middle, end;         ///< deviators of E₀, Ē and E₁
   };
   CellStep(const CellKernel<d>& kernel, const Index* nodes, const BranchStep& step)
       : kernel_(kernel), end_(kernel, nodes, step.end) {
@@ -104,7 +104,8 @@ class CellStep {
   [[nodiscard]] Point point() const {
     const auto [motion, strain] = kernel_.mean_motion_of(middle_, increment_);
     const Tensor end = end_.gradient();
-    return {motion, end, deviator_of(strain), deviator_of(green_strain(end))};
+    const Tensor start = end - kernel_.gradient(increment_);
+    return {motion, end, deviator_of(green_strain(start)), deviator_of(strain), deviator_of(green_strain(end))};
   }
 
  private:
@@ -140,24 +141,6 @@ void ElasticCells::relax(const Vector& displacement, Vector& internal) const {
         return 0.0;
       };
     });
-  });
-}
-
-void ElasticCells::branch_force(const Vector& displacement, const Vector& internal, Vector& result) const {
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    add_up_branches<d>(
-        [&](const CellKernel<d>& kernel, const Index* nodes) {
-          return [&, strain = CellStrain<d>(kernel, nodes, displacement)](const Material& material, Index at) {
-            const Tensor deviator = strain.deviator();
-            Tensor stress = Tensor::Zero();
-            for_each_branch(material, internal, at, [&](double modulus, double, const Tensor& own, Index) {
-              stress += 2.0 * modulus * (deviator - own);
-            });
-            return pulled(strain.gradient(), stress);
-          };
-        },
-        result);
   });
 }
 
@@ -214,6 +197,48 @@ void ElasticCells::end_branch_force(const BranchStep& step, Vector& result) cons
   });
 }
 
+double ElasticCells::start_branch_energy(const BranchStep& step, const Vector& displacement) const {
+  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    return sum_branches<d>([&](const CellKernel<d>& kernel, const Index* nodes) {
+      return [&, cell = CellStep<d>(kernel, nodes, step), strain = CellStrain<d>(kernel, nodes, displacement)](
+                 const Material& material, Index at) {
+        const auto point = cell.point();
+        const Tensor deviator = strain.deviator();
+        double sum = 0.0;
+        for_each_branch(material, step.internal, at, [&](double modulus, double time, const Tensor& own, Index) {
+          const RelaxationRule rule(step.step / time);
+          const Tensor elastic_end = point.end - rule.next(point.middle, point.end, own);
+          sum += modulus * rule.start_energy(deviator, own, elastic_end);
+        });
+        return sum;
+      };
+    });
+  });
+}
+
+void ElasticCells::start_branch_force(const BranchStep& step, const Vector& displacement, Vector& result) const {
+  with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    add_up_branches<d>(
+        [&](const CellKernel<d>& kernel, const Index* nodes) {
+          return [&, cell = CellStep<d>(kernel, nodes, step), strain = CellStrain<d>(kernel, nodes, displacement)](
+                     const Material& material, Index at) {
+            const auto point = cell.point();
+            const Tensor deviator = strain.deviator();
+            Tensor stress = Tensor::Zero();
+            for_each_branch(material, step.internal, at, [&](double modulus, double time, const Tensor& own, Index) {
+              const RelaxationRule rule(step.step / time);
+              const Tensor elastic_end = point.end - rule.next(point.middle, point.end, own);
+              stress += 2.0 * modulus * rule.start_stress(deviator, own, elastic_end);
+            });
+            return pulled(strain.gradient(), stress);
+          };
+        },
+        result);
+  });
+}
+
 double ElasticCells::advance_internal(const BranchStep& step, Vector& internal) const {
   internal.resize(internal_size());
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
@@ -224,7 +249,7 @@ double ElasticCells::advance_internal(const BranchStep& step, Vector& internal) 
         double sum = 0.0;
         for_each_branch(material, step.internal, at, [&](double modulus, double time, const Tensor& own, Index place) {
           const RelaxationRule rule(step.step / time);
-          sum += modulus * rule.dissipation(point.middle, point.end, own);
+          sum += modulus * rule.dissipation(point.start, point.middle, point.end, own);
           write_tensor(rule.next(point.middle, point.end, own), internal.data() + place);
         });
         return sum;

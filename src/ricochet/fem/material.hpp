@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "ricochet/fem/material_law.hpp"
-#include "ricochet/fem/relaxation.hpp"
 
 /// @file What a body is made of.
 namespace ricochet {
@@ -13,6 +12,12 @@ namespace ricochet {
 /// What a two-dimensional body is a section of: of a long one, of a thin one, or of one that is the same all round the
 /// y axis, from which x is the distance.
 enum class PlaneState { strain, stress, axisymmetric };
+
+/// A branch beside the law whose stress relaxes, see relaxation.hpp.
+struct RelaxationBranch {
+  double modulus = 0.0;  ///< g, relative to the shear modulus of the law
+  double time = 0.0;     ///< τ
+};
 
 struct Material {
   std::string name;      ///< of its group, for messages

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "ricochet/base/types.hpp"
-
 /// @file Stress that relaxes: branches beside a material law (a Prony series).
 ///
 /// A branch is a spring 2gμ with a dashpot behind it that gives way by the internal strain A, a deviator, symmetric and
@@ -12,20 +10,16 @@
 /// per undeformed volume. At small strain the shear modulus after a jump is μ (1 + Σ g e^(−t/τ)): that of the law is
 /// what is left in the end, and changes of volume do not relax.
 ///
-/// A step is solved in closed form for a strain that goes linearly from E₀ = 2Ē − E₁ to E₁ over the time h, Ē the mean
+/// A step is solved in closed form for a strain that goes linearly from 2Ē − E₁ to E₁ over the time h, Ē the mean
 /// strain of the step. With x = h/τ and θ = 1/(1−e^(−x)) − 1/x, which goes from ½ to 1 with x,
 ///   q̄ = (dev(2(1−θ)Ē + (2θ−1)E₁) − A)/(1 + θx)  is the mean of q over the step,   A₁ = A + x q̄,
-/// and whatever h is,
-///   2gμ q̄ : (E₁−E₀) = gμ (|q₁|² − |q₀|²) + gμ ((2θ−1)|q₁−q₀|² + 2x|q̄|²),
-/// of which the last is the exact dissipation ∫ (2gμ/τ)|q|² dt. Nothing rings where h is long; a branch then is relaxed
-/// at the end of the step. (R. L. Taylor, K. S. Pister, G. L. Goudreau, Int. J. Numer. Methods Engrg. 2 (1970) 45–59,
-/// integrate linear changes of the strain in this way.)
+/// and whatever h and J = 2Ē − E₀ − E₁ are,
+///   2gμ q̄ : (E₁−E₀) = gμ (|q₁|² − |q₀|²) + 𝒟 + 2(1−θ) gμ J : (q₁−q₀),   𝒟 = gμ ((2θ−1)|q₁−q₀|² + 2x|q̄|²) ≥ 0.
+/// Where J = 0, 𝒟 is the exact dissipation ∫ (2gμ/τ)|q|² dt. (J is not zero where contact nodes without inertia jump at
+/// the start of a step: finite_layer.hpp.) Nothing rings where h is long; a branch then is relaxed at the end of the
+/// step. (R. L. Taylor, K. S. Pister, G. L. Goudreau, Int. J. Numer. Methods Engrg. 2 (1970) 45–59, integrate linear
+/// changes of the strain in this way.)
 namespace ricochet {
-
-struct RelaxationBranch {
-  double modulus = 0.0;  ///< g, relative to the shear modulus of the law
-  double time = 0.0;     ///< τ
-};
 
 /// The numbers of a branch's step.
 class RelaxationRule {
@@ -45,12 +39,23 @@ class RelaxationRule {
   [[nodiscard]] Strain next(const Strain& middle, const Strain& end, const Strain& internal) const {
     return internal + x_ * mean(middle, end, internal);
   }
-  /// (2θ−1)|q₁−q₀|² + 2x|q̄|².
+  /// 𝒟/gμ, with E₀.
   template <class Strain>
-  [[nodiscard]] double dissipation(const Strain& middle, const Strain& end, const Strain& internal) const {
+  [[nodiscard]] double dissipation(const Strain& start, const Strain& middle, const Strain& end,
+                                   const Strain& internal) const {
     const Strain acting = mean(middle, end, internal);
-    const Strain change = 2.0 * (end - middle) - x_ * acting;
+    const Strain change = end - start - x_ * acting;
     return excess_ * change.squaredNorm() + 2.0 * x_ * acting.squaredNorm();
+  }
+  /// 2(1−θ)|q|² + 2(2θ−1) q₁:E of a strain E with A as at the start, and half of its derivative. Of E₀ + J the
+  /// latter is 2q̄ − q₁: the stress at the start of the path that has q̄ and q₁.
+  template <class Strain>
+  [[nodiscard]] double start_energy(const Strain& strain, const Strain& internal, const Strain& elastic_end) const {
+    return (1.0 - excess_) * (strain - internal).squaredNorm() + 2.0 * excess_ * elastic_end.cwiseProduct(strain).sum();
+  }
+  template <class Strain>
+  [[nodiscard]] Strain start_stress(const Strain& strain, const Strain& internal, const Strain& elastic_end) const {
+    return (1.0 - excess_) * (strain - internal) + excess_ * elastic_end;
   }
 
  private:

@@ -99,11 +99,6 @@ double FiniteElasticity::branch_energy(const Vector& displacement, const Vector&
   return cells_.branch_energy(complete(displacement, displacement_), internal);
 }
 
-void FiniteElasticity::add_branch_force(const Vector& displacement, const Vector& internal, Vector& force) const {
-  cells_.branch_force(complete(displacement, displacement_), internal, branches_);
-  add_branches(force);
-}
-
 void FiniteElasticity::add_mean_force(const BranchStep& step, Vector& force) const {
   cells_.mean_branch_force(complete(step), branches_);
   add_branches(force);
@@ -112,6 +107,15 @@ void FiniteElasticity::add_mean_force(const BranchStep& step, Vector& force) con
 void FiniteElasticity::add_end_force(const BranchStep& step, Vector& force) const {
   cells_.end_branch_force(complete(step), branches_);
   add_branches(force);
+}
+
+void FiniteElasticity::add_start_force(const BranchStep& step, const Vector& displacement, Vector& force) const {
+  cells_.start_branch_force(complete(step), complete(displacement, at_), branches_);
+  add_branches(force);
+}
+
+double FiniteElasticity::start_energy(const BranchStep& step, const Vector& displacement) const {
+  return cells_.start_branch_energy(complete(step), complete(displacement, at_));
 }
 
 double FiniteElasticity::advance_internal(const BranchStep& step, Vector& internal) const {

@@ -27,9 +27,10 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   [[nodiscard]] Index internal_size() const override { return cells_.internal_size(); }
   void relax(const Vector& displacement, Vector& internal) const override;
   [[nodiscard]] double branch_energy(const Vector& displacement, const Vector& internal) const override;
-  void add_branch_force(const Vector& displacement, const Vector& internal, Vector& force) const override;
   void add_mean_force(const BranchStep& step, Vector& force) const override;
   void add_end_force(const BranchStep& step, Vector& force) const override;
+  void add_start_force(const BranchStep& step, const Vector& displacement, Vector& force) const override;
+  [[nodiscard]] double start_energy(const BranchStep& step, const Vector& displacement) const override;
   [[nodiscard]] double advance_internal(const BranchStep& step, Vector& internal) const override;
   [[nodiscard]] SparseMatrix step_tangent(const Vector& displacement, double step) const override;
 
@@ -45,7 +46,7 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
   [[nodiscard]] BranchStep complete(const BranchStep& step) const;
   void add_branches(Vector& force) const;
 
-  mutable Vector displacement_, increment_, end_, branches_;
+  mutable Vector displacement_, increment_, end_, at_, branches_;
 };
 
 }  // namespace ricochet

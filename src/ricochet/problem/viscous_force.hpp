@@ -17,13 +17,15 @@ class ViscousForce {
   [[nodiscard]] virtual double branch_energy(const Vector& displacement, const Vector& internal) const = 0;
 
   // Forces, added to those of the laws:
-  /// At an instant: the derivative of branch_energy() by the displacement.
-  virtual void add_branch_force(const Vector& displacement, const Vector& internal, Vector& force) const = 0;
   /// What acts over a step, at its middle. Where that is ½(u₀+u₁) its work on the increment is the change of the
   /// stored energy and what advance_internal() says.
   virtual void add_mean_force(const BranchStep& step, Vector& force) const = 0;
   /// At the end of the step, with A₁.
   virtual void add_end_force(const BranchStep& step, Vector& force) const = 0;
+  /// Of a potential at a displacement, which says what contact nodes lose that jump at the start of a step
+  /// (RelaxationRule::start_energy(), scheme/reduced/finite_layer.hpp).
+  virtual void add_start_force(const BranchStep& step, const Vector& displacement, Vector& force) const = 0;
+  [[nodiscard]] virtual double start_energy(const BranchStep& step, const Vector& displacement) const = 0;
   /// Of the laws and of this, over a step of a length; see InternalForce::tangent().
   [[nodiscard]] virtual SparseMatrix step_tangent(const Vector& displacement, double step) const = 0;
   /// A₁; returns the energy that the step dissipates, never negative.

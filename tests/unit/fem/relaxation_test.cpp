@@ -30,16 +30,41 @@ struct Branch {
 };
 
 TEST(Relaxation, TheWorkOfTheMeanIsStoredAndDissipated) {
+  for (const double jump : {0.0, 1.0}) {
+    const Branch branch;
+    const Strain middle = branch.middle() + 0.5 * jump * some(4), far = jump * some(4);
+    for (const double x : ratios()) {
+      const RelaxationRule rule(x);
+      const Strain mean = rule.mean(middle, branch.end, branch.internal);
+      const Strain before = branch.start - branch.internal,
+                   after = branch.end - rule.next(middle, branch.end, branch.internal);
+      const double work = 2.0 * mean.cwiseProduct(branch.end - branch.start).sum();
+      const double dissipated = rule.dissipation(branch.start, middle, branch.end, branch.internal);
+      // 2(1−θ) = derivative of start_stress by the strain.
+      const Strain none = Strain::Zero(), unit = Strain::Ones();
+      const double kept = rule.start_stress(unit, none, none)(0, 0);
+      EXPECT_GE(dissipated, 0.0);
+      EXPECT_NEAR(
+          work, after.squaredNorm() - before.squaredNorm() + dissipated + kept * far.cwiseProduct(after - before).sum(),
+          1e-13 * (before.squaredNorm() + far.squaredNorm()))
+          << x;
+      // At the start of the path.
+      const Strain first = 2.0 * middle - branch.end;
+      EXPECT_LT((rule.start_stress(first, branch.internal, after) - (2.0 * mean - after)).norm(), 1e-13) << x;
+    }
+  }
+}
+
+TEST(Relaxation, TheStartStressIsHalfOfTheDerivativeOfItsEnergy) {
   const Branch branch;
+  const Strain direction = some(4), end = some(5);
   for (const double x : ratios()) {
     const RelaxationRule rule(x);
-    const Strain mean = rule.mean(branch.middle(), branch.end, branch.internal);
-    const Strain next = rule.next(branch.middle(), branch.end, branch.internal);
-    const double work = 2.0 * mean.cwiseProduct(branch.end - branch.start).sum();
-    const double stored = (branch.end - next).squaredNorm() - (branch.start - branch.internal).squaredNorm();
-    const double dissipated = rule.dissipation(branch.middle(), branch.end, branch.internal);
-    EXPECT_GE(dissipated, 0.0);
-    EXPECT_NEAR(work, stored + dissipated, 1e-13 * (branch.start - branch.internal).squaredNorm()) << x;
+    const Strain more = branch.start + direction, less = branch.start - direction;
+    const double difference =
+        rule.start_energy(more, branch.internal, end) - rule.start_energy(less, branch.internal, end);
+    const double half = 2.0 * rule.start_stress(branch.start, branch.internal, end).cwiseProduct(direction).sum();
+    EXPECT_NEAR(difference, 2.0 * half, 1e-12) << x;
   }
 }
 
@@ -54,7 +79,7 @@ TEST(Relaxation, AStrainThatStaysRelaxesExponentially) {
     const Strain mean = rule.mean(branch.middle(), branch.end, branch.internal);
     EXPECT_LT((mean - (-std::expm1(-x) / x) * before).norm(), 1e-14 * before.norm()) << x;
     // ∫ (2/τ)|q|² dt
-    EXPECT_NEAR(rule.dissipation(branch.middle(), branch.end, branch.internal),
+    EXPECT_NEAR(rule.dissipation(branch.start, branch.middle(), branch.end, branch.internal),
                 -std::expm1(-2.0 * x) * before.squaredNorm(), 1e-14 * before.squaredNorm())
         << x;
   }

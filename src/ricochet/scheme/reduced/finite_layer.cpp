@@ -173,8 +173,10 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
     }
   }
   layer_->evaluate(relaxed_, end_force_);
-  if (const ViscousForce* const viscous = layer_->viscous())
-    viscous->add_branch_force(relaxed_, state.internal_strain, end_force_);
+  const ViscousForce* const viscous = layer_->viscous();
+  increment_ = end_ - state.displacement;
+  const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
+  if (viscous != nullptr) viscous->add_start_force(branches, relaxed_, end_force_);
   right_ = load_ + nodal_ - end_force_;
   layer_right_ = right_(problem.contact_dofs);
   const Vector& change = MasslessLayer::solve_layer(problem, layer_right_, stages);
@@ -182,9 +184,10 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   // d: both energies are of the cells at contact nodes, as the others are the same.
   product_ = relaxed_ - state.displacement;
   right_ = load_ + nodal_;
-  if (!layer_energy_start_) layer_energy_start_ = stored_energy(*layer_, state.displacement, state.internal_strain);
-  dissipation_ = on_contact(problem, right_, product_) -
-                 (stored_energy(*layer_, relaxed_, state.internal_strain) - *layer_energy_start_);
+  if (!layer_energy_start_) layer_energy_start_ = layer_->energy(state.displacement);
+  dissipation_ = on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
+  if (viscous != nullptr)
+    dissipation_ -= viscous->start_energy(branches, relaxed_) - viscous->start_energy(branches, state.displacement);
   product_ = end_ - state.displacement;
   work_at_end_ = on_contact(problem, nodal_, product_) -
                  obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step);

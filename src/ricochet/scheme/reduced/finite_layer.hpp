@@ -27,15 +27,18 @@
 /// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that Ψ is a minimum, which is so
 /// while K_cc is positive definite between u₀ and it.
 ///
-/// Branches beside the laws (fem/relaxation.hpp) add the forces of 2gμ q̄ to f̄ and those of 2gμ q₁ to f(u₁); both come
-/// from the strain that goes linearly from 2Ē − E₁ to E₁. Where a mean of the reactions makes x_c half of the way that
-/// is the step's own strain; reactions of the end that act over all of it move contact nodes at its start, and so does
-/// this strain. With V(u, A) = W(u) + Σ ∫ gμ |dev E(u) − A|², the stored energy, and 𝒟 ≥ 0 the exact dissipation of
-/// that strain, the above holds with
-///   V(u₁, A₁) − V(u₀, A₀) + 𝒟 for ΔW,   V(u₁, A₁) + 𝒟 − (L₁ + Hᵀρ)·u_c1 for Ψ(u_f1; ρ),   V(·, A₀) for W in Ψ(u_f0; ρ)
-/// and in d, and
+/// Branches beside the laws (fem/relaxation.hpp) add the forces of 2gμ q̄ to f̄ and those of 2gμ q₁ to f(u₁), both for
+/// the strain that goes linearly from 2Ē − E₁ to E₁. Where a mean of the reactions makes x_c half of the way, that is
+/// the step's own strain; reactions of the end that act over all of it move contact nodes at its start, by J, and so
+/// does this strain. With V(u, A) = W(u) + Σ ∫ gμ |dev E(u) − A|², the stored energy, 𝒟 ≥ 0 of relaxation.hpp, and
+///   P(u) = W(u) + Σ ∫ gμ (2(1−θ) |dev E(u) − A₀|² + 2(2θ−1) q₁ : E(u)) − (L₁ + Hᵀρ)·u_c,
+/// the works asked for are those above with V(u₁, A₁) − V(u₀, A₀) + 𝒟 for ΔW, with d = P(u₀) − min over u_c of P ≥ 0,
+/// and
+///   V(u₁, A₁) − V(u₀, A₀) + 𝒟 − (L₁ + Hᵀρ)·Δ_c + d  for Ψ(u_f1; ρ) − Ψ(u_f0; ρ), so that
 ///   E₁ − E₀ = work of loads, supports and damping + μ (ρ·HΔ_c − d) − 𝒟,   d ≥ 0,   𝒟 ≥ 0:
-/// no step creates energy, whatever h/τ is. Where Ē = ½(E₀+E₁) and V is quadratic in E, σ = 0 again.
+/// no step creates energy, whatever h/τ is. Where V is quadratic in the displacement and the end reactions act, P is
+/// least at the displacement of E₀ + J, since its force there is 2D − f(u₁) = L₁ + Hᵀρ; then D works just that, and
+/// σ = 0.
 ///
 /// Where W is quadratic in the displacement, σ = 0 and this is
 /// massless_layer.hpp. (The mean of strains is that of J. C. Simo and N. Tarnow, Z. Angew. Math. Phys. 43 (1992)
