@@ -55,6 +55,8 @@ def documented_columns(dimension, case, points):
             columns += vector_columns(f"momentum.{body}", dimension)
     if any(material.get("law", "linear") != "linear" for material in case["material"]):
         columns += ["integration_error", "newton_rounds"]
+    if any("relaxation" in material for material in case["material"]):
+        columns += ["viscous_dissipation"]
     for number, contact in enumerate(case.get("contact", [])):
         if "against" in contact and not contact.get("tied", False):
             columns += vector_columns(f"pair_force.{number}", dimension)

@@ -277,6 +277,26 @@ class SemanticErrors(TestCase):
                                             "lambda = 1.0\nmu = 1.0\n"))
         self.assertEqual(status.returncode, 2)
 
+    def test_relaxation_that_makes_no_sense(self):
+        def relaxing(modulus, time, law="neo-hookean", more=""):
+            return block_case().replace("density = ", f'law = "{law}"\n{more}relaxation = {{ modulus = {modulus}, '
+                                        f"time = {time} }}\ndensity = ", 1)
+
+        newmark = 'scheme = "newmark"\npreset = "trapezoidal"\n'
+        fits = relaxing("[0.3, 0.2]", "[0.1, 1]").replace(newmark, "")
+        self.expect_status(0, run("validate", self.write("case.toml", fits)))
+        self.refuse(relaxing("[0.3, 0.2]", "[0.1, 1]"), '"newmark"', "does not relax stress", "reduced-kane")
+        self.refuse(relaxing("[0.3]", "[0.1]", "linear"), "{ modulus", "saint-venant-kirchhoff")
+        self.refuse(relaxing("[0.3, -0.2]", "[0.1, 1]"), "-0.2]", 'entry 2 of "modulus"', "a positive number")
+        self.refuse(relaxing("[0.3, 0.2]", "[0.1, 0]"), "0] }", 'entry 2 of "time"', "a positive number")
+        self.refuse(relaxing("[0.3, 0.2]", "[0.1]"), "[0.1]", "2 and 1")
+        self.refuse(relaxing("0.3", "[0.1]"), "0.3,", '"modulus"', "a list")
+        self.refuse(relaxing("[]", "[0.1]"), "[], time", '"modulus"', "a list")
+        self.refuse(block_case().replace("density = ", 'law = "neo-hookean"\nrelaxation = { modulus = [0.3] }\n'
+                                         "density = ", 1), None, 'has no "time"')
+        plane_stress = fits.replace("[mesh]\n", '[mesh]\nplane = "stress"\n')
+        self.refuse(plane_stress, "{ modulus", "plane strain")
+
     def test_supports_with_parameters_of_their_own(self):
         """Two supports with the same text are not the same support."""
         text = MIXED.replace("end = 0.3", "end = 0.1") + support("bottom", '["x"]', '"p*t"', "p = 1.0")

@@ -40,6 +40,8 @@ std::string wanted(const Key& key) {
       return "true or false";
     case KeyType::vector:
       return "a vector of 2 or 3 numbers";
+    case KeyType::numbers:
+      return fmt::format("a list whose entries are each {}", with_range("number", key.range));
     case KeyType::axial:
       return "a number in two dimensions, a vector of 3 numbers in three";
     case KeyType::formula:

@@ -16,6 +16,7 @@ enum class KeyType {
   integer,     ///< within `range`, or one of `choices`
   flag,        ///< true or false
   vector,      ///< 2 or 3 numbers
+  numbers,     ///< one or more, each within `range`
   axial,       ///< of a rotation: a number in two dimensions, 3 numbers in three
   formula,     ///< a number or an expression in `variables`
   formulas,    ///< 2 or 3 of them, or one of `choices`

@@ -46,6 +46,11 @@ struct DampingSection {
   double stiffness = 0.0;  ///< time
 };
 
+struct RelaxationSection {
+  std::vector<double> modulus;  ///< per branch, relative to the law's shear modulus
+  std::vector<double> time;     ///< per branch
+};
+
 struct MaterialSection {
   std::string dilatation = "automatic";
   std::string group;
@@ -53,6 +58,7 @@ struct MaterialSection {
   std::string law = "linear";
   Parameters parameters;  ///< of the law
   DampingSection damping;
+  RelaxationSection relaxation;  ///< of one length; empty: none
 };
 
 struct ObstacleSection {

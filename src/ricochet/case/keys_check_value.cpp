@@ -84,6 +84,20 @@ void check_vector(const Key& key, TomlNode& value, bool with_expressions, Proble
   }
 }
 
+void check_numbers(const Key& key, TomlNode& value, Problems& problems) {
+  if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
+  Key of_entry = key;
+  of_entry.type = KeyType::number;
+  for (std::size_t i = 0; i < value.children.size(); ++i) {
+    TomlNode& entry = value.children[i];
+    const TomlNode found = entry;
+    if (make_finite_number(entry) && is_within(key.range, entry.real)) continue;
+    value.is_refused = true;
+    problems.add(entry.location, fmt::format("entry {} of \"{}\" must be {}; found {}", i + 1, key.name,
+                                             wanted_with_unit(of_entry), describe(found)));
+  }
+}
+
 void check_axial(const Key& key, TomlNode& value, Problems& problems) {
   if (value.kind == Kind::list && value.children.size() == 3) return check_vector(key, value, false, problems);
   if (!value.is_number() || !make_finite_number(value)) refuse_type(key, value, problems);
@@ -163,6 +177,8 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
       return;
     case KeyType::vector:
       return check_vector(key, value, false, problems);
+    case KeyType::numbers:
+      return check_numbers(key, value, problems);
     case KeyType::axial:
       return check_axial(key, value, problems);
     case KeyType::formula:

@@ -43,6 +43,26 @@ Key damping_key() {
           .doc = "Rayleigh damping."};
 }
 
+Key relaxation_key() {
+  return {.name = "relaxation",
+          .type = KeyType::table,
+          .keys = {{.name = "modulus",
+                    .type = KeyType::numbers,
+                    .unit = "1",
+                    .required = true,
+                    .range = positive,
+                    .doc = "Shear modulus of each branch, relative to that of the law at zero strain."},
+                   {.name = "time",
+                    .type = KeyType::numbers,
+                    .unit = "time",
+                    .required = true,
+                    .range = positive,
+                    .doc = "Relaxation time of each branch."}},
+          .doc =
+              "Of laws of finite strain: branches whose stress relaxes (a Prony series). The law's own constants are "
+              "those that are left in the end."};
+}
+
 }  // namespace
 
 Key group_key(const char* kind, const char* built_in) {
@@ -81,6 +101,7 @@ Section material_section() {
                               "or of a \"mean\" over each cell, which does not lock as Poisson's ratio nears 1/2; "
                               "\"automatic\": the mean from 0.4 on, where the law and the cells have one."},
                       damping_key(),
+                      relaxation_key(),
                   }};
   return with_types(std::move(section), "law", material_law_registry());
 }

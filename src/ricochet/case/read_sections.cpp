@@ -52,6 +52,16 @@ MaterialSection read_material(const SectionReader& reader, Case& result) {
   const SectionReader damping = reader.table("damping");
   material.damping.mass = damping.number("mass");
   material.damping.stiffness = damping.number("stiffness");
+  if (!reader.is_usable("relaxation")) return material;
+  const SectionReader relaxation = reader.table("relaxation");
+  material.relaxation = {relaxation.vector("modulus"), relaxation.vector("time")};
+  if (!relaxation.is_usable("modulus") || !relaxation.is_usable("time")) return material;
+  const std::size_t moduli = material.relaxation.modulus.size(), times = material.relaxation.time.size();
+  if (moduli != times) {
+    relaxation.add_problem("time", fmt::format("\"modulus\" and \"time\" have one entry for each branch, and there "
+                                               "are {} and {} of them",
+                                               moduli, times));
+  }
   return material;
 }
 

@@ -59,6 +59,8 @@ Json type_schema(const Key& key) {
       return {{"type", "boolean"}};
     case KeyType::vector:
       return vector_schema({{"type", "number"}});
+    case KeyType::numbers:
+      return {{"type", "array"}, {"items", number_schema("number", key.range)}, {"minItems", 1}};
     case KeyType::axial: {
       const Json vector{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
       return {{"anyOf", Json::array({Json{{"type", "number"}}, vector})}};

@@ -179,6 +179,19 @@ class CellKernel {
     make_symmetric(blocks);
   }
 
+  /// Adds that of a stress of `modulus` times the strain's deviator, at no stress.
+  void add_deviatoric_tangent(const LocalVector& u, double modulus, double* blocks) {
+    StressTangent tangent = StressTangent::Zero();
+    add_symmetric_product(Tensor::Identity(), modulus, tangent);
+    add_dyad(Tensor::Identity(), Tensor::Identity(), -modulus / 3.0, tangent);
+    for (int q = 0; q < block_.points; ++q) {
+      go_to(q);
+      const auto [motion, strain] = motion_of(u);
+      add_point_tangent(q, deformation_of(motion, strain), Tensor::Zero(), tangent, blocks);
+    }
+    make_symmetric(blocks);
+  }
+
   [[nodiscard]] bool has_dilatation() const { return volume_.modulus > 0.0; }
   [[nodiscard]] int points() const { return block_.points; }
   [[nodiscard]] int nodes() const { return block_.nodes; }

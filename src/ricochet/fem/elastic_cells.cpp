@@ -1,69 +1,13 @@
 #include "ricochet/fem/elastic_cells.hpp"
 
-#include "ricochet/fem/cell_assembly.hpp"
-#include "ricochet/fem/cell_kernel.hpp"
+#include "ricochet/fem/elastic_blocks.hpp"
 
 namespace ricochet {
-
-template <int d>
-struct ElasticCells::Blocks {
-  const Body& body;
-  std::vector<KernelBlock<d>> all;
-
-  explicit Blocks(const Body& of) : body(of) {
-    for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b]));
-  }
-  [[nodiscard]] const Material& material(Index cell) const { return material_of(body, cell); }
-  [[nodiscard]] CellKernel<d> kernel(std::size_t block, Index local, Index cell) const {
-    const Material& of = material(cell);
-    return {all[block], local, *of.law, is_plane_stress(body), of.mean_dilatation};
-  }
-  [[nodiscard]] CellKernel<d> kernel(const CellWalk& walk, Index cell) const {
-    return kernel(walk.block(), walk.local(), cell);
-  }
-
- private:
-  [[nodiscard]] KernelBlock<d> make(const CellBlock& cells) const {
-    KernelBlock<d> block{
-        stiffness_integration(cells.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body))};
-    const bool simplex = is_simplex(cells.shape);
-    block.affine = simplex && body.mesh->degree == 1;
-    block.points = static_cast<int>(block.integration.rule.weights.size());
-    block.nodes = static_cast<int>(block.integration.displacement.values.rows());
-    block.weight.reserve(static_cast<std::size_t>(cells.size() * block.points));
-    for (Index cell = 0; cell < cells.size(); ++cell) {
-      for (int q = 0; q < block.points; ++q) {
-        const auto map = jacobian<d>(body.mesh->nodes, cells.cell(cell),
-                                     block.integration.geometry.gradients[static_cast<std::size_t>(q)]);
-        block.weight.push_back(block.integration.rule.weights[q] * map.determinant() *
-                               block.integration.ring(body.mesh->nodes, cells.cell(cell), q));
-        if (is_axisymmetric(body))
-          block.radius.push_back(block.integration.radius(body.mesh->nodes, cells.cell(cell), q));
-        if (block.affine && q > 0) continue;
-        const Eigen::Matrix<double, d, d> inverse = map.inverse();
-        for (int i = 0; i < d; ++i) {
-          for (int j = 0; j < d; ++j) block.inverse.push_back(inverse(i, j));
-        }
-      }
-    }
-    if (!simplex || body.space->degree > 1) block.dilatation_functions = dilatation_functions(cells.shape, block);
-    return block;
-  }
-  /// Linear on quadrilaterals and hexahedra of degree 2, else constant. (Triangles of degree 2 are not stable with
-  /// linear ones.)
-  [[nodiscard]] Matrix dilatation_functions(CellShape shape, const KernelBlock<d>& block) const {
-    const bool linear = !is_simplex(shape) && body.space->degree == 2;
-    Matrix result = Matrix::Ones(block.points, linear ? d + 1 : 1);
-    const Vector centre = reference_centre(shape);
-    if (linear) result.rightCols(d) = (block.integration.rule.points.colwise() - centre).transpose();
-    return result;
-  }
-  static bool is_simplex(CellShape shape) { return shape == CellShape::triangle || shape == CellShape::tetrahedron; }
-};
 
 ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph) : body_(body), graph_(graph) {
   if (body.mesh->dimension == 2) plane_ = std::make_unique<Blocks<2>>(body);
   if (body.mesh->dimension == 3) solid_ = std::make_unique<Blocks<3>>(body);
+  find_internal_places();
 }
 
 ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph, std::vector<int> cells)
@@ -73,22 +17,7 @@ ElasticCells::ElasticCells(const Body& body, const NodeGraph* graph, std::vector
 
 ElasticCells::~ElasticCells() = default;
 
-template <>
-const ElasticCells::Blocks<2>& ElasticCells::blocks<2>() const {
-  return *plane_;
-}
-template <>
-const ElasticCells::Blocks<3>& ElasticCells::blocks<3>() const {
-  return *solid_;
-}
-
 namespace {
-
-/// Calls work(std::integral_constant<int, d>) for the dimension.
-template <class Work>
-auto with_dimension(int dimension, const Work& work) {
-  return dimension == 2 ? work(std::integral_constant<int, 2>()) : work(std::integral_constant<int, 3>());
-}
 
 /// The worst of the cells of one part; parts are compared in their order.
 void worse(InvertedCell& worst, Index cell, double ratio) {
@@ -179,7 +108,7 @@ double ElasticCells::energy(const Vector& displacement) const {
   });
 }
 
-SparseMatrix ElasticCells::tangent(const Vector& displacement) const {
+SparseMatrix ElasticCells::tangent(const Vector& displacement, double step) const {
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
@@ -190,6 +119,12 @@ SparseMatrix ElasticCells::tangent(const Vector& displacement) const {
       if (displacement.size() > 0) kernel.gather(body_.space->cells[block].cell(local), displacement, u);
       std::fill_n(values, pair_number(0, kernel.nodes()) * d * d, 0.0);
       kernel.add_tangent(u, values);
+      if (step == 0.0 || internal_begin_.empty()) return;
+      const Material& material = all.material(cell);
+      double modulus = 0.0;
+      for (const RelaxationBranch& branch : material.relaxation)
+        modulus += 2.0 * branch.modulus * material.mu() * RelaxationRule(step / branch.time).stiffness();
+      if (modulus > 0.0) kernel.add_deviatoric_tangent(u, modulus, values);
     });
   });
 }
@@ -233,10 +168,26 @@ void write_tensor(const Tensor& tensor, double* to) {
   }
 }
 
+/// Adds the stress of the branches of a point; returns their energy. Goes on to the next point.
+double take_branches(const Material& material, const Tensor& strain, const double*& internal, Tensor& stress) {
+  const Tensor deviator = deviator_of(strain);
+  double energy = 0.0;
+  for (const RelaxationBranch& branch : material.relaxation) {
+    const Tensor elastic = deviator - read_tensor(internal);
+    const double modulus = branch.modulus * material.mu();
+    stress += 2.0 * modulus * elastic;
+    energy += modulus * elastic.squaredNorm();
+    internal += internal_components;
+  }
+  return energy;
+}
+
 }  // namespace
 
-void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const Vector& displacement, double* stress,
-                               double& energy_density) const {
+void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const Vector& displacement,
+                               const Vector& internal, double* stress, double& energy_density) const {
+  const Material& material = material_of(body_, cell);
+  const double* at = internal.size() > 0 ? internal.data() + internal_begin_[static_cast<std::size_t>(cell)] : nullptr;
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     CellKernel<d> kernel = blocks<d>().kernel(block, local, cell);
@@ -248,8 +199,10 @@ void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const
                         [&](int q, const Tensor& deformation, const Tensor& strain, const Tensor& second) {
                           const double weight = kernel.weight(q);
                           volume += weight;
+                          Tensor all = second;
                           energy += weight * kernel.energy_at(q, strain);
-                          mean += weight / determinant(deformation) * (deformation * second * deformation.transpose());
+                          if (at != nullptr) energy += weight * take_branches(material, strain, at, all);
+                          mean += weight / determinant(deformation) * (deformation * all * deformation.transpose());
                         });
     energy_density = energy / volume;
     write_tensor(mean / volume, stress);

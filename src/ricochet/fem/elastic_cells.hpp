@@ -25,6 +25,15 @@ struct InvertedCell {
   double volume_ratio = 1.0;
 };
 
+/// A step as the branches of a material see it (relaxation.hpp). Displacements are per dof.
+struct BranchStep {
+  const Vector& middle;     ///< where forces act over the step
+  const Vector& increment;  ///< u₁ − u₀, which makes Ē of it as for mean_force()
+  const Vector& end;        ///< u₁
+  const Vector& internal;   ///< A at the start
+  double step;              ///< h
+};
+
 class ElasticCells {
  public:
   /// Keeps references. Without a graph there is neither force nor tangent.
@@ -42,20 +51,40 @@ class ElasticCells {
   /// Angew. Math. Phys. 43 (1992) 757–792).
   [[nodiscard]] InvertedCell mean_force(const Vector& middle, const Vector& increment, Vector& result) const;
   [[nodiscard]] double energy(const Vector& displacement) const;
-  /// Symmetric to the bit, on the pattern of the graph. An empty displacement is zero.
-  [[nodiscard]] SparseMatrix tangent(const Vector& displacement) const;
+  /// Symmetric to the bit, on the pattern of the graph. An empty displacement is zero. With a `step` that of the
+  /// branches over a step of this length is in it, at no stress of theirs.
+  [[nodiscard]] SparseMatrix tangent(const Vector& displacement, double step = 0.0) const;
   /// Forces, at a displacement, of the stress 𝔻₀ : (the derivative of E along `increment`), 𝔻₀ the tangent at zero
   /// strain. From half way, that is the change of E over the increment, and the work on the increment is
   /// Σ ∫ ΔE : 𝔻₀ : ΔE ≥ 0. No law of a linear material has such forces here.
   void strain_force(const Vector& displacement, const Vector& increment, Vector& result) const;
 
   /// Means over one cell of the Cauchy stress (weighted by the undeformed volume) and of the energy per undeformed
-  /// volume. `stress`: 6, in the order of XDMF.
-  void cell_stress(std::size_t block, Index local, Index cell, const Vector& displacement, double* stress,
-                   double& energy_density) const;
+  /// volume, those of branches included. `stress`: 6, in the order of XDMF. `internal`: empty where no branch has
+  /// stress.
+  void cell_stress(std::size_t block, Index local, Index cell, const Vector& displacement, const Vector& internal,
+                   double* stress, double& energy_density) const;
   /// Mean over one cell of Green's strain, weighted by the undeformed volume, with the strain across the plane of plane
   /// stress and the hoop strain of axisymmetric bodies. `strain`: 6, in the order of XDMF.
   void cell_strain(std::size_t block, Index local, Index cell, const Vector& displacement, double* strain) const;
+
+  // Branches of the materials, relaxation.hpp (elastic_cells_branches.cpp): what they add to energy and forces. Their
+  // internal strains are one vector for all of the body, also where these are some cells of it: six numbers, xx, yy,
+  // zz, xy, yz, zx, per branch of each quadrature point.
+  [[nodiscard]] Index internal_size() const { return internal_begin_.empty() ? 0 : internal_begin_.back(); }
+  /// A = dev E: no branch has stress.
+  void relax(const Vector& displacement, Vector& internal) const;
+  /// Of an instant.
+  [[nodiscard]] double branch_energy(const Vector& displacement, const Vector& internal) const;
+  /// Of q̄, at the middle.
+  void mean_branch_force(const BranchStep& step, Vector& result) const;
+  /// Of q₁, at the end.
+  void end_branch_force(const BranchStep& step, Vector& result) const;
+  /// ∫ of the potential of RelaxationRule::start_energy() at a displacement, and its forces.
+  [[nodiscard]] double start_branch_energy(const BranchStep& step, const Vector& displacement) const;
+  void start_branch_force(const BranchStep& step, const Vector& displacement, Vector& result) const;
+  /// A₁, and the energy that the step dissipates, ≥ 0.
+  [[nodiscard]] double advance_internal(const BranchStep& step, Vector& internal) const;
 
  private:
   template <int d>
@@ -64,10 +93,16 @@ class ElasticCells {
   [[nodiscard]] const Blocks<d>& blocks() const;
   template <int d, class MakeMotion>
   [[nodiscard]] InvertedCell add_up(const MakeMotion& make_motion, Vector& result) const;
+  void find_internal_places();
+  template <int d, class MakeForce>
+  void add_up_branches(const MakeForce& make, Vector& result) const;
+  template <int d, class MakeWork>
+  double sum_branches(const MakeWork& make) const;
 
   const Body& body_;
   const NodeGraph* graph_;
-  std::vector<int> cells_;  ///< empty: all
+  std::vector<int> cells_;             ///< empty: all
+  std::vector<Index> internal_begin_;  ///< per cell, and the end; empty: no branch
   std::unique_ptr<Blocks<2>> plane_;
   std::unique_ptr<Blocks<3>> solid_;
 };

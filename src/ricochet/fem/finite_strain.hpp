@@ -60,6 +60,12 @@ inline Tensor green_strain(const Tensor& gradient) {
   return result;
 }
 
+inline Tensor deviator_of(const Tensor& a) {
+  Tensor result = a;
+  result.diagonal().array() -= a.trace() / 3.0;
+  return result;
+}
+
 /// det(I + A) − 1 − tr A, to the digits of its terms: they are of the second order.
 inline double determinant_remainder(const Tensor& a) {
   const double second = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0) + a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1) +

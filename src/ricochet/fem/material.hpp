@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "ricochet/fem/material_law.hpp"
 
@@ -12,6 +13,12 @@ namespace ricochet {
 /// y axis, from which x is the distance.
 enum class PlaneState { strain, stress, axisymmetric };
 
+/// A branch beside the law whose stress relaxes, see relaxation.hpp.
+struct RelaxationBranch {
+  double modulus = 0.0;  ///< g, relative to the shear modulus of the law
+  double time = 0.0;     ///< τ
+};
+
 struct Material {
   std::string name;      ///< of its group, for messages
   double density = 0.0;  ///< mass per volume
@@ -21,8 +28,17 @@ struct Material {
   /// The dilatation's part of the energy is that of a mean over each cell (elastic_cells.hpp), where the law has such a
   /// part and the cell has more than one quadrature point.
   bool mean_dilatation = false;
+  /// Beside the law, which is what is left of them in the end. Of laws of finite strain, not in plane stress.
+  std::vector<RelaxationBranch> relaxation = {};
 
-  // At zero strain, in three dimensions:
+  /// Σ gμ: what the branches add to the shear modulus at an instant.
+  [[nodiscard]] double branch_mu() const {
+    double sum = 0.0;
+    for (const RelaxationBranch& branch : relaxation) sum += branch.modulus * mu();
+    return sum;
+  }
+
+  // Of the law at zero strain, in three dimensions:
   [[nodiscard]] double lambda() const { return law->lambda(); }  ///< Lamé's first parameter
   [[nodiscard]] double mu() const { return law->mu(); }          ///< shear modulus
   [[nodiscard]] double poisson() const { return lambda() / (2.0 * (lambda() + mu())); }

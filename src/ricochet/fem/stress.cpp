@@ -184,12 +184,12 @@ void visit_cells(const Body& body, const BlockIntegration* integration, std::siz
 }  // namespace
 
 template <int d>
-void CellStress::evaluate_block(std::size_t block, Index first_cell, const Vector& displacement, double* stress,
-                                double* energy_density) const {
+void CellStress::evaluate_block(std::size_t block, Index first_cell, const Vector& displacement, const Vector& internal,
+                                double* stress, double* energy_density) const {
   if (finite_) {
     parallel_ranges(body_.space->cells[block].size(), [&](Index first, Index last) {
       for (Index cell = first; cell < last; ++cell) {
-        finite_->cell_stress(block, cell, first_cell + cell, displacement, stress + tensor_components * cell,
+        finite_->cell_stress(block, cell, first_cell + cell, displacement, internal, stress + tensor_components * cell,
                              energy_density[cell]);
       }
     });
@@ -205,14 +205,15 @@ void CellStress::evaluate_block(std::size_t block, Index first_cell, const Vecto
 }
 
 template <int d>
-LargestOfCells CellStress::largest_in_block(std::size_t block, Index first_cell, const Vector& displacement) const {
+LargestOfCells CellStress::largest_in_block(std::size_t block, Index first_cell, const Vector& displacement,
+                                            const Vector& internal) const {
   if (finite_) {
     return parallel_sum<LargestOfCells>(body_.space->cells[block].size(), [&](Index first, Index last) {
       LargestOfCells largest;
       for (Index cell = first; cell < last; ++cell) {
         std::array<double, tensor_components> stress;
         double energy = 0.0;
-        finite_->cell_stress(block, cell, first_cell + cell, displacement, stress.data(), energy);
+        finite_->cell_stress(block, cell, first_cell + cell, displacement, internal, stress.data(), energy);
         largest += LargestOfCells{von_mises_stress(stress.data()), first_cell + cell};
       }
       return largest;
@@ -230,26 +231,26 @@ LargestOfCells CellStress::largest_in_block(std::size_t block, Index first_cell,
   });
 }
 
-LargestOfCells CellStress::largest_von_mises(const Vector& displacement) const {
+LargestOfCells CellStress::largest_von_mises(const Vector& displacement, const Vector& internal) const {
   LargestOfCells largest;
   for_each_block(body_, [&](std::size_t block, Index first) {
-    largest += body_.mesh->dimension == 2 ? largest_in_block<2>(block, first, displacement)
-                                          : largest_in_block<3>(block, first, displacement);
+    largest += body_.mesh->dimension == 2 ? largest_in_block<2>(block, first, displacement, internal)
+                                          : largest_in_block<3>(block, first, displacement, internal);
   });
   return largest;
 }
 
-void CellStress::evaluate(const Vector& displacement, std::vector<double>& stress,
-                          std::vector<double>& energy_density) const {
+void CellStress::evaluate(const Vector& displacement, std::vector<double>& stress, std::vector<double>& energy_density,
+                          const Vector& internal) const {
   const auto count = static_cast<std::size_t>(body_.mesh->cell_count());
   stress.resize(tensor_components * count);
   energy_density.resize(count);
   for_each_block(body_, [&](std::size_t block, Index first) {
     double* const to = stress.data() + tensor_components * first;
     if (body_.mesh->dimension == 2) {
-      evaluate_block<2>(block, first, displacement, to, energy_density.data() + first);
+      evaluate_block<2>(block, first, displacement, internal, to, energy_density.data() + first);
     } else {
-      evaluate_block<3>(block, first, displacement, to, energy_density.data() + first);
+      evaluate_block<3>(block, first, displacement, internal, to, energy_density.data() + first);
     }
   });
 }

@@ -28,7 +28,8 @@ struct LargestOfCells {
 /// Means over each cell of the stress σ = λ tr ε I + 2μ ε and of ½ σ : ε, by the quadrature of the stiffness: the sum
 /// of the energy densities times the volumes of the cells is ½UᵀKU. In the plane σ_zz is that of plane strain, or zero;
 /// in axisymmetric bodies it is the hoop stress.
-/// Of laws of finite strain the Cauchy stress, and the energy per undeformed volume.
+/// Of laws of finite strain the Cauchy stress, and the energy per undeformed volume; with the internal strains of a
+/// state those of branches that relax are in both (elastic_cells.hpp).
 class CellStress {
  public:
   /// Keeps a reference.
@@ -37,17 +38,19 @@ class CellStress {
   CellStress(CellStress&&) noexcept;
 
   /// Cells are numbered through all blocks. `stress`: 6 per cell; `energy_density`: one.
-  void evaluate(const Vector& displacement, std::vector<double>& stress, std::vector<double>& energy_density) const;
+  void evaluate(const Vector& displacement, std::vector<double>& stress, std::vector<double>& energy_density,
+                const Vector& internal = {}) const;
   /// The largest von Mises stress of these means. Allocates nothing.
-  [[nodiscard]] LargestOfCells largest_von_mises(const Vector& displacement) const;
+  [[nodiscard]] LargestOfCells largest_von_mises(const Vector& displacement, const Vector& internal = {}) const;
 
  private:
   template <int d>
-  void evaluate_block(std::size_t block, Index first_cell, const Vector& displacement, double* stress,
-                      double* energy_density) const;
+  void evaluate_block(std::size_t block, Index first_cell, const Vector& displacement, const Vector& internal,
+                      double* stress, double* energy_density) const;
 
   template <int d>
-  [[nodiscard]] LargestOfCells largest_in_block(std::size_t block, Index first_cell, const Vector& displacement) const;
+  [[nodiscard]] LargestOfCells largest_in_block(std::size_t block, Index first_cell, const Vector& displacement,
+                                                const Vector& internal) const;
 
   const Body& body_;
   /// Per block; none for straight simplices of degree 1.

@@ -2,7 +2,7 @@
 
 #include "ricochet/fem/material.hpp"
 
-/// @file Speeds of elastic waves.
+/// @file Speeds of elastic waves, too short for stress to relax.
 namespace ricochet {
 
 /// Of compression waves: √((λ + 2μ)/ρ), with the λ of plane stress where a body is such a section.

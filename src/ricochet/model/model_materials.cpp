@@ -50,6 +50,30 @@ void choose_dilatation(const Case& input, std::size_t i, Model& model) {
                   material.law->is_linear() ? "" : ", or quadrilaterals or hexahedra, whose mean dilatation does not"));
 }
 
+/// Of the branches whose stress relaxes.
+void add_relaxation(const Case& input, std::size_t i, Model& model) {
+  const RelaxationSection& section = input.materials[i].relaxation;
+  if (section.time.empty()) return;
+  Material& material = model.body.materials[i];
+  const std::string key = fmt::format("material.{}.relaxation", i);
+  if (material.law->is_linear()) {
+    refuse(input, key,
+           "the law \"linear\" does not relax: use \"saint-venant-kirchhoff\", which is the same for small strains, or "
+           "another law of finite strain");
+  }
+  if (is_plane_stress(model.body))
+    refuse(input, key,
+           "stress relaxes in plane strain, axisymmetric bodies and solids; not with mesh.plane = \"stress\"");
+  for (std::size_t k = 0; k < section.time.size(); ++k) {
+    material.relaxation.push_back({section.modulus[k], section.time[k]});
+    if (input.time.adaptive || !(input.time.step > section.time[k])) continue;
+    log::info(
+        fmt::format("{}: time.step is {:.3g} times the relaxation time {:.3g}: steps do not resolve how that branch "
+                    "relaxes, and it is relaxed at the end of each",
+                    input.where(key).text(), input.time.step / section.time[k], section.time[k]));
+  }
+}
+
 /// A body with a linear law does not see how far it turns, and the watch of rotations would have to know which it is.
 void require_one_kind_of_law(const Case& input, const Model& model) {
   if (!has_finite_strain(model.body)) return;
@@ -94,6 +118,7 @@ void assign_materials(const Case& input, Model& model) {
     model.body.materials.push_back({section.group, section.density, make_material_law(section.law, section.parameters),
                                     section.damping.mass, section.damping.stiffness});
     choose_dilatation(input, i, model);
+    add_relaxation(input, i, model);
   }
   require_one_kind_of_law(input, model);
   refuse_stretches_of_small_strain(input, model);

@@ -205,6 +205,8 @@ void assemble_operators(const Case& input, Model& model) {
                        "finite strain, too, and so does \"semi-explicit\"",
                        input.time.scheme));
   }
+  require_relaxation(*scheme, model.problem,
+                     fmt::format("{}: scheme \"{}\"", input.where("time.scheme").text(), input.time.scheme));
   if (input.time.adaptive) {
     require_changing_steps(*scheme,
                            fmt::format("{}: scheme \"{}\"", input.where("time.step").text(), input.time.scheme));

@@ -189,8 +189,7 @@ void add_standing_columns(Model& model) {
 }
 
 Columns history_columns(const Model& model) {
-  return HistoryRecorder::columns_of(model.problem.dimension, !model.problem.internal_force->is_linear(), model.sensors,
-                                     model.history_bodies);
+  return HistoryRecorder::columns_of(model.problem, model.sensors, model.history_bodies);
 }
 
 void add_probes(const Case& input, Model& model) {

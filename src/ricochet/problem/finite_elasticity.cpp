@@ -72,9 +72,54 @@ void FiniteElasticity::strain_force(const Vector& displacement, const Vector& in
 }
 
 SparseMatrix FiniteElasticity::tangent(const Vector& displacement) const {
-  SparseMatrix result = cells_.tangent(complete(displacement, displacement_));
+  return step_tangent(displacement, 0.0);
+}
+
+SparseMatrix FiniteElasticity::step_tangent(const Vector& displacement, double step) const {
+  SparseMatrix result = cells_.tangent(complete(displacement, displacement_), step);
   if (body_.tied == nullptr || body_.tied->empty()) return result;
   return body_.tied->condense(result, body_.mesh->dimension);
+}
+
+BranchStep FiniteElasticity::complete(const BranchStep& step) const {
+  return {complete(step.middle, displacement_), complete(step.increment, increment_), complete(step.end, end_),
+          step.internal, step.step};
+}
+
+void FiniteElasticity::add_branches(Vector& force) const {
+  condense(branches_);
+  force += branches_;
+}
+
+void FiniteElasticity::relax(const Vector& displacement, Vector& internal) const {
+  cells_.relax(complete(displacement, displacement_), internal);
+}
+
+double FiniteElasticity::branch_energy(const Vector& displacement, const Vector& internal) const {
+  return cells_.branch_energy(complete(displacement, displacement_), internal);
+}
+
+void FiniteElasticity::add_mean_force(const BranchStep& step, Vector& force) const {
+  cells_.mean_branch_force(complete(step), branches_);
+  add_branches(force);
+}
+
+void FiniteElasticity::add_end_force(const BranchStep& step, Vector& force) const {
+  cells_.end_branch_force(complete(step), branches_);
+  add_branches(force);
+}
+
+void FiniteElasticity::add_start_force(const BranchStep& step, const Vector& displacement, Vector& force) const {
+  cells_.start_branch_force(complete(step), complete(displacement, at_), branches_);
+  add_branches(force);
+}
+
+double FiniteElasticity::start_energy(const BranchStep& step, const Vector& displacement) const {
+  return cells_.start_branch_energy(complete(step), complete(displacement, at_));
+}
+
+double FiniteElasticity::advance_internal(const BranchStep& step, Vector& internal) const {
+  return cells_.advance_internal(complete(step), internal);
 }
 
 }  // namespace ricochet

@@ -1,12 +1,11 @@
 #pragma once
 
-#include "ricochet/fem/elastic_cells.hpp"
-#include "ricochet/problem/internal_force.hpp"
+#include "ricochet/problem/viscous_force.hpp"
 
 /// @file The internal force of bodies of which some material has a law of finite strain.
 namespace ricochet {
 
-class FiniteElasticity final : public InternalForce {
+class FiniteElasticity final : public InternalForce, public ViscousForce {
  public:
   /// Keeps a reference to the body, and to its ties.
   FiniteElasticity(const Body& body, NodeGraph graph);
@@ -24,6 +23,17 @@ class FiniteElasticity final : public InternalForce {
   using InternalForce::tangent;
   [[nodiscard]] SparseMatrix tangent(const Vector& displacement) const override;
 
+  [[nodiscard]] const ViscousForce* viscous() const override { return internal_size() > 0 ? this : nullptr; }
+  [[nodiscard]] Index internal_size() const override { return cells_.internal_size(); }
+  void relax(const Vector& displacement, Vector& internal) const override;
+  [[nodiscard]] double branch_energy(const Vector& displacement, const Vector& internal) const override;
+  void add_mean_force(const BranchStep& step, Vector& force) const override;
+  void add_end_force(const BranchStep& step, Vector& force) const override;
+  void add_start_force(const BranchStep& step, const Vector& displacement, Vector& force) const override;
+  [[nodiscard]] double start_energy(const BranchStep& step, const Vector& displacement) const override;
+  [[nodiscard]] double advance_internal(const BranchStep& step, Vector& internal) const override;
+  [[nodiscard]] SparseMatrix step_tangent(const Vector& displacement, double step) const override;
+
  private:
   /// With the values of tied nodes.
   const Vector& complete(const Vector& values, Vector& memory) const;
@@ -33,7 +43,10 @@ class FiniteElasticity final : public InternalForce {
   const Body& body_;
   NodeGraph graph_;
   ElasticCells cells_;
-  mutable Vector displacement_, increment_;
+  [[nodiscard]] BranchStep complete(const BranchStep& step) const;
+  void add_branches(Vector& force) const;
+
+  mutable Vector displacement_, increment_, end_, at_, branches_;
 };
 
 }  // namespace ricochet

@@ -12,6 +12,8 @@
 /// has a constant tangent; laws of finite strain have not (finite_elasticity.hpp).
 namespace ricochet {
 
+class ViscousForce;
+
 class InternalForce {
  public:
   virtual ~InternalForce() = default;
@@ -32,6 +34,8 @@ class InternalForce {
   /// The part of it that is of the cells at some nodes (per node, 1: wanted): their forces, and the energy of these
   /// cells alone. Only where the force is not linear.
   [[nodiscard]] virtual std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const;
+  /// What relaxes beside it (viscous_force.hpp), which is in nothing here; null where nothing does.
+  [[nodiscard]] virtual const ViscousForce* viscous() const { return nullptr; }
   /// The force is a linear function of U: the tangent is the same everywhere. Who relies on that asks (require_linear).
   [[nodiscard]] virtual bool is_linear() const = 0;
   /// ∂force/∂U at a displacement (empty: the undeformed body), symmetric, of one pattern. Made anew by every call,

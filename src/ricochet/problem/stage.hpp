@@ -49,6 +49,9 @@ struct OperatorCoefficients {
   int layer = -1;  ///< number of the operator A_c, before this one and of contact dofs; −1: the stage has none
   double layer_weight = 1.0;  ///< ℓ
   ReactionMean mean = ReactionMean::end;
+  /// h, where stress of branches relaxes over the stage (viscous_force.hpp): K then has their stiffness. 0: they have
+  /// none.
+  double relaxation_step = 0.0;
 };
 
 /// What the contact conditions of a stage are taken from, so that they can be taken again where rows follow the motion:

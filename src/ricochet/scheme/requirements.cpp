@@ -39,6 +39,14 @@ void require_changing_steps(const Scheme& scheme, const std::string& name) {
                           name));
 }
 
+void require_relaxation(const Scheme& scheme, const SemidiscreteProblem& problem, const std::string& name) {
+  if (problem.internal_force->viscous() == nullptr || scheme.takes_relaxation()) return;
+  throw Error(ErrorKind::invalid_input,
+              name +
+                  " does not relax stress: use scheme \"reduced-kane\", \"mean-reaction\" or \"reduced-midpoint\", "
+                  "or leave material.relaxation out");
+}
+
 void check_critical_step(const std::string& scheme, double step, double critical_step) {
   const double fraction = step / critical_step;
   if (fraction >= 1.0) {

@@ -20,4 +20,7 @@ void check_critical_step(const std::string& scheme, double step, double critical
 /// Steps whose length changes. `name` is the beginning of the message: what asks, and for which scheme.
 void require_changing_steps(const Scheme& scheme, const std::string& name);
 
+/// A scheme that relaxes the stress of branches, where the problem has some. `name` as above.
+void require_relaxation(const Scheme& scheme, const SemidiscreteProblem& problem, const std::string& name);
+
 }  // namespace ricochet

@@ -33,6 +33,7 @@ struct StepCorrections {
   /// ΔW less the work of the internal forces that the scheme takes for a step, where these are no linear function of
   /// the displacement: energy that appears, of either sign.
   double integration_error = 0.0;
+  double viscous_dissipation = 0.0;  ///< of stress that relaxes, never negative
 };
 
 class Scheme {
@@ -72,11 +73,15 @@ class Scheme {
   [[nodiscard]] virtual std::optional<double> stability_limit(const SemidiscreteProblem&) const { return std::nullopt; }
   /// Its steps are right where the internal force is no linear function of the displacement.
   [[nodiscard]] virtual bool takes_nonlinear_force() const { return false; }
+  /// And its steps relax the stress of branches beside the laws (viscous_force.hpp), and say what that dissipates.
+  [[nodiscard]] virtual bool takes_relaxation() const { return false; }
   /// Then its steps change the angular momentum about current positions by the moments of outer forces alone, about the
   /// positions where these act.
   [[nodiscard]] virtual bool keeps_moments_at_finite_strain() const { return false; }
   /// The displacement at which the forces of the last step act then, those of its end that is; null: half way.
   [[nodiscard]] virtual const Vector* place_of_forces() const { return nullptr; }
+  /// The forces of contact between bodies have couples there (ContactGeometry::add_couples).
+  [[nodiscard]] virtual bool has_couples_between_bodies() const { return false; }
   /// With a mass without inertia on contact nodes its contact forces create hardly any energy.
   [[nodiscard]] virtual bool suits_singular_mass() const { return false; }
   /// Nodes with inertia that friction holds keep a velocity of alternating sign.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "ricochet/problem/viscous_force.hpp"
+
 namespace ricochet {
 
 void save(const SemidiscreteProblem& problem, const State& state, Snapshot& snapshot, const std::string& name) {
@@ -11,6 +13,7 @@ void save(const SemidiscreteProblem& problem, const State& state, Snapshot& snap
   snapshot.save(name + ".displacement", state.displacement);
   snapshot.save(name + ".velocity", state.velocity);
   snapshot.save(name + ".acceleration", state.acceleration);
+  snapshot.save(name + ".internal_strain", state.internal_strain);
   snapshot.save(name + ".normal_reaction", state.forces.normal_reaction);
   snapshot.save(name + ".tangential_reaction", state.forces.tangential_reaction);
   snapshot.save(name + ".mean_normal_reaction", state.forces.mean_normal_reaction);
@@ -60,6 +63,8 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   state.displacement = snapshot.reals(name + ".displacement", dofs);
   state.velocity = snapshot.reals(name + ".velocity", dofs);
   state.acceleration = snapshot.reals(name + ".acceleration", dofs);
+  const ViscousForce* const viscous = problem.internal_force->viscous();
+  state.internal_strain = snapshot.reals(name + ".internal_strain", viscous != nullptr ? viscous->internal_size() : 0);
   state.forces.normal_reaction = snapshot.reals(name + ".normal_reaction", points);
   state.forces.tangential_reaction = snapshot.reals(name + ".tangential_reaction", tangents, 0);
   state.forces.mean_normal_reaction = snapshot.reals(name + ".mean_normal_reaction", points, 0);

@@ -39,6 +39,8 @@ struct State {
   Vector displacement;  ///< U at `time`
   Vector velocity;      ///< V; on massless dofs the mean velocity of the last step
   Vector acceleration;  ///< A; 0 on massless dofs
+  /// Of stress that relaxes (viscous_force.hpp); empty where nothing does.
+  Vector internal_strain;
   StepForces forces;
   std::vector<ContactStatus> contact_status;  ///< per contact point, at the instant of the forces
   /// Displacement of the obstacles at the contact points while the body made the increment of the last step.

@@ -1,5 +1,7 @@
 #include "ricochet/simulation/energy_account.hpp"
 
+#include "ricochet/problem/viscous_force.hpp"
+
 namespace ricochet {
 
 EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state)
@@ -12,16 +14,16 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
 EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
                              const Snapshot& snapshot, const std::string& name)
     : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
-  const Vector& works = snapshot.reals(name + ".works", 8);
-  works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6], works[7]};
+  const Vector& works = snapshot.reals(name + ".works", 9);
+  works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6], works[7], works[8]};
   initial_ = snapshot.real(name + ".initial");
   initial_algorithmic_ = snapshot.real(name + ".initial_algorithmic");
 }
 
 void EnergyAccount::save(Snapshot& snapshot, const std::string& name) const {
-  Vector works(8);
+  Vector works(9);
   works << works_.load, works_.contact, works_.friction, works_.support, works_.obstacle, works_.damping,
-      works_.numerical_dissipation, works_.integration_error;
+      works_.numerical_dissipation, works_.integration_error, works_.viscous_dissipation;
   snapshot.save(name + ".works", works);
   snapshot.save(name + ".initial", initial_);
   snapshot.save(name + ".initial_algorithmic", initial_algorithmic_);
@@ -82,6 +84,7 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   works_.load += corrections.load_work;
   works_.numerical_dissipation += corrections.numerical_dissipation;
   works_.integration_error += corrections.integration_error;
+  works_.viscous_dissipation += corrections.viscous_dissipation;
   previous_ = state.forces;
   algorithmic_.reset();
 }
@@ -112,15 +115,15 @@ Energies EnergyAccount::energies(const State& state) {
   Energies result;
   result.kinetic = 0.5 * problem_.mass.form(velocity(state));
   result.elastic = force != nullptr ? problem_.internal_force->energy(displacement, *force)
-                                    : problem_.internal_force->energy(displacement);
+                                    : stored_energy(*problem_.internal_force, displacement, state.internal_strain);
   result.load_potential = -problem_.loads.constant().dot(displacement);
   result.algorithmic = algorithmic(state);
   return result;
 }
 
 double EnergyAccount::residual(const Energies& now) const {
-  return now.total() + now.algorithmic - initial_ - works_.sum() + works_.numerical_dissipation -
-         works_.integration_error;
+  return now.total() + now.algorithmic - initial_ - works_.sum() + works_.numerical_dissipation +
+         works_.viscous_dissipation - works_.integration_error;
 }
 
 }  // namespace ricochet

@@ -18,13 +18,14 @@ struct Works {
   double damping = 0.0;
   double numerical_dissipation = 0.0;  ///< taken away by the scheme, positive when energy is lost
   double integration_error = 0.0;      ///< what the scheme's internal forces miss of the change of the elastic energy
+  double viscous_dissipation = 0.0;    ///< of stress that relaxes, which turns into heat; never falls
 
   [[nodiscard]] double sum() const { return load + contact + friction + support + obstacle + damping; }
 };
 
 struct Energies {
   double kinetic = 0.0;
-  double elastic = 0.0;
+  double elastic = 0.0;         ///< with what branches that relax have stored
   double load_potential = 0.0;  ///< −LᵀU of the constant loads
   double algorithmic = 0.0;
 
@@ -53,7 +54,8 @@ class EnergyAccount {
   /// change of the algorithmic energy. Of the state of the last step; what total energy then changes besides is the
   /// other works.
   [[nodiscard]] double of_method(const State& state);
-  /// total + algorithmic − initial values − Σ works + numerical dissipation − integration error: zero to rounding.
+  /// total + algorithmic − initial values − Σ works + numerical and viscous dissipation − integration error: zero to
+  /// rounding.
   [[nodiscard]] double residual(const Energies& now) const;
   /// The velocity that `energies` was last computed from, for this state.
   [[nodiscard]] const Vector& velocity(const State& state) const {

@@ -64,12 +64,19 @@ Columns HistoryRecorder::finite_strain_columns() {
   return {"integration_error", {"newton_rounds", Reduction::same}};
 }
 
-Columns HistoryRecorder::columns_of(int dimension, bool finite_strain,
+Columns HistoryRecorder::relaxation_columns() {
+  return {"viscous_dissipation"};
+}
+
+Columns HistoryRecorder::columns_of(const SemidiscreteProblem& problem,
                                     const std::vector<std::shared_ptr<Sensor>>& sensors, const HistoryBodies& bodies) {
-  Columns columns = standard_columns(dimension);
-  for (const std::string& label : bodies.labels) add_vector_columns(columns, "momentum." + label, dimension);
-  if (finite_strain) {
+  Columns columns = standard_columns(problem.dimension);
+  for (const std::string& label : bodies.labels) add_vector_columns(columns, "momentum." + label, problem.dimension);
+  if (!problem.internal_force->is_linear()) {
     for (const Column& column : finite_strain_columns()) columns.push_back(column);
+  }
+  if (problem.internal_force->viscous() != nullptr) {
+    for (const Column& column : relaxation_columns()) columns.push_back(column);
   }
   for (const auto& sensor : sensors) {
     for (const Column& column : sensor->columns()) columns.push_back(column);
@@ -86,8 +93,8 @@ HistoryRecorder::HistoryRecorder(const SemidiscreteProblem& problem, const Rotat
       bodies_(std::move(bodies)),
       body_momentum_(bodies_.labels.size() * static_cast<std::size_t>(problem.dimension)),
       finite_strain_(!problem.internal_force->is_linear()),
-      columns_(names_of(columns_of(problem.dimension, finite_strain_, sensors_, bodies_))),
-      reductions_(reductions_of(columns_of(problem.dimension, finite_strain_, sensors_, bodies_))) {
+      columns_(names_of(columns_of(problem, sensors_, bodies_))),
+      reductions_(reductions_of(columns_of(problem, sensors_, bodies_))) {
   row_.reserve(columns_.size());
   weigh_nodes();
 }
@@ -127,6 +134,7 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
     row_.push_back(works.integration_error);
     row_.push_back(state.newton_rounds);
   }
+  if (problem_.internal_force->viscous() != nullptr) row_.push_back(works.viscous_dissipation);
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
   problem_.ranks->reduce(row_, reductions_);
   return row_;

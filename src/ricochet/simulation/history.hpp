@@ -57,13 +57,15 @@ class HistoryRecorder {
 
   /// Names of the columns, in the order of a row.
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
-  /// The same of a history that is yet to come. `finite_strain`: some material's law is not linear.
-  [[nodiscard]] static Columns columns_of(int dimension, bool finite_strain,
+  /// The same of a history that is yet to come.
+  [[nodiscard]] static Columns columns_of(const SemidiscreteProblem& problem,
                                           const std::vector<std::shared_ptr<Sensor>>& sensors,
                                           const HistoryBodies& bodies = {});
-  /// Of every history of a body of this dimension; with those of finite strain, names that a probe cannot have.
+  /// Of every history of a body of this dimension; with those of finite strain and of stress that relaxes, names that a
+  /// probe cannot have.
   [[nodiscard]] static Columns standard_columns(int dimension);
   [[nodiscard]] static Columns finite_strain_columns();
+  [[nodiscard]] static Columns relaxation_columns();
   /// The row of a state. The reference stays valid until the next call.
   [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
 

@@ -82,8 +82,8 @@ Eigen::Vector3d MomentumAccount::moment_between_bodies(const StepForces& forces)
   }
   Vector force = Vector::Zero(problem_.dof_count());
   forces.rows->add_force(normal, tangential, force);
-  if (const Vector* const place = scheme_.place_of_forces())
-    problem_.contact.geometry->add_couples(*place, *forces.rows, normal, tangential, force);
+  if (scheme_.has_couples_between_bodies() && problem_.contact.follows_motion())
+    problem_.contact.geometry->add_couples(*scheme_.place_of_forces(), *forces.rows, normal, tangential, force);
   return of_nodes(force).moment;
 }
 

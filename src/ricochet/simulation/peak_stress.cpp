@@ -65,7 +65,7 @@ void PeakStress::enter_frame(const State& state) {
 void PeakStress::look(const State& state) {
   ++result_.looks;
   last_look_ = state.step;
-  const LargestOfCells largest = stress_.largest_von_mises(state.displacement);
+  const LargestOfCells largest = stress_.largest_von_mises(state.displacement, state.internal_strain);
   if (result_.cell >= 0 && !(largest.value > result_.von_mises)) return;
   result_.von_mises = std::max(0.0, largest.value);
   result_.cell = largest.cell;

@@ -8,6 +8,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/requirements.hpp"
 
 namespace ricochet {
@@ -37,6 +38,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
     : problem_(problem), scheme_(scheme), options_(options), whole_step_(scheme.step()) {
   if (!scheme_.takes_nonlinear_force()) require_linear(*problem_.internal_force, nameless);
+  require_relaxation(scheme_, problem_, nameless);
   scheme_.analyse(problem_);
   state_ = make_starting_state(problem_, initial, scheme_.step(), options);
   if (control) {
@@ -182,8 +184,8 @@ double Simulation::take_controlled_step() {
       if (problem.kind() != ErrorKind::not_converged || !control_->shorten()) throw;
       continue;
     }
-    const double energy =
-        0.5 * problem_.mass.form(state_.velocity) + problem_.internal_force->energy(state_.displacement);
+    const double energy = 0.5 * problem_.mass.form(state_.velocity) +
+                          stored_energy(*problem_.internal_force, state_.displacement, state_.internal_strain);
     if (control_->accept(before_, state_, energy)) return energy;
     state_ = before_;
   }

@@ -11,6 +11,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/simulation/finite_equilibrium.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 #include "ricochet/simulation/static_equilibrium.hpp"
@@ -266,6 +267,9 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
   if (problem.loads.varies() || problem.pressure) problem.loads.varying(0.0, state.forces.varying_load);
   if (problem.pressure) problem.pressure->add_force(state.displacement, 0.0, state.forces.varying_load);
   if (problem.has_damping()) problem.damping.evaluate(state.velocity, state.forces.damping_force);
+  // Bodies have been where they start for long.
+  if (const ViscousForce* const viscous = problem.internal_force->viscous())
+    viscous->relax(state.displacement, state.internal_strain);
   return state;
 }
 

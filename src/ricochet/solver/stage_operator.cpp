@@ -6,11 +6,15 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
+#include "ricochet/problem/viscous_force.hpp"
 
 namespace ricochet {
 
-SparseMatrix stage_stiffness(const SemidiscreteProblem& problem, const Vector& displacement) {
-  SparseMatrix stiffness = problem.internal_force->tangent(displacement);
+SparseMatrix stage_stiffness(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                             const Vector& displacement) {
+  const ViscousForce* const viscous = problem.internal_force->viscous();
+  SparseMatrix stiffness = viscous != nullptr ? viscous->step_tangent(displacement, coefficients.relaxation_step)
+                                              : problem.internal_force->tangent(displacement);
   if (!problem.pressure || displacement.size() == 0) return stiffness;
   return add_sparse(stiffness, problem.pressure->stiffness(displacement));
 }
@@ -25,7 +29,7 @@ SparseMatrix combine_operator(const SemidiscreteProblem& problem, const Operator
     if (result.cols() > 0) add_sparse(result, term).swap(term);
     result.swap(term);
   };
-  add(coefficients.stiffness, [&] { return stage_stiffness(problem, displacement); });
+  add(coefficients.stiffness, [&] { return stage_stiffness(problem, coefficients, displacement); });
   add(coefficients.mass, [&] { return problem.mass.whole(); });
   if (problem.has_damping()) add(coefficients.damping, [&] { return problem.damping.matrix(); });
   return result;

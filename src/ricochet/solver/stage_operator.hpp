@@ -8,12 +8,13 @@
 /// @file The matrix of a stage and the dofs it is solved for.
 namespace ricochet {
 
-/// K(U), with what loads that follow the surface add to it; U empty: the undeformed body, on which they do not act.
-[[nodiscard]] SparseMatrix stage_stiffness(const SemidiscreteProblem& problem, const Vector& displacement);
-
-/// A = αM + κK(U) + ηC on all dofs, with that K.
+/// A = αM + κK(U) + ηC on all dofs.
 [[nodiscard]] SparseMatrix combine_operator(const SemidiscreteProblem& problem,
                                             const OperatorCoefficients& coefficients, const Vector& displacement = {});
+/// K(U) of it, with what relaxes over the stage, and what loads that follow the surface add to it; U empty: the
+/// undeformed body, on which they do not act.
+[[nodiscard]] SparseMatrix stage_stiffness(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                                           const Vector& displacement);
 
 /// The dofs that a stage solves for, ascending: no supported ones, and of the others those that it names.
 [[nodiscard]] std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs);

@@ -15,7 +15,7 @@ StageProduct::StageProduct(const SemidiscreteProblem& problem, const OperatorCoe
                            const SparseMatrix& matrix, const Vector& displacement) {
   const bool is_damped = coefficients.damping != 0.0 && problem.has_damping();
   if (coefficients.mass != 0.0 && coefficients.stiffness != 0.0 && !is_damped) {
-    SparseMatrix stiffness = stage_stiffness(problem, displacement);
+    SparseMatrix stiffness = stage_stiffness(problem, coefficients, displacement);
     if (static_cast<double>(matrix.nonZeros()) > most_growth * static_cast<double>(stiffness.nonZeros())) {
       stiffness *= coefficients.stiffness;
       matrix_ = NodeMatrix(stiffness, problem.dimension);

@@ -35,7 +35,7 @@ class StressFields final : public FieldSource {
   [[nodiscard]] std::vector<Field> fields() const override { return fields_; }
 
   void evaluate(const State& state) override {
-    stress_of_.evaluate(state.displacement, stress_, energy_density_);
+    stress_of_.evaluate(state.displacement, stress_, energy_density_, state.internal_strain);
     if (wants_von_mises_) find_von_mises(stress_, von_mises_);
     if (wants_principal_) find_principal(stress_, principal_);
     if (!wants_nodal_) return;

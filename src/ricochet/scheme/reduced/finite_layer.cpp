@@ -40,10 +40,13 @@ void FiniteLayer::analyse(const SemidiscreteProblem& problem) {
 std::vector<OperatorCoefficients> FiniteLayer::operators(const SemidiscreteProblem& problem, double step,
                                                          ReactionMean mean) {
   OperatorCoefficients midpoint{.mass = 4.0 / (step * step), .stiffness = 1.0, .damping = 2.0 / step};
+  midpoint.relaxation_step = step;
   if (problem.contact_dofs.empty()) return {midpoint};
   midpoint.layer = static_cast<int>(MasslessLayer::layer_stage);
   midpoint.mean = mean;
-  return {{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact}, midpoint};
+  OperatorCoefficients layer{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact};
+  layer.relaxation_step = step;
+  return {layer, midpoint};
 }
 
 /// L̄, but L₁ on contact nodes, and the parts of it that vary.
@@ -67,13 +70,15 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   relaxed_ = state.displacement;
   layer_energy_start_.reset();
   sigma_before_ = asked_before_ = std::numeric_limits<double>::quiet_NaN();
-  sigma_ = lacking_ = end_weight_ = dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
+  sigma_ = lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
   last_solution_ = nullptr;
   if (problem.contact.follows_motion()) lagged_.start(state);
   row_force_.setZero(problem.dof_count());
   nodal_.setZero(problem.dof_count());
   mean_nodal_.setZero(problem.dof_count());
-  energy_start_ = energy_step_ == state.step ? kept_energy_ : problem.internal_force->energy(state.displacement);
+  energy_start_ = energy_step_ == state.step
+                      ? kept_energy_
+                      : stored_energy(*problem.internal_force, state.displacement, state.internal_strain);
 }
 
 void FiniteLayer::evaluate_pressure(const SemidiscreteProblem& problem, const State& state) {
@@ -85,20 +90,25 @@ void FiniteLayer::evaluate_pressure(const SemidiscreteProblem& problem, const St
 }
 
 /// f̄, p, f(u₁), and σ from the balance of energy at these.
-void FiniteLayer::evaluate(const SemidiscreteProblem& problem, const State& state, bool near) {
+void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
   const InternalForce& elastic = *problem.internal_force;
+  const ViscousForce* const viscous = elastic.viscous();
   increment_ = end_ - state.displacement;
+  const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
   elastic.mean_force(middle_, increment_, force_);
+  if (viscous != nullptr) viscous->add_mean_force(branches, force_);
   if (layer_) layer_->evaluate(end_, end_force_);
+  if (layer_ && layer_->viscous() != nullptr) layer_->viscous()->add_end_force(branches, end_force_);
   evaluate_pressure(problem, state);
   if (near || sigma_ != 0.0) elastic.strain_force(middle_, increment_, strain_force_);
   if (!near) return;
-  energy_ = elastic.energy(end_);
+  if (viscous != nullptr) viscous_dissipation_ = viscous->advance_internal(branches, internal_);
+  energy_ = stored_energy(elastic, end_, internal_);
   // ΔW − (L₁+P(x))·Δ_c and Ψ(u_f1) − Ψ(u_f0), which differ by (P(u₁)−P(x))·Δ_c + ρ·HΔ_c − d. What L₁ and P(x) do there
   // is in the work of D, too.
   const double at_end = pressure_work_ + work_at_end_ - dissipation_;
-  const double wanted =
-      (energy_ - energy_start_) - on_contact(problem, load_, increment_) - obstacle_work_ - end_weight_ * at_end;
+  const double wanted = (energy_ - energy_start_) + viscous_dissipation_ - on_contact(problem, load_, increment_) -
+                        obstacle_work_ - end_weight_ * at_end;
   product_ = load_ + mean_nodal_;
   const double has = force_.dot(increment_) - on_contact(problem, product_, increment_);
   const double unit = strain_force_.dot(increment_);
@@ -199,6 +209,10 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
     }
   }
   layer_->evaluate(relaxed_, end_force_);
+  const ViscousForce* const viscous = layer_->viscous();
+  increment_ = end_ - state.displacement;
+  const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
+  if (viscous != nullptr) viscous->add_start_force(branches, relaxed_, end_force_);
   if (problem.pressure) nodal_at_end_ = nodal_ + pressure_end_;
   const Vector& at_end = problem.pressure ? nodal_at_end_ : nodal_;
   right_ = load_ + at_end - end_force_;
@@ -210,6 +224,8 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   right_ = load_ + at_end;
   if (!layer_energy_start_) layer_energy_start_ = layer_->energy(state.displacement);
   dissipation_ = on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
+  if (viscous != nullptr)
+    dissipation_ -= viscous->start_energy(branches, relaxed_) - viscous->start_energy(branches, state.displacement);
   product_ = end_ - state.displacement;
   if (problem.pressure) {
     right_ = pressure_end_ - pressure_middle_;
@@ -234,6 +250,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   before_ = state.displacement;
   product_ = middle_ - base_;
   state.displacement = end_;
+  state.internal_strain = internal_;
   state.velocity += (4.0 / step) * product_;
   state.acceleration = (4.0 / (step * step)) * product_;
   follow_without_inertia(problem, increment, step, state);
@@ -253,17 +270,18 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   kept_energy_ = energy_;
   corrections_ = {.load_work = end_weight_ * pressure_work_,
                   .numerical_dissipation = end_weight_ * dissipation_,
-                  .integration_error = lacking_};
+                  .integration_error = lacking_,
+                  .viscous_dissipation = viscous_dissipation_};
   if (end_weight_ == 1.0) return;
   // The mean works nothing along the path; what of it is the end's works what that does.
   corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
 }
 
-void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, const State& state, bool near) {
+void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
   constexpr int most_halvings = 5;
   for (int halving = 0;; ++halving) {
     try {
-      evaluate(problem, state, near);
+      evaluate(problem, step, state, near);
       return;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
@@ -278,7 +296,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
   const std::size_t number = MasslessLayer::midpoint_stage(problem);
   start(problem, step, state);
   stages.follow(base_);
-  evaluate(problem, state, false);
+  evaluate(problem, step, state, false);
   progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
                   (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
   Stage& stage = stages.stage(number);
@@ -304,7 +322,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
     converged = converged || advice == NewtonProgress::Advice::done;
     if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, *solution);
     const bool near = round.correction <= near_solution * round.increment || converged;
-    halve_where_inverted(problem, state, near);
+    halve_where_inverted(problem, step, state, near);
     // Rounding of forces and energies may leave more.
     const bool balanced = std::abs(lacking_) <= energy_tolerance * (kinetic + energy_start_ + energy_) ||
                           (converged && std::abs(lacking_) > 0.5 * lacked);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "ricochet/problem/newton_progress.hpp"
+#include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
 #include "ricochet/scheme/reduced/lagged_rows.hpp"
 #include "ricochet/scheme/scheme.hpp"
@@ -26,11 +27,28 @@
 ///   d = [W(u₀) − (L₁+Hᵀρ)·u_c0] − Ψ(u_f0; ρ) ≥ 0,   ρ·HΔ_c = −r_N·g₀ − Σ F r_N |Δy_T| ≤ 0 against planes.
 /// Where a pressure P(u, t) follows the surface, P(x), of the mean of the pressures at both ends, is added to L̄ and to
 /// L₁ in the equations at x, so that all round a body it has neither resultant nor moment about x, and P(u₁) to L₁ in
-/// that at the end and in Ψ. It works P(x)·Δ, and μ (P_c(u₁) − P_c(x))·Δ_c besides. With μ = 0 energy is kept, with μ >
-/// 0 no step creates any: d ≥ 0 says no more than that Ψ is a minimum, which is so while K_cc is positive definite
-/// between u₀ and it. Where W is quadratic in the displacement, σ = 0 and this is massless_layer.hpp. (The mean of
-/// strains is that of J. C. Simo and N. Tarnow, Z. Angew. Math. Phys. 43 (1992) 757–792; a number that makes a force of
-/// the middle keep energy that of O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467.)
+/// that at the end and in Ψ. It works P(x)·Δ, and μ (P_c(u₁) − P_c(x))·Δ_c besides.
+///
+/// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that Ψ is a minimum, which is so
+/// while K_cc is positive definite between u₀ and it.
+///
+/// Branches beside the laws (fem/relaxation.hpp) add the forces of 2gμ q̄ to f̄ and those of 2gμ q₁ to f(u₁), both for
+/// the strain that goes linearly from 2Ē − E₁ to E₁. Where a mean of the reactions makes x_c half of the way, that is
+/// the step's own strain; reactions of the end that act over all of it move contact nodes at its start, by J, and so
+/// does this strain. With V(u, A) = W(u) + Σ ∫ gμ |dev E(u) − A|², the stored energy, 𝒟 ≥ 0 of relaxation.hpp, and
+///   P(u) = W(u) + Σ ∫ gμ (2(1−θ) |dev E(u) − A₀|² + 2(2θ−1) q₁ : E(u)) − (L₁ + Hᵀρ)·u_c,
+/// the works asked for are those above with V(u₁, A₁) − V(u₀, A₀) + 𝒟 for ΔW, with d = P(u₀) − min over u_c of P ≥ 0,
+/// and
+///   V(u₁, A₁) − V(u₀, A₀) + 𝒟 − (L₁ + Hᵀρ)·Δ_c + d  for Ψ(u_f1; ρ) − Ψ(u_f0; ρ), so that
+///   E₁ − E₀ = work of loads, supports and damping + μ (ρ·HΔ_c − d) − 𝒟,   d ≥ 0,   𝒟 ≥ 0:
+/// no step creates energy, whatever h/τ is. Where V is quadratic in the displacement and the end reactions act, P is
+/// least at the displacement of E₀ + J, since its force there is 2D − f(u₁) = L₁ + Hᵀρ; then D works just that, and
+/// σ = 0.
+///
+/// Where W is quadratic in the displacement, σ = 0 and this is
+/// massless_layer.hpp. (The mean of strains is that of J. C. Simo and N. Tarnow, Z. Angew. Math. Phys. 43 (1992)
+/// 757–792; a number that makes a force of the middle keep energy that of O. Gonzalez, J. Nonlinear Sci. 6 (1996)
+/// 449–467.)
 namespace ricochet {
 
 class FiniteLayer {
@@ -54,7 +72,7 @@ class FiniteLayer {
   void evaluate_pressure(const SemidiscreteProblem& problem, const State& state);
   void take_loads(const SemidiscreteProblem& problem, double step, const State& state);
   /// Forces at the middle and at the end; near the solution also what the energy lacks, and σ for it.
-  void evaluate(const SemidiscreteProblem& problem, const State& state, bool near);
+  void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
   void choose_sigma(double asked);
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
@@ -66,7 +84,7 @@ class FiniteLayer {
                     const Stage& stage, const StageSolution& solution);
   void finish(const SemidiscreteProblem& problem, double step, State& state, const Stage& stage,
               const StageSolution& solution, Vector& increment);
-  void halve_where_inverted(const SemidiscreteProblem& problem, const State& state, bool near);
+  void halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near);
 
   std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes alone
   NewtonProgress progress_;
@@ -78,6 +96,7 @@ class FiniteLayer {
   long energy_step_ = -1;                     ///< the step whose end is known already
   double kept_energy_ = 0.0;                  ///< W there
   std::optional<double> layer_energy_start_;  ///< of the cells at contact nodes, once it is asked for
+  double viscous_dissipation_ = 0.0;          ///< 𝒟
   double energy_ = 0.0, energy_start_ = 0.0, sigma_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
   /// σ of the round before and what the balance of energy asked for then; NaN before the second round.
   double sigma_before_ = 0.0, asked_before_ = 0.0;
@@ -88,6 +107,7 @@ class FiniteLayer {
   Vector load_, end_load_, base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
   Vector nodal_at_end_;                    ///< Hᵀρ + P(u₁)
   Vector pressure_middle_, pressure_end_;  ///< P(x) with the mean of the pressures at both ends, P(u₁); empty: none
+  Vector internal_;                        ///< A₁
   Vector relaxed_;                         ///< u_f0 with the contact nodes that attain Ψ(u_f0; ρ)
   Vector product_, right_, layer_right_, damping_force_, before_, last_middle_, last_end_;
   Vector row_force_;  ///< of the reactions along rows that the solver had not

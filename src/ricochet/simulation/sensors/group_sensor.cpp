@@ -85,7 +85,7 @@ class GroupSensor final : public Sensor {
   void observe(const Observation& observation, std::vector<double>& row) override {
     observe_vector(observation.state.displacement, row);
     observe_vector(observation.state.velocity, row);
-    if (!cells_.empty()) observe_stress(observation.state.displacement, row);
+    if (!cells_.empty()) observe_stress(observation.state, row);
   }
 
  private:
@@ -104,8 +104,8 @@ class GroupSensor final : public Sensor {
     append(least, row);
     append(largest, row);
   }
-  void observe_stress(const Vector& displacement, std::vector<double>& row) {
-    stress_of_.evaluate(displacement, stress_, energy_density_);
+  void observe_stress(const State& state, std::vector<double>& row) {
+    stress_of_.evaluate(state.displacement, stress_, energy_density_, state.internal_strain);
     double average = 0.0, least = std::numeric_limits<double>::infinity(), largest = 0.0;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       const double own = von_mises_stress(stress_.data() + tensor_components * cells_[i]);

@@ -1,0 +1,170 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "ricochet/problem/finite_elasticity.hpp"
+#include "support/box_mesh.hpp"
+
+/// @file Stress that relaxes beside a law, on all cells: energy, forces, dissipation.
+namespace ricochet {
+namespace {
+
+using namespace test_support;
+
+struct Kind {
+  ElementKind element;
+  PlaneState plane = PlaneState::strain;
+};
+
+std::vector<Kind> kinds() {
+  std::vector<Kind> all;
+  for (const ElementKind& element : all_element_kinds()) {
+    all.push_back({element});
+    if (element.dimension() == 2) all.push_back({element, PlaneState::axisymmetric});
+  }
+  return all;
+}
+
+class BranchesOfKind : public ::testing::TestWithParam<Kind> {
+ protected:
+  static constexpr double step = 0.7;
+
+  void SetUp() override {
+    BoxMesh box = box_of(kind().element.shape, std::vector<int>(static_cast<std::size_t>(dimension()), 2));
+    box.geometry_degree = kind().element.geometry_degree;
+    if (box.geometry_degree == 2) box.map = bend_map();
+    if (kind().plane == PlaneState::axisymmetric) {
+      const PointMap map = box.map;
+      box.map = [map](const Vector& x) { return Vector((map ? map(x) : x) + 2.0 * Vector::Unit(2, 0)); };
+    }
+    body_ = make_meshed_body(make_box_mesh(box), kind().element.displacement_degree, kind().plane);
+    Material& material = body_->body.materials[0];
+    material.law = make_material_law("neo-hookean", {{"lambda", 1.3}, {"mu", 0.8}});
+    material.relaxation = {{0.5, 0.3}, {2.0, 4.0}};
+    force_ = std::make_unique<FiniteElasticity>(body_->body, node_graph(body_->space));
+    force_->relax(some_displacement(0.05, 1), internal_);
+  }
+  static const Kind& kind() { return GetParam(); }
+  static int dimension() { return kind().element.dimension(); }
+  [[nodiscard]] Vector some_displacement(double size, unsigned seed) const {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<double> random(-size, size);
+    Vector result(body_->space.dof_count());
+    for (double& each : result) each = random(generator);
+    return result;
+  }
+  /// X ↦ Q (X + u).
+  [[nodiscard]] Vector turned(const Vector& displacement, const Matrix& rotation) const {
+    const Points places = body_->space.nodes + displacement.reshaped(dimension(), body_->space.node_count());
+    return Vector((rotation * places - body_->space.nodes).reshaped());
+  }
+  [[nodiscard]] Matrix some_rotation() const {
+    const Matrix space = Eigen::AngleAxisd(2.3, Eigen::Vector3d(0.3, -0.2, 0.8).normalized()).toRotationMatrix();
+    if (dimension() == 3) return space;
+    return Eigen::Rotation2Dd(2.3).toRotationMatrix();
+  }
+
+  std::unique_ptr<MeshedBody> body_;
+  std::unique_ptr<FiniteElasticity> force_;
+  Vector internal_;
+};
+
+TEST_P(BranchesOfKind, TheForceIsTheDerivativeOfTheEnergy) {
+  const Vector u = some_displacement(0.05, 2), direction = some_displacement(1.0, 3);
+  const Vector middle = some_displacement(0.05, 6), end = some_displacement(0.05, 7), increment = end - middle;
+  for (const double h : {1e-9, step, 1e3}) {
+    const BranchStep over{middle, increment, end, internal_, h};
+    Vector force = Vector::Zero(u.size());
+    force_->add_start_force(over, u, force);
+    constexpr double small = 1e-5;
+    const double difference =
+        (force_->start_energy(over, u + small * direction) - force_->start_energy(over, u - small * direction)) /
+        (2.0 * small);
+    EXPECT_NEAR(force.dot(direction), difference, 1e-8 * force.norm() * direction.norm());
+  }
+  // What is stored at an instant, where nothing has time to relax.
+  EXPECT_NEAR(force_->start_energy({middle, increment, end, internal_, 1e-12}, u), force_->branch_energy(u, internal_),
+              1e-10);
+}
+
+TEST_P(BranchesOfKind, TheWorkOfAStepIsStoredAndDissipated) {
+  const Vector start = some_displacement(0.05, 2), end = some_displacement(0.05, 4);
+  const Vector middle = 0.5 * (start + end), increment = end - start;
+  for (const double h : {1e-6, 0.1, 1.0, 1e4}) {
+    const BranchStep over{middle, increment, end, internal_, h};
+    Vector force = Vector::Zero(end.size()), next;
+    force_->add_mean_force(over, force);
+    const double dissipated = force_->advance_internal(over, next), before = force_->branch_energy(start, internal_);
+    EXPECT_GE(dissipated, 0.0);
+    EXPECT_NEAR(force.dot(increment), force_->branch_energy(end, next) - before + dissipated, 1e-13 * before) << h;
+    // The force at the end is that of the internal strains there.
+    Vector at_end = Vector::Zero(end.size()), same = at_end;
+    force_->add_end_force(over, at_end);
+    force_->add_start_force({middle, increment, end, next, 1e-14}, end, same);
+    EXPECT_LT((at_end - same).norm(), 1e-11 * (1.0 + same.norm()));
+  }
+}
+
+TEST_P(BranchesOfKind, NothingChangesWhereTheMotionIsTurned) {
+  if (kind().plane == PlaneState::axisymmetric) return;
+  const Matrix rotation = some_rotation();
+  const Vector start = some_displacement(0.05, 2), end = some_displacement(0.05, 4);
+  EXPECT_NEAR(force_->branch_energy(turned(start, rotation), internal_), force_->branch_energy(start, internal_),
+              1e-12 * force_->branch_energy(start, internal_));
+  // A step in which the body also turns is not the step that is turned; one in which it does not is.
+  const auto advance = [&](const Vector& from, const Vector& to, Vector& next, Vector& force) {
+    const Vector middle = 0.5 * (from + to), increment = to - from;
+    const BranchStep over{middle, increment, to, internal_, step};
+    force.setZero(to.size());
+    force_->add_mean_force(over, force);
+    return force_->advance_internal(over, next);
+  };
+  Vector next, other, force, turned_force;
+  const double dissipated = advance(start, end, next, force);
+  EXPECT_NEAR(advance(turned(start, rotation), turned(end, rotation), other, turned_force), dissipated,
+              1e-12 * dissipated);
+  EXPECT_LT((next - other).lpNorm<Eigen::Infinity>(), 1e-13);
+  const Points expected = rotation * force.reshaped(dimension(), body_->space.node_count());
+  EXPECT_LT((turned_force - Vector(expected.reshaped())).norm(), 1e-12 * force.norm());
+  // A rigid motion of any size from where nothing has stress: none, and no dissipation.
+  force_->relax(start, internal_);
+  EXPECT_LT(advance(start, turned(start, rotation), next, force), 1e-26);
+  EXPECT_LT(force.lpNorm<Eigen::Infinity>(), 1e-13);
+}
+
+TEST_P(BranchesOfKind, TheTangentHasTheStiffnessOfAStep) {
+  const Vector u = some_displacement(1e-6, 2), direction = some_displacement(1e-6, 3);
+  const SparseMatrix with = force_->step_tangent(Vector(), step), without = force_->tangent(Vector());
+  internal_.setZero();
+  const auto mean_force = [&](const Vector& end) {
+    const Vector middle = 0.5 * end;
+    Vector force = Vector::Zero(end.size());
+    force_->add_mean_force({middle, end, end, internal_, step}, force);
+    return force;
+  };
+  const Vector expected = mean_force(u + direction) - mean_force(u - direction);
+  EXPECT_LT(((with - without) * direction - expected).norm(), 1e-4 * expected.norm());
+}
+
+TEST_P(BranchesOfKind, CellStressHasThem) {
+  const Vector u = some_displacement(0.05, 5);
+  std::vector<double> stress, energy, alone, energy_alone;
+  const CellStress of_cells(body_->body);
+  of_cells.evaluate(u, stress, energy, internal_);
+  of_cells.evaluate(u, alone, energy_alone);
+  const Vector volumes = cell_volumes(body_->body);
+  double more = 0.0;
+  for (std::size_t i = 0; i < energy.size(); ++i)
+    more += volumes[static_cast<Index>(i)] * (energy[i] - energy_alone[i]);
+  EXPECT_NEAR(more, force_->branch_energy(u, internal_), 1e-12 * more);
+  EXPECT_NE(stress, alone);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BranchesOfKind, ::testing::ValuesIn(kinds()), [](const auto& info) {
+  return info.param.element.label() + (info.param.plane == PlaneState::axisymmetric ? "_axisymmetric" : "");
+});
+
+}  // namespace
+}  // namespace ricochet

@@ -1,0 +1,495 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/fem/stress.hpp"
+#include "ricochet/problem/viscous_force.hpp"
+#include "ricochet/simulation/momentum_account.hpp"
+#include "support/case_run.hpp"
+
+/// @file Stress that relaxes: closed forms, and what every step must keep.
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+using test_support::mesh_geometry;
+
+std::string block(int dimension) {
+  return dimension == 2 ? mesh_geometry("viscous-block-2d",
+                                        "Rectangle(1) = {0, 0, 0, 1, 0.5};\nPhysical Surface(\"body\") = {1};\n"
+                                        "Physical Curve(\"bottom\") = {1};\nPhysical Curve(\"right\") = {2};\n"
+                                        "Physical Curve(\"top\") = {3};\nPhysical Curve(\"left\") = {4};\n",
+                                        0.125, 1)
+                        : mesh_geometry("viscous-block-3d",
+                                        "Box(1) = {0, 0, 0, 1, 0.5, 0.6};\nPhysical Volume(\"body\") = {1};\n"
+                                        "Physical Surface(\"bottom\") = {3};\n",
+                                        0.2, 1);
+}
+
+constexpr double young = 100.0, poisson = 0.3, shear = young / (2.0 * (1.0 + poisson));
+constexpr double lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+
+std::string list(const std::vector<double>& values) {
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
+
+std::string material(const std::string& law, const std::vector<RelaxationBranch>& branches, double density = 1.0) {
+  std::vector<double> moduli, times;
+  for (const RelaxationBranch& branch : branches) {
+    moduli.push_back(branch.modulus);
+    times.push_back(branch.time);
+  }
+  const std::string relaxation =
+      branches.empty() ? "" : fmt::format("relaxation = {{ modulus = {}, time = {} }}\n", list(moduli), list(times));
+  return fmt::format("[[material]]\ngroup = \"body\"\ndensity = {}\nyoung = {}\npoisson = {}\nlaw = \"{}\"\n{}",
+                     density, young, poisson, law, relaxation);
+}
+
+struct Motion {
+  int dimension = 2;
+  std::string scheme = "reduced-kane", law = "neo-hookean", more = {}, time = {};
+  double step = 0.01, height = 10.0;
+  std::string displacement = {}, velocity = {};
+  std::vector<RelaxationBranch> branches{{0.5, 0.05}, {1.5, 0.4}};
+};
+
+/// A block above a floor.
+std::string case_of(const Motion& motion) {
+  const bool plane = motion.dimension == 2;
+  const auto or_zero = [&](const std::string& value) {
+    return !value.empty() ? value : plane ? "[\"0\", \"0\"]" : "[\"0\", \"0\", \"0\"]";
+  };
+  return "[mesh]\nfile = \"" + block(motion.dimension) + "\"\n" + material(motion.law, motion.branches) +
+         fmt::format("[obstacle.floor]\ntype = \"plane\"\npoint = [0, {}{}]\nnormal = [0, 1{}]\n", -motion.height,
+                     plane ? "" : ", 0", plane ? "" : ", 0") +
+         "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n" + motion.more +
+         "[initial]\ndisplacement = " + or_zero(motion.displacement) + "\nvelocity = " + or_zero(motion.velocity) +
+         fmt::format("\n[time]\nscheme = \"{}\"\nstep = {}\nend = {}\n{}", motion.scheme, motion.step,
+                     200.0 * motion.step, motion.time);
+}
+
+std::string stretched(int dimension) {
+  return dimension == 2 ? "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\"]"
+                        : "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\", \"0.02*sin(4*z+x)\"]";
+}
+
+/// About the origin and current positions, from the mass and the state alone.
+struct Momenta {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
+  explicit Momenta(const CaseRun& run) {
+    const SemidiscreteProblem& problem = run.problem();
+    const Index d = problem.dimension;
+    Vector momentum;
+    problem.mass.multiply(run.state().velocity, momentum);
+    for (Index node = 0; node < problem.nodes.cols(); ++node) {
+      Eigen::Vector3d place = Eigen::Vector3d::Zero(), own = Eigen::Vector3d::Zero();
+      place.head(d) = problem.nodes.col(node) + run.state().displacement.segment(node * d, d);
+      own.head(d) = momentum.segment(node * d, d);
+      linear += own;
+      angular += place.cross(own);
+    }
+  }
+};
+
+double energy_of(const CaseRun& run) {
+  const State& state = run.state();
+  return 0.5 * run.problem().mass.form(state.velocity) +
+         stored_energy(*run.problem().internal_force, state.displacement, state.internal_strain) -
+         run.problem().loads.constant().dot(state.displacement);
+}
+
+/// A block that is stretched along x between two walls that hold its sides: one strain in all of it, E = e + e²/2 of
+/// the engineering strain e(t), and no inertia worth the name.
+std::string held_case(const std::string& law, const std::string& end_motion, double step, double end,
+                      const std::vector<RelaxationBranch>& branches, const std::string& scheme = "reduced-kane") {
+  const auto support = [](const std::string& group, const std::string& component, const std::string& value) {
+    return "[[support]]\ngroup = \"" + group + "\"\ncomponents = [\"" + component + "\"]\nvalue = \"" + value + "\"\n";
+  };
+  return "[mesh]\nfile = \"" + block(2) + "\"\n" + material(law, branches, 1e-14) + support("left", "x", "0") +
+         support("right", "x", end_motion) + support("bottom", "y", "0") + support("top", "y", "0") +
+         fmt::format("[time]\nscheme = \"{}\"\nstep = {}\nend = {}\n", scheme, step, end);
+}
+
+/// σ_xx of that block: F S_xx.
+double stress_along(const CaseRun& run) {
+  std::vector<double> stress, energy;
+  CellStress(run.model().body).evaluate(run.state().displacement, stress, energy, run.state().internal_strain);
+  double spread = 0.0;
+  for (std::size_t i = 0; i < stress.size(); i += tensor_components)
+    spread = std::max(spread, std::abs(stress[i] - stress[0]));
+  EXPECT_LT(spread, 1e-6 * std::abs(stress[0]));
+  return stress[0];
+}
+
+/// Strain that grows to e in the time T, and stays: with q = E − A of each branch, S = (λ+2μ) E + Σ (4/3) g μ q.
+class Relaxation {
+ public:
+  Relaxation(double strain, double time, std::vector<RelaxationBranch> branches)
+      : strain_(strain), time_(time), branches_(std::move(branches)) {}
+  [[nodiscard]] double cauchy_stress(double t) const {
+    const double e = strain_ * std::min(t / time_, 1.0);
+    double second = (lambda + 2.0 * shear) * (e + 0.5 * e * e);
+    for (const RelaxationBranch& branch : branches_) second += 4.0 / 3.0 * branch.modulus * shear * spring(branch, t);
+    return (1.0 + e) * second;
+  }
+
+ private:
+  /// q' + q/τ = E' for E = a t + b t² up to T, then E' = 0.
+  [[nodiscard]] double spring(const RelaxationBranch& branch, double t) const {
+    const double a = strain_ / time_, b = 0.5 * a * a, tau = branch.time, upto = std::min(t, time_);
+    const double at = tau * (a + 2.0 * b * (upto - tau)) - tau * (a - 2.0 * b * tau) * std::exp(-upto / tau);
+    return at * std::exp(-(t - upto) / tau);
+  }
+  double strain_, time_;
+  std::vector<RelaxationBranch> branches_;
+};
+
+/// After the strain has come to rest steps of any length relax it exactly; while it grows the rule is of second order.
+TEST(Viscoelasticity, AStretchedBlockRelaxesAsThePronySeries) {
+  const std::vector<RelaxationBranch> branches{{0.5, 0.05}, {2.0, 0.6}};
+  const double strain = 0.2, ramp = 0.4;
+  const Relaxation exact(strain, ramp, branches);
+  std::vector<double> errors;
+  for (const double step : {0.1, 0.05, 0.025}) {
+    CaseRun run(held_case("saint-venant-kirchhoff", fmt::format("{}*min(t/{},1)", strain, ramp), step, 2.0, branches));
+    double largest = 0.0;
+    run.run([&] {
+      if (run.state().step == 0) return;
+      const double expected = exact.cauchy_stress(run.state().time);
+      largest = std::max(largest, std::abs(stress_along(run) - expected) / expected);
+    });
+    errors.push_back(largest);
+  }
+  EXPECT_LT(errors[2], 1e-4);
+  EXPECT_NEAR(errors[0] / errors[1], 4.0, 0.5);
+  EXPECT_NEAR(errors[1] / errors[2], 4.0, 0.5);
+}
+
+/// From E = e sin ωt: a cycle dissipates π E″ e² per volume, E″ = (4/3) Σ gμ ωτ/(1+ω²τ²) of a strain along one axis.
+TEST(Viscoelasticity, CyclesDissipateTheLossModulus) {
+  const std::vector<RelaxationBranch> branches{{0.5, 0.05}, {2.0, 0.6}};
+  const double omega = 2.0 * std::numbers::pi, amplitude = 1e-5, volume = 0.5;
+  double loss = 0.0;
+  for (const RelaxationBranch& branch : branches) {
+    const double x = omega * branch.time;
+    loss += 4.0 / 3.0 * branch.modulus * shear * x / (1.0 + x * x);
+  }
+  const double expected = std::numbers::pi * loss * amplitude * amplitude * volume;
+  std::vector<double> errors;
+  for (const double steps : {10.0, 20.0, 40.0}) {
+    CaseRun run(held_case("saint-venant-kirchhoff", fmt::format("{}*sin({:.17g}*t)", amplitude, omega), 1.0 / steps,
+                          12.0, branches));
+    double before = 0.0;
+    run.run([&] {
+      if (std::abs(run.state().time - 11.0) < 0.25 / steps)
+        before = run.simulation().account().works().viscous_dissipation;
+    });
+    const double cycle = run.simulation().account().works().viscous_dissipation - before;
+    errors.push_back(std::abs(cycle / expected - 1.0));
+  }
+  EXPECT_LT(errors[2], 5e-3);
+  EXPECT_NEAR(errors[0] / errors[1], 4.0, 0.6);
+  EXPECT_NEAR(errors[1] / errors[2], 4.0, 0.3);
+}
+
+const std::vector<std::string>& schemes() {
+  static const std::vector<std::string> all{"reduced-kane", "mean-reaction", "reduced-midpoint"};
+  return all;
+}
+
+/// What every step must keep, of a body that bounces, or flies.
+void expect_balances(const Motion& motion, double least_force) {
+  CaseRun run(case_of(motion));
+  const double start = energy_of(run);
+  double before = start, viscous = 0.0, numerical = 0.0, largest_force = 0.0;
+  const Momenta first(run);
+  MomentumAccount momentum(run.problem(), run.scheme(), run.state());
+  // Of each part of a step that was cut, too.
+  const auto check = [&](const State& state) {
+    const std::string what = fmt::format("{} {} {} {}D, {} step {}", motion.scheme, motion.more, motion.time,
+                                         motion.dimension, motion.branches.front().time, state.step);
+    const double energy = energy_of(run);
+    EXPECT_LT(energy, before + 1e-13 * start) << what;
+    before = energy;
+    EnergyAccount& account = run.simulation().account();
+    const Works& works = account.works();
+    EXPECT_GE(works.viscous_dissipation, viscous) << what;
+    viscous = works.viscous_dissipation;
+    EXPECT_GE(works.numerical_dissipation, numerical - 1e-14 * start) << what;
+    numerical = works.numerical_dissipation;
+    EXPECT_LT(std::abs(works.integration_error), 1e-12 * start) << what;
+    EXPECT_NEAR(account.residual(account.energies(state)), 0.0, 2e-13 * start) << what;
+    if (motion.scheme != "reduced-kane") {
+      EXPECT_NEAR(energy + viscous, start, 1e-12 * start) << what;
+    }
+    momentum.enter_step(state);
+    const Momenta now(run);
+    EXPECT_LT((now.linear - first.linear - momentum.impulse().force).norm(), 1e-12) << what;
+    EXPECT_LT((now.angular - first.angular - momentum.impulse().moment).norm(), 1e-11) << what;
+    largest_force = std::max(largest_force, state.forces.normal_reaction.sum());
+    Vector gap;
+    run.problem().gaps(state.displacement, state.time, gap);
+    EXPECT_GT(gap.minCoeff(), -1e-12) << what;
+  };
+  for (int step = 0; step < 100 && !::testing::Test::HasFailure(); ++step) run.simulation().advance(check);
+  EXPECT_GE(largest_force, least_force) << motion.scheme;
+  EXPECT_GT(viscous, 0.01 * start) << motion.scheme;
+}
+
+TEST(Viscoelasticity, FlightsDissipateAndKeepMomenta) {
+  for (const int dimension : {2, 3}) {
+    for (const std::string& scheme : schemes()) {
+      expect_balances({.dimension = dimension,
+                       .scheme = scheme,
+                       .displacement = stretched(dimension),
+                       .velocity = dimension == 2 ? "[\"0.3-2*(y-0.25)+x\", \"2*(x-0.5)\"]"
+                                                  : "[\"0.3-2*(y-0.25)+(z-0.3)+x\", \"2*(x-0.5)-0.5*(z-0.3)\", "
+                                                    "\"0.5*(y-0.25)-(x-0.5)\"]"},
+                      0.0);
+    }
+  }
+}
+
+TEST(Viscoelasticity, BouncesBalance) {
+  for (const int dimension : {2, 3}) {
+    for (const std::string& scheme : schemes()) {
+      for (const std::string more : {"", "friction = 0.4\n"}) {
+        if (!more.empty() && scheme != "reduced-kane") continue;
+        expect_balances({.dimension = dimension,
+                         .scheme = scheme,
+                         .more = more,
+                         .height = 0.05,
+                         .displacement = stretched(dimension),
+                         .velocity = dimension == 2 ? "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\"]"
+                                                    : "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\", \"0.2\"]"},
+                        0.1);
+      }
+    }
+  }
+}
+
+/// Steps of every length relative to the relaxation times, branches that are stiffer than the law, and every kind of
+/// reaction that acts.
+TEST(Viscoelasticity, BouncesBalanceWhateverTheTimes) {
+  for (const double time : {1e-5, 1e-3, 0.01, 0.1, 10.0}) {
+    for (const std::string more : {"", "friction = 0.4\n"}) {
+      for (const std::string weight : {"adaptive", "end"}) {
+        expect_balances({.more = more,
+                         .time = "reaction_weight = \"" + weight + "\"\n",
+                         .height = 0.05,
+                         .displacement = stretched(2),
+                         .velocity = "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\"]",
+                         .branches = {{5.0, time}, {1.0, 0.05}}},
+                        0.1);
+      }
+    }
+  }
+}
+
+TEST(Viscoelasticity, AxisymmetricBodiesBalance) {
+  Motion motion{.scheme = "mean-reaction",
+                .height = 0.05,
+                .displacement = "[\"0.03*x*sin(3*y)\", \"0.02*sin(5*y)\"]",
+                .velocity = "[\"0\", \"-0.5\"]"};
+  std::string text = case_of(motion);
+  text.insert(text.find("[[material]]"), "plane = \"axisymmetric\"\n");
+  CaseRun run(text);
+  const double start = energy_of(run);
+  run.run([&] {
+    EnergyAccount& account = run.simulation().account();
+    EXPECT_NEAR(energy_of(run) + account.works().viscous_dissipation, start, 1e-11 * start);
+  });
+  EXPECT_GT(run.simulation().account().works().viscous_dissipation, 0.01 * start);
+}
+
+TEST(Viscoelasticity, AdaptiveStepsBalance) {
+  Motion motion{.height = 0.05, .displacement = stretched(2), .velocity = "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\"]"};
+  std::string text = case_of(motion);
+  text.replace(text.find("step = 0.01"), 11, "step = \"adaptive\"\ntolerance = 1e-3\nlargest = 0.02\nsmallest = 1e-4");
+  CaseRun run(text);
+  const double start = energy_of(run);
+  run.run([&] {
+    EnergyAccount& account = run.simulation().account();
+    EXPECT_NEAR(account.residual(account.energies(run.state())), 0.0, 1e-12 * start);
+  });
+  ASSERT_NE(run.simulation().control(), nullptr);
+  EXPECT_GT(run.simulation().control()->counts().refused, 0);
+}
+
+/// However far a step turns: no stress, no dissipation.
+TEST(Viscoelasticity, ARigidSpinDissipatesNothing) {
+  CaseRun run(case_of({.step = 500.0, .height = 1e6, .velocity = "[\"-1e-4*(y-0.25)\", \"1e-4*(x-0.5)\"]"}));
+  const double start = energy_of(run);
+  run.run([] {});
+  // The body is stretched by ρω²L²/E alone.
+  EXPECT_LT(run.simulation().account().works().viscous_dissipation, 1e-8 * start);
+  EXPECT_NEAR(energy_of(run), start, 1e-8 * start);
+}
+
+/// Superposed rotations of the whole motion change nothing but the places.
+TEST(Viscoelasticity, AMotionThatIsTurnedIsTheSameMotion) {
+  const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
+  const auto number = [](double value) { return fmt::format("({:.17g})", value); };
+  const std::string u = "0.02*sin(5*x)", v = "0.02*sin(5*y)", x = "(x+" + u + ")", y = "(y+" + v + ")";
+  const std::string p = "(-2*(y-0.25)+x)", q = "(2*(x-0.5)+0.3*x*y)";
+  CaseRun one(
+      case_of({.displacement = "[\"" + u + "\", \"" + v + "\"]", .velocity = "[\"" + p + "\", \"" + q + "\"]"}));
+  CaseRun other(case_of({.displacement = "[\"" + number(c) + "*" + x + "-" + number(s) + "*" + y + "-x\", \"" +
+                                         number(s) + "*" + x + "+" + number(c) + "*" + y + "-y\"]",
+                         .velocity = "[\"" + number(c) + "*" + p + "-" + number(s) + "*" + q + "\", \"" + number(s) +
+                                     "*" + p + "+" + number(c) + "*" + q + "\"]"}));
+  one.run([] {});
+  other.run([] {});
+  const Matrix rotation = (Matrix(2, 2) << c, -s, s, c).finished();
+  const Index nodes = one.problem().nodes.cols();
+  const Points first = one.problem().nodes + one.state().displacement.reshaped(2, nodes);
+  const Points second = other.problem().nodes + other.state().displacement.reshaped(2, nodes);
+  EXPECT_LT((rotation * first - second).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((one.state().internal_strain - other.state().internal_strain).lpNorm<Eigen::Infinity>(), 1e-12);
+}
+
+/// Branches that do not relax in the time of a run are springs beside the law, those that relax at once are nothing.
+TEST(Viscoelasticity, ItsLimitsAreTwoElasticBodies) {
+  const auto end_of = [](const std::string& constants, const std::vector<RelaxationBranch>& branches,
+                         const std::string& scheme) {
+    const bool bounces = scheme == "reduced-kane";
+    std::string text = case_of({.scheme = scheme,
+                                .law = "saint-venant-kirchhoff",
+                                .time = bounces ? "reaction_weight = \"end\"\n" : "",
+                                .height = bounces ? 0.05 : 10.0,
+                                .velocity = "[\"0.3-2*(y-0.25)+x\", \"-0.5+2*(x-0.5)\"]",
+                                .branches = branches});
+    if (!constants.empty()) {
+      const std::string given = fmt::format("young = {}\npoisson = {}\n", young, poisson);
+      text.replace(text.find(given), given.size(), constants);
+    }
+    CaseRun run(text);
+    run.run([] {});
+    return run.state().displacement;
+  };
+  const double g = 0.8;
+  const std::string stiff =
+      fmt::format("mu = {:.17g}\nlambda = {:.17g}\n", shear * (1.0 + g), lambda - 2.0 / 3.0 * g * shear);
+  for (const std::string& scheme : schemes()) {
+    EXPECT_LT((end_of("", {{0.3, 1e13}, {0.5, 1e14}}, scheme) - end_of(stiff, {}, scheme)).lpNorm<Eigen::Infinity>(),
+              1e-9)
+        << scheme;
+    EXPECT_LT((end_of("", {{0.3, 1e-13}, {0.5, 1e-14}}, scheme) - end_of("", {}, scheme)).lpNorm<Eigen::Infinity>(),
+              1e-9)
+        << scheme;
+  }
+}
+
+/// Halving the step divides the error of a flight by four.
+TEST(Viscoelasticity, IsOfSecondOrder) {
+  for (const std::string& scheme : schemes()) {
+    const auto end_of = [&](double step) {
+      CaseRun run(case_of({.scheme = scheme,
+                           .step = step,
+                           .displacement = "[\"0.02*(x-0.5)\", \"-0.01*(y-0.25)\"]",
+                           .velocity = "[\"-2*(y-0.25)\", \"2*(x-0.5)\"]",
+                           .branches = {{0.5, 0.003}, {1.0, 0.02}}}));
+      while (run.state().time < 0.016 * (1.0 - 1e-9)) run.session().step();
+      return run.state().displacement;
+    };
+    const Vector coarse = end_of(4e-4), middle = end_of(2e-4), fine = end_of(1e-4);
+    const double rate = (coarse - middle).norm() / (middle - fine).norm();
+    EXPECT_GT(rate, 3.5) << scheme;
+    EXPECT_LT(rate, 4.5) << scheme;
+  }
+}
+
+/// A disc that is dropped leaves the slower, the more of its stiffness relaxes.
+TEST(Viscoelasticity, RestitutionFallsWithTheBranches) {
+  const std::string disc = mesh_geometry("viscous-disc",
+                                         "Disk(1) = {0, 0.5, 0, 0.5};\nPhysical Surface(\"body\") = {1};\n"
+                                         "Physical Curve(\"rim\") = {1};\n",
+                                         0.12, 1);
+  double before = 1.0;
+  for (const double modulus : {0.0, 0.1, 0.3, 1.0}) {
+    std::vector<RelaxationBranch> branches;
+    if (modulus > 0.0) branches.push_back({modulus, 0.1});
+    CaseRun run("[mesh]\nfile = \"" + disc + "\"\n" + material("neo-hookean", branches) +
+                "[obstacle.floor]\ntype = \"plane\"\npoint = [0, -0.02]\nnormal = [0, 1]\n[[contact]]\ngroup = "
+                "\"rim\"\nobstacle = \"floor\"\n[initial]\nvelocity = [\"0\", \"-1\"]\n[time]\nstep = 0.01\nend = 1\n");
+    const double mass = run.problem().mass.form(Vector::Ones(run.problem().dof_count())) / 2.0;
+    run.run([] {});
+    EXPECT_TRUE(run.state().forces.normal_reaction.isZero(0.0));
+    const double restitution = Momenta(run).linear[1] / mass;
+    EXPECT_GT(restitution, 0.1);
+    EXPECT_LT(restitution, modulus > 0.0 ? before - 0.02 : before) << modulus;
+    before = restitution;
+  }
+}
+
+/// A body is at rest for long where it starts: from a static start under its weight nothing moves and nothing relaxes.
+TEST(Viscoelasticity, AStaticStartIsRelaxed) {
+  const std::string text = "[mesh]\nfile = \"" + block(2) + "\"\n" + material("neo-hookean", {{5.0, 0.05}}) +
+                           "[load]\ngravity = [0, -50]\n[initial]\ndisplacement = \"static\"\n[[support]]\ngroup = "
+                           "\"bottom\"\ncomponents = [\"x\", \"y\"]\nvalue = 0\n[time]\nstep = 0.01\nend = 1\n";
+  CaseRun run(text);
+  const Vector start = run.state().displacement;
+  EXPECT_GT(start.lpNorm<Eigen::Infinity>(), 1e-3);
+  run.run([] {});
+  EXPECT_LT((run.state().displacement - start).lpNorm<Eigen::Infinity>(), 1e-9);
+  EXPECT_LT(run.simulation().account().works().viscous_dissipation, 1e-12);
+}
+
+bool same_bits(const Vector& a, const Vector& b) {
+  return a.size() == b.size() &&
+         (a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0);
+}
+
+TEST(Viscoelasticity, GoesOnFromACheckpointWithTheSameBits) {
+  for (const std::string more : {"", "friction = 0.4\n"}) {
+    CaseRun run(case_of({.more = more,
+                         .height = 0.05,
+                         .displacement = stretched(2),
+                         .velocity = "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\"]"}));
+    Snapshot snapshot, end, again;
+    run.run([&] {
+      if (run.state().step == 23) run.simulation().save(snapshot);
+    });
+    run.simulation().save(end);
+    const std::unique_ptr<Scheme> scheme = make_scheme(run.input().time);
+    Simulation resumed(run.problem(), *scheme, snapshot, step_solver_options(run.input()),
+                       step_control_options(run.input().time));
+    while (resumed.state().step < run.state().step) resumed.advance();
+    resumed.save(again);
+    ASSERT_EQ(end.values().size(), again.values().size());
+    for (const auto& [name, value] : end.values()) {
+      if (const auto* reals = std::get_if<Vector>(&value)) {
+        EXPECT_TRUE(same_bits(*reals, std::get<Vector>(again.values().at(name)))) << name;
+      } else {
+        EXPECT_TRUE(value == again.values().at(name)) << name;
+      }
+    }
+    EXPECT_GT(end.reals("state.internal_strain").size(), 0);
+    snapshot.save("state.internal_strain", Vector(Vector::Zero(1)));
+    EXPECT_THROW(Simulation(run.problem(), *scheme, snapshot), Error);
+  }
+}
+
+/// Schemes whose steps do not relax stress say so.
+TEST(Viscoelasticity, OtherSchemesRefuseIt) {
+  for (const std::string scheme : {"newmark", "generalized-alpha", "midpoint", "kane"}) {
+    std::string text = case_of({.scheme = scheme});
+    if (scheme == "newmark") text += "preset = \"trapezoidal\"\n";
+    if (scheme == "midpoint" || scheme == "kane") text += "[mass]\ntype = \"consistent\"\n";
+    try {
+      CaseRun run(text);
+      ADD_FAILURE() << scheme;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::invalid_input);
+      EXPECT_NE(std::string(error.what()).find("does not relax stress"), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
