@@ -62,7 +62,7 @@ def time_table(records):
         row += [str(record["steps"]), f"{statistics.mean(record['iterations']):.1f}", f"{1e3 * theirs:.4g}"]
         for scheme in ("newmark", "reduced-kane"):
             if scheme in record["stopped"]:
-                row += ["stopped", "–", "–"]
+                row += ["no end", "–", "–"]
                 continue
             mine = statistics.median(record["ours"][scheme])
             row += [f"{statistics.mean(record['rounds'][scheme]):.1f}", f"{1e3 * mine:.3g}", f"**{theirs / mine:.1f}**"]
@@ -86,18 +86,19 @@ def cost_table(records):
     rows = []
     for record in records:
         runs = [run for run in record["runs"] if "failed" not in run]
-        strain = percent(record["strain"]) if "strain" in record else "law `linear`"
+        strain = percent(record["strain"]) if "strain" in record else "law `linear`" if record["law"] == "linear" else ""
+        scheme = f"`{record['scheme']}`"
         if not runs:
-            rows.append([record["body"][0], strain, record["runs"][0]["failed"]] + [""] * 7)
+            rows.append([record["body"][0], scheme, f"{record['speed']:g}", strain, "no end"] + ["–"] * 6)
             continue
         for key, name in PHASES:
             step, library, own = (middle(runs, key, value) for value in ("step_ms", "library_solve_ms", "own_solve_ms"))
             if step is None or library is None or runs[0][key]["steps"] < 3:
                 continue
             rounds = phase_rounds(record, key)
-            rows.append([f"{record['body'][0]}, {runs[0]['dofs']} dofs", strain, name, str(runs[0][key]["active"]), rounds, f"{step:.3g}", f"{library:.3g}",
+            rows.append([f"{record['body'][0]}, {runs[0]['dofs']} dofs", scheme, f"{record['speed']:g}", strain, name, str(runs[0][key]["active"]), rounds, f"{step:.3g}", f"{library:.3g}",
                          f"**{step / library:.1f}**", f"{step / library / float(rounds):.2f}", f"{float(rounds) * own / step:.0%}".replace("%", " %")])
-    return table(["", "largest strain", "contact", "pressed", "iterations", "step, ms", "CHOLMOD's solve, ms", "step / solve", "the same per iteration",
+    return table(["", "scheme", "speed", "largest strain", "contact", "pressed", "iterations", "step, ms", "CHOLMOD's solve, ms", "step / solve", "the same per iteration",
                   "our solves in the step"], rows)
 
 
