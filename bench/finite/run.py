@@ -41,6 +41,7 @@ TIMED = [(("ball", 3, 0.101), 0.0, (0.1, 1.0, 5.0), 8), (("ball", 3, 0.101), 0.3
          (("disc", 2, 0.0202), 0.0, (0.1, 1.0, 5.0), 12), (("disc", 2, 0.0202), 0.3, (1.0,), 12), (("disc", 2, 0.0101), 0.0, (1.0,), 8)]
 COSTS = [(("disc", 2, 0.0202), "reduced-kane", SPEEDS, 30), (("disc", 2, 0.0101), "reduced-kane", SPEEDS, 20),
          (("ball", 3, 0.101), "reduced-kane", SPEEDS, 20), (("ball", 3, 0.101), "newmark", SPEEDS, 20), (("ball", 3, 0.0475), "newmark", SPEEDS, 10)]
+LIMIT = 600  # seconds, of runs that may hang
 # Of the samples of a profile.
 WHERE = [(("disc", 2, 0.0202), "newmark", 12), (("disc", 2, 0.0202), "reduced-kane", 12), (("ball", 3, 0.101), "newmark", 8)]
 
@@ -85,7 +86,7 @@ def time_of_steps(arguments, directory, body, friction, speed, steps):
               "rounds": {}, "ours": {}, "theirs": [], "stopped": {}}
     for scheme, case in list(cases.items()):
         try:
-            ours.run(case, directory / "run", {}, fields=False)
+            ours.run(case, directory / "run", {}, fields=False, limit=LIMIT)
         except SystemExit as failure:
             record["stopped"][scheme] = str(failure).splitlines()[-1]
             del cases[scheme]
@@ -108,7 +109,10 @@ def time_of_steps(arguments, directory, body, friction, speed, steps):
 
 def step_bench(arguments, case, steps):
     command = [str(arguments.build / "ricochet_step_bench"), str(case), "--steps", str(steps)]
-    result = subprocess.run(command, capture_output=True, text=True)
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        return {"failed": f"no end after {LIMIT} s"}
     return json.loads(result.stdout) if result.returncode == 0 else {"failed": result.stderr.strip()}
 
 
