@@ -13,15 +13,18 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(os.environ.get("RICOCHET", ROOT / "build" / "ricochet"))
 
 
-def run(case, directory, settings, fields=True):
-    """A run of the case with `settings` (key: value) that writes the fields of every step, or none."""
+def run(case, directory, settings, fields=True, limit=None):
+    """A run of the case with `settings` (key: value) that writes the fields of every step, or none; of at most `limit` seconds."""
     settings = {"output.fields_every": 1 if fields else 0, **settings}
     if fields:
         settings["output.fields"] = '["displacement", "velocity", "acceleration", "contact_pressure", "friction_traction"]'
     command = [str(PROGRAM), "run", str(case), "-o", str(directory), "--force", "--quiet", "--threads", "1"]
     for key, value in settings.items():
         command += ["--set", f"{key}={value}"]
-    result = subprocess.run(command, capture_output=True, text=True)
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, timeout=limit)
+    except subprocess.TimeoutExpired:
+        sys.exit(f"{' '.join(command)}: no end after {limit} s")
     if result.returncode not in (0, 5):  # 5: what the case expects is of its own scheme
         sys.exit(f"{' '.join(command)}: {result.stderr.strip()}")
 

@@ -1,0 +1,127 @@
+"""Runs Ricochet and GetFEM on one problem, and compares what comes out."""
+
+import json
+import pathlib
+import resource
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+import ours
+import page
+import problems
+
+HERE = pathlib.Path(__file__).resolve().parent
+FIELDS = '["displacement", "contact_pressure", "friction_traction"]'
+
+
+def numbers(points, of):
+    """Where each of `points` stands among those `of`: by place, as both programs number nodes by themselves."""
+    places = {tuple(key): k for k, key in enumerate(np.round(of * 1e8).astype(int))}
+    return np.array([places[tuple(key)] for key in np.round(points * 1e8).astype(int)])
+
+
+def arrays(case, directory, dimension):
+    """Points and cells, and per frame displacement, pressure, friction traction, of a run that writes all steps."""
+    ours.run(case, directory, {"output.fields": FIELDS})
+    with h5py.File(directory / "results.h5") as file:
+        points, cells = file["mesh/nodes"][:, :dimension], file["mesh/cells"][:]
+        frames = [file["frames"][name] for name in sorted(file["frames"])]
+        take = lambda name: np.array([frame[name][:] for frame in frames if name in frame])
+        return points, cells, take("displacement")[..., :dimension], take("contact_pressure"), take("friction_traction")[..., :dimension]
+
+
+def largest_stretch(points, cells, displacement):
+    """The largest of |principal stretch - 1| of any linear cell in any frame."""
+    d, largest = points.shape[1], 0.0
+    corner = points[cells[:, :d + 1]]
+    inverse = np.linalg.inv(corner[:, 1:] - corner[:, :1])
+    for frame in displacement:
+        moved = corner + frame[cells[:, :d + 1]]
+        gradient = inverse @ (moved[:, 1:] - moved[:, :1])  # the transpose of F
+        largest = max(largest, float(abs(np.linalg.svd(gradient, compute_uv=False) - 1.0).max()))
+    return largest
+
+
+def getfem(action, mesh, dimension, friction, file, kernels, **options):
+    """The record that getfem_finite.py prints, or {"failed": why}; arrays are in `file`."""
+    command = [sys.executable, str(HERE / "getfem_finite.py"), action, str(mesh), str(dimension), "--friction", repr(friction), "--arrays", str(file)]
+    for name, value in options.items():
+        command += [f"--{name}", repr(value)]
+    result = subprocess.run(command, capture_output=True, text=True, env=page.with_kernels(kernels) | {"PYTHONPATH": str(HERE.parent / "step")})
+    if result.returncode != 0:
+        return {"failed": result.stderr.strip().splitlines()[-1] if result.stderr else f"exit status {result.returncode}"}
+    record = json.loads(result.stdout[result.stdout.index("{"):])
+    if record["kernels"] != kernels:
+        return {"failed": f"OpenBLAS' kernels are those for {record['kernels']}, ours are those for {kernels}"}
+    return record
+
+
+def differences(mine, file, first, bound):
+    """The largest ones of displacement and forces, of all steps and nodes, relative to the largest value. `first`: our frame that is
+    GetFEM's first one. `bound`: the coefficient of friction."""
+    points, _, displacement, pressure, traction = mine
+    with np.load(file) as theirs:
+        moved = displacement[first:] - (displacement[0] if first else 0.0)
+        other = theirs["displacement"][:, numbers(points, theirs["points"])]
+        contact = numbers(theirs["contact_points"], points)
+        force = pressure[first:][:, contact] * theirs["weights"]
+        count = min(len(moved), len(other))
+        result = {"displacement": abs(moved[:count] - other[:count]).max() / abs(moved).max(),
+                  "force": abs(force[:count] - theirs["force"][:count, :, 0]).max() / force.max(),
+                  "total": abs(force[:count].sum(axis=1) - theirs["force"][:count, :, 0].sum(axis=1)).max() / force.sum(axis=1).max(),
+                  "largest_force": force.sum(axis=1).max(), "beyond": beyond(moved[:count], other[:count], force[:count], theirs["force"][:count, :, 0]), "pressed": int((force[:count] > 0.0).sum(axis=1).max())}
+        if theirs["force"].shape[2] > 1:
+            friction = traction[first:][:count][:, contact, :-1] * theirs["weights"][:, None]
+            result["friction_force"] = abs(friction - theirs["force"][:count, :, 1:]).max() / force.max()
+            result["at_bound"] = at_bound(force[count - 1], friction[count - 1], bound)
+        return {name: float(value) for name, value in result.items()}
+
+
+def beyond(moved, other, force, theirs):
+    """The step from which differences are above 10^-8 of the largest value so far; 0: never."""
+    for k in range(len(moved)):
+        if abs(moved[k] - other[k]).max() > 1e-8 * abs(moved[:k + 1]).max() or abs(force[k] - theirs[k]).max() > 1e-8 * force[:k + 1].max():
+            return k + 1
+    return 0
+
+
+def at_bound(force, friction, bound):
+    """How many of the pressed nodes have as much friction as there can be."""
+    pressed = force > 1e-9 * force.max(initial=0.0)
+    return int((np.linalg.norm(friction[pressed], axis=1) > bound * force[pressed] * (1.0 - 1e-6)).sum())
+
+
+def processor_seconds(case, directory, settings):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    ours.run(case, directory, settings, fields=False)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def step_seconds(case, directory, steps):
+    """Processor time of a step with contact: of a run of all steps less one of those before contact. With rows of the history only at the end."""
+    settings = {"output.history_every": 1000000}
+    short = processor_seconds(case, directory, settings | {"time.end": repr(problems.FLIGHT * problems.STEP)})
+    return (processor_seconds(case, directory, settings) - short) / (steps - problems.FLIGHT)
+
+
+def newton_rounds(directory):
+    """Of the steps with contact of a run with all rows."""
+    with open(directory / "history.csv", newline="") as file:
+        names = file.readline().strip().split(",")
+        return [int(row) for row in np.loadtxt(file, delimiter=",", usecols=names.index("newton_rounds"), ndmin=1)[problems.FLIGHT + 1:]]
+
+
+def rounds_by_phase(directory):
+    """The same, by whether contact is open, changes or stays as it is, as ricochet_step_bench tells steps apart."""
+    with open(directory / "history.csv", newline="") as file:
+        names = file.readline().strip().split(",")
+        rows = np.loadtxt(file, delimiter=",", usecols=(names.index("newton_rounds"), names.index("active_contacts")), ndmin=2).astype(int)
+    phases = {"open": [], "changing": [], "closed": []}
+    for k in range(2, len(rows)):
+        active, before = rows[k, 1], rows[k - 1, 1]
+        phases["open" if active == before == 0 else "closed" if active == before else "changing"].append(int(rows[k, 0]))
+    return phases
