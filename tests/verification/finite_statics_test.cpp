@@ -197,6 +197,22 @@ TEST(FiniteStatics, CantileverIsTheElastica) {
   EXPECT_GT(tip.y, 0.6);
 }
 
+/// A block that friction on the floor alone holds: where loads are small that is the equilibrium of the linear law.
+TEST(FiniteStatics, FrictionHoldsABlockAsWithTheLinearLaw) {
+  const auto displacement = [](const std::string& law) {
+    const CaseRun run(
+        body(square(), "law = \"" + law + "\"\nlambda = 1.3\nmu = 0.8\n",
+             "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = "
+             "\"y0\"\nobstacle = \"floor\"\nfriction = 0.3\n[[traction]]\ngroup = \"y1\"\nvalue = [\"0\", "
+             "\"-1e-6\"]\n[[traction]]\ngroup = \"x1\"\nvalue = [\"1.5e-7\", \"0\"]\n"));
+    return run.state().displacement;
+  };
+  const Vector wanted = displacement("linear");
+  EXPECT_GT(wanted.norm(), 1e-7);
+  for (const std::string law : {"neo-hookean", "saint-venant-kirchhoff"})
+    EXPECT_LT((displacement(law) - wanted).norm(), 1e-5 * wanted.norm()) << law;
+}
+
 TEST(FiniteStatics, SaysHowFarItCame) {
   // Pressed to nothing.
   try {
