@@ -66,11 +66,11 @@ class TurningPairs final : public ContactGeometry {
       if (reaction == 0.0 && (tangential.size() == 0 || tangential.segment(point.number * (d - 1), d - 1).isZero(0.0)))
         continue;
       if (!point.normal.turns()) continue;
-      Three along = Three::Zero();
-      along.head(d) = rows.force(point.number, normal, tangential);
+      const Three turning = point.normal.at(data_.node_positions, place);
+      Three along = reaction * turning.normalized();
+      along.head(d) += rows.force(point.number, normal, tangential) - reaction * rows.normal(point.number);
       for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
         add(entry.col(), entry.value() * along);
-      const Three turning = point.normal.at(data_.node_positions, place);
       const Three moment = across(point, place).cross(along);
       point.normal.visit_derivative(data_.node_positions, place, turning.cross(moment) / turning.squaredNorm(), add);
       rows.visit_normal(point.number, [&](Index dof, double value) { force[dof] -= value * reaction; });

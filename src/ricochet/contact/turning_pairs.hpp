@@ -21,7 +21,7 @@
 /// −r_N g₀ over a step at whose end they act on a closed gap, which is what no creation of energy rests on. They have
 /// no resultant.
 ///
-/// Where contact nodes have another middle of the step than ½(U₀ + U₁), forces r = r_N n̄ − τ r_T at that place x are
+/// Where contact nodes have another middle of the step than ½(U₀ + U₁), forces r = r_N n(x) − τ r_T at that place x are
 /// those of t ⊗ r with a couple ∂N(x)ᵀ w on the nodes of N instead, N × w = −y × r: no moment about x is left but the
 /// part of y × r along N, that of friction across what has slid, which in two dimensions there is none of.
 namespace ricochet {

@@ -83,13 +83,14 @@ SparseMatrix assemble(const Body& body, const NodeGraph& graph, const ElementMat
   return result;
 }
 
-/// Adds the vectors of all cells, `components` per node, in the same way. `element(walk, part, cell number through all
-/// blocks, vector)` computes that of the cell the walk is at.
-template <int components, class ElementVector>
-void assemble_vector(const Body& body, const NodeGraph& graph, const ElementVector& element, Vector& result) {
-  result.setZero(graph.node_count() * components);
+/// Adds the vectors of all cells, `count` of them with `components` per node, in the same way. `element(walk, part,
+/// cell number through all blocks, vectors)` computes those of the cell the walk is at.
+template <int components, std::size_t count, class ElementVectors>
+void assemble_vectors(const Body& body, const NodeGraph& graph, const ElementVectors& element,
+                      const std::array<Vector*, count>& results) {
+  for (Vector* const result : results) result->setZero(graph.node_count() * components);
   parallel_ranges(graph.parts(), [&](Index first, Index last) {
-    std::array<double, most_cell_nodes * components> values;
+    std::array<std::array<double, most_cell_nodes * components>, count> values;
     for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) {
       const Index begin = graph.part_begins[part], end = graph.part_begins[part + 1];
       CellWalk walk(body.space->cells);
@@ -97,15 +98,27 @@ void assemble_vector(const Body& body, const NodeGraph& graph, const ElementVect
         const Index cell = graph.cells[static_cast<std::size_t>(k)];
         walk.go_to(cell);
         element(walk, part, cell, values);
-        const double* value = values.data();
-        for (int i = 0; i < walk.node_count(); ++i, value += components) {
-          const Index node = walk.nodes()[i];
-          if (node < begin || node >= end) continue;
-          for (int a = 0; a < components; ++a) result[node * components + a] += value[a];
+        for (std::size_t r = 0; r < count; ++r) {
+          const double* value = values[r].data();
+          double* const result = results[r]->data();
+          for (int i = 0; i < walk.node_count(); ++i, value += components) {
+            const Index node = walk.nodes()[i];
+            if (node < begin || node >= end) continue;
+            for (int a = 0; a < components; ++a) result[node * components + a] += value[a];
+          }
         }
       }
     }
   });
+}
+
+/// One of them.
+template <int components, class ElementVector>
+void assemble_vector(const Body& body, const NodeGraph& graph, const ElementVector& element, Vector& result) {
+  const auto first = [&](const CellWalk& walk, std::size_t part, Index cell, auto& values) {
+    element(walk, part, cell, values[0]);
+  };
+  assemble_vectors<components>(body, graph, first, std::array<Vector*, 1>{&result});
 }
 
 }  // namespace ricochet

@@ -26,7 +26,7 @@ class CellDilatation {
  private:
   int points_ = 0, count_ = 0;
   const double* weights_ = nullptr;
-  std::array<std::array<double, most_points>, most_functions> orthonormal_{};
+  std::array<std::array<double, most_points>, most_functions> orthonormal_;  // set by start()
 };
 
 }  // namespace ricochet

@@ -335,7 +335,7 @@ class CellKernel {
   const double* weights_;
   VolumetricEnergy volume_;  ///< modulus 0: no mean dilatation
   CellDilatation dilatation_;
-  PointValues mean_{}, pressure_{};
+  PointValues mean_, pressure_;  // set by find_dilatation() alone: a kernel is made for every cell of every pass
   std::array<double, most_cell_nodes * d> gradients_;
   std::array<double, most_cell_nodes> hoop_;  ///< φ/r, of an axisymmetric body
 };

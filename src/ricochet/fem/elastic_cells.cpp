@@ -129,6 +129,52 @@ SparseMatrix ElasticCells::tangent(const Vector& displacement, double step) cons
   });
 }
 
+namespace {
+
+/// Adds the force of the stress 𝔻₀ : (the derivative of the strain along a change) of a point, at F.
+template <int d>
+void add_strain_force(const CellKernel<d>& kernel, const IsotropicElasticity& law, int q, const Tensor& deformation,
+                      const Tensor& rate, typename CellKernel<d>::LocalVector& local) {
+  const Tensor half = transposed_product(deformation, rate);
+  Tensor stress;
+  law.stress((0.5 * (half + half.transpose())).eval(), stress);
+  kernel.add_force(q, product(deformation, stress), local);
+}
+
+}  // namespace
+
+InvertedCell ElasticCells::mean_forces(const Vector& middle, const Vector& increment, Vector& result,
+                                       Vector& strain_result) const {
+  std::vector<InvertedCell> worst(static_cast<std::size_t>(graph_->parts()));
+  with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    const Blocks<d>& all = blocks<d>();
+    const bool plane_stress = is_plane_stress(body_);
+    const auto element = [&](const CellWalk& walk, std::size_t part, Index cell, auto& local) {
+      CellKernel<d> kernel = all.kernel(walk, cell);
+      typename CellKernel<d>::LocalVector u, change;
+      kernel.gather(walk.nodes(), middle, u);
+      kernel.gather(walk.nodes(), increment, change);
+      local[0].fill(0.0);
+      local[1].fill(0.0);
+      const Material& material = all.material(cell);
+      const bool is_linear = material.law->is_linear();
+      const IsotropicElasticity law = IsotropicElasticity::of(material.lambda(), material.mu(), plane_stress);
+      const double least =
+          kernel.visit_stress([&] { return kernel.mean_motion_of(u, change); },
+                              [&](int q, const Tensor& deformation, const Tensor&, const Tensor& stress) {
+                                kernel.add_force(q, product(deformation, stress), local[0]);
+                                if (is_linear) return;
+                                const Tensor in_plane = Tensor::Identity() + kernel.gradient(u);
+                                add_strain_force(kernel, law, q, in_plane, kernel.gradient(change), local[1]);
+                              });
+      if (!(least > 0.0)) worse(worst[part], cell, least);
+    };
+    assemble_vectors<d>(body_, *graph_, element, std::array<Vector*, 2>{&result, &strain_result});
+  });
+  return worst_of(worst);
+}
+
 void ElasticCells::strain_force(const Vector& displacement, const Vector& increment, Vector& result) const {
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
@@ -147,12 +193,8 @@ void ElasticCells::strain_force(const Vector& displacement, const Vector& increm
               IsotropicElasticity::of(material.lambda(), material.mu(), is_plane_stress(body_));
           for (int q = 0; q < kernel.points(); ++q) {
             kernel.go_to(q);
-            const Tensor motion = kernel.gradient(u), rate = kernel.gradient(change);
-            const Tensor deformation = Tensor::Identity() + motion;
-            const Tensor half = transposed_product(deformation, rate);
-            Tensor stress;
-            law.stress((0.5 * (half + half.transpose())).eval(), stress);
-            kernel.add_force(q, product(deformation, stress), local);
+            const Tensor deformation = Tensor::Identity() + kernel.gradient(u);
+            add_strain_force(kernel, law, q, deformation, kernel.gradient(change), local);
           }
         },
         result);
@@ -162,7 +204,7 @@ void ElasticCells::strain_force(const Vector& displacement, const Vector& increm
 namespace {
 
 /// In the order of XDMF.
-void write_tensor(const Tensor& tensor, double* to) {
+void write_for_files(const Tensor& tensor, double* to) {
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) *to++ = tensor(i, j);
   }
@@ -205,7 +247,7 @@ void ElasticCells::cell_stress(std::size_t block, Index local, Index cell, const
                           mean += weight / determinant(deformation) * (deformation * all * deformation.transpose());
                         });
     energy_density = energy / volume;
-    write_tensor(mean / volume, stress);
+    write_for_files(mean / volume, stress);
   });
 }
 
@@ -223,7 +265,7 @@ void ElasticCells::cell_strain(std::size_t block, Index local, Index cell, const
       volume += kernel.weight(q);
       mean += kernel.weight(q) * kernel.motion_of(u).strain;
     }
-    write_tensor(mean / volume, strain);
+    write_for_files(mean / volume, strain);
   });
 }
 

@@ -50,6 +50,9 @@ class ElasticCells {
   /// with Δ their difference, that is the strain ½(E₀+E₁), and a rigid motion has none (J. C. Simo, N. Tarnow, Z.
   /// Angew. Math. Phys. 43 (1992) 757–792).
   [[nodiscard]] InvertedCell mean_force(const Vector& middle, const Vector& increment, Vector& result) const;
+  /// The same with strain_force() at `middle`, in one pass.
+  [[nodiscard]] InvertedCell mean_forces(const Vector& middle, const Vector& increment, Vector& result,
+                                         Vector& strain_result) const;
   [[nodiscard]] double energy(const Vector& displacement) const;
   /// Symmetric to the bit, on the pattern of the graph. An empty displacement is zero. With a `step` that of the
   /// branches over a step of this length is in it, at no stress of theirs.

@@ -62,6 +62,14 @@ void FiniteElasticity::mean_force(const Vector& middle, const Vector& increment,
   condense(force);
 }
 
+void FiniteElasticity::mean_forces(const Vector& middle, const Vector& increment, Vector& force,
+                                   Vector& of_strain) const {
+  require_upright(
+      cells_.mean_forces(complete(middle, displacement_), complete(increment, increment_), force, of_strain));
+  condense(force);
+  condense(of_strain);
+}
+
 double FiniteElasticity::energy(const Vector& displacement) const {
   return cells_.energy(complete(displacement, displacement_));
 }

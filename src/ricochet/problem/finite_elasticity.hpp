@@ -15,6 +15,7 @@ class FiniteElasticity final : public InternalForce, public ViscousForce {
 
   void evaluate(const Vector& displacement, Vector& force) const override;
   void mean_force(const Vector& middle, const Vector& increment, Vector& force) const override;
+  void mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const override;
   using InternalForce::energy;
   [[nodiscard]] double energy(const Vector& displacement) const override;
   void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;

@@ -19,6 +19,11 @@ namespace {
 
 }  // namespace
 
+void InternalForce::mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const {
+  mean_force(middle, increment, force);
+  strain_force(middle, increment, of_strain);
+}
+
 std::shared_ptr<const InternalForce> InternalForce::near(const std::vector<char>&) const {
   throw_linear();
 }

@@ -31,6 +31,8 @@ class InternalForce {
   /// Forces of a step from u₀ to u₁ = u₀ + increment at a displacement in its middle: of the stress of ½(E₀+E₁) where
   /// that is ½(u₀+u₁), so that a rigid motion has none. Only where the force is not linear; throws as evaluate() does.
   virtual void mean_force(const Vector& middle, const Vector& increment, Vector& force) const;
+  /// That with strain_force() at the same place, for less than both take alone.
+  virtual void mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const;
   /// The part of it that is of the cells at some nodes (per node, 1: wanted): their forces, and the energy of these
   /// cells alone. Only where the force is not linear.
   [[nodiscard]] virtual std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const;

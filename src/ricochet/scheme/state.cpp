@@ -93,9 +93,8 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   const ContactRows& rows = *problem.contact.rows;
   const Index row_values = rows.gap_operator.nonZeros() + rows.tangential_trace.nonZeros();
   for (const std::string& key : snapshot.texts(name + ".memory"))
-    state.memory[key] =
-        memory(snapshot, name + ".memory." + key,
-               {dofs, problem.supports.size(), tangents, row_values, State::memory_numbers});
+    state.memory[key] = memory(snapshot, name + ".memory." + key,
+                               {dofs, problem.supports.size(), tangents, row_values, State::memory_numbers});
   return state;
 }
 

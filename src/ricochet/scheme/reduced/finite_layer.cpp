@@ -95,12 +95,15 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   const ViscousForce* const viscous = elastic.viscous();
   increment_ = end_ - state.displacement;
   const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
-  elastic.mean_force(middle_, increment_, force_);
+  if (near || sigma_ != 0.0) {
+    elastic.mean_forces(middle_, increment_, force_, strain_force_);
+  } else {
+    elastic.mean_force(middle_, increment_, force_);
+  }
   if (viscous != nullptr) viscous->add_mean_force(branches, force_);
   if (layer_) layer_->evaluate(end_, end_force_);
   if (layer_ && layer_->viscous() != nullptr) layer_->viscous()->add_end_force(branches, end_force_);
   evaluate_pressure(problem, state);
-  if (near || sigma_ != 0.0) elastic.strain_force(middle_, increment_, strain_force_);
   if (!near) return;
   if (viscous != nullptr) viscous_dissipation_ = viscous->advance_internal(branches, internal_);
   energy_ = stored_energy(elastic, end_, internal_);
@@ -154,8 +157,8 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   equations_.prescribe(problem, state.time + step, half_way, stage);
 }
 
-/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c), where b has no force of lagged
-/// rows and L₁ has.
+/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c), where b has no force of
+/// lagged rows and L₁ has.
 void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                   const State& state, StageSolve& stages, Stage& stage) {
   right_ = load_ - end_force_ - 2.0 * stage.right_hand_side + row_force_;
