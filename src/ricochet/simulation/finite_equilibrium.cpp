@@ -85,12 +85,14 @@ class LoadPath {
   void advance(double part, StaticEquilibrium& at) {
     constexpr int most_corrections = 40;
     constexpr double near = 1e-6;  // of the size of the bodies
+    constexpr double most_growth = 10.0;
     start(at.displacement);
     for (int k = 0; k < most_corrections; ++k) {
       const double before = last_, correction = correct(part, at);
       if (correction <= near) return;
-      // Beyond the loads that a body holds corrections lead anywhere.
-      if (correction > before) throw Error(ErrorKind::not_converged, "the corrections of Newton's method grow");
+      // Beyond the loads that a body holds corrections lead anywhere, also with a new factor.
+      if (correction > (may_renew() ? most_growth : 1.0) * before)
+        throw Error(ErrorKind::not_converged, "the corrections of Newton's method grow");
     }
     throw Error(
         ErrorKind::not_converged,
