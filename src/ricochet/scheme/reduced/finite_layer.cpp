@@ -70,6 +70,9 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   relaxed_ = state.displacement;
   layer_energy_start_.reset();
   sigma_before_ = asked_before_ = std::numeric_limits<double>::quiet_NaN();
+  is_weak_ = false;
+  settling_ = vain_ = 0;
+  least_lacking_ = std::numeric_limits<double>::infinity();
   sigma_ = lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
   last_solution_ = nullptr;
   if (problem.contact.follows_motion()) lagged_.start(state);
@@ -121,14 +124,23 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
 }
 
 /// The balance at the last places asks for a σ, and the places depend on σ: what two rounds say of that tells where
-/// both agree (the secant method).
+/// both agree (the secant method). Where strains change next to contact nodes alone, as where one begins to touch,
+/// places answer σ so that the work hardly does: then a σ is kept for some rounds, in which places settle, before the
+/// next one; and where that does not help, to the end: what the energy lacks is said (integration_error).
 void FiniteLayer::choose_sigma(double asked) {
-  constexpr double steepest = 4.0, least_left = 0.002;
+  constexpr double steepest = 4.0, weak = 0.8, least_left = 0.002;
+  constexpr int settling_rounds = 3, most_vain = 6;
+  if (vain_ >= most_vain) return;
+  if (is_weak_ && ++settling_ < settling_rounds) return;
+  settling_ = 0;
   const double slope = (asked - asked_before_) / (sigma_ - sigma_before_);
   const double used = sigma_;
   double next = asked;
   if (std::isfinite(slope) && slope > -steepest && slope < 1.0 - least_left)
     next = (asked - slope * used) / (1.0 - slope);
+  if (is_weak_) vain_ = std::abs(lacking_) > 0.5 * least_lacking_ ? vain_ + 1 : 0;
+  least_lacking_ = std::min(least_lacking_, std::abs(lacking_));
+  is_weak_ = is_weak_ || (std::isfinite(slope) && slope > weak);
   sigma_before_ = used;
   asked_before_ = asked;
   sigma_ = std::clamp(next, -largest_sigma, largest_sigma);
