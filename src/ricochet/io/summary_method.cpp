@@ -1,5 +1,6 @@
 #include "ricochet/io/summary_method.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -23,6 +24,9 @@ Json energy_budget_to_json(const RunSummary& summary) {
   const MethodEnergy& method = *summary.method_energy;
   Json at_end = {{"method", Json::number(method.at_end)}};
   for (const auto& [name, column] : others) at_end[name] = part(summary.digest(column).last);
+  const auto& columns = summary.columns;
+  if (std::find(columns.begin(), columns.end(), "viscous_dissipation") != columns.end())
+    at_end["relaxation"] = part(-summary.digest("viscous_dissipation").last);
   return {{"largest_energy", Json::number(scale)},
           {"lost_by_method", Json::number(method.lost)},
           {"created_by_method", Json::number(method.created)},

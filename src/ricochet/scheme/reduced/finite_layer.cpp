@@ -120,7 +120,8 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   const double unit = strain_force_.dot(increment_);
   lacking_ = wanted - has - sigma_ * unit;
   const double least = energy_tolerance * std::abs(energy_start_ + energy_);
-  if (unit > least * energy_tolerance) choose_sigma((wanted - has) / unit);
+  // What is rounding of the energies says nothing, least of all where the body hardly moves.
+  if (std::abs(lacking_) > least && unit > least * energy_tolerance) choose_sigma((wanted - has) / unit);
 }
 
 /// The balance at the last places asks for a σ, and the places depend on σ: what two rounds say of that tells where
