@@ -21,6 +21,8 @@ constexpr double energy_tolerance = 1e-15;
 constexpr double near_solution = 1e-2;
 /// σ is about half of the change of a strain; one that is larger means that steps are far too long.
 constexpr double largest_sigma = 1.0;
+/// Changes of it in a row that do not halve what the energy lacks: it is let be.
+constexpr int most_vain = 6;
 
 double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vector& b) {
   double sum = 0.0;
@@ -129,15 +131,15 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
 /// places answer σ so that the work hardly does: then a σ is kept for some rounds, in which places settle, before the
 /// next one; and where that does not help, to the end: what the energy lacks is said (integration_error).
 void FiniteLayer::choose_sigma(double asked) {
-  constexpr double steepest = 4.0, weak = 0.8, least_left = 0.002;
-  constexpr int settling_rounds = 3, most_vain = 6;
+  constexpr double steepest = 4.0, weak = 0.8, least_left = 0.002, least_left_settled = 1e-6;
+  constexpr int settling_rounds = 3;
   if (vain_ >= most_vain) return;
-  if (is_weak_ && ++settling_ < settling_rounds) return;
+  if (is_weak_ && !converged_ && ++settling_ < settling_rounds) return;
   settling_ = 0;
   const double slope = (asked - asked_before_) / (sigma_ - sigma_before_);
   const double used = sigma_;
   double next = asked;
-  if (std::isfinite(slope) && slope > -steepest && slope < 1.0 - least_left)
+  if (std::isfinite(slope) && slope > -steepest && slope < 1.0 - (is_weak_ ? least_left_settled : least_left))
     next = (asked - slope * used) / (1.0 - slope);
   if (is_weak_) vain_ = std::abs(lacking_) > 0.5 * least_lacking_ ? vain_ + 1 : 0;
   least_lacking_ = std::min(least_lacking_, std::abs(lacking_));
@@ -318,7 +320,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
   Stage& stage = stages.stage(number);
   const StageSolution* solution = nullptr;
   const double kinetic = 0.5 * problem.mass.form(state.velocity);
-  bool converged = false;
+  converged_ = false;
   double lacked = std::numeric_limits<double>::infinity();
   while (true) {
     last_middle_ = middle_;
@@ -335,13 +337,14 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
     if (lagged_.exact() != nullptr) stage.rows = lagged_.exact();
     const Round round = correct(problem, state, *solution);
     const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
-    converged = converged || advice == NewtonProgress::Advice::done;
+    converged_ = converged_ || advice == NewtonProgress::Advice::done;
     if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, *solution);
-    const bool near = round.correction <= near_solution * round.increment || converged;
+    const bool near = round.correction <= near_solution * round.increment || converged_;
     halve_where_inverted(problem, step, state, near);
+    const bool is_exact = std::abs(lacking_) <= energy_tolerance * (kinetic + energy_start_ + energy_);
     // Rounding of forces and energies may leave more.
-    const bool balanced = std::abs(lacking_) <= energy_tolerance * (kinetic + energy_start_ + energy_) ||
-                          (converged && std::abs(lacking_) > 0.5 * lacked);
+    const bool is_last = is_weak_ ? vain_ >= most_vain : std::abs(lacking_) > 0.5 * lacked;
+    const bool balanced = is_exact || (converged_ && is_last);
     lacked = std::abs(lacking_);
     if (log::enabled(log::Level::debug)) {
       log::debug(
@@ -350,8 +353,13 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
                       progress_.rounds(), round.correction, round.increment, sigma_,
                       lacking_ / (kinetic + energy_start_ + energy_), end_weight_));
     }
-    if (converged && near && balanced) break;
-    if (converged) continue;
+    if (converged_ && near && balanced) break;
+    if (converged_ && is_weak_) {  // with another number now
+      converged_ = false;
+      progress_.restart();
+      continue;
+    }
+    if (converged_) continue;
     if (advice == NewtonProgress::Advice::failed) {
       throw Error(ErrorKind::not_converged,
                   fmt::format("Newton's method did not converge in {} iterations (the last correction moves a node by "

@@ -100,6 +100,7 @@ class FiniteLayer {
   double energy_ = 0.0, energy_start_ = 0.0, sigma_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
   /// σ of the round before and what the balance of energy asked for then; NaN before the second round.
   double sigma_before_ = 0.0, asked_before_ = 0.0;
+  bool converged_ = false;       ///< places
   bool is_weak_ = false;         ///< σ hardly changes the work
   int settling_ = 0, vain_ = 0;  ///< rounds with this σ; those in a row that brought nothing
   double least_lacking_ = 0.0;
