@@ -36,6 +36,10 @@ TEST(MalformedCase, Values) {
        "8:11: \"damping\" must be a table with \"mass\" and \"stiffness\"; found the integer 3"},
       {7, "mu = 1.0\ndamping = { mass = -1.0 }",
        "8:20: \"mass\" must be a number of at least 0 (unit: 1/time); found the number -1.0"},
+      {7, "mu = 1.0\nrelaxation = { modulus = [0.5, -1.0], time = [1.0, 2.0] }",
+       "8:32: entry 2 of \"modulus\" must be a positive number; found the number -1.0"},
+      {7, "mu = 1.0\nrelaxation = { modulus = [0.5], time = [1.0, 2.0] }",
+       "8:40: \"modulus\" and \"time\" have one entry for each branch, and there are 1 and 2 of them"},
       {9, "scheme = \"newmrk\"",
        "9:10: \"scheme\" must be one of " + all_schemes() +
            "; found the "

@@ -87,6 +87,13 @@ maximum = 1
 
 }  // namespace
 
+TEST(ReadCase, BranchesThatRelax) {
+  const Case read = read_text(edited_case(7, "mu = 1.0\nrelaxation = { modulus = [0.5, 2], time = [1e-3, 0.1] }"));
+  EXPECT_EQ(read.materials[0].relaxation.modulus, (std::vector<double>{0.5, 2.0}));
+  EXPECT_EQ(read.materials[0].relaxation.time, (std::vector<double>{1e-3, 0.1}));
+  EXPECT_EQ(read.values.at("material.0.relaxation.time"), "[0.001, 0.1]");
+}
+
 TEST(ReadCase, ReadsEveryKey) {
   const Case read = read_text(full_case);
   EXPECT_EQ(read.title, "A disc");
@@ -174,6 +181,7 @@ TEST(ReadCase, FillsInEveryDefault) {
   EXPECT_EQ(read.mesh.degree, 1);
   EXPECT_EQ(read.mesh.plane, "strain");
   ASSERT_EQ(read.materials.size(), 1U);
+  EXPECT_TRUE(read.materials[0].relaxation.time.empty());
   EXPECT_EQ(read.materials[0].damping.mass, 0.0);
   EXPECT_EQ(read.materials[0].damping.stiffness, 0.0);
   EXPECT_TRUE(read.obstacles.empty() && read.contacts.empty() && read.supports.empty() && read.tractions.empty());
