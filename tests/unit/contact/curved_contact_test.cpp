@@ -115,7 +115,7 @@ TEST_P(TwoPoints, AreRestoredToTheBit) {
   const ContactRows saved = rows_;
   geometry_->update(Vector::Zero(displacement.size()), 0.7, nullptr, rows_);
   ASSERT_NE(rows_.normals, saved.normals);
-  geometry_->restore(saved.normals, saved.gap, rows_);
+  geometry_->restore(saved.normals, saved.gap, Vector(), rows_);
   EXPECT_EQ(rows_.normals, saved.normals);
   EXPECT_EQ(rows_.gap, saved.gap);
   EXPECT_EQ(Matrix(rows_.gap_operator), Matrix(saved.gap_operator));
