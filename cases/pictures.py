@@ -5,38 +5,14 @@ closed forms. From the repository root, with python3-matplotlib installed:
     /usr/bin/python3 cases/pictures.py [puck disc rod bar ball ball-axisymmetric hertz layer incline dragged conveyor oblique ball-spin bowl bars-pair cradle
         balls ball-block stack tied golf-ball rubber-ball tumbling-block]
 """
-import csv
-import subprocess
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-EXACT = {"color": "0.6", "linewidth": 4, "solid_capstyle": "butt"}
-
-
-def run(case, name, *settings):
-    """The columns of history.csv by name, as arrays."""
-    directory = f"out/pictures/{name}"
-    command = ["build/ricochet", "run", f"cases/{case}.toml", "-o", directory, "--force", "--quiet", "--log-level", "error"]
-    for setting in settings:
-        command += ["--set", setting]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    with open(f"{directory}/history.csv", newline="") as file:
-        rows = csv.reader(file)
-        names = next(rows)
-        return dict(zip(names, np.array([[float(entry) for entry in row] for row in rows]).T))
-
-
-def save(figure, path):
-    for axes in figure.axes:
-        axes.grid(alpha=0.3)
-    figure.tight_layout()
-    figure.savefig(path, dpi=80)
-    print(path)
+from picture_tools import EXACT, run, save
+from pictures_at_finite_strain import golf_ball, rubber_ball, tumbling_block
+from pictures_of_pairs import ball_block, balls, bars_pair, cradle, stack, tied
 
 
 def puck():
@@ -309,137 +285,6 @@ def bowl():
     save(figure, "cases/bowl/bowl.png")
 
 
-def steps(axis, breaks, values, **style):
-    """A piecewise constant closed form: values[i] from breaks[i] to breaks[i + 1]."""
-    axis.plot(np.repeat(breaks, 2)[1:-1], np.repeat(values, 2), **{**EXACT, **style})
-
-
-def bars_pair():
-    figure, axes = plt.subplots(2, 2, figsize=(11, 6.4))
-    speed, height = 0.01, 0.05
-    forms = (("pair", ("one", "two"), (3.0, 1.0), [0, 0.05, 2.05, 3], [0, 0.75, 0]),
-             ("hammer", ("hammer", "pile"), (3.0, 4.0), [0, 0.05, 2.05, 4.05, 6.05, 8.05, 10], [0, 3 / 4, 3 / 8, 3 / 16, 3 / 32, 0]))
-    for row, (case, bodies, masses, breaks, pressures) in enumerate(forms):
-        history = run(f"bars-pair/{case}", f"bars-pair-{case}")
-        steps(axes[row, 0], breaks, pressures, label="closed form")
-        axes[row, 0].plot(history["time"], history["contact.force_x"] / height / speed, linewidth=1, label="computed")
-        impulse = np.concatenate([[0.0], np.cumsum(np.diff(breaks) * pressures)])
-        for body, start, mass, sign in zip(bodies, (1.0, 0.0), masses, (-1, 1)):
-            axes[row, 1].plot(breaks, start + sign * impulse / mass, label="closed form" if sign < 0 else None, **EXACT)
-            axes[row, 1].plot(history["time"], history[f"{body}.velocity_average_x"] / speed, linewidth=1.2, label=body)
-        axes[row, 0].set(title=f"{case}: contact pressure / V")
-        axes[row, 1].set(title=f"{case}: velocities of the centres of mass / V")
-    for axis in axes[1]:
-        axis.set(xlabel="time")
-    axes[0, 0].legend(loc="upper right")
-    for axis in axes[:, 1]:
-        axis.legend(loc="center right")
-    save(figure, "cases/bars-pair/bars-pair.png")
-
-
-def tied():
-    history = run("tied/tied", "tied")
-    figure, (force, velocity) = plt.subplots(1, 2, figsize=(11, 3.6))
-    steps(force, [0, 0.05, 2.05, 3], [0, 1, 0], label="closed form")
-    force.plot(history["time"], history["wall.force_x"] / 0.1 / 0.01, linewidth=1, label="computed")
-    velocity.plot([0, 0.05, 2.05, 3], [-1, -1, 1, 1], label="closed form", **EXACT)
-    velocity.plot(history["time"], history["all.velocity_average_x"] / 0.01, linewidth=1.3, label="computed")
-    force.set(xlabel="time", title="pressure on the wall / ρcV")
-    velocity.set(xlabel="time", title="velocity of the centre of mass / V")
-    force.legend(loc="upper right")
-    velocity.legend(loc="lower right")
-    save(figure, "cases/tied/tied.png")
-
-
-def cradle():
-    history = run("cradle/cradle", "cradle")
-    figure, (force, velocity) = plt.subplots(1, 2, figsize=(11, 3.8))
-    for number, name in enumerate(("ab", "bc", "cd")):
-        offset = 1.2 * (2 - number)
-        steps(force, [0, number, number + 2, 6], [offset, 0.5 + offset, offset], label="closed form" if number == 0 else None)
-        force.plot(history["time"], offset + -history[f"{name}.force_x"] / 0.05 / 0.01, linewidth=1, label=f"{name[0]} on {name[1]}")
-    for name, times, values in (("a", [0, 2, 6], [1, 0, 0]), ("b", [0, 1, 2, 3, 6], [0, 0.5, 0.5, 0, 0]),
-                                ("c", [0, 1, 2, 3, 4, 6], [0, 0, 0.5, 0.5, 0, 0]), ("d", [0, 2, 4, 6], [0, 0, 1, 1])):
-        velocity.plot(times, values, label="closed form" if name == "a" else None, **EXACT)
-        velocity.plot(history["time"], history[f"{name}.velocity_average_x"] / 0.01, linewidth=1.3, label=name)
-    force.set(xlabel="time", title="contact pressures / V, one above the other", ylim=(-0.1, 4.1), yticks=[0, 0.5, 1.2, 1.7, 2.4, 2.9],
-              yticklabels=["0", "½", "0", "½", "0", "½"])
-    velocity.set(xlabel="time", title="velocities of the centres of mass / V")
-    force.legend(loc="upper right", ncol=2)
-    velocity.legend(loc="center right")
-    save(figure, "cases/cradle/cradle.png")
-
-
-def point_impact(stiffness, mass, speed, steps=4000):
-    """Force over time of a spring, force = stiffness × compression^1.5, that a mass meets at this speed, until release."""
-    largest = (1.25 * mass * speed**2 / stiffness) ** 0.4
-    step, compression, velocity, forces = 2.943275 * largest / speed / steps, 0.0, speed, [0.0]
-    while compression >= 0.0:
-        velocity -= step * stiffness * compression**1.5 / mass
-        compression += step * velocity
-        forces.append(stiffness * max(compression, 0.0) ** 1.5)
-    return step * np.arange(len(forces)), np.array(forces)
-
-
-def impact_of_two(axes, history, moduli, radius, masses, color, label):
-    """Force and velocities of two bodies, a quarter of which is computed, beside Hertz; the first one comes with 1 m/s."""
-    force, velocity = axes
-    modulus = 1 / sum((1 - poisson**2) / young for young, poisson in moduli)
-    times, forces = point_impact(4 / 3 * modulus * radius**0.5, masses[0] * masses[1] / sum(masses), 1.0)
-    computed = 4 * history["contact.force_z"]
-    force.plot(1e6 * times, forces, label="Hertz" if color == 0 else None, **EXACT)
-    force.plot(1e6 * history["time"], computed, f"C{color}", linewidth=1.3, label=label[0])
-    for body, start, mass, sign in (("upper", 1.0, masses[0], -1), ("lower", 0.0, masses[1], 1)):
-        for time, values, style in ((times, forces, EXACT), (history["time"], computed, {"color": f"C{color}", "linewidth": 1.3})):
-            impulse = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time))])
-            line = {} if style is EXACT else {"linestyle": "-" if sign < 0 else "--", "label": label[1 if sign < 0 else 2]}
-            velocity.plot(1e6 * time, start + sign * impulse / mass, **style, **line)
-
-
-def balls():
-    figure, axes = plt.subplots(1, 2, figsize=(11, 3.8))
-    steel, density = (2.1e11, 0.3), 7800 * 4 / 3 * np.pi
-    for color, (case, radius) in enumerate((("balls", 0.01), ("unequal", 0.02))):
-        impact_of_two(axes, run(f"balls/{case}", f"balls-{case}"), (steel, steel), 0.01 * radius / (0.01 + radius),
-                      (density * 0.01**3, density * radius**3), color,
-                      (f"radii 10 and {1000 * radius:.0f} mm", f"the striking ball, 10 mm ({case})", f"the struck ball, {1000 * radius:.0f} mm ({case})"))
-    axes[0].set(xlabel="time, µs", title="contact force, N")
-    axes[1].set(xlabel="time, µs", title="velocities of the centres of mass, m/s", ylim=(-0.9, 1.75))
-    axes[0].legend(loc="lower center")
-    axes[1].legend(loc="upper right", fontsize=8, ncol=2)
-    save(figure, "cases/balls/balls.png")
-
-
-def ball_block():
-    figure, axes = plt.subplots(1, 2, figsize=(11, 3.8))
-    impact_of_two(axes, run("ball-block/ball-block", "ball-block"), ((2.1e11, 0.3), (7e10, 0.33)), 0.01,
-                  (7800 * 4 / 3 * np.pi * 0.01**3, 2700 * 0.04**3), 0, ("computed", "ball", "block"))
-    axes[0].set(xlabel="time, µs", title="contact force, N")
-    axes[1].set(xlabel="time, µs", title="velocities of the centres of mass, m/s")
-    axes[0].legend(loc="lower center")
-    axes[1].legend(loc="upper right")
-    save(figure, "cases/ball-block/ball-block.png")
-
-
-def stack():
-    history = run("stack/stack", "stack")
-    figure, (velocity, friction) = plt.subplots(1, 2, figsize=(11, 3.8))
-    breaks = [0, 2, 4, 6, 8]
-    steps(velocity, breaks, [0.775, 0.325, 0.25, 0.25], label="closed form")
-    steps(velocity, breaks, [0.075, 0.225, 0.25, 0.25])
-    steps(friction, breaks, [0.225, 0.225, -0.15, 0.15], label="closed form")
-    middle = 0.5 * (history["time"][1:] + history["time"][:-1])
-    for body in ("upper", "lower"):
-        face = np.diff(history[f"{body}.displacement_average_x"]) / np.diff(history["time"])
-        velocity.plot(middle, face / 0.01, linewidth=1, label=f"face of the {body} plate")
-    friction.plot(history["time"], -history["contact.force_x"] / 0.5 / 0.01, linewidth=1, label="computed")
-    velocity.set(xlabel="time", title="velocities of the faces / V", ylim=(-0.1, 1.1))
-    friction.set(xlabel="time", title="friction traction on the lower plate / (ρ c V)", ylim=(-0.4, 0.6))
-    velocity.legend(loc="upper right")
-    friction.legend(loc="upper right")
-    save(figure, "cases/stack/stack.png")
-
-
 def ball_axisymmetric():
     """The force of the ball by its section beside that of the ball in space, and the pressure under a pressed one."""
     import meshio  # python3-meshio, for this picture only
@@ -507,104 +352,6 @@ def hertz_pressure():
         axis.set(ylabel="pressure / largest of Hertz")
     axes[0, 1].legend(loc="upper right", ncol=2)
     save(figure, "cases/hertz/hertz.png")
-
-
-def deformed(name):
-    """Nodes, cells and the frames of results.h5: pairs of a time and its fields, the frames' times being those of results.xdmf."""
-    import xml.etree.ElementTree
-
-    import h5py  # python3-h5py, for pictures of bodies only
-
-    tree = xml.etree.ElementTree.parse(f"out/pictures/{name}/results.xdmf")
-    body = next(grid for grid in tree.iter("Grid") if grid.get("GridType") == "Collection")
-    times = [float(entry.get("Value")) for entry in body.iter("Time")]
-    with h5py.File(f"out/pictures/{name}/results.h5") as file:
-        frames = [{key: np.array(values) for key, values in frame.items()} for _, frame in sorted(file["frames"].items())]
-        return np.array(file["mesh/nodes"]), np.array(file["mesh/cells"]), list(zip(times, frames, strict=True))
-
-
-def nearest(frames, time):
-    return min(frames, key=lambda frame: abs(frame[0] - time))
-
-
-def tumbling_block():
-    from matplotlib.collections import PolyCollection
-
-    history = run("tumbling-block/tumbling-block", "tumbling-block", "output.fields_every=1")
-    nodes, cells, frames = deformed("tumbling-block")
-    chosen = [nearest(frames, time) for time in (0.0135, 0.075, 0.134, 0.199, 0.44)]
-    figure = plt.figure(figsize=(13, 6.2))
-    grid = figure.add_gridspec(2, len(chosen) + 1, height_ratios=(1.2, 1.0), width_ratios=[1.0] * len(chosen) + [0.07])
-    slope = np.radians(30)
-    down = np.array([[np.cos(slope), np.sin(slope)], [-np.sin(slope), np.cos(slope)]])
-    largest = 1e-3 * max(fields["von_mises"].max() for _, fields in chosen)
-    for number, (time, fields) in enumerate(chosen):
-        place = figure.add_subplot(grid[0, number])
-        now = (nodes + fields["displacement"])[:, :2] @ down.T
-        body = PolyCollection(now[cells], array=1e-3 * fields["von_mises"], cmap="viridis", edgecolor="0.3", linewidth=0.3)
-        body.set_clim(0.0, largest)
-        place.add_collection(body)
-        place.plot(*(down @ np.array([[-1.0, 2.0], [0.0, 0.0]])), "0.3", linewidth=2)
-        middle = now.mean(axis=0)
-        place.set(aspect="equal", title=f"{1e3 * time:.0f} ms", xlim=middle[0] + np.array([-0.085, 0.085]), ylim=middle[1] + np.array([-0.09, 0.08]), xticks=[], yticks=[])
-    figure.colorbar(body, cax=figure.add_subplot(grid[0, -1]), label="von Mises stress, kPa")
-    energy = figure.add_subplot(grid[1, :-1])
-    milliseconds, start = 1e3 * history["time"], history["total_energy"][0]
-    energy.plot(milliseconds, history["total_energy"], label="total energy, with that of its height")
-    energy.plot(milliseconds, start + history["friction_work"], "--", label="that of the start + friction work")
-    energy.plot(milliseconds, history["elastic_energy"], label="elastic energy")
-    energy.set(xlabel="time, ms", title="energy, J/m")
-    energy.legend(loc="upper left", fontsize=8)
-    save(figure, "cases/tumbling-block/tumbling-block.png")
-
-
-def cut_of_ball(axis, nodes, cells, fields, limits=None):
-    """The plane y = 0 of half a ball of tetrahedra of degree 2, deformed, with the von Mises stress of its cells."""
-    edges = {(0, 1): 4, (1, 2): 5, (0, 2): 6, (0, 3): 7, (1, 3): 8, (2, 3): 9}
-    triangles, stresses, sides = [], [], []
-    on_cut = np.abs(nodes[:, 1]) < 1e-9
-    for cell, stress in zip(cells, fields["von_mises"]):
-        corners = [corner for corner in range(4) if on_cut[cell[corner]]]
-        if len(corners) != 3:
-            continue
-        a, b, c = (cell[corner] for corner in corners)
-        i, j, k = corners
-        ab, bc, ac = cell[edges[i, j]], cell[edges[j, k]], cell[edges[i, k]]
-        triangles += [(a, ab, ac), (b, bc, ab), (c, ac, bc), (ab, bc, ac)]
-        stresses += 4 * [stress]
-        sides += [(a, ab, b), (b, bc, c), (c, ac, a)]
-    x, z = (1e3 * (nodes + fields["displacement"])[:, (0, 2)]).T
-    drawn = axis.tripcolor(x, z, triangles, facecolors=np.array(stresses), cmap="viridis", vmin=0, vmax=limits)
-    for side in sides:
-        axis.plot(x[list(side)], z[list(side)], "0.2", linewidth=0.3)
-    axis.axhline(0, color="0.3", linewidth=2)
-    axis.set(aspect="equal")
-    return drawn
-
-
-def balls_at(case, times, path):
-    history = run(f"{case}/{case}", case, "output.fields_every=1")
-    nodes, cells, frames = deformed(case)
-    deepest = history["time"][np.argmax(history["contact_force_z"])]
-    figure, axes = plt.subplots(1, len(times) + 1, figsize=(13, 3.3), width_ratios=[1.0] * len(times) + [0.05])
-    chosen = [nearest(frames, deepest if time is None else time) for time in times]
-    largest = 1e-6 * max(fields["von_mises"].max() for _, fields in chosen)
-    radius, top = 1e3 * nodes[:, 0].max(), 1e3 * nodes[:, 2].max()
-    for axis, (time, fields) in zip(axes, chosen):
-        drawn = cut_of_ball(axis, nodes, cells, {**fields, "von_mises": 1e-6 * fields["von_mises"]}, largest)
-        middle = 1e3 * fields["displacement"][:, 0].mean()
-        axis.set(title=f"{1e3 * time:.2f} ms", xlabel="x, mm", xlim=(middle - 1.25 * radius, middle + 1.25 * radius), ylim=(-0.06 * top, 1.3 * top))
-    axes[0].set(ylabel="z, mm")
-    figure.colorbar(drawn, cax=axes[-1], label="von Mises stress, MPa")
-    save(figure, path)
-
-
-def rubber_ball():
-    balls_at("rubber-ball", (0.0, 0.6e-3, None, 2.6e-3, 3.6e-3), "cases/rubber-ball/rubber-ball.png")
-
-
-def golf_ball():
-    balls_at("golf-ball", (0.0, 0.12e-3, None, 0.5e-3, 0.8e-3), "cases/golf-ball/squeezed.png")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,32 @@
+"""What the pictures of the cases share: runs, and files."""
+import csv
+import subprocess
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+EXACT = {"color": "0.6", "linewidth": 4, "solid_capstyle": "butt"}
+
+
+def run(case, name, *settings):
+    """The columns of history.csv by name, as arrays."""
+    directory = f"out/pictures/{name}"
+    command = ["build/ricochet", "run", f"cases/{case}.toml", "-o", directory, "--force", "--quiet", "--log-level", "error"]
+    for setting in settings:
+        command += ["--set", setting]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    with open(f"{directory}/history.csv", newline="") as file:
+        rows = csv.reader(file)
+        names = next(rows)
+        return dict(zip(names, np.array([[float(entry) for entry in row] for row in rows]).T))
+
+
+def save(figure, path):
+    for axes in figure.axes:
+        axes.grid(alpha=0.3)
+    figure.tight_layout()
+    figure.savefig(path, dpi=80)
+    print(path)
