@@ -10,6 +10,7 @@
 #include "ricochet/run/run_case.hpp"
 #include "ricochet/simulation/momentum_account.hpp"
 #include "support/case_run.hpp"
+#include "support/same_snapshots.hpp"
 #include "support/thrown_body.hpp"
 
 /// @file The scheme semi-explicit for bodies that turn and stretch: what it keeps, and what it converges to.
@@ -17,6 +18,7 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::expect_same;
 using test_support::mesh_geometry;
 
 std::string block(int dimension) {
@@ -291,24 +293,6 @@ TEST(FiniteExplicit, ConvergesToReducedKane) {
       before = difference;
     }
     EXPECT_LT(before, 5e-3);
-  }
-}
-
-void expect_same(const Snapshot& expected, const Snapshot& found) {
-  ASSERT_EQ(expected.values().size(), found.values().size());
-  for (const auto& [name, value] : expected.values()) {
-    ASSERT_TRUE(found.has(name)) << name;
-    const Snapshot::Value& other = found.values().at(name);
-    ASSERT_EQ(value.index(), other.index()) << name;
-    if (const auto* reals = std::get_if<Vector>(&value)) {
-      const auto& others = std::get<Vector>(other);
-      ASSERT_EQ(reals->size(), others.size()) << name;
-      EXPECT_TRUE(reals->size() == 0 || std::memcmp(reals->data(), others.data(),
-                                                    sizeof(double) * static_cast<std::size_t>(reals->size())) == 0)
-          << name;
-    } else {
-      EXPECT_TRUE(value == other) << name;
-    }
   }
 }
 

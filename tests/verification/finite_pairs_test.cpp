@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
 #include "ricochet/simulation/momentum_account.hpp"
 #include "support/case_run.hpp"
 #include "support/motion_totals.hpp"
+#include "support/same_snapshots.hpp"
 
 /// @file Contact between bodies that turn: what rows that turn with them must keep.
 namespace ricochet {
@@ -14,6 +17,7 @@ namespace {
 
 using test_support::CaseRun;
 using test_support::energy_of;
+using test_support::expect_same;
 using test_support::mesh_geometry;
 using test_support::Momenta;
 
@@ -158,6 +162,32 @@ TEST(FinitePairs, AMotionThatIsTurnedIsTheSameMotion) {
   const Points second = other.problem().nodes + other.state().displacement.reshaped(2, nodes);
   EXPECT_LT((rotation * first - second).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_GT((first - one.problem().nodes).cwiseAbs().maxCoeff(), 0.1);
+}
+
+/// Rows that lag behind, warm starts and momenta are all in a checkpoint.
+TEST(FinitePairs, GoOnFromACheckpointWithTheSameBits) {
+  for (const int dimension : {2, 3}) {
+    Blocks blocks = colliding(dimension);
+    blocks.steps = 40;
+    CaseRun run(case_of(blocks));
+    std::map<long, Snapshot> snapshots;
+    run.run([&] {
+      const long step = run.state().step;
+      if (step % 7 == 0) run.simulation().save(snapshots[step]);
+    });
+    Snapshot end;
+    run.simulation().save(end);
+    for (const auto& [step, snapshot] : snapshots) {
+      const std::unique_ptr<Scheme> scheme = make_scheme(run.input().time);
+      Simulation resumed(run.problem(), *scheme, snapshot, step_solver_options(run.input()),
+                         step_control_options(run.input().time));
+      while (resumed.state().step < run.state().step) resumed.advance();
+      Snapshot found;
+      resumed.save(found);
+      expect_same(end, found);
+    }
+    EXPECT_GE(snapshots.size(), 5U);
+  }
 }
 
 }  // namespace

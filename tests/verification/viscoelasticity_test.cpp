@@ -9,6 +9,7 @@
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/simulation/momentum_account.hpp"
 #include "support/case_run.hpp"
+#include "support/same_snapshots.hpp"
 #include "support/viscous_block.hpp"
 
 /// @file Stress that relaxes: what every step must keep.
@@ -16,6 +17,7 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::expect_same;
 using namespace test_support::viscous;
 using test_support::mesh_geometry;
 
@@ -318,11 +320,6 @@ TEST(Viscoelasticity, AStaticStartIsRelaxed) {
   EXPECT_LT(run.simulation().account().works().viscous_dissipation, 1e-12);
 }
 
-bool same_bits(const Vector& a, const Vector& b) {
-  return a.size() == b.size() &&
-         (a.size() == 0 || std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0);
-}
-
 TEST(Viscoelasticity, GoesOnFromACheckpointWithTheSameBits) {
   for (const std::string more : {"", "friction = 0.4\n"}) {
     CaseRun run(case_of({.more = more,
@@ -339,14 +336,7 @@ TEST(Viscoelasticity, GoesOnFromACheckpointWithTheSameBits) {
                        step_control_options(run.input().time));
     while (resumed.state().step < run.state().step) resumed.advance();
     resumed.save(again);
-    ASSERT_EQ(end.values().size(), again.values().size());
-    for (const auto& [name, value] : end.values()) {
-      if (const auto* reals = std::get_if<Vector>(&value)) {
-        EXPECT_TRUE(same_bits(*reals, std::get<Vector>(again.values().at(name)))) << name;
-      } else {
-        EXPECT_TRUE(value == again.values().at(name)) << name;
-      }
-    }
+    expect_same(end, again);
     EXPECT_GT(end.reals("state.internal_strain").size(), 0);
     snapshot.save("state.internal_strain", Vector(Vector::Zero(1)));
     EXPECT_THROW(Simulation(run.problem(), *scheme, snapshot), Error);

@@ -50,17 +50,24 @@ Resultant MomentumAccount::algorithmic(const State& state) {
   return of_nodes(momentum_);
 }
 
+/// What acted at the end of the last step was about its places, which the state does not tell.
 void MomentumAccount::save(Snapshot& snapshot, const std::string& name) const {
-  Vector numbers(7);
-  numbers << impulse_.force, impulse_.moment, size_;
+  Vector numbers(21);
+  numbers << impulse_.force, impulse_.moment, size_, previous_.total.force, previous_.total.moment, previous_.size,
+      algorithmic_.force, algorithmic_.moment, arm_;
   snapshot.save(name, numbers);
 }
 
 void MomentumAccount::load(const Snapshot& snapshot, const std::string& name) {
-  const Vector& numbers = snapshot.reals(name, 7);
-  impulse_.force = numbers.head(3);
-  impulse_.moment = numbers.segment(3, 3);
+  const Vector& numbers = snapshot.reals(name, 21);
+  const auto take = [&numbers](Index first) {
+    return Resultant{numbers.segment<3>(first), numbers.segment<3>(first + 3)};
+  };
+  impulse_ = take(0);
   size_ = numbers[6];
+  previous_ = {take(7), numbers[13]};
+  algorithmic_ = take(14);
+  arm_ = numbers[20];
 }
 
 Resultant MomentumAccount::of_nodes(const Vector& force) const {
