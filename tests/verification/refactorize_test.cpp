@@ -105,7 +105,6 @@ TEST(NonlinearForce, IsRefusedWhereATangentIsTakenForConstant) {
     if (scheme->takes_nonlinear_force()) continue;
     EXPECT_THROW(Simulation(problem, *scheme, run.model().initial), Error) << name;
   }
-  EXPECT_THROW((void)bound_frequency_squared(problem), Error);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@ namespace {
 
 /// Cosine of the angle between a facet's normal and a direction below which the facet says nothing about it.
 constexpr double least_cosine = 0.2;
+/// Volume of the unit vectors that N is made of, below which they are taken for dependent.
+constexpr double least_independent = 0.05;
 
 }  // namespace
 
@@ -57,6 +59,12 @@ void TurningNormal::fit(const DisplacementSpace& space, const Three& direction) 
   basis.col(1) = vector(one, space.nodes, {});
   basis.col(2) = vector(other, space.nodes, {});
   const Eigen::Vector3d lengths = basis.colwise().norm();
+  // Where the sum of area vectors lies in the plane of that facet.
+  if (std::abs((basis * lengths.cwiseInverse().asDiagonal()).determinant()) < least_independent) {
+    crosses_.clear();
+    constant_ = direction;
+    return;
+  }
   const Three factors =
       (basis * lengths.cwiseInverse().asDiagonal()).partialPivLu().solve(direction).cwiseQuotient(lengths);
   for (Cross& cross : crosses_) cross.factor *= factors[0];

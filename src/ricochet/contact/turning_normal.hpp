@@ -22,7 +22,7 @@ class TurningNormal {
   /// Always `direction` (d).
   explicit TurningNormal(const Vector& direction);
   /// `direction`: N at X, of length 1. Facets (numbered through all blocks) that are seen nearly edge-on along it have
-  /// no part; where all are, N does not turn.
+  /// no part; where all are, or where their sum lies in the plane of one of them, N does not turn.
   TurningNormal(const DisplacementSpace& space, const std::vector<Index>& facets, const Vector& direction);
 
   [[nodiscard]] bool turns() const { return !crosses_.empty(); }

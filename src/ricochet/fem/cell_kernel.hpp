@@ -138,13 +138,16 @@ class CellKernel {
     return least;
   }
 
-  /// ∫ W.
+  /// ∫ W; infinite where the cell is turned inside out, which no strain tells.
   [[nodiscard]] double energy(const LocalVector& u) {
     double sum = 0.0;
     if (has_dilatation()) find_dilatation([&] { return motion_of(u); });
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
-      sum += weights_[q] * energy_at(q, law_.strain(gradient(u)));
+      const Tensor motion = gradient(u);
+      if (!law_.is_linear() && !(determinant(Tensor::Identity() + motion) > 0.0))
+        return std::numeric_limits<double>::infinity();
+      sum += weights_[q] * energy_at(q, law_.strain(motion));
     }
     return sum;
   }

@@ -37,10 +37,13 @@ void PointLaw::thin_out(Tensor& strain) const {
     if (!std::isfinite(change)) break;
     const double next = across + change;
     across = next > -0.5 ? next : 0.5 * (across - 0.5);
-    // Newton's method has the digits that there are once it comes no nearer.
-    if (change == 0.0 || (std::abs(change) < 1e-8 && std::abs(change) >= last)) return;
+    // Newton's method has the digits that there are once it comes no nearer, or a change is rounding of the strains.
+    const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * strain.cwiseAbs().maxCoeff();
+    if (std::abs(change) <= rounding || (std::abs(change) < 1e-8 && std::abs(change) >= last)) return;
     last = std::abs(change);
   }
+  // Changes that shrink below all digits, as those of a body at rest do.
+  if (last < std::numeric_limits<double>::epsilon()) return;
   across = std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -89,8 +89,10 @@ Eigen::Vector3d MomentumAccount::moment_between_bodies(const StepForces& forces)
   }
   Vector force = Vector::Zero(problem_.dof_count());
   forces.rows->add_force(normal, tangential, force);
-  if (scheme_.has_couples_between_bodies() && problem_.contact.follows_motion())
-    problem_.contact.geometry->add_couples(*scheme_.place_of_forces(), *forces.rows, normal, tangential, force);
+  // Before the first step no force has acted anywhere.
+  const Vector* const place = scheme_.has_couples_between_bodies() ? scheme_.place_of_forces() : nullptr;
+  if (place != nullptr && place->size() == problem_.dof_count() && problem_.contact.follows_motion())
+    problem_.contact.geometry->add_couples(*place, *forces.rows, normal, tangential, force);
   return of_nodes(force).moment;
 }
 

@@ -12,7 +12,7 @@ TEST(MalformedCase, Structure) {
       {5, "weight = 1.0",
        "3:1: [[material]] has no \"density\": a positive number (unit: density). Mass per volume.\n5:1: unknown key "
        "\"weight\" in [[material]]; its keys are \"group\", \"density\", \"law\", \"lambda\", \"mu\", \"young\", "
-       "\"poisson\", \"c10\", \"c01\", \"bulk_modulus\", \"dilatation\" and \"damping\""},
+       "\"poisson\", \"c10\", \"c01\", \"bulk_modulus\", \"dilatation\", \"damping\" and \"relaxation\""},
       {0, "[tim]\nstep = 1", "12:2: unknown section \"tim\"; did you mean [time]?"},
       {0, "[rocket]\nstep = 1",
        "12:2: unknown section \"rocket\"; the sections are [mesh], [part.NAME], [[material]], [obstacle.NAME], "

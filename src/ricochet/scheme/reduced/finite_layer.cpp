@@ -112,6 +112,10 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   if (!near) return;
   if (viscous != nullptr) viscous_dissipation_ = viscous->advance_internal(branches, internal_);
   energy_ = stored_energy(elastic, end_, internal_);
+  if (!std::isfinite(energy_)) {
+    elastic.evaluate(end_, product_);  // says which cell is turned inside out
+    throw Error(ErrorKind::not_converged, "the elastic energy at the end of the step is no number");
+  }
   // ΔW − (L₁+P(x))·Δ_c and Ψ(u_f1) − Ψ(u_f0), which differ by (P(u₁)−P(x))·Δ_c + ρ·HΔ_c − d. What L₁ and P(x) do there
   // is in the work of D, too.
   const double at_end = pressure_work_ + work_at_end_ - dissipation_;
@@ -172,8 +176,8 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   equations_.prescribe(problem, state.time + step, half_way, stage);
 }
 
-/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c), where b has no force of
-/// lagged rows and L₁ has.
+/// The contact nodes at the end, at δ = 0: u_c1 + K_cc⁻¹ (L₁ + P_c(u₁) − f_c(u₁) − 2 b_c); b and L₁ have the force of
+/// lagged rows.
 void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                   const State& state, StageSolve& stages, Stage& stage) {
   right_ = load_ - end_force_ - 2.0 * stage.right_hand_side + row_force_;
@@ -295,6 +299,18 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
 }
 
+/// A step that makes or loses energy is none of this scheme.
+void FiniteLayer::require_balance(double kinetic) const {
+  constexpr double most = 1e-8;
+  const double part = std::abs(lacking_) / (kinetic + energy_start_ + energy_);
+  if (part <= most) return;
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format("no force of the middle of the step has the work of the elastic energy: {:.2g} of the energy is "
+                  "missing, as strains change too much in one step",
+                  part));
+}
+
 void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
   constexpr int most_halvings = 5;
   for (int halving = 0;; ++halving) {
@@ -353,7 +369,10 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
                       progress_.rounds(), round.correction, round.increment, sigma_,
                       lacking_ / (kinetic + energy_start_ + energy_), end_weight_));
     }
-    if (converged_ && near && balanced) break;
+    if (converged_ && near && balanced) {
+      require_balance(kinetic);
+      break;
+    }
     if (converged_ && is_weak_) {  // with another number now
       converged_ = false;
       progress_.restart();

@@ -74,6 +74,7 @@ class FiniteLayer {
   /// Forces at the middle and at the end; near the solution also what the energy lacks, and σ for it.
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
   void choose_sigma(double asked);
+  void require_balance(double kinetic) const;
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
                        StageSolve& stages, Stage& stage);

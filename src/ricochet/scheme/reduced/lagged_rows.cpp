@@ -46,6 +46,8 @@ void LaggedRows::start(const State& state) {
   }
   SparseRowMatrix &gap = lagged_->gap_operator, &slip = lagged_->tangential_trace;
   const Vector& values = known->second;
+  if (values.size() != gap.nonZeros() + slip.nonZeros())
+    Snapshot::refuse(memory_of_rows, "has a length that is none of this problem's");
   const Values gap_values(values.data(), gap.nonZeros()), slip_values(values.data() + gap.nonZeros(), slip.nonZeros());
   is_new_ = false;
   if (gap_values == values_of(gap, 0, gap.rows()) && slip_values == values_of(slip, 0, slip.rows())) return;

@@ -27,13 +27,20 @@ class ReducedKane final : public EndScheme {
     if (std::exchange(told_, true)) return;  // `validate` analyses first, and then starts a run
     log::info(fmt::format("time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,
                           problem.contact.follows_motion() ? "contact directions follow the motion"
-                                                           : "there is stiffness damping at contact nodes"));
+                          : takes_friction_of_finite_strain(problem)
+                              ? "the work of friction is that of the end at finite strain"
+                              : "there is stiffness damping at contact nodes"));
   }
 
  private:
+  /// There the balance of a step has no place for the work of friction along a path (finite_layer.hpp).
+  [[nodiscard]] static bool takes_friction_of_finite_strain(const SemidiscreteProblem& problem) {
+    return problem.contact.has_friction() && !problem.internal_force->is_linear();
+  }
   /// A mean is of gaps that are linear, and of nodes without memory.
   [[nodiscard]] bool has_mean(const SemidiscreteProblem& problem) const {
-    return !problem.contact.follows_motion() && !layer().damps_contact_nodes();
+    return !problem.contact.follows_motion() && !layer().damps_contact_nodes() &&
+           !takes_friction_of_finite_strain(problem);
   }
   [[nodiscard]] ReactionMean mean(const SemidiscreteProblem& problem) const override {
     // Sliding without damping flutters, less so under the end reactions.

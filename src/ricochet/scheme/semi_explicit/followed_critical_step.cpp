@@ -107,6 +107,8 @@ std::string FollowedCriticalStep::place(const SemidiscreteProblem& problem, cons
 
 void FollowedCriticalStep::require_stable(const SemidiscreteProblem& problem, double step, const State& state) {
   const Vector& numbers = state.memory.at(critical_numbers);
+  if (numbers.size() != State::memory_numbers || state.memory.at(critical_mode).size() != problem.dof_count())
+    Snapshot::refuse(critical_numbers, "or its mode has a length that is none of this problem's");
   smallest_ = numbers[smallest_found];
   const double critical = numbers[last_found];
   if (step < critical) return;

@@ -17,6 +17,13 @@ void require_semi_explicit(const SemidiscreteProblem& problem, const std::string
                             "this one is not diagonal; {}",
                             scheme, advice));
   }
+  if (problem.pressure) {
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("scheme \"{}\" takes no [[pressure]] that follows the surface; use scheme \"reduced-kane\" or "
+                    "\"newmark\", or a [[traction]], which keeps its direction",
+                    scheme));
+  }
   const auto has_inertia = [&](Index dof) { return problem.is_massless[static_cast<std::size_t>(dof)] == 0; };
   if (std::any_of(problem.contact_dofs.begin(), problem.contact_dofs.end(), has_inertia)) {
     throw Error(ErrorKind::invalid_input,
