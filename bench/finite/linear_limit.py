@@ -104,7 +104,7 @@ def overrides(path, case, factor):
 
 
 def run(path, settings, directory, seconds, program):
-    command = [program, "run", path, "-o", directory, "--force", "--quiet", "--log-level", "error", "--set", "output.fields_every=0"]
+    command = [program, "run", path, "-o", directory, "--force", "--quiet", "--log-level", "error", "--threads", "1", "--set", "output.fields_every=0"]
     for key, value in settings.items():
         command += ["--set", f"{key}={json.dumps(value) if not isinstance(value, str) else value}"]
     done = subprocess.run(["timeout", str(seconds), *map(str, command)], cwd=ROOT, check=False, capture_output=True, text=True)
