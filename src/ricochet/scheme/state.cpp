@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "ricochet/contact/row_values.hpp"
+
 #include "ricochet/problem/viscous_force.hpp"
 
 namespace ricochet {
@@ -90,8 +92,7 @@ State load_state(const SemidiscreteProblem& problem, const Snapshot& snapshot, c
   state.obstacle_increment.in_space = in_space.reshaped(problem.dimension, in_space.size() / problem.dimension);
   state.iterations = static_cast<int>(snapshot.integer(name + ".iterations"));
   state.newton_rounds = static_cast<int>(snapshot.integer(name + ".newton_rounds"));
-  const ContactRows& rows = *problem.contact.rows;
-  const Index row_values = rows.gap_operator.nonZeros() + rows.tangential_trace.nonZeros();
+  const Index row_values = row_value_count(*problem.contact.rows);
   for (const std::string& key : snapshot.texts(name + ".memory"))
     state.memory[key] = memory(snapshot, name + ".memory." + key,
                                {dofs, problem.supports.size(), tangents, row_values, State::memory_numbers});

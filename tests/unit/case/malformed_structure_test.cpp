@@ -17,7 +17,8 @@ TEST(MalformedCase, Structure) {
       {0, "[rocket]\nstep = 1",
        "12:2: unknown section \"rocket\"; the sections are [mesh], [part.NAME], [[material]], [obstacle.NAME], "
        "[[contact]], "
-       "[[support]], [[traction]], [load], [initial], [[motion]], [mass], [time], [solver], [[probe]], [output], "
+       "[[support]], [[traction]], [[pressure]], [load], [initial], [[motion]], [mass], [time], [solver], [[probe]], "
+       "[output], "
        "[check] and "
        "[[expect]]"},
       {0, "[[contacts]]\ngroup = \"a\"", "12:3: unknown section \"contacts\"; did you mean [[contact]]?"},

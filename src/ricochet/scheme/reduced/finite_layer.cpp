@@ -151,6 +151,7 @@ void FiniteLayer::choose_sigma(double asked) {
   sigma_before_ = used;
   asked_before_ = asked;
   sigma_ = std::clamp(next, -largest_sigma, largest_sigma);
+  if (is_weak_) progress_.restart();  // the next correction is that of σ
 }
 
 /// b of the stage: what is missing at the middle.
