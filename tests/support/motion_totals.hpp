@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "ricochet/problem/viscous_force.hpp"
 #include "support/case_run.hpp"
 
 /// @file What a motion has as a whole, from the mass and the state alone.
@@ -25,11 +26,12 @@ struct Momenta {
   }
 };
 
-/// Kinetic and elastic energy, less the work of constant loads.
+/// Kinetic and stored energy, less the work of constant loads.
 [[nodiscard]] inline double energy_of(const CaseRun& run) {
-  return 0.5 * run.problem().mass.form(run.state().velocity) +
-         run.problem().internal_force->energy(run.state().displacement) -
-         run.problem().loads.constant().dot(run.state().displacement);
+  const State& state = run.state();
+  return 0.5 * run.problem().mass.form(state.velocity) +
+         stored_energy(*run.problem().internal_force, state.displacement, state.internal_strain) -
+         run.problem().loads.constant().dot(state.displacement);
 }
 
 }  // namespace ricochet::test_support

@@ -10,6 +10,7 @@
 #include "ricochet/run/run_case.hpp"
 #include "ricochet/simulation/momentum_account.hpp"
 #include "support/case_run.hpp"
+#include "support/motion_totals.hpp"
 #include "support/same_snapshots.hpp"
 #include "support/thrown_body.hpp"
 
@@ -18,8 +19,10 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::energy_of;
 using test_support::expect_same;
 using test_support::mesh_geometry;
+using test_support::Momenta;
 
 std::string block(int dimension) {
   return dimension == 2 ? mesh_geometry("finite-block-2d",
@@ -65,30 +68,6 @@ std::string spinning(int dimension) {
 std::string falling(int dimension) {
   return dimension == 2 ? "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\"]"
                         : "[\"0.3-2*(y-0.25)\", \"-0.5+2*(x-0.5)\", \"0.2\"]";
-}
-
-/// About the origin and current positions, from the mass and the state alone.
-struct Momenta {
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
-  explicit Momenta(const CaseRun& run) {
-    const SemidiscreteProblem& problem = run.problem();
-    const Index d = problem.dimension;
-    Vector momentum;
-    problem.mass.multiply(run.state().velocity, momentum);
-    for (Index node = 0; node < problem.nodes.cols(); ++node) {
-      Eigen::Vector3d place = Eigen::Vector3d::Zero(), own = Eigen::Vector3d::Zero();
-      place.head(d) = problem.nodes.col(node) + run.state().displacement.segment(node * d, d);
-      own.head(d) = momentum.segment(node * d, d);
-      linear += own;
-      angular += place.cross(own);
-    }
-  }
-};
-
-double energy_of(const CaseRun& run) {
-  return 0.5 * run.problem().mass.form(run.state().velocity) +
-         run.problem().internal_force->energy(run.state().displacement) -
-         run.problem().loads.constant().dot(run.state().displacement);
 }
 
 TEST(FiniteExplicit, FreeFlightKeepsMomenta) {

@@ -8,6 +8,7 @@
 #include "ricochet/simulation/momentum_account.hpp"
 #include "support/case_run.hpp"
 #include "support/convergence.hpp"
+#include "support/motion_totals.hpp"
 
 /// @file Pressure that follows the surface: inflated spheres and cylinders against the solution of the radial equation,
 /// and what every step under it must keep.
@@ -17,6 +18,7 @@ namespace {
 using test_support::CaseRun;
 using test_support::Convergence;
 using test_support::mesh_geometry;
+using test_support::Momenta;
 
 constexpr double inner = 1.0, outer = 2.0;
 
@@ -259,24 +261,6 @@ std::string case_of(const Flight& flight) {
                      has_inertia ? "consistent" : "equivalent", flight.scheme,
                      flight.scheme == "newmark" ? "preset = \"trapezoidal\"\n" : "");
 }
-
-/// About the origin and current positions, from the mass and the state alone.
-struct Momenta {
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
-  explicit Momenta(const CaseRun& run) {
-    const SemidiscreteProblem& problem = run.problem();
-    const Index d = problem.dimension;
-    Vector momentum;
-    problem.mass.multiply(run.state().velocity, momentum);
-    for (Index node = 0; node < problem.nodes.cols(); ++node) {
-      Eigen::Vector3d place = Eigen::Vector3d::Zero(), own = Eigen::Vector3d::Zero();
-      place.head(d) = problem.nodes.col(node) + run.state().displacement.segment(node * d, d);
-      own.head(d) = momentum.segment(node * d, d);
-      linear += own;
-      angular += place.cross(own);
-    }
-  }
-};
 
 double account_error(CaseRun& run) {
   EnergyAccount& account = run.simulation().account();

@@ -9,6 +9,7 @@
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/simulation/momentum_account.hpp"
 #include "support/case_run.hpp"
+#include "support/motion_totals.hpp"
 #include "support/same_snapshots.hpp"
 #include "support/viscous_block.hpp"
 
@@ -17,9 +18,11 @@ namespace ricochet {
 namespace {
 
 using test_support::CaseRun;
+using test_support::energy_of;
 using test_support::expect_same;
 using namespace test_support::viscous;
 using test_support::mesh_geometry;
+using test_support::Momenta;
 
 struct Motion {
   int dimension = 2;
@@ -47,31 +50,6 @@ std::string case_of(const Motion& motion) {
 std::string stretched(int dimension) {
   return dimension == 2 ? "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\"]"
                         : "[\"0.02*sin(5*x)\", \"0.02*sin(5*y)\", \"0.02*sin(4*z+x)\"]";
-}
-
-/// About the origin and current positions, from the mass and the state alone.
-struct Momenta {
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero(), angular = Eigen::Vector3d::Zero();
-  explicit Momenta(const CaseRun& run) {
-    const SemidiscreteProblem& problem = run.problem();
-    const Index d = problem.dimension;
-    Vector momentum;
-    problem.mass.multiply(run.state().velocity, momentum);
-    for (Index node = 0; node < problem.nodes.cols(); ++node) {
-      Eigen::Vector3d place = Eigen::Vector3d::Zero(), own = Eigen::Vector3d::Zero();
-      place.head(d) = problem.nodes.col(node) + run.state().displacement.segment(node * d, d);
-      own.head(d) = momentum.segment(node * d, d);
-      linear += own;
-      angular += place.cross(own);
-    }
-  }
-};
-
-double energy_of(const CaseRun& run) {
-  const State& state = run.state();
-  return 0.5 * run.problem().mass.form(state.velocity) +
-         stored_energy(*run.problem().internal_force, state.displacement, state.internal_strain) -
-         run.problem().loads.constant().dot(state.displacement);
 }
 
 const std::vector<std::string>& schemes() {

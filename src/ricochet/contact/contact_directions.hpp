@@ -21,4 +21,9 @@ struct ContactTangents {
 /// along the normal: no friction acts.
 [[nodiscard]] ContactTangents tangents_at(Index node, const Vector& normal, const FreeComponent& is_free);
 
+/// The directions of a point whose rows follow the motion: its normal, tangents and the values of its rows of B_T,
+/// which have entries for every node of the trace. `is_free`: components that no support holds.
+void write_directions(Index point, const SpaceVector& normal, const std::array<bool, 3>& is_free,
+                      const SparseRowMatrix& trace, ContactRows& rows);
+
 }  // namespace ricochet

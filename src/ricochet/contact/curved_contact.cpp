@@ -90,24 +90,11 @@ class CurvedContact final : public ContactGeometry {
   /// Tangents, and the values of the rows of G and B_T, whose pattern is that of the trace.
   void write_rows(const CurvedContactData::Point& point, const SpaceVector& normal, ContactRows& rows) const {
     if (rows.normals.col(point.number) == normal) return;
-    rows.normals.col(point.number) = normal;
     rows.revision[static_cast<std::size_t>(point.number)] = revision_;
-    const Index d = normal.size();
-    const auto is_free = [&](Index, int component) { return point.is_free[static_cast<std::size_t>(component)]; };
-    const ContactTangents tangents = tangents_at(0, normal, is_free);
-    rows.tangents[static_cast<std::size_t>(point.number)] = tangents.directions;
+    write_directions(point.number, normal, point.is_free, data_.trace, rows);
     double* gap = rows.gap_operator.valuePtr() + rows.gap_operator.outerIndexPtr()[point.number];
     for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry) {
-      for (Index k = 0; k < d; ++k) *gap++ = entry.value() * normal[k];
-    }
-    for (Index j = 0; j < d - 1; ++j) {
-      const Index row = point.number * (d - 1) + j;
-      const bool slips = tangents.slips[static_cast<std::size_t>(j)];
-      rows.slips[static_cast<std::size_t>(row)] = slips ? 1 : 0;
-      double* slip = rows.tangential_trace.valuePtr() + rows.tangential_trace.outerIndexPtr()[row];
-      for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry) {
-        for (Index k = 0; k < d; ++k) *slip++ = slips ? entry.value() * tangents.directions(k, j) : 0.0;
-      }
+      for (Index k = 0; k < normal.size(); ++k) *gap++ = entry.value() * normal[k];
     }
   }
 

@@ -169,21 +169,8 @@ class TurningPairs final : public ContactGeometry {
     Eigen::Map<Vector> gap_row(row_begin(point, rows), row.size());
     if (gap_row == row) return;
     gap_row = row;
-    rows.normals.col(point.number) = normal;
     rows.revision[static_cast<std::size_t>(point.number)] = revision_;
-    const Index d = normal.size();
-    const auto is_free = [&](Index, int component) { return point.is_free[static_cast<std::size_t>(component)]; };
-    const ContactTangents tangents = tangents_at(0, normal, is_free);
-    rows.tangents[static_cast<std::size_t>(point.number)] = tangents.directions;
-    for (Index j = 0; j < d - 1; ++j) {
-      const Index slip_row = point.number * (d - 1) + j;
-      const bool slips = tangents.slips[static_cast<std::size_t>(j)];
-      rows.slips[static_cast<std::size_t>(slip_row)] = slips ? 1 : 0;
-      double* slip = rows.tangential_trace.valuePtr() + rows.tangential_trace.outerIndexPtr()[slip_row];
-      for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry) {
-        for (Index k = 0; k < d; ++k) *slip++ = slips ? entry.value() * tangents.directions(k, j) : 0.0;
-      }
-    }
+    write_directions(point.number, normal, point.is_free, data_.trace, rows);
   }
 
   TurningPairsData data_;
