@@ -20,13 +20,14 @@ class NewtonProgress {
   void start(double rounding) {
     rounding_ = rounding;
     renewals_ = all_rounds_ = 0;
+    accelerates_ = false;
     restart();
   }
   /// After a new factor.
   void restart() {
     rounds_ = 0;
     last_ = least_ = std::numeric_limits<double>::infinity();
-    slow_ = 0;
+    slow_ = growing_ = 0;
   }
   /// With the largest entry of a correction and that of the increment so far.
   Advice judge(double correction, double increment) {
@@ -46,14 +47,19 @@ class NewtonProgress {
       return Advice::done;
     last_ = correction;
     slow_ = rate > slow_rate ? slow_ + 1 : 0;
+    growing_ = rate > 1.0 ? growing_ + 1 : 0;
     least_ = std::min(least_, correction);
     const bool diverges = correction > divergence * least_;
+    accelerates_ = accelerates_ || growing_ >= most_growing || (slow_ >= patience && renewals_ > 0);
     // New factors that brought nothing before bring nothing now, and what comes nearer may go on.
-    const bool is_worth_one = slow_ >= patience && renewals_ < helpful_renewals;
+    const bool is_worth_one = slow_ >= (accelerates_ ? long_patience : patience) && renewals_ < helpful_renewals;
     if (is_worth_one || diverges || rounds_ >= most_rounds) return renew_or_fail();
     return Advice::go_on;
   }
   void count_renewal() { ++renewals_; }
+  /// Corrections grow, or shrink slowly with a new factor, as some forces are in none (those of contact turn with what
+  /// they press on): iterations may be accelerated (linear_algebra/anderson_acceleration.hpp).
+  [[nodiscard]] bool wants_acceleration() const { return accelerates_; }
   [[nodiscard]] int rounds() const { return all_rounds_; }
 
  private:
@@ -63,12 +69,14 @@ class NewtonProgress {
   static constexpr double stalled = 0.7;
   static constexpr double slow_rate = 0.5;
   static constexpr double divergence = 1e3;
-  static constexpr int patience = 3, most_rounds = 60, helpful_renewals = 3, most_renewals = 6;
+  static constexpr int most_growing = 2, patience = 3, long_patience = 15, most_rounds = 60, helpful_renewals = 3,
+                       most_renewals = 6;
 
   [[nodiscard]] Advice renew_or_fail() const { return renewals_ < most_renewals ? Advice::renew : Advice::failed; }
 
   double rounding_ = 0.0, last_ = 0.0, least_ = 0.0;
-  int rounds_ = 0, all_rounds_ = 0, slow_ = 0, renewals_ = 0;
+  int rounds_ = 0, all_rounds_ = 0, slow_ = 0, growing_ = 0, renewals_ = 0;
+  bool accelerates_ = false;
 };
 
 }  // namespace ricochet

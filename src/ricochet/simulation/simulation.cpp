@@ -144,8 +144,22 @@ const StageSolution& Simulation::solve(std::size_t number) {
   return solution;
 }
 
-/// One attempt. Leaves step and time as they were.
+/// Leaves step and time as they were. Where no solution was found the fault may be that of operators that are of
+/// another place: those of the tangent at the start of the step are tried, too.
 void Simulation::take_step() {
+  try {
+    attempt_step();
+    return;
+  } catch (const Error& problem) {
+    if (problem.kind() != ErrorKind::not_converged || problem_.internal_force->is_linear()) throw;
+    log::debug(fmt::format("{}: once more, with the tangent of the start", problem.what()));
+  }
+  renew(state_.displacement, state_.displacement);
+  attempt_step();
+}
+
+/// Once.
+void Simulation::attempt_step() {
   iterations_ = newton_rounds_ = 0;
   // Rows that follow the motion go on from those of the state, whatever was solved in between.
   if (problem_.contact.follows_motion()) {
@@ -154,13 +168,17 @@ void Simulation::take_step() {
   try {
     scheme_.advance(problem_, state_, *this, increment_);
   } catch (const Error& problem) {
+    // What is asked of a round may have no solution though the step has one: no fault of the case.
+    const bool is_fault_of_case = problem.kind() == ErrorKind::invalid_input && problem_.internal_force->is_linear();
+    const ErrorKind kind =
+        is_fault_of_case || problem.kind() != ErrorKind::invalid_input ? problem.kind() : ErrorKind::not_converged;
     const bool has_critical_step = std::isfinite(scheme_.critical_step());  // which a finer mesh makes shorter
-    const std::string advice = problem.kind() != ErrorKind::not_converged ? ""
-                               : has_critical_step                        ? "; try a smaller time.step"
+    const std::string advice = kind != ErrorKind::not_converged ? ""
+                               : has_critical_step              ? "; try a smaller time.step"
                                                    : "; try a smaller time.step, or a finer mesh where contact begins";
-    throw Error(problem.kind(), fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}{}",
-                                            state_.step + 1, state_.time + scheme_.step(), scheme_.step(),
-                                            problem_.contact.size(), problem.what(), advice));
+    throw Error(kind, fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}{}", state_.step + 1,
+                                  state_.time + scheme_.step(), scheme_.step(), problem_.contact.size(), problem.what(),
+                                  advice));
   }
   state_.iterations = iterations_;
   state_.newton_rounds = newton_rounds_;

@@ -64,6 +64,7 @@ class Simulation : private StageSolve {
   Level& make_level(int level, const StepSolverOptions& options);
   void use_level(int level);
   void take_step();
+  void attempt_step();
   void take_step_in_parts(const std::function<void(const State&)>& each_part);
   [[nodiscard]] double length_of(int level) const;
   void end_part(const std::function<void(const State&)>& each_part);

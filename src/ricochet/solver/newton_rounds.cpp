@@ -31,10 +31,16 @@ void NewtonRounds::evaluate(const Vector& displacement, Vector& force) {
   force -= follower_load_;
 }
 
+/// δ goes on by a correction, or where corrections that hardly shrink ask for it.
+void NewtonRounds::correct(const Vector& correction) {
+  before_ = total_;
+  total_ += correction;
+  if (progress_.wants_acceleration()) total_ = acceleration_.next(before_, total_);
+}
+
 /// f(p + κδ). Where a correction turns a cell inside out half of it is taken, and half of that.
-void NewtonRounds::take_internal_force(double factor, const Vector& correction) {
+void NewtonRounds::take_internal_force(double factor) {
   constexpr int most_halvings = 5;
-  double part = 1.0;
   for (int halving = 0;; ++halving) {
     displacement_ = place_ + factor * total_;
     try {
@@ -43,8 +49,7 @@ void NewtonRounds::take_internal_force(double factor, const Vector& correction) 
     } catch (const Error& problem) {
       if (problem.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
     }
-    part *= 0.5;
-    total_ -= part * correction;
+    total_ = 0.5 * (total_ + before_);
   }
 }
 
@@ -79,25 +84,32 @@ void NewtonRounds::solve(const OperatorCoefficients& coefficients, const SolveLi
   total_.setZero(problem_.dof_count());
   const double size = problem_.nodes.cwiseAbs().maxCoeff() + place_.lpNorm<Eigen::Infinity>();
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * size);
+  acceleration_.restart();
+  before_ = total_;
   int iterations = 0;
   while (true) {
     solve_linear(stage, solution);
     iterations += solution.iterations;
     const double correction = solution.increment.allFinite() ? solution.increment.lpNorm<Eigen::Infinity>()
                                                              : std::numeric_limits<double>::infinity();
-    if (std::isfinite(correction)) total_ += solution.increment;
-    const NewtonProgress::Advice advice = progress_.judge(correction, total_.lpNorm<Eigen::Infinity>());
-    if (advice == NewtonProgress::Advice::done) break;
+    const NewtonProgress::Advice advice =
+        progress_.judge(correction, (total_ + solution.increment).lpNorm<Eigen::Infinity>());
+    if (advice == NewtonProgress::Advice::done) {
+      total_ += solution.increment;
+      break;
+    }
     if (advice == NewtonProgress::Advice::failed) {
       throw Error(ErrorKind::not_converged, fmt::format("Newton's method did not converge in {} iterations (the last "
                                                         "correction moves a node by {:.3g})",
                                                         progress_.rounds(), correction));
     }
-    take_internal_force(coefficients.stiffness, solution.increment);
+    if (std::isfinite(correction)) correct(solution.increment);
+    take_internal_force(coefficients.stiffness);
     if (advice == NewtonProgress::Advice::renew) {
       renew(displacement_);
       progress_.count_renewal();
       progress_.restart();
+      acceleration_.restart();
     }
     linearize(coefficients, stage);
   }

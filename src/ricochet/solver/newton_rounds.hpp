@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "ricochet/linear_algebra/anderson_acceleration.hpp"
 #include "ricochet/problem/newton_progress.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/problem/stage.hpp"
@@ -26,13 +27,15 @@ class NewtonRounds {
  private:
   void keep(const Stage& stage);
   void linearize(const OperatorCoefficients& coefficients, Stage& stage);
-  void take_internal_force(double factor, const Vector& correction);
+  void correct(const Vector& correction);
+  void take_internal_force(double factor);
   /// f less the loads that follow the surface.
   void evaluate(const Vector& displacement, Vector& force);
 
   const SemidiscreteProblem& problem_;
   NewtonProgress progress_;
-  Vector total_, displacement_, force_, product_, follower_load_;
+  AndersonAcceleration acceleration_{8};
+  Vector total_, before_, displacement_, force_, product_, follower_load_;
   // Of the stage at δ = 0:
   double pressure_time_ = 0.0, pressure_part_ = 1.0;
   Vector place_, force_at_place_, right_hand_side_, prescribed_, gap_offset_, slip_offset_, motion_, velocity_;

@@ -19,10 +19,6 @@ namespace {
 constexpr double energy_tolerance = 1e-15;
 /// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
 constexpr double near_solution = 1e-2;
-/// σ is about half of the change of a strain; one that is larger means that steps are far too long.
-constexpr double largest_sigma = 1.0;
-/// Changes of it in a row that do not halve what the energy lacks: it is let be.
-constexpr int most_vain = 6;
 
 double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vector& b) {
   double sum = 0.0;
@@ -71,12 +67,10 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   end_ = state.displacement + step * state.velocity;
   relaxed_ = state.displacement;
   layer_energy_start_.reset();
-  sigma_before_ = asked_before_ = std::numeric_limits<double>::quiet_NaN();
-  is_weak_ = false;
-  settling_ = vain_ = 0;
-  least_lacking_ = std::numeric_limits<double>::infinity();
-  sigma_ = lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
-  last_solution_ = nullptr;
+  sigma_.start();
+  lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
+  reactions_.normal.resize(0);
+  acceleration_.restart();
   if (problem.contact.follows_motion()) lagged_.start(state);
   row_force_.setZero(problem.dof_count());
   nodal_.setZero(problem.dof_count());
@@ -100,7 +94,7 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   const ViscousForce* const viscous = elastic.viscous();
   increment_ = end_ - state.displacement;
   const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
-  if (near || sigma_ != 0.0) {
+  if (near || sigma_.value() != 0.0) {
     elastic.mean_forces(middle_, increment_, force_, strain_force_);
   } else {
     elastic.mean_force(middle_, increment_, force_);
@@ -124,34 +118,12 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   product_ = load_ + mean_nodal_;
   const double has = force_.dot(increment_) - on_contact(problem, product_, increment_);
   const double unit = strain_force_.dot(increment_);
-  lacking_ = wanted - has - sigma_ * unit;
+  lacking_ = wanted - has - sigma_.value() * unit;
   const double least = energy_tolerance * std::abs(energy_start_ + energy_);
   // What is rounding of the energies says nothing, least of all where the body hardly moves.
-  if (std::abs(lacking_) > least && unit > least * energy_tolerance) choose_sigma((wanted - has) / unit);
-}
-
-/// The balance at the last places asks for a σ, and the places depend on σ: what two rounds say of that tells where
-/// both agree (the secant method). Where strains change next to contact nodes alone, as where one begins to touch,
-/// places answer σ so that the work hardly does: then a σ is kept for some rounds, in which places settle, before the
-/// next one; and where that does not help, to the end: what the energy lacks is said (integration_error).
-void FiniteLayer::choose_sigma(double asked) {
-  constexpr double steepest = 4.0, weak = 0.8, least_left = 0.002, least_left_settled = 1e-6;
-  constexpr int settling_rounds = 3;
-  if (vain_ >= most_vain) return;
-  if (is_weak_ && !converged_ && ++settling_ < settling_rounds) return;
-  settling_ = 0;
-  const double slope = (asked - asked_before_) / (sigma_ - sigma_before_);
-  const double used = sigma_;
-  double next = asked;
-  if (std::isfinite(slope) && slope > -steepest && slope < 1.0 - (is_weak_ ? least_left_settled : least_left))
-    next = (asked - slope * used) / (1.0 - slope);
-  if (is_weak_) vain_ = std::abs(lacking_) > 0.5 * least_lacking_ ? vain_ + 1 : 0;
-  least_lacking_ = std::min(least_lacking_, std::abs(lacking_));
-  is_weak_ = is_weak_ || (std::isfinite(slope) && slope > weak);
-  sigma_before_ = used;
-  asked_before_ = asked;
-  sigma_ = std::clamp(next, -largest_sigma, largest_sigma);
-  if (is_weak_) progress_.restart();  // the next correction is that of σ
+  if (std::abs(lacking_) <= least || unit <= least * energy_tolerance) return;
+  if (sigma_.choose((wanted - has) / unit, lacking_, converged_))
+    progress_.restart();  // the next correction is that of σ
 }
 
 /// b of the stage: what is missing at the middle.
@@ -160,18 +132,18 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   problem.mass.multiply(product_, right_);
   stage.right_hand_side = load_ - force_ - (4.0 / (step * step)) * right_;
   if (problem.pressure) stage.right_hand_side += pressure_middle_;
-  if (sigma_ != 0.0) stage.right_hand_side -= sigma_ * strain_force_;
+  if (sigma_.value() != 0.0) stage.right_hand_side -= sigma_.value() * strain_force_;
   if (problem.has_damping()) {
     product_ = middle_ - state.displacement;
     problem.damping.evaluate(product_, damping_force_);
     stage.right_hand_side -= (2.0 / step) * damping_force_;
   }
-  if (problem.contact.follows_motion() && last_solution_ != nullptr) {
+  if (problem.contact.follows_motion() && reactions_.normal.size() > 0) {
     row_force_.setZero();
-    lagged_.add_difference(last_solution_->normal_reaction, last_solution_->tangential_reaction, row_force_);
+    lagged_.add_difference(reactions_.normal, reactions_.tangential, row_force_);
     stage.right_hand_side += row_force_;
-    problem.contact.geometry->add_couples(middle_, *lagged_.exact(), last_solution_->acting_normal(),
-                                          last_solution_->acting_tangential(), stage.right_hand_side);
+    problem.contact.geometry->add_couples(middle_, *lagged_.exact(), reactions_.acting_normal,
+                                          reactions_.acting_tangential, stage.right_hand_side);
   }
   const auto half_way = [&](Index dof, double end) { return 0.5 * (state.displacement[dof] + end) - middle_[dof]; };
   equations_.prescribe(problem, state.time + step, half_way, stage);
@@ -205,9 +177,31 @@ FiniteLayer::Round FiniteLayer::correct(const SemidiscreteProblem& problem, cons
   Round round{(product_ - last_end_).lpNorm<Eigen::Infinity>(), 0.0};
   round.correction = std::max(round.correction, 2.0 * (middle_ - last_middle_).lpNorm<Eigen::Infinity>());
   end_ = product_;
+  reactions_ = {solution.normal_reaction, solution.tangential_reaction, solution.acting_normal(),
+                solution.acting_tangential()};
   // Of the step less that of a free flight: what forces do.
   round.increment = 2.0 * (middle_ - base_).lpNorm<Eigen::Infinity>();
   return round;
+}
+
+/// Where corrections hardly shrink: places, with the reactions that acted on them.
+void FiniteLayer::accelerate(const SemidiscreteProblem& problem, const State& state) {
+  const auto contact = static_cast<Index>(problem.contact_dofs.size());
+  const Index places = middle_.size() + contact, points = reactions_.normal.size(),
+              slips = reactions_.tangential.size();
+  Vector image(places + 2 * (points + slips));
+  image << middle_, end_(problem.contact_dofs), reactions_.normal, reactions_.acting_normal, reactions_.tangential,
+      reactions_.acting_tangential;
+  Vector point = image;
+  point.head(places) << last_middle_, last_end_(problem.contact_dofs);
+  image = acceleration_.next(point, image);
+  middle_ = image.head(middle_.size());
+  end_ = 2.0 * middle_ - state.displacement;
+  end_(problem.contact_dofs) = image.segment(middle_.size(), contact);
+  reactions_.normal = image.segment(places, points);
+  reactions_.acting_normal = image.segment(places + points, points);
+  reactions_.tangential = image.segment(places + 2 * points, slips);
+  reactions_.acting_tangential = image.tail(slips);
 }
 
 /// Hᵀρ, Hᵀρ̄, and where some of it is that of the end one round for the contact nodes that attain Ψ(u_f0; ρ).
@@ -350,31 +344,31 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
       require_contact(problem, mean, step, state, stages, stage);
     }
     solution = &stages.solve(number);
-    last_solution_ = solution;
     if (lagged_.exact() != nullptr) stage.rows = lagged_.exact();
     const Round round = correct(problem, state, *solution);
     const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
+    if (progress_.wants_acceleration() && advice == NewtonProgress::Advice::go_on) accelerate(problem, state);
     converged_ = converged_ || advice == NewtonProgress::Advice::done;
     if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, *solution);
     const bool near = round.correction <= near_solution * round.increment || converged_;
     halve_where_inverted(problem, step, state, near);
     const bool is_exact = std::abs(lacking_) <= energy_tolerance * (kinetic + energy_start_ + energy_);
     // Rounding of forces and energies may leave more.
-    const bool is_last = is_weak_ ? vain_ >= most_vain : std::abs(lacking_) > 0.5 * lacked;
+    const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : std::abs(lacking_) > 0.5 * lacked;
     const bool balanced = is_exact || (converged_ && is_last);
     lacked = std::abs(lacking_);
     if (log::enabled(log::Level::debug)) {
       log::debug(
           fmt::format("Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
                       "missing, {:.3g} of the reactions are the end's",
-                      progress_.rounds(), round.correction, round.increment, sigma_,
+                      progress_.rounds(), round.correction, round.increment, sigma_.value(),
                       lacking_ / (kinetic + energy_start_ + energy_), end_weight_));
     }
     if (converged_ && near && balanced) {
       require_balance(kinetic);
       break;
     }
-    if (converged_ && is_weak_) {  // with another number now
+    if (converged_ && sigma_.is_weak()) {  // with another number now
       converged_ = false;
       progress_.restart();
       continue;
@@ -390,6 +384,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
       stages.renew(middle_, end_);
       progress_.count_renewal();
       progress_.restart();
+      acceleration_.restart();
     }
   }
   finish(problem, step, state, stage, *solution, increment);

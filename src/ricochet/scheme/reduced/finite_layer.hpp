@@ -3,9 +3,11 @@
 #include <memory>
 #include <optional>
 
+#include "ricochet/linear_algebra/anderson_acceleration.hpp"
 #include "ricochet/problem/newton_progress.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
+#include "ricochet/scheme/reduced/energy_secant.hpp"
 #include "ricochet/scheme/reduced/lagged_rows.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
@@ -68,17 +70,20 @@ class FiniteLayer {
     double correction = 0.0;  ///< the largest entry of the last one
     double increment = 0.0;   ///< of the step so far
   };
+  struct Reactions {
+    Vector normal, tangential, acting_normal, acting_tangential;
+  };
   void start(const SemidiscreteProblem& problem, double step, const State& state);
   void evaluate_pressure(const SemidiscreteProblem& problem, const State& state);
   void take_loads(const SemidiscreteProblem& problem, double step, const State& state);
   /// Forces at the middle and at the end; near the solution also what the energy lacks, and σ for it.
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
-  void choose_sigma(double asked);
   void require_balance(double kinetic) const;
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
                        StageSolve& stages, Stage& stage);
   Round correct(const SemidiscreteProblem& problem, const State& state, const StageSolution& solution);
+  void accelerate(const SemidiscreteProblem& problem, const State& state);
   [[nodiscard]] double obstacle_work(const ContactRows& rows, const Vector& normal, const Vector& tangential,
                                      double step);
   void follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
@@ -89,22 +94,19 @@ class FiniteLayer {
 
   std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes alone
   NewtonProgress progress_;
+  EnergySecant sigma_;
   EndContact contact_;
-  LaggedRows lagged_;                             ///< where rows follow the motion
-  const StageSolution* last_solution_ = nullptr;  ///< of the round before in this step
+  LaggedRows lagged_;    ///< where rows follow the motion
+  Reactions reactions_;  ///< of the round before in this step; empty: there was none
+  AndersonAcceleration acceleration_{8};
   StepEquations equations_;
   StepCorrections corrections_;
   long energy_step_ = -1;                     ///< the step whose end is known already
   double kept_energy_ = 0.0;                  ///< W there
   std::optional<double> layer_energy_start_;  ///< of the cells at contact nodes, once it is asked for
   double viscous_dissipation_ = 0.0;          ///< 𝒟
-  double energy_ = 0.0, energy_start_ = 0.0, sigma_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
-  /// σ of the round before and what the balance of energy asked for then; NaN before the second round.
-  double sigma_before_ = 0.0, asked_before_ = 0.0;
-  bool converged_ = false;       ///< places
-  bool is_weak_ = false;         ///< σ hardly changes the work
-  int settling_ = 0, vain_ = 0;  ///< rounds with this σ; those in a row that brought nothing
-  double least_lacking_ = 0.0;
+  double energy_ = 0.0, energy_start_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
+  bool converged_ = false;                          ///< places
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
   double end_time_ = 0.0;
   double pressure_work_ = 0.0;  ///< (P_c(u₁) − P_c(x))·Δ_c

@@ -1,0 +1,45 @@
+#include "ricochet/scheme/reduced/energy_secant.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ricochet {
+
+namespace {
+
+/// σ is about half of the change of a strain; one that is larger means that steps are far too long.
+constexpr double largest_sigma = 1.0;
+/// Slopes dσ_asked/dσ that a secant is taken of; those from `weak` on are weak.
+constexpr double steepest = 4.0, weak = 0.8, least_left = 0.002, least_left_settled = 1e-6;
+/// In which places settle.
+constexpr int settling_rounds = 3;
+
+}  // namespace
+
+void EnergySecant::start() {
+  sigma_ = 0.0;
+  sigma_before_ = asked_before_ = std::numeric_limits<double>::quiet_NaN();
+  is_weak_ = false;
+  settling_ = vain_ = 0;
+  least_lacking_ = std::numeric_limits<double>::infinity();
+}
+
+bool EnergySecant::choose(double asked, double lacking, bool has_converged) {
+  if (is_settled()) return false;
+  if (is_weak_ && !has_converged && ++settling_ < settling_rounds) return false;
+  settling_ = 0;
+  const double slope = (asked - asked_before_) / (sigma_ - sigma_before_);
+  double next = asked;
+  if (std::isfinite(slope) && slope > -steepest && slope < 1.0 - (is_weak_ ? least_left_settled : least_left))
+    next = (asked - slope * sigma_) / (1.0 - slope);
+  if (is_weak_) vain_ = std::abs(lacking) > 0.5 * least_lacking_ ? vain_ + 1 : 0;
+  least_lacking_ = std::min(least_lacking_, std::abs(lacking));
+  is_weak_ = is_weak_ || (std::isfinite(slope) && slope > weak);
+  sigma_before_ = sigma_;
+  asked_before_ = asked;
+  sigma_ = std::clamp(next, -largest_sigma, largest_sigma);
+  return is_weak_;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/case_run.hpp"
+#include "support/motion_totals.hpp"
+
+/// @file Steps whose operators are far from what they should be: rubber that is squeezed and cannot slide.
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+using test_support::energy_of;
+using test_support::mesh_geometry;
+
+std::string grid(const std::string& sizes, const std::string& lines) {
+  return "Rectangle(1) = {" + sizes + "};\n" + lines +
+         "Transfinite Surface{1};\nRecombine Surface{1};\nPhysical Surface(\"body\") = {1};\n"
+         "Physical Curve(\"bottom\") = {1};\nPhysical Curve(\"top\") = {3};\n";
+}
+
+/// A ring of rubber, 10 mm thick and 20 mm high, on the floor, that a block of steel strikes at 3 m/s.
+std::string bumper(const std::string& contact, const std::string& relaxation) {
+  const std::string rubber = mesh_geometry(
+      "bumper-rubber", grid("0.005, 0, 0, 0.01, 0.02", "Transfinite Curve{1, 3} = 6;\nTransfinite Curve{2, 4} = 11;\n"),
+      1.0, 1);
+  const std::string steel = mesh_geometry(
+      "bumper-steel", grid("0, 0, 0, 0.02, 0.03", "Transfinite Curve{1, 3} = 4;\nTransfinite Curve{2, 4} = 3;\n"), 1.0,
+      1);
+  return "[mesh]\nplane = \"axisymmetric\"\n[part.bumper]\nfile = \"" + rubber + "\"\n[part.block]\nfile = \"" + steel +
+         "\"\nmove = [0.0, 0.0201]\nvelocity = [0.0, -3.0]\n"
+         "[[material]]\ngroup = \"bumper.body\"\ndensity = 1100.0\nlaw = \"neo-hookean\"\nyoung = 3.0e6\npoisson = "
+         "0.495\n" +
+         relaxation +
+         "[[material]]\ngroup = \"block.body\"\ndensity = 7800.0\nlaw = \"neo-hookean\"\nyoung = 2.1e11\npoisson = "
+         "0.3\n"
+         "[[support]]\ngroup = \"bumper.bottom\"\ncomponents = [\"x\", \"y\"]\n"
+         "[[contact]]\ngroup = \"bumper.top\"\nagainst = \"block.bottom\"\n" +
+         contact + "[time]\nscheme = \"reduced-kane\"\nstep = 1e-4\nend = 4e-3\n";
+}
+
+/// Cells that are sheared turn the direction in which they are a hundred times stiffer, and forces of contact that turn
+/// are as large as the stiffness of the nodes that they act on: corrections with the operator of the undeformed body,
+/// and with that of the place, grow, however short a step is.
+TEST(FiniteRubber, IsSqueezedByASixthUnderFriction) {
+  const std::string relaxing = "relaxation = { modulus = [0.8, 0.4], time = [1.0e-3, 1.0e-2] }\n";
+  for (const std::string contact : {"", "friction = 0.4\n"}) {
+    for (const std::string& relaxation : {std::string(), relaxing}) {
+      CaseRun run(bumper(contact, relaxation));
+      const double start = energy_of(run);
+      double before = start, squeezed = 0.0;
+      run.run(
+          [&] {
+            const double energy = energy_of(run);
+            EXPECT_LT(energy, before + 1e-11 * start) << contact << relaxation << run.state().step;
+            before = energy;
+            const Energies energies = run.simulation().account().energies(run.state());
+            EXPECT_NEAR(run.simulation().account().residual(energies), 0.0, 1e-10 * start);
+            squeezed = std::max(squeezed, -run.state().displacement.minCoeff());
+          },
+          false);
+      EXPECT_GT(squeezed, 0.0032) << contact << relaxation;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
