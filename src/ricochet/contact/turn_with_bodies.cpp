@@ -144,9 +144,9 @@ void find_turning_normals(const Body& body, const std::vector<ContactPair>& pair
       }
       const std::vector<Index> facets =
           multiplier.facet >= 0 ? std::vector{multiplier.facet} : around(own, multiplier.node);
-      TurningNormal turning(*body.space, of_marked_nodes(*body.space, facets, marked), normal);
-      if (!turning.turns())
-        turning = TurningNormal(*body.space, facets_seen(opposite, patch->conditions[i].opposite), normal);
+      TurningNormal turning =
+          TurningNormal::mean(TurningNormal(*body.space, of_marked_nodes(*body.space, facets, marked), normal),
+                              TurningNormal(*body.space, facets_seen(opposite, patch->conditions[i].opposite), normal));
       if (!turning.turns()) ++constant;
       patch->turning.push_back(std::move(turning));
     }

@@ -72,6 +72,17 @@ void TurningNormal::fit(const DisplacementSpace& space, const Three& direction) 
   if (other.from >= 0) lines_.push_back({other, factors[2]});
 }
 
+TurningNormal TurningNormal::mean(const TurningNormal& one, const TurningNormal& other) {
+  if (!other.turns()) return one;
+  if (!one.turns()) return other;
+  TurningNormal result = one;
+  result.crosses_.insert(result.crosses_.end(), other.crosses_.begin(), other.crosses_.end());
+  result.lines_.insert(result.lines_.end(), other.lines_.begin(), other.lines_.end());
+  for (Cross& cross : result.crosses_) cross.factor *= 0.5;
+  for (Line& line : result.lines_) line.factor *= 0.5;
+  return result;
+}
+
 std::vector<Index> TurningNormal::nodes() const {
   std::vector<Index> result;
   const auto add = [&result](const Edge& edge) {

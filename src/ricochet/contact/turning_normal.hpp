@@ -25,6 +25,9 @@ class TurningNormal {
   /// no part; where all are, or where their sum lies in the plane of one of them, N does not turn.
   TurningNormal(const DisplacementSpace& space, const std::vector<Index>& facets, const Vector& direction);
 
+  /// Half of each: N of two surfaces that face each other. One that does not turn has no part.
+  [[nodiscard]] static TurningNormal mean(const TurningNormal& one, const TurningNormal& other);
+
   [[nodiscard]] bool turns() const { return !crosses_.empty(); }
   /// The nodes that N depends on, each at least once.
   [[nodiscard]] std::vector<Index> nodes() const;
