@@ -29,6 +29,7 @@ double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vec
 }  // namespace
 
 void FiniteLayer::analyse(const SemidiscreteProblem& problem) {
+  bodies_ = std::make_unique<BodyRotations>(problem);
   if (problem.contact_dofs.empty()) return;
   std::vector<char> wanted(static_cast<std::size_t>(problem.nodes.cols()), 0);
   for (const Index dof : problem.contact_dofs) wanted[static_cast<std::size_t>(dof / problem.dimension)] = 1;
@@ -63,8 +64,8 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   take_loads(problem, step, state);
   end_time_ = state.time + step;
   base_ = state.displacement + (0.5 * step) * state.velocity;
-  middle_ = base_;
-  end_ = state.displacement + step * state.velocity;
+  bodies_->predict(state.displacement, state.velocity, step, end_);
+  middle_ = 0.5 * (state.displacement + end_);
   relaxed_ = state.displacement;
   layer_energy_start_.reset();
   sigma_.start();
@@ -324,7 +325,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
                           StageSolve& stages, Vector& increment) {
   const std::size_t number = MasslessLayer::midpoint_stage(problem);
   start(problem, step, state);
-  stages.follow(base_);
+  stages.follow(middle_);
   evaluate(problem, step, state, false);
   progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
                   (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
