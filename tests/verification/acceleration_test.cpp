@@ -6,7 +6,7 @@
 // What each scheme calls the acceleration, through impacts, and that nodes without mass have none.
 
 namespace ricochet {
-namespace {
+namespace acceleration_test {
 
 using test_support::CaseRun;
 using test_support::dragged_case;
@@ -64,5 +64,5 @@ TEST(Acceleration, OfCentralDifferencesIsTheMeanOfBothEnds) {
   EXPECT_LT(largest_difference("equivalent-lumped", "scheme = \"semi-explicit\"\n", expected), 1e-11);
 }
 
-}  // namespace
+}  // namespace acceleration_test
 }  // namespace ricochet

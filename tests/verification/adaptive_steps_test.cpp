@@ -14,7 +14,7 @@
 // Steps whose length follows the motion.
 
 namespace ricochet {
-namespace {
+namespace adaptive_steps_test {
 
 using test_support::CaseRun;
 using test_support::dragged_case;
@@ -228,5 +228,5 @@ TEST(AdaptiveSteps, ReachAGivenErrorWithHalfTheWorkOfFixedSteps) {
   EXPECT_LT(adapted.step_there, 2e-3);
 }
 
-}  // namespace
+}  // namespace adaptive_steps_test
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 // Impacts of two bodies: bars with an exact solution, balances of momentum, a body that meets several at a time.
 
 namespace ricochet {
-namespace {
+namespace body_impacts_test {
 
 using test_support::CaseRun;
 using test_support::strip_mesh;
@@ -222,5 +222,5 @@ TEST(BodyImpacts, GoOnFromASnapshot) {
   EXPECT_NE(recorder.impacts()[0].other->after.velocity[0], 0.0);
 }
 
-}  // namespace
+}  // namespace body_impacts_test
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 // ends.
 
 namespace ricochet {
-namespace {
+namespace energy_identities_test {
 
 using test_support::CaseRun;
 using test_support::expect_identity;
@@ -248,5 +248,5 @@ TEST(EnergyIdentity, AccountClosesWithSupportsDampingAndLoadsThatVary) {
   }
 }
 
-}  // namespace
+}  // namespace energy_identities_test
 }  // namespace ricochet

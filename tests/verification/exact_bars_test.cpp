@@ -11,7 +11,7 @@
 // their observed orders when h and Δt are refined together. The fields have kinks and jumps, so low orders are right.
 
 namespace ricochet {
-namespace {
+namespace exact_bars_test {
 
 using test_support::CaseRun;
 
@@ -377,5 +377,5 @@ TEST(ExactBars, CompressedRod) {
   EXPECT_GT(mean_order(table(problem, {25, 50, 100}, 2, false), &Errors::displacement), 0.6);
 }
 
-}  // namespace
+}  // namespace exact_bars_test
 }  // namespace ricochet

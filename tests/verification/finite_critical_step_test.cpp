@@ -11,7 +11,7 @@
 /// @file The critical step of semi-explicit at finite strain, which changes with the deformation: it is followed, and a
 /// step that is longer is not taken.
 namespace ricochet {
-namespace {
+namespace finite_critical_step_test {
 
 using test_support::CaseRun;
 using test_support::mesh_geometry;
@@ -179,5 +179,5 @@ TEST(FiniteCriticalStep, RefusesAStartBeyondTheCriticalStep) {
   }
 }
 
-}  // namespace
+}  // namespace finite_critical_step_test
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 
 /// @file The scheme semi-explicit for bodies that turn and stretch: what it keeps, and what it converges to.
 namespace ricochet {
-namespace {
+namespace finite_explicit_test {
 
 using test_support::CaseRun;
 using test_support::energy_of;
@@ -306,5 +306,5 @@ TEST(FiniteExplicit, ResumesToTheSameBits) {
   }
 }
 
-}  // namespace
+}  // namespace finite_explicit_test
 }  // namespace ricochet

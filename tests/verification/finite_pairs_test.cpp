@@ -13,7 +13,7 @@
 
 /// @file Contact between bodies that turn: what rows that turn with them must keep.
 namespace ricochet {
-namespace {
+namespace finite_pairs_test {
 
 using test_support::CaseRun;
 using test_support::energy_of;
@@ -198,5 +198,5 @@ TEST(FinitePairs, GoOnFromACheckpointWithTheSameBits) {
   }
 }
 
-}  // namespace
+}  // namespace finite_pairs_test
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 /// @file Homogeneous deformations at finite strain: simple shear in all cells, and blocks squeezed against a plane in
 /// all multiplier spaces, on distorted meshes.
 namespace ricochet::test_support {
-namespace {
+namespace finite_patch_test {
 
 struct Law {
   std::string name, keys;
@@ -249,5 +249,5 @@ TEST(PrincipalStretches, AreRefusedWithTheLinearLaw) {
 INSTANTIATE_TEST_SUITE_P(FinitePatch, Homogeneous, testing::ValuesIn(straight_kinds()),
                          [](const auto& tested) { return tested.param.label(); });
 
-}  // namespace
+}  // namespace finite_patch_test
 }  // namespace ricochet::test_support

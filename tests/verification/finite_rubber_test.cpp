@@ -7,7 +7,7 @@
 
 /// @file Steps whose operators are far from what they should be: rubber that is squeezed and cannot slide.
 namespace ricochet {
-namespace {
+namespace finite_rubber_test {
 
 using test_support::CaseRun;
 using test_support::energy_of;
@@ -64,5 +64,5 @@ TEST(FiniteRubber, IsSqueezedByASixthUnderFriction) {
   }
 }
 
-}  // namespace
+}  // namespace finite_rubber_test
 }  // namespace ricochet

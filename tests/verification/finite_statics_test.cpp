@@ -9,7 +9,7 @@
 
 /// @file Static equilibria at finite strain, against closed forms.
 namespace ricochet {
-namespace {
+namespace finite_statics_test {
 
 using test_support::CaseRun;
 using test_support::mesh_geometry;
@@ -226,5 +226,5 @@ TEST(FiniteStatics, SaysHowFarItCame) {
   }
 }
 
-}  // namespace
+}  // namespace finite_statics_test
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 
 /// @file Bodies that turn and stretch: what every step must keep.
 namespace ricochet {
-namespace {
+namespace finite_strain_test {
 
 using test_support::CaseRun;
 using test_support::energy_of;
@@ -36,6 +36,7 @@ struct Flight {
   std::string scheme = "reduced-kane", law = "neo-hookean", mass = "equivalent";
   double step = 0.01, height = 10.0;
   std::string more = {};
+  int steps = 200;
 };
 
 /// A block of E = 100, ρ = 1 above a floor, stretched and spinning.
@@ -49,7 +50,7 @@ std::string case_of(const Flight& flight, const std::string& displacement, const
          "[initial]\ndisplacement = " + displacement + "\nvelocity = " + velocity + "\n[mass]\ntype = \"" +
          flight.mass + "\"\n[time]\nscheme = \"" + flight.scheme + "\"\n" +
          (flight.scheme == "newmark" ? "preset = \"trapezoidal\"\n" : "") + "step = " + std::to_string(flight.step) +
-         "\nend = " + std::to_string(200 * flight.step) + "\n";
+         "\nend = " + std::to_string(flight.steps * flight.step) + "\n";
 }
 
 std::string stretched(int dimension) {
@@ -155,7 +156,8 @@ TEST(FiniteStrain, AxisymmetricBodiesBounceWithExactEnergy) {
 /// A rigid spin has no strain, however far a step turns: bodies do not swell. (They are stretched by ρω²L²/E alone.)
 TEST(FiniteStrain, ARigidSpinDoesNotSwell) {
   for (const int dimension : {2, 3}) {
-    Flight flight{.dimension = dimension, .step = 500.0, .height = 1e6};
+    // In space such steps are cut: the body of their middle is narrower across its axis, and the operator is not.
+    Flight flight{.dimension = dimension, .step = 500.0, .height = 1e6, .more = {}, .steps = 70};
     CaseRun run(case_of(
         flight, dimension == 2 ? "[\"0\", \"0\"]" : "[\"0\", \"0\", \"0\"]",
         dimension == 2 ? "[\"-1e-4*(y-0.25)\", \"1e-4*(x-0.5)\"]" : "[\"-1e-4*(y-0.25)\", \"1e-4*(x-0.5)\", \"0\"]"));
@@ -237,5 +239,5 @@ TEST(FiniteStrain, IsOfSecondOrder) {
   }
 }
 
-}  // namespace
+}  // namespace finite_strain_test
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 /// @file Pressure that follows the surface: inflated spheres and cylinders against the solution of the radial equation,
 /// and what every step under it must keep.
 namespace ricochet {
-namespace {
+namespace follower_pressure_test {
 
 using test_support::CaseRun;
 using test_support::Convergence;
@@ -366,5 +366,5 @@ TEST(FollowerPressure, SaysWhatIsWrongWithIt) {
   EXPECT_NE(message("[[pressure]]\ngroup = \"outside\"\n").find("value"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace follower_pressure_test
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 // cases/conveyor with other schemes and masses, held against the closed forms, and each other.
 
 namespace ricochet {
-namespace {
+namespace friction_blocks_test {
 
 using test_support::CaseRun;
 
@@ -217,5 +217,5 @@ TEST(Incline, StaticEquilibriumExistsBelowTheThresholdOnly) {
   }
 }
 
-}  // namespace
+}  // namespace friction_blocks_test
 }  // namespace ricochet

@@ -18,7 +18,7 @@
 // cases/oblique.
 
 namespace ricochet {
-namespace {
+namespace friction_impact_test {
 
 using test_support::CaseRun;
 
@@ -255,5 +255,5 @@ TEST(SpinningBall, RaisesTheWarningOfSmallStrain) {
   EXPECT_NE(summary.warnings.back().find(strain), std::string::npos) << summary.warnings.back();
 }
 
-}  // namespace
+}  // namespace friction_impact_test
 }  // namespace ricochet

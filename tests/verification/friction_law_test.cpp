@@ -11,7 +11,7 @@
 // computed here from the states, not taken from the solver or the energy account.
 
 namespace ricochet {
-namespace {
+namespace friction_law_test {
 
 using test_support::CaseRun;
 using test_support::StepEnd;
@@ -368,5 +368,5 @@ TEST(FrictionEnergy, AccountClosesWithMovingObstacles) {
   }
 }
 
-}  // namespace
+}  // namespace friction_law_test
 }  // namespace ricochet

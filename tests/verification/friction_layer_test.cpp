@@ -10,7 +10,7 @@
 // and their observed orders when h and Δt are refined together. Velocity and traction jump, so low orders are right.
 
 namespace ricochet {
-namespace {
+namespace friction_layer_test {
 
 using test_support::CaseRun;
 
@@ -312,5 +312,5 @@ TEST(SlidingLayer, TrapezoidalRuleWithInertiaOnContactNodesDoesNotStick) {
   }
 }
 
-}  // namespace
+}  // namespace friction_layer_test
 }  // namespace ricochet

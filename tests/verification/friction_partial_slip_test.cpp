@@ -12,7 +12,7 @@
 // other (K. L. Johnson, Contact Mechanics, 1985, section 7.2).
 
 namespace ricochet {
-namespace {
+namespace friction_partial_slip_test {
 
 using test_support::CaseRun;
 
@@ -136,5 +136,5 @@ TEST(PartialSlip, CylinderPushedAlongThePlane) {
   }
 }
 
-}  // namespace
+}  // namespace friction_partial_slip_test
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 // bodies, checkpoints; and the largest stress.
 
 namespace ricochet {
-namespace {
+namespace impacts_test {
 
 using test_support::CaseRun;
 using test_support::mesh_geometry;
@@ -315,5 +315,5 @@ TEST(PeakStress, IsThatOfTheStatesThatWereLookedAt) {
   EXPECT_LE(place.centre[0], 15.0);
 }
 
-}  // namespace
+}  // namespace impacts_test
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 // A result must not depend on the units, the orientation, the numbering or the observer.
 
 namespace ricochet {
-namespace {
+namespace invariances_test {
 
 using test_support::CaseRun;
 
@@ -376,5 +376,5 @@ TEST(Invariance, SameBitsTwice) {
   }
 }
 
-}  // namespace
+}  // namespace invariances_test
 }  // namespace ricochet

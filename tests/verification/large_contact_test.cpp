@@ -11,7 +11,7 @@
 // machine.
 
 namespace ricochet {
-namespace {
+namespace large_contact_test {
 
 /// A ball of degree 2: "skin" is all of its surface, "cap" what is near its lowest point.
 std::string ball_case(const std::string& group) {
@@ -84,5 +84,5 @@ TEST(LargeContact, EstimatesAreWhatIsMade) {
   EXPECT_LE(estimates[0].bytes_per_point, 1.1 * made);
 }
 
-}  // namespace
+}  // namespace large_contact_test
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 /// @file Nearly incompressible bodies do not lock with mean dilatation, and do without it: Cook's membrane at finite
 /// strain, Poisson's ratio 0.4999.
 namespace ricochet::test_support {
-namespace {
+namespace locking_test {
 
 struct Membrane {
   CellShape shape = CellShape::quadrilateral;
@@ -75,5 +75,5 @@ TEST(Locking, CooksMembrane) {
   EXPECT_GT(missing({.shape = hexahedron, .cells = 4, .dilatation = "pointwise"}), 0.6);
 }
 
-}  // namespace
+}  // namespace locking_test
 }  // namespace ricochet::test_support

@@ -14,7 +14,7 @@
 /// @file A body that meets its mirror image moves as if it met the plane between them without friction: the relative
 /// motion is twice that of the body, W is twice as large, the forces are the same.
 namespace ricochet {
-namespace {
+namespace mirror_test {
 
 using test_support::Discretization;
 using test_support::PointMap;
@@ -157,5 +157,5 @@ TEST(MirroredBodies, MoveAsOneAgainstThePlaneBetweenThem) {
   EXPECT_GT(compared, 400);
 }
 
-}  // namespace
+}  // namespace mirror_test
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 // space, with friction on a moving plane, loads that vary, damping and supports.
 
 namespace ricochet {
-namespace {
+namespace momentum_account_test {
 
 using test_support::CaseRun;
 using test_support::dragged_case;
@@ -154,5 +154,5 @@ TEST(MomentumAccount, BalancesWithMovingSupports) {
   }
 }
 
-}  // namespace
+}  // namespace momentum_account_test
 }  // namespace ricochet

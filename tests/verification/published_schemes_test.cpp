@@ -12,7 +12,7 @@
 // works are computed here from states, not taken from the energy account. λ are normal forces, g₀ and g₁ the gaps.
 
 namespace ricochet {
-namespace {
+namespace published_schemes_test {
 
 using test_support::CaseRun;
 using test_support::expect_identity;
@@ -398,5 +398,5 @@ TEST(PublishedScheme, IsOfSecondOrderWhereNothingTouches) {
   }
 }
 
-}  // namespace
+}  // namespace published_schemes_test
 }  // namespace ricochet

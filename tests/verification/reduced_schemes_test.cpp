@@ -15,7 +15,7 @@
 // derived in docs/energy.md, from states alone. K_cc z = (K ΔU)_c, W_c = H K_cc⁻¹ Hᵀ.
 
 namespace ricochet {
-namespace {
+namespace reduced_schemes_test {
 
 using test_support::CaseRun;
 using test_support::StepEnd;
@@ -317,5 +317,5 @@ TEST(ReducedKane, SticksAtNearlyTheLimitWithoutCreep) {
   }
 }
 
-}  // namespace
+}  // namespace reduced_schemes_test
 }  // namespace ricochet

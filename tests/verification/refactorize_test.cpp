@@ -10,7 +10,7 @@
 /// @file Operators that depend on the displacement: stages are solved with the tangent that was asked for, and whoever
 /// relies on a constant one refuses.
 namespace ricochet {
-namespace {
+namespace refactorize_test {
 
 using test_support::CaseRun;
 
@@ -107,5 +107,5 @@ TEST(NonlinearForce, IsRefusedWhereATangentIsTakenForConstant) {
   }
 }
 
-}  // namespace
+}  // namespace refactorize_test
 }  // namespace ricochet

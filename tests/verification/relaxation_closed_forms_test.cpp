@@ -11,7 +11,7 @@
 
 /// @file Stress that relaxes, against closed forms of the Prony series.
 namespace ricochet {
-namespace {
+namespace relaxation_closed_forms_test {
 
 using namespace test_support::viscous;
 using test_support::CaseRun;
@@ -110,5 +110,5 @@ TEST(RelaxationClosedForms, CyclesDissipateTheLossModulus) {
   EXPECT_NEAR(errors[1] / errors[2], 4.0, 0.3);
 }
 
-}  // namespace
+}  // namespace relaxation_closed_forms_test
 }  // namespace ricochet

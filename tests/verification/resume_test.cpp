@@ -16,7 +16,7 @@
 // could depend on is left out.
 
 namespace ricochet {
-namespace {
+namespace resume_test {
 
 using test_support::CaseRun;
 using test_support::dragged_case;
@@ -161,5 +161,5 @@ TEST(Resume, MovingSupports) {
     EXPECT_TRUE(resumes_to_the_same_bits(text, {0, 3, 60, 61, 150, 199})) << scheme;
 }
 
-}  // namespace
+}  // namespace resume_test
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 // what it refuses, and its motion against that of newmark with the equivalent mass.
 
 namespace ricochet {
-namespace {
+namespace semi_explicit_test {
 
 using test_support::CaseRun;
 using test_support::thrown_bodies;
@@ -241,5 +241,5 @@ TEST(SemiExplicit, AccountClosesThoughAStiffBodyMovesFar) {
   EXPECT_LT(strain, 1e-18 * largest);
 }
 
-}  // namespace
+}  // namespace semi_explicit_test
 }  // namespace ricochet

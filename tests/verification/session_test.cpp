@@ -12,7 +12,7 @@
 
 /// @file Sessions: the run of a case in the hands of the program that opens it.
 namespace ricochet::test_support {
-namespace {
+namespace session_test {
 
 std::string block_text() {
   return thrown_case(one_sided_block(), "equivalent", "scheme = \"newmark\"\npreset = \"trapezoidal\"\n",
@@ -187,5 +187,5 @@ TEST_F(SessionTest, OwnsItsWarnings) {
   EXPECT_EQ(summary.warnings.front(), warned.warnings().front());
 }
 
-}  // namespace
+}  // namespace session_test
 }  // namespace ricochet::test_support

@@ -9,7 +9,7 @@
 
 /// @file Curved obstacles: a small block that slides in a bowl is a point mass on a circle.
 namespace ricochet::test_support {
-namespace {
+namespace sphere_test {
 
 constexpr double gravity = 9.81;
 constexpr double start_angle = 0.3;
@@ -242,5 +242,5 @@ INSTANTIATE_TEST_SUITE_P(All, BowlScheme,
                                            // Whose projections are of the size of rounding while the block is slow.
                                            "scheme = \"contact-stabilized\"\n[mass]\ntype = \"consistent\"\n"));
 
-}  // namespace
+}  // namespace sphere_test
 }  // namespace ricochet::test_support

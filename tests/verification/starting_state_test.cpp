@@ -9,7 +9,7 @@
 // The state at t = 0: static equilibrium with contact, consistent accelerations, nodes in contact at the start.
 
 namespace ricochet {
-namespace {
+namespace starting_state_test {
 
 using test_support::CaseRun;
 
@@ -235,5 +235,5 @@ TEST(FreeFall, LeavesTheBodyUndeformedWithEveryMass) {
   }
 }
 
-}  // namespace
+}  // namespace starting_state_test
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 // Static starts of bodies that slide along their obstacle at t = 0.
 
 namespace ricochet {
-namespace {
+namespace static_friction_test {
 
 using test_support::CaseRun;
 
@@ -224,5 +224,5 @@ TEST(StaticFriction, ABodyThatTipsIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace static_friction_test
 }  // namespace ricochet

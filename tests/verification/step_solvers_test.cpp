@@ -9,7 +9,7 @@
 // same with all contact points, and conjugate gradients around a patch. They must agree.
 
 namespace ricochet {
-namespace {
+namespace step_solvers_test {
 
 using test_support::CaseRun;
 using test_support::thrown_bodies;
@@ -132,5 +132,5 @@ TEST(StepSolversAtRest, Agree) {
 INSTANTIATE_TEST_SUITE_P(All, StepSolvers, testing::ValuesIn(variants()),
                          [](const auto& info) { return info.param.name; });
 
-}  // namespace
+}  // namespace step_solvers_test
 }  // namespace ricochet

@@ -1,6 +1,5 @@
 #include "ricochet/problem/body_rotations.hpp"
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -30,11 +29,8 @@ Tensor orthogonal_factor(Tensor matrix) {
 }  // namespace
 
 BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
-    : problem_(problem),
-      body_of_node_(static_cast<std::size_t>(problem.nodes.cols()), -1),
-      is_contact_(static_cast<std::size_t>(problem.nodes.cols()), 0) {
+    : problem_(problem), body_of_node_(static_cast<std::size_t>(problem.nodes.cols()), -1) {
   const int d = problem.dimension;
-  for (const Index dof : problem.contact_dofs) is_contact_[static_cast<std::size_t>(dof / d)] = 1;
   for (const std::vector<Index>& members : graph_components(problem.internal_force->tangent(), d)) {
     if (members.size() == 1 && problem.is_tied_dof(members.front() * d)) continue;
     Body body;
@@ -50,7 +46,6 @@ BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
       const Index stride = std::max(Index{1}, size / most_fitted);
       for (Index i = 0; i < size; i += stride) body.fitted.push_back(members[static_cast<std::size_t>(i)]);
     }
-    body.members = members;
     bodies_.push_back(std::move(body));
   }
 }
@@ -96,70 +91,6 @@ void BodyRotations::fit(const Vector& displacement, std::vector<Tensor>& rotatio
     } else {
       rotations[i] =
           problem_.dimension == 2 ? fit_body<2>(bodies_[i], displacement) : fit_body<3>(bodies_[i], displacement);
-    }
-  }
-}
-
-Eigen::Vector3d BodyRotations::place(Index node, const Vector& displacement) const {
-  const Index d = problem_.dimension;
-  Eigen::Vector3d result = Eigen::Vector3d::Zero();
-  result.head(d) = problem_.nodes.col(node) + displacement.segment(node * d, d);
-  return result;
-}
-
-BodyRotations::Flight BodyRotations::fit_flight(const Body& body, const Vector& displacement,
-                                                const Vector& velocity) const {
-  const Index d = problem_.dimension;
-  Flight flight;
-  double count = 0.0;
-  for (const Index node : body.fitted) {
-    if (is_contact_[static_cast<std::size_t>(node)] != 0) continue;
-    flight.centre += place(node, displacement);
-    flight.velocity.head(d) += velocity.segment(node * d, d);
-    count += 1.0;
-  }
-  if (count == 0.0) return flight;
-  flight.centre /= count;
-  flight.velocity /= count;
-  Tensor inertia = Tensor::Zero();
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (const Index node : body.fitted) {
-    if (is_contact_[static_cast<std::size_t>(node)] != 0) continue;
-    const Eigen::Vector3d arm = place(node, displacement) - flight.centre;
-    Eigen::Vector3d relative = -flight.velocity;
-    relative.head(d) += velocity.segment(node * d, d);
-    inertia += arm.squaredNorm() * Tensor::Identity() - arm * arm.transpose();
-    moment += arm.cross(relative);
-  }
-  if (d == 2 || body.axis >= 0) {
-    const int axis = d == 2 ? 2 : body.axis;
-    flight.spin[axis] = moment[axis] / inertia(axis, axis);
-  } else {
-    flight.spin = inertia.inverse() * moment;
-  }
-  if (!flight.spin.allFinite()) flight.spin.setZero();
-  return flight;
-}
-
-void BodyRotations::predict(const Vector& displacement, const Vector& velocity, double step, Vector& end) const {
-  end = displacement + step * velocity;
-  const Index d = problem_.dimension;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const Body& body = bodies_[i];
-    if (body.fitted.empty()) continue;
-    const Flight flight = fit_flight(body, displacement, velocity);
-    const double angle = 2.0 * std::atan(0.5 * step * flight.spin.norm());
-    if (angle == 0.0) continue;
-    const Tensor rotation = Eigen::AngleAxisd(angle, flight.spin.normalized()).toRotationMatrix();
-    for (const Index node : body.members) {
-      const Eigen::Vector3d arm = place(node, displacement) - flight.centre;
-      Eigen::Vector3d straight = Eigen::Vector3d::Zero();  // w
-      if (is_contact_[static_cast<std::size_t>(node)] == 0) {
-        straight.head(d) = velocity.segment(node * d, d);
-        straight -= flight.velocity + flight.spin.cross(arm);
-      }
-      const Eigen::Vector3d now = rotation * (arm + step * straight) + flight.centre + step * flight.velocity;
-      end.segment(node * d, d) = now.head(d) - problem_.nodes.col(node);
     }
   }
 }

@@ -18,7 +18,7 @@
 /// @file Contact of axisymmetric bodies: uniform pressures, closed balances of energy and momentum under every scheme,
 /// and a rod that is a bar.
 namespace ricochet {
-namespace {
+namespace contact_test {
 
 using test_support::CaseRun;
 using test_support::StackedBoxes;
@@ -361,5 +361,5 @@ TEST(Axisymmetry, ABallThatLiesOnAPlaneIsInEquilibrium) {
   EXPECT_THROW(CaseRun{thrown}, Error);
 }
 
-}  // namespace
+}  // namespace contact_test
 }  // namespace ricochet

@@ -20,7 +20,7 @@
 
 /// @file Elements of axisymmetric bodies: patch tests, measures, masses, and Lamé's closed forms.
 namespace ricochet::test_support {
-namespace {
+namespace elements_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -379,5 +379,5 @@ INSTANTIATE_TEST_SUITE_P(Elements, Lame,
                                   std::to_string(info.param.degree);
                          });
 
-}  // namespace
+}  // namespace elements_test
 }  // namespace ricochet::test_support

@@ -14,7 +14,7 @@
 /// @file Contact rows between two bodies on meshes that do not match: a uniform pressure passes, rows sum to zero, mean
 /// gap vectors are along the normals.
 namespace ricochet::test_support {
-namespace {
+namespace body_contact_test {
 
 const FreeComponent all_free = [](Index, int) { return true; };
 
@@ -249,5 +249,5 @@ TEST(BodyContact, HasMeanGapVectorsAlongTheNormals) {
   }
 }
 
-}  // namespace
+}  // namespace body_contact_test
 }  // namespace ricochet::test_support

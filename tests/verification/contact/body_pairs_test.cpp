@@ -12,7 +12,7 @@
 
 /// @file Pairs of bodies as a case file names them: which are refused, and that either side may carry the multipliers.
 namespace ricochet {
-namespace {
+namespace body_pairs_test {
 
 using test_support::CaseRun;
 
@@ -126,5 +126,5 @@ TEST(BodyPairs, ExchangeSidesWithinTheDiscretizationError) {
   EXPECT_LT(difference[2], 0.25 * difference[0]);
 }
 
-}  // namespace
+}  // namespace body_pairs_test
 }  // namespace ricochet

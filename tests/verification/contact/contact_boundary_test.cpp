@@ -20,7 +20,7 @@
 
 /// @file The contact boundary: supports on it, several groups and obstacles, friction, units, and what is refused.
 namespace ricochet::test_support {
-namespace {
+namespace contact_boundary_test {
 
 const FreeComponent all_free = [](Index, int) { return true; };
 
@@ -322,5 +322,5 @@ TEST(ContactBoundary, HasNoUnit) {
   }
 }
 
-}  // namespace
+}  // namespace contact_boundary_test
 }  // namespace ricochet::test_support

@@ -11,7 +11,7 @@
 // stiffness that bounds it against the largest there is.
 
 namespace ricochet::test_support {
-namespace {
+namespace contact_stress_test {
 
 struct Side {
   std::unique_ptr<MeshedBody> test;
@@ -85,5 +85,5 @@ TEST(ContactStress, HasAStiffnessThatBoundsItByTheElasticEnergy) {
   });
 }
 
-}  // namespace
+}  // namespace contact_stress_test
 }  // namespace ricochet::test_support

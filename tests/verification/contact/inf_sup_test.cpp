@@ -16,7 +16,7 @@
 /// @file Which pairs of displacement and multiplier spaces are inf–sup stable: the numerical constant on families of
 /// meshes. The test prints the table of docs/multipliers.md, and checks the numbers that the page has.
 namespace ricochet::test_support {
-namespace {
+namespace inf_sup_test {
 
 const std::vector<std::string>& spaces() {
   static const std::vector<std::string> all = multiplier_space_names();
@@ -202,5 +202,5 @@ TEST(InfSup, AlternatingFacetPressuresDoNoWorkOnAClosedBoundary) {
   EXPECT_TRUE(instability("p0", CellShape::interval, 2).empty());
 }
 
-}  // namespace
+}  // namespace inf_sup_test
 }  // namespace ricochet::test_support

@@ -10,7 +10,7 @@
 
 /// @file The multiplier spaces: partition of unity, biorthogonality on curved facets, mean gaps, areas, pressures.
 namespace ricochet::test_support {
-namespace {
+namespace multiplier_spaces_test {
 
 struct SpaceCase {
   ElementKind kind;
@@ -311,5 +311,5 @@ TEST(DualMultipliers, HavePositiveWeightsWhereNodalForcesHaveNone) {
   EXPECT_NEAR(build("dual").weights.minCoeff(), 2.0 / 15.0 / 18.0, 1e-15);
 }
 
-}  // namespace
+}  // namespace multiplier_spaces_test
 }  // namespace ricochet::test_support

@@ -19,7 +19,7 @@
 /// solution is a uniform stress, so the contact pressure is uniform. The test prints the table of docs/multipliers.md,
 /// and checks the numbers that the page has.
 namespace ricochet::test_support {
-namespace {
+namespace patch_test {
 
 constexpr double pressure = 0.02;
 constexpr double closing = 0.01;  ///< gap to the plane at the start
@@ -292,5 +292,5 @@ TEST_P(ContactPatchTest, UniformPressureIsTransmittedOrDeviatesAsThePageSays) {
 INSTANTIATE_TEST_SUITE_P(Elements, ContactPatchTest, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-}  // namespace
+}  // namespace patch_test
 }  // namespace ricochet::test_support

@@ -12,7 +12,7 @@
 /// @file Bodies between planes of which any node may meet any: a floor and a ceiling, three walls, wedges.
 
 namespace ricochet::test_support {
-namespace {
+namespace several_planes_test {
 
 /// A block of 4 × 4 squares, all of whose sides may touch.
 std::string block_mesh(const std::string& motion = "") {
@@ -157,5 +157,5 @@ TEST(SeveralPlanes, ACornerFallsIntoAPyramid) {
   }
 }
 
-}  // namespace
+}  // namespace several_planes_test
 }  // namespace ricochet::test_support

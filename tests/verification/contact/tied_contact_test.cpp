@@ -12,7 +12,7 @@
 
 /// @file Bodies of tied halves in contact: the seam ends on the contact boundary, so nodes of it are tied.
 namespace ricochet::test_support {
-namespace {
+namespace tied_contact_test {
 
 /// Two halves, tied, thrown at a plane with friction.
 std::string halves_case(int d, const std::string& time, const std::string& mass, const std::string& multipliers) {
@@ -170,5 +170,5 @@ TEST(TiedHalves, TouchAnotherBody) {
   }
 }
 
-}  // namespace
+}  // namespace tied_contact_test
 }  // namespace ricochet::test_support

@@ -12,7 +12,7 @@
 
 /// @file Surfaces tied on meshes that do not match: linear displacements pass, turns have no strain.
 namespace ricochet::test_support {
-namespace {
+namespace tied_surfaces_test {
 
 PointMap turn_of(int d) {
   Matrix turn = Matrix::Identity(d, d);
@@ -225,5 +225,5 @@ TEST(TiedSurfaces, RefuseNodesThatFollowEachOther) {
   EXPECT_EQ(chain.ties()[0].weights[0], (std::pair<Index, double>{2, 1.0}));
 }
 
-}  // namespace
+}  // namespace tied_surfaces_test
 }  // namespace ricochet::test_support

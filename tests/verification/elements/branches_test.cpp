@@ -9,7 +9,7 @@
 
 /// @file Stress that relaxes beside a law, on all cells: energy, forces, dissipation.
 namespace ricochet {
-namespace {
+namespace branches_test {
 
 using namespace test_support;
 
@@ -166,5 +166,5 @@ INSTANTIATE_TEST_SUITE_P(All, BranchesOfKind, ::testing::ValuesIn(kinds()), [](c
   return info.param.element.label() + (info.param.plane == PlaneState::axisymmetric ? "_axisymmetric" : "");
 });
 
-}  // namespace
+}  // namespace branches_test
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 
 /// @file Energy, force and tangent of bodies with any material law, on all cells.
 namespace ricochet {
-namespace {
+namespace elastic_cells_test {
 
 using namespace test_support;
 
@@ -200,5 +200,5 @@ TEST(FiniteElasticity, NamesTheCellThatIsTurnedInsideOut) {
   }
 }
 
-}  // namespace
+}  // namespace elastic_cells_test
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 
 /// @file Total mass, centre of gravity and second moments, PᵀMP with P = (1, x, y[, z]), against exact values.
 namespace ricochet::test_support {
-namespace {
+namespace inertia_test {
 
 std::vector<int> counts_of(int dimension, int count) {
   return std::vector<int>(static_cast<std::size_t>(dimension), count);
@@ -153,5 +153,5 @@ TEST_P(Inertia, IsKeptByTheNearestMass) {
 INSTANTIATE_TEST_SUITE_P(Elements, Inertia, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-}  // namespace
+}  // namespace inertia_test
 }  // namespace ricochet::test_support

@@ -7,7 +7,7 @@
 
 /// @file Nodal loads of body forces and tractions: their resultant and moment about the origin.
 namespace ricochet::test_support {
-namespace {
+namespace loads_test {
 
 /// Σ f_i and Σ x_i ⊗ f_i: the moment about the origin is the antisymmetric part of the second.
 struct Resultant {
@@ -156,5 +156,5 @@ TEST_P(NodalLoads, OnACircleOrSphereConverge) {
 INSTANTIATE_TEST_SUITE_P(Elements, NodalLoads, testing::ValuesIn(all_element_kinds()),
                          [](const auto& info) { return info.param.label(); });
 
-}  // namespace
+}  // namespace loads_test
 }  // namespace ricochet::test_support

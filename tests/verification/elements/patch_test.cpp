@@ -7,7 +7,7 @@
 
 /// @file Patch tests: an affine displacement is reproduced, its stress is that of the law and in equilibrium.
 namespace ricochet::test_support {
-namespace {
+namespace patch_test {
 
 struct PatchCase {
   ElementKind kind;
@@ -164,5 +164,5 @@ INSTANTIATE_TEST_SUITE_P(Elements, PatchTest, testing::ValuesIn(patch_cases({fal
 INSTANTIATE_TEST_SUITE_P(Elements, BoxPatchTest, testing::ValuesIn(patch_cases({false})),
                          [](const auto& info) { return info.param.label(); });
 
-}  // namespace
+}  // namespace patch_test
 }  // namespace ricochet::test_support

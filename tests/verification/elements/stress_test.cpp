@@ -10,7 +10,7 @@
 
 /// @file Stress of cells, what is recovered at the nodes from it, and strain energy.
 namespace ricochet::test_support {
-namespace {
+namespace stress_test {
 
 struct StressCase {
   ElementKind kind;
@@ -203,5 +203,5 @@ TEST(Stress, OfKnownStates) {
   EXPECT_EQ(principal_stresses(none), (std::array<double, 3>{0.0, 0.0, 0.0}));
 }
 
-}  // namespace
+}  // namespace stress_test
 }  // namespace ricochet::test_support

@@ -19,7 +19,7 @@
 // The mass that is handed over cell by cell: what must not change it, where it may go, and what it does to frequencies.
 
 namespace ricochet {
-namespace {
+namespace cellwise_equivalent_mass_test {
 
 using test_support::AssembledBody;
 using test_support::body_of_kind;
@@ -313,5 +313,5 @@ TEST(CellwiseEquivalentMass, FrequenciesAreAsNearToTheExactOnesAsWithTheConsiste
   }
 }
 
-}  // namespace
+}  // namespace cellwise_equivalent_mass_test
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 // what it promises, or the warning says by how much it does not.
 
 namespace ricochet {
-namespace {
+namespace degenerate_bodies_test {
 
 using test_support::AssembledBody;
 using test_support::mass_moments;
@@ -207,5 +207,5 @@ TEST(DegenerateBodies, WhereNodesAreTooCloseTogetherTheDefaultTakesCells) {
   EXPECT_NE(choice.reason.find("but \"equivalent-nodewise\" refuses it"), std::string::npos) << choice.reason;
 }
 
-}  // namespace
+}  // namespace degenerate_bodies_test
 }  // namespace ricochet

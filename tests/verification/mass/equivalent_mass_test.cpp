@@ -11,7 +11,7 @@
 // The equivalent masses on meshes of every kind.
 
 namespace ricochet {
-namespace {
+namespace equivalent_mass_test {
 
 using Assembled = test_support::AssembledBody;
 using Description = test_support::BodyDescription;
@@ -161,5 +161,5 @@ TEST(EquivalentMass, SaysWhereTheInertiaHasNowhereToGo) {
   }
 }
 
-}  // namespace
+}  // namespace equivalent_mass_test
 }  // namespace ricochet

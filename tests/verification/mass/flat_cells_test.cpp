@@ -14,7 +14,7 @@
 // mass: the equivalent mass must be the same one, however flat the map makes the cells.
 
 namespace ricochet {
-namespace {
+namespace flat_cells_test {
 
 using test_support::AssembledBody;
 using test_support::mass_moments;
@@ -165,5 +165,5 @@ TEST(FlatCells, WhatIsRefusedIsRefusedInEveryShape) {
   }
 }
 
-}  // namespace
+}  // namespace flat_cells_test
 }  // namespace ricochet

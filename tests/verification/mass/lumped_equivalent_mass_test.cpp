@@ -12,7 +12,7 @@
 // The diagonal mass without inertia on contact nodes, on meshes of every kind.
 
 namespace ricochet {
-namespace {
+namespace lumped_equivalent_mass_test {
 
 using test_support::AssembledBody;
 using test_support::BodyDescription;
@@ -164,5 +164,5 @@ TEST(LumpedEquivalentMass, DampingKeepsTheRateOfEachNode) {
   }
 }
 
-}  // namespace
+}  // namespace lumped_equivalent_mass_test
 }  // namespace ricochet

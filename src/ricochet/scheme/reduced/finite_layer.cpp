@@ -29,7 +29,7 @@ double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vec
 }  // namespace
 
 void FiniteLayer::analyse(const SemidiscreteProblem& problem) {
-  bodies_ = std::make_unique<BodyRotations>(problem);
+  flight_ = std::make_unique<FlightPrediction>(problem);
   if (problem.contact_dofs.empty()) return;
   std::vector<char> wanted(static_cast<std::size_t>(problem.nodes.cols()), 0);
   for (const Index dof : problem.contact_dofs) wanted[static_cast<std::size_t>(dof / problem.dimension)] = 1;
@@ -64,7 +64,7 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   take_loads(problem, step, state);
   end_time_ = state.time + step;
   base_ = state.displacement + (0.5 * step) * state.velocity;
-  bodies_->predict(state.displacement, state.velocity, step, end_);
+  flight_->predict(state.displacement, state.velocity, step, end_);
   middle_ = 0.5 * (state.displacement + end_);
   relaxed_ = state.displacement;
   layer_energy_start_.reset();

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
-#include "ricochet/problem/body_rotations.hpp"
+#include "ricochet/problem/flight_prediction.hpp"
 #include "ricochet/problem/newton_progress.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/scheme/reduced/end_contact.hpp"
@@ -93,7 +93,7 @@ class FiniteLayer {
               const StageSolution& solution, Vector& increment);
   void halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near);
 
-  std::unique_ptr<const BodyRotations> bodies_;
+  std::unique_ptr<FlightPrediction> flight_;
   std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes alone
   NewtonProgress progress_;
   EnergySecant sigma_;
