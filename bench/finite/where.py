@@ -8,9 +8,9 @@ import problems
 
 # The first that matches a line "library symbol" counts.
 GROUPS = [("triangular solves", r"supernode_(for|back)ward|panels_(for|back)ward|SupernodalFactor::(gather|forward|backward)"),
-          ("internal forces and energies: cells, law", r"Elastic|CellKernel|PointLaw|NeoHookean|ricochet::product|inverse_metric|determinant|assemble_vector|add_rows|"
-                                                       r"Matrix<double, [23], [23]|FiniteElasticity|libm\.so|libm-"),
-          ("factors and tangents", r"multiply_avx|subtract_panel|factor|metis|amd|camd|tangent"),
+          ("internal forces and energies: cells, law", r"run_in_packs|CellPacks|for_each_part|find_strains|find_gradients|add_forces|libm\.so|libm-"),
+          ("factors and tangents", r"multiply_avx|subtract_panel|factor|metis|amd|camd|tangent|add_rows|matrix_on_graph|CellKernel|PointLaw|NeoHookean|Elastic|"
+                                   r"inverse_metric|add_dyad|add_symmetric_product|Matrix<double, [236], [236]"),
           ("products with the mass, vectors", r"multiply_scalars|multiply_blocks|NodeMatrix|memcpy|memset|memmove|Eigen"),
           ("kernel of the system", r"kernel\.kallsyms|\[kernel")]
 

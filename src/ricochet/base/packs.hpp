@@ -1,6 +1,11 @@
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <type_traits>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #include "ricochet/base/instruction_sets.hpp"
 #include "ricochet/base/types.hpp"
@@ -37,6 +42,71 @@ template <int H>
 RICOCHET_PART_OF_CALLER void store(double* to, const Pack<H>& value) {
   *reinterpret_cast<typename Lanes<H>::Unaligned*>(to) = value;
 }
+
+// Functions of a double or of a pack, so that a formula is written once for both (`Number` is either).
+
+/// How many doubles it is.
+template <class Number>
+inline constexpr int lane_count = static_cast<int>(sizeof(Number) / sizeof(double));
+
+/// Is it so for some of them? `mask` is what a comparison gives.
+template <class Mask>
+RICOCHET_PART_OF_CALLER bool any_of(const Mask& mask) {
+  if constexpr (std::is_same_v<Mask, bool>) {
+    return mask;
+  } else {
+    std::int64_t sum = 0;
+    for (int i = 0; i < lane_count<Mask>; ++i) sum |= mask[i];
+    return sum != 0;
+  }
+}
+
+template <class Number>
+RICOCHET_PART_OF_CALLER Number square_root(const Number& of) {
+  if constexpr (std::is_same_v<Number, double>) {
+    return std::sqrt(of);
+  } else {
+    Number result;
+#if defined(__SSE2__)
+    // Compilers look whether std::sqrt has to set errno, one number after another.
+    for (int i = 0; i < lane_count<Number>; i += 2) {
+      const __m128d two = _mm_sqrt_pd(__m128d{of[i], of[i + 1]});
+      result[i] = two[0];
+      result[i + 1] = two[1];
+    }
+#else
+    for (int i = 0; i < lane_count<Number>; ++i) result[i] = std::sqrt(of[i]);
+#endif
+    return result;
+  }
+}
+
+/// Calls work.run<W>(), compiled for `instruction_set()`, with the number W of doubles that its registers have (four
+/// where they have fewer). All that run calls is RICOCHET_PART_OF_CALLER.
+#if defined(__x86_64__) && defined(__GNUC__)
+template <class Work>
+__attribute__((target("arch=x86-64-v4"))) void run_in_packs_avx512(const Work& work) {
+  work.template run<8>();
+}
+template <class Work>
+__attribute__((target("arch=x86-64-v3"))) void run_in_packs_avx2(const Work& work) {
+  work.template run<4>();
+}
+#endif
+template <class Work>
+void run_in_packs(const Work& work) {
+#if defined(__x86_64__) && defined(__GNUC__)
+  const InstructionSet set = instruction_set();
+  if (set == InstructionSet::avx512) return run_in_packs_avx512(work);
+  if (set == InstructionSet::avx2) return run_in_packs_avx2(work);
+#endif
+  work.template run<4>();
+}
+/// That W.
+[[nodiscard]] inline int pack_width() {
+  return instruction_set() == InstructionSet::avx512 ? 8 : 4;
+}
+inline constexpr int most_pack_width = 8;
 
 /// Calls work(count) with a constant from 1 to `most` ≤ 8 for a count that is known only now; does nothing for 0.
 /// `work` is a lambda marked RICOCHET_LAMBDA_OF_CALLER.

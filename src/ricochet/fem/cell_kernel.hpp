@@ -1,37 +1,17 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "ricochet/fem/cell_dilatation.hpp"
 #include "ricochet/fem/element_matrices.hpp"
 #include "ricochet/fem/finite_strain.hpp"
+#include "ricochet/fem/kernel_block.hpp"
 #include "ricochet/fem/point_law.hpp"
 
-/// @file The elastic energy of one cell and its derivatives. Not part of the public interface.
+/// @file One cell: tangents, stress for output, branches. Energy and forces of all cells are those of pack_kernels.hpp.
+/// Not part of the public interface.
 namespace ricochet {
-
-/// What is constant of the cells of a block: shape functions, and the inverse Jacobian with the weight of every
-/// quadrature point (of straight simplices one Jacobian for all). Of an axisymmetric body a weight is of the ring that
-/// a point sweeps, and the displacement's gradient has the stretch u_r/r along it.
-template <int d>
-struct KernelBlock {
-  BlockIntegration integration;
-  bool affine = false;
-  Matrix dilatation_functions = {};  ///< points × functions; empty: no mean dilatation
-  std::vector<double> inverse = {};  ///< d × d numbers, row by row, per point or per cell
-  std::vector<double> weight = {};   ///< per point
-  int nodes = 0, points = 0;
-
-  std::vector<double> radius = {};  ///< per point, of an axisymmetric body; else empty
-
-  [[nodiscard]] bool is_axisymmetric() const { return !radius.empty(); }
-  [[nodiscard]] const double* inverse_at(Index cell, int q) const {
-    return inverse.data() + d * d * (affine ? cell : cell * points + q);
-  }
-  [[nodiscard]] const double* weights_of(Index cell) const { return weight.data() + cell * points; }
-};
 
 /// One cell at a displacement. A local vector has d components per node of the cell.
 template <int d>
@@ -40,10 +20,15 @@ class CellKernel {
   using LocalVector = std::array<double, most_cell_nodes * d>;
 
   CellKernel(const KernelBlock<d>& block, Index cell, const MaterialLaw& law, bool plane_stress, bool mean_dilatation)
-      : block_(block), cell_(cell), law_(law, plane_stress), weights_(block.weights_of(cell)) {
+      : block_(block), law_(law, plane_stress) {
+    const auto lane = static_cast<Index>(block.lane[static_cast<std::size_t>(cell)]);
+    pack_ = lane / block.width;
+    lane_ = lane % block.width;
+    for (int q = 0; q < block.points; ++q)
+      weights_[static_cast<std::size_t>(q)] = block.weight[static_cast<std::size_t>(block.place(pack_, q) + lane_)];
     if (mean_dilatation && law.volumetric_modulus() > 0.0 && block.dilatation_functions.size() > 0) {
       volume_.modulus = law.volumetric_modulus();
-      dilatation_.start(block.dilatation_functions, weights_, block.points);
+      dilatation_.start(block.dilatation_functions, weights_.data(), block.points);
     }
   }
 
@@ -55,21 +40,26 @@ class CellKernel {
 
   /// Gradients of the shape functions at a point.
   void go_to(int q) {
-    const double* inverse = block_.inverse_at(cell_, q);
-    const Matrix& reference = block_.integration.displacement.gradients[static_cast<std::size_t>(q)];
-    for (int i = 0; i < block_.nodes; ++i) {
-      for (int a = 0; a < d; ++a) {
-        double sum = reference(i, 0) * inverse[a];
-        for (int k = 1; k < d; ++k) sum += reference(i, k) * inverse[k * d + a];
-        gradients_[static_cast<std::size_t>(i * d + a)] = sum;
+    const double* from = block_.inverse_of_pack(pack_, q) + lane_;
+    std::array<double, d * d> inverse;
+    for (double& entry : inverse) {
+      entry = *from;
+      from += block_.width;
+    }
+    const double* reference = block_.gradients.data() + q * block_.nodes * d;
+    for (int i = 0; i < block_.nodes; ++i, reference += d) {
+      for (std::size_t a = 0; a < d; ++a) {
+        double sum = reference[0] * inverse[a];
+        for (std::size_t k = 1; k < d; ++k) sum += reference[k] * inverse[k * d + a];
+        gradients_[static_cast<std::size_t>(i) * d + a] = sum;
       }
     }
     if (!block_.is_axisymmetric()) return;
-    const double radius = block_.radius[static_cast<std::size_t>(cell_ * block_.points + q)];
+    const double radius = block_.radius[static_cast<std::size_t>(block_.place(pack_, q) + lane_)];
     for (int i = 0; i < block_.nodes; ++i)
       hoop_[static_cast<std::size_t>(i)] = block_.integration.displacement.values(i, q) / radius;
   }
-  [[nodiscard]] double weight(int q) const { return weights_[q]; }
+  [[nodiscard]] double weight(int q) const { return weights_[static_cast<std::size_t>(q)]; }
   [[nodiscard]] Tensor gradient(const LocalVector& u) const {
     Tensor result = Tensor::Zero();
     for (int i = 0; i < block_.nodes; ++i) {
@@ -90,10 +80,10 @@ class CellKernel {
       for (int a = 0; a < d; ++a) {
         double sum = 0.0;
         for (int b = 0; b < d; ++b) sum += stress(a, b) * gradients_[static_cast<std::size_t>(i * d + b)];
-        force[static_cast<std::size_t>(i * d + a)] += weights_[q] * sum;
+        force[static_cast<std::size_t>(i * d + a)] += weight(q) * sum;
       }
       if (d == 2 && block_.is_axisymmetric())
-        force[static_cast<std::size_t>(i * d)] += weights_[q] * stress(2, 2) * hoop_[static_cast<std::size_t>(i)];
+        force[static_cast<std::size_t>(i * d)] += weight(q) * stress(2, 2) * hoop_[static_cast<std::size_t>(i)];
     }
   }
 
@@ -114,12 +104,11 @@ class CellKernel {
     return result;
   }
 
-  /// Calls visit(q, F, E, S) at all points, F with the stretch across the plane; the gradients are those of q.
-  /// motion() gives what a point has. Returns the least det F; what is visited where it is not positive means nothing.
-  /// (The linear law has F = I.)
-  template <class Motion, class Visit>
-  double visit_stress(const Motion& motion, const Visit& visit) {
-    double least = 1.0;
+  /// Calls visit(q, F, E, S) at all points, F with the stretch across the plane; the gradients are those of q. What is
+  /// visited where det F is not positive means nothing. (The linear law has F = I.)
+  template <class Visit>
+  void visit_stress(const LocalVector& u, const Visit& visit) {
+    const auto motion = [&] { return motion_of(u); };
     if (has_dilatation()) find_dilatation(motion);
     Tensor stress;
     for (int q = 0; q < block_.points; ++q) {
@@ -127,31 +116,13 @@ class CellKernel {
       const PointMotion at = motion();
       const Tensor& strain = at.strain;
       const Tensor deformation = deformation_of(at.gradient, strain);
-      if (!law_.is_linear()) {
-        const double volume = determinant(deformation);
-        if (!(volume >= least)) least = std::isnan(volume) ? -std::numeric_limits<double>::infinity() : volume;
-      }
       law_.stress(strain, stress);
       if (has_dilatation()) add_mean_pressure(q, strain, stress);
       visit(q, deformation, strain, stress);
     }
-    return least;
   }
 
-  /// ∫ W; infinite where the cell is turned inside out, which no strain tells.
-  [[nodiscard]] double energy(const LocalVector& u) {
-    double sum = 0.0;
-    if (has_dilatation()) find_dilatation([&] { return motion_of(u); });
-    for (int q = 0; q < block_.points; ++q) {
-      go_to(q);
-      const Tensor motion = gradient(u);
-      if (!law_.is_linear() && !(determinant(Tensor::Identity() + motion) > 0.0))
-        return std::numeric_limits<double>::infinity();
-      sum += weights_[q] * energy_at(q, law_.strain(motion));
-    }
-    return sum;
-  }
-  /// Of a point, after visit_stress or within energy().
+  /// Of a point, within visit_stress().
   [[nodiscard]] double energy_at(int q, const Tensor& strain) const {
     double density = law_.energy(strain);
     if (has_dilatation()) {
@@ -200,7 +171,7 @@ class CellKernel {
   [[nodiscard]] int nodes() const { return block_.nodes; }
 
  private:
-  using PointValues = std::array<double, CellDilatation::most_points>;
+  using PointValues = std::array<double, most_cell_points>;
 
   /// F. Its stretch across a plane under plane stress is that of the strain there.
   [[nodiscard]] Tensor deformation_of(const Tensor& motion, const Tensor& strain) const {
@@ -264,13 +235,13 @@ class CellKernel {
   void add_point_tangent(int q, const Tensor& f, const Tensor& stress, const StressTangent& tangent, double* blocks) {
     std::array<Eigen::Matrix<double, 6, d>, most_cell_nodes> rows;
     for (int i = 0; i < block_.nodes; ++i) strain_rows(i, f, rows[static_cast<std::size_t>(i)]);
-    const StressTangent weighted = weights_[q] * tangent;
+    const StressTangent weighted = weight(q) * tangent;
     for (int j = 0; j < block_.nodes; ++j) {
       const Eigen::Matrix<double, 6, d> right = weighted * rows[static_cast<std::size_t>(j)];
       Eigen::Matrix<double, d, 1> traction = Eigen::Matrix<double, d, 1>::Zero();
       for (int a = 0; a < d; ++a) {
         for (int b = 0; b < d; ++b)
-          traction[a] += weights_[q] * stress(a, b) * gradients_[static_cast<std::size_t>(j * d + b)];
+          traction[a] += weight(q) * stress(a, b) * gradients_[static_cast<std::size_t>(j * d + b)];
       }
       for (int i = 0; i <= j; ++i, blocks += d * d) {
         const Eigen::Matrix<double, d, d> block = rows[static_cast<std::size_t>(i)].transpose() * right;
@@ -282,7 +253,7 @@ class CellKernel {
         }
         if (d == 2 && block_.is_axisymmetric()) {
           blocks[0] +=
-              weights_[q] * stress(2, 2) * hoop_[static_cast<std::size_t>(i)] * hoop_[static_cast<std::size_t>(j)];
+              weight(q) * stress(2, 2) * hoop_[static_cast<std::size_t>(i)] * hoop_[static_cast<std::size_t>(j)];
         }
       }
     }
@@ -301,14 +272,14 @@ class CellKernel {
   /// Of U(Θ): Σ_mn b_m b_nᵀ ∫ ψ_m ψ_n U″(Θ), b_m = ∫ ψ_m ∂J/∂u.
   void add_volume_tangent(const LocalVector& u, double* blocks) {
     const int count = dilatation_.functions();
-    std::array<LocalVector, CellDilatation::most_functions> slopes{};
-    Eigen::Matrix<double, CellDilatation::most_functions, CellDilatation::most_functions> product;
+    std::array<LocalVector, CellDilatation<double>::most_functions> slopes{};
+    Eigen::Matrix<double, CellDilatation<double>::most_functions, CellDilatation<double>::most_functions> product;
     product.setZero();
     for (int q = 0; q < block_.points; ++q) {
       go_to(q);
       const Tensor f = Tensor::Identity() + gradient(u);
       const Tensor cofactor = f.determinant() * f.inverse().transpose();
-      const double second = weights_[q] * curvature(mean_[static_cast<std::size_t>(q)]);
+      const double second = weight(q) * curvature(mean_[static_cast<std::size_t>(q)]);
       for (int m = 0; m < count; ++m) {
         const double value = dilatation_.function(m, q);
         add_force(q, value * cofactor, slopes[static_cast<std::size_t>(m)]);
@@ -333,11 +304,11 @@ class CellKernel {
   }
 
   const KernelBlock<d>& block_;
-  Index cell_;
   PointLaw law_;
-  const double* weights_;
+  Index pack_, lane_;
   VolumetricEnergy volume_;  ///< modulus 0: no mean dilatation
-  CellDilatation dilatation_;
+  CellDilatation<double> dilatation_;
+  PointValues weights_;          // as many as there are points
   PointValues mean_, pressure_;  // set by find_dilatation() alone: a kernel is made for every cell of every pass
   std::array<double, most_cell_nodes * d> gradients_;
   std::array<double, most_cell_nodes> hoop_;  ///< φ/r, of an axisymmetric body

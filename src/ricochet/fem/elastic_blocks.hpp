@@ -2,6 +2,7 @@
 
 #include "ricochet/fem/cell_assembly.hpp"
 #include "ricochet/fem/cell_kernel.hpp"
+#include "ricochet/fem/cell_packs.hpp"
 #include "ricochet/fem/elastic_cells.hpp"
 #include "ricochet/fem/relaxation.hpp"
 
@@ -11,10 +12,15 @@ namespace ricochet {
 template <int d>
 struct ElasticCells::Blocks {
   const Body& body;
+  CellPacks packs;
   std::vector<KernelBlock<d>> all;
+  /// Numbers of all parts: what goes in, and what comes out.
+  mutable std::vector<double> displacement, increment, force, strain_force;
 
-  explicit Blocks(const Body& of) : body(of) {
-    for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b]));
+  Blocks(const Body& of, const NodeGraph* graph, const std::vector<int>& cells) : body(of), packs(of, graph, cells) {
+    for (std::vector<double>* numbers : {&displacement, &increment, &force, &strain_force})
+      *numbers = packs.template room<d>();
+    for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b], packs.lanes(b)));
   }
   [[nodiscard]] const Material& material(Index cell) const { return material_of(body, cell); }
   [[nodiscard]] CellKernel<d> kernel(std::size_t block, Index local, Index cell) const {
@@ -26,31 +32,52 @@ struct ElasticCells::Blocks {
   }
 
  private:
-  [[nodiscard]] KernelBlock<d> make(const CellBlock& cells) const {
+  [[nodiscard]] KernelBlock<d> make(const CellBlock& cells, const std::vector<int>& lanes) const {
     KernelBlock<d> block{
         stiffness_integration(cells.shape, body.mesh->degree, body.space->degree, is_axisymmetric(body))};
     const bool simplex = is_simplex(cells.shape);
     block.affine = simplex && body.mesh->degree == 1;
     block.points = static_cast<int>(block.integration.rule.weights.size());
     block.nodes = static_cast<int>(block.integration.displacement.values.rows());
-    block.weight.reserve(static_cast<std::size_t>(cells.size() * block.points));
-    for (Index cell = 0; cell < cells.size(); ++cell) {
-      for (int q = 0; q < block.points; ++q) {
-        const auto map = jacobian<d>(body.mesh->nodes, cells.cell(cell),
-                                     block.integration.geometry.gradients[static_cast<std::size_t>(q)]);
-        block.weight.push_back(block.integration.rule.weights[q] * map.determinant() *
-                               block.integration.ring(body.mesh->nodes, cells.cell(cell), q));
-        if (is_axisymmetric(body))
-          block.radius.push_back(block.integration.radius(body.mesh->nodes, cells.cell(cell), q));
-        if (block.affine && q > 0) continue;
-        const Eigen::Matrix<double, d, d> inverse = map.inverse();
-        for (int i = 0; i < d; ++i) {
-          for (int j = 0; j < d; ++j) block.inverse.push_back(inverse(i, j));
-        }
+    block.width = pack_width();
+    for (const Matrix& of_point : block.integration.displacement.gradients) {
+      for (int i = 0; i < block.nodes; ++i) {
+        for (int k = 0; k < d; ++k) block.gradients.push_back(of_point(i, k));
+      }
+    }
+    const auto packs_of_block = lanes.size() / static_cast<std::size_t>(block.width);
+    block.weight.resize(lanes.size() * static_cast<std::size_t>(block.points));
+    if (is_axisymmetric(body)) block.radius.resize(block.weight.size());
+    block.inverse.resize(d * d * (block.affine ? lanes.size() : block.weight.size()));
+    block.lane.assign(static_cast<std::size_t>(cells.size()), -1);
+    for (std::size_t pack = 0; pack < packs_of_block; ++pack) {
+      for (int k = 0; k < block.width; ++k) {
+        const std::size_t place = pack * static_cast<std::size_t>(block.width) + static_cast<std::size_t>(k);
+        // A lane that is not used has the geometry of the first one's cell.
+        const Index cell = lanes[lanes[place] < 0 ? pack * static_cast<std::size_t>(block.width) : place];
+        if (lanes[place] >= 0) block.lane[static_cast<std::size_t>(cell)] = static_cast<int>(place);
+        measure(cells.cell(cell), static_cast<Index>(pack), k, block);
       }
     }
     if (!simplex || body.space->degree > 1) block.dilatation_functions = dilatation_functions(cells.shape, block);
     return block;
+  }
+  /// Jacobians, weights and radii of one cell.
+  void measure(const Index* nodes, Index pack, int lane, KernelBlock<d>& block) const {
+    for (int q = 0; q < block.points; ++q) {
+      const auto map =
+          jacobian<d>(body.mesh->nodes, nodes, block.integration.geometry.gradients[static_cast<std::size_t>(q)]);
+      const auto place = static_cast<std::size_t>(block.place(pack, q) + lane);
+      block.weight[place] =
+          block.integration.rule.weights[q] * map.determinant() * block.integration.ring(body.mesh->nodes, nodes, q);
+      if (is_axisymmetric(body)) block.radius[place] = block.integration.radius(body.mesh->nodes, nodes, q);
+      if (block.affine && q > 0) continue;
+      const Eigen::Matrix<double, d, d> inverse = map.inverse();
+      auto at = static_cast<std::size_t>(block.inverse_of_pack(pack, q) - block.inverse.data() + lane);
+      for (int i = 0; i < d; ++i) {
+        for (int j = 0; j < d; ++j, at += static_cast<std::size_t>(block.width)) block.inverse[at] = inverse(i, j);
+      }
+    }
   }
   /// Linear on quadrilaterals and hexahedra of degree 2, else constant. (Triangles of degree 2 are not stable with
   /// linear ones.)

@@ -94,8 +94,12 @@ class ElasticCells {
   struct Blocks;
   template <int d>
   [[nodiscard]] const Blocks<d>& blocks() const;
-  template <int d, class MakeMotion>
-  [[nodiscard]] InvertedCell add_up(const MakeMotion& make_motion, Vector& result) const;
+  template <int d>
+  class StripWork;
+  template <int d, class Work>
+  void for_each_part(const Work& work) const;
+  [[nodiscard]] InvertedCell mean_forces(const Vector& middle, const Vector& increment, Vector& result,
+                                         Vector* strain_result) const;
   void find_internal_places();
   template <int d, class MakeForce>
   void add_up_branches(const MakeForce& make, Vector& result) const;

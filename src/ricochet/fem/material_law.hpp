@@ -25,6 +25,16 @@ using Tensor = Eigen::Matrix3d;
 /// 2dE_zx).
 using StressTangent = Eigen::Matrix<double, 6, 6>;
 
+/// Strains of many points, in packs of `width` of them: of each pack the components xx, yy, zz, xy, and unless all are
+/// `in_plane` yz and zx, each `width` numbers side by side. Stresses come in the same order.
+struct StrainPacks {
+  const double* values = nullptr;
+  Index count = 0;  ///< of packs
+  int width = 0;    ///< pack_width(), base/packs.hpp
+  bool in_plane = false;
+  [[nodiscard]] int components() const { return in_plane ? 4 : 6; }
+};
+
 class MaterialLaw {
  public:
   virtual ~MaterialLaw() = default;
@@ -40,6 +50,10 @@ class MaterialLaw {
   [[nodiscard]] virtual double energy(const Tensor& strain) const = 0;
   virtual void stress(const Tensor& strain, Tensor& result) const = 0;
   virtual void tangent(const Tensor& strain, StressTangent& result) const = 0;
+  // The same of many points, one number per point of energies. What is here asks for one point after another; laws
+  // derived from PackedLaw (laws/packed_law.hpp) take a pack at once.
+  virtual void energies(const StrainPacks& strains, double* result) const;
+  virtual void stresses(const StrainPacks& strains, double* result) const;
 
   /// K of a part (K/4)(J² − 1 − 2 ln J) of the energy, the only one whose modulus grows without bounds as the material
   /// becomes incompressible: it may be taken from a mean of J over a cell (cell_dilatation.hpp). 0: there is no such

@@ -1,5 +1,5 @@
-#include "ricochet/fem/finite_strain.hpp"
 #include "ricochet/fem/laws/elastic_constants.hpp"
+#include "ricochet/fem/laws/packed_law.hpp"
 
 namespace ricochet {
 
@@ -8,27 +8,29 @@ namespace {
 /// W = (μ/2)(tr C − 3 − 2 ln J) + (λ/4)(J² − 1 − 2 ln J), polyconvex, and infinite where a volume vanishes
 /// (P. G. Ciarlet, Mathematical Elasticity I, North-Holland 1988, section 4.10). With s = J² − 1,
 ///   S = μ(I − C⁻¹) + ½λ s C⁻¹,   I − C⁻¹ = 2 E C⁻¹.
-class NeoHookean final : public MaterialLaw {
+class NeoHookean final : public PackedLaw<NeoHookean> {
  public:
   explicit NeoHookean(const ElasticConstants& constants) : mu_(constants.mu), volume_{constants.lambda} {}
 
   [[nodiscard]] double lambda() const override { return volume_.modulus; }
   [[nodiscard]] double mu() const override { return mu_; }
   [[nodiscard]] double volumetric_modulus() const override { return volume_.modulus; }
-  [[nodiscard]] double energy(const Tensor& strain) const override {
-    const Tensor twice = 2.0 * strain;
-    const double s = determinant_change(twice);
-    // tr C − 3 − 2 ln J = (tr 2E − s) + (s − ln(1+s)).
-    return 0.5 * mu_ * (logarithm_remainder(s) - determinant_remainder(twice)) + volume_.energy(s);
+  template <class T>
+  RICOCHET_PART_OF_CALLER typename T::Number density(const T& strain) const {
+    const StrainMeasures<T> of = measures_of(strain);
+    // tr C − 3 − 2 ln J = (s − ln(1+s)) − r.
+    const auto rest = logarithm_rest(of.volume_change);
+    return 0.5 * mu_ * (rest - of.remainder) + 0.25 * volume_.modulus * rest;
   }
-  void stress(const Tensor& strain, Tensor& result) const override {
-    const double s = determinant_change(2.0 * strain);
-    const Tensor inverse = inverse_metric(strain);
-    const Tensor along = product(strain, inverse);
-    const double pressure = volume_.stress_factor(s);
-    for (int j = 0; j < 3; ++j) {
-      for (int i = 0; i < 3; ++i) result(i, j) = mu_ * (along(i, j) + along(j, i)) + pressure * inverse(i, j);
-    }
+  template <class T>
+  RICOCHET_PART_OF_CALLER T stress_at(const T& strain) const {
+    using Number = typename T::Number;
+    const StrainMeasures<T> of = measures_of(strain);
+    // I − C⁻¹ = (A − adj A + r I)/J².
+    const Number pressure = 0.5 * volume_.modulus * of.volume_change, scale = 1.0 / (1.0 + of.volume_change);
+    const Number along = scale * (mu_ - pressure);
+    return combination(along, of.twice, -along, of.adjugate,
+                       scale * (mu_ * of.remainder + pressure * (1.0 + of.trace)));
   }
   void tangent(const Tensor& strain, StressTangent& result) const override {
     const Tensor inverse = inverse_metric(strain);

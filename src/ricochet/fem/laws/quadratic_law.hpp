@@ -1,19 +1,26 @@
 #pragma once
 
-#include "ricochet/fem/finite_strain.hpp"
+#include "ricochet/fem/laws/packed_law.hpp"
 
 /// @file Laws whose energy is quadratic in the strain they are given: small or Green's.
 namespace ricochet {
 
 /// W = ½λ (tr E)² + μ E : E.
-class QuadraticLaw : public MaterialLaw {
+class QuadraticLaw : public PackedLaw<QuadraticLaw> {
  public:
   QuadraticLaw(double lambda, double mu) : constants_{lambda, mu} {}
 
   [[nodiscard]] double lambda() const final { return constants_.lambda; }
   [[nodiscard]] double mu() const final { return constants_.mu; }
-  [[nodiscard]] double energy(const Tensor& strain) const final { return constants_.energy(strain); }
-  void stress(const Tensor& strain, Tensor& result) const final { constants_.stress(strain, result); }
+  template <class T>
+  RICOCHET_PART_OF_CALLER typename T::Number density(const T& strain) const {
+    const auto dilatation = trace(strain);
+    return 0.5 * constants_.lambda * dilatation * dilatation + constants_.mu * double_dot(strain, strain);
+  }
+  template <class T>
+  RICOCHET_PART_OF_CALLER T stress_at(const T& strain) const {
+    return linear_stress(constants_, strain);
+  }
   void tangent(const Tensor&, StressTangent& result) const final {
     result.setZero();
     add_dyad(Tensor::Identity(), Tensor::Identity(), constants_.lambda, result);
