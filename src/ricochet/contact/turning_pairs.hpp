@@ -8,7 +8,7 @@
 #include "ricochet/contact/turning_normal.hpp"
 
 /// @file Contact between bodies that turn. The pairing of the start is kept (body_contact.hpp), and directions turn
-/// with the own surface: with y = Σ_j t_ij (X + U)_j, the mean vector across the gap, and N of turning_normal.hpp,
+/// with both surfaces: with y = Σ_j t_ij (X + U)_j, the mean vector across the gap, and N of turning_normal.hpp,
 ///   n(U) = N/|N|,   g(U) = n·y + (g₀ − n₀·y₀),
 /// the constant being zero but for gaps that the input says to be others. No rigid motion of both bodies changes g, so
 /// rows G = ∂g/∂U have neither resultant nor moment about the current positions, where facets have slid and where they
