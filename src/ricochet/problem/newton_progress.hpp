@@ -1,9 +1,12 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/base/types.hpp"
 
 /// @file Whether iterations with a factor that is kept come near, and near enough.
@@ -60,6 +63,12 @@ class NewtonProgress {
   /// Corrections grow, or shrink slowly with a new factor, as some forces are in none (those of contact turn with what
   /// they press on): iterations may be accelerated (linear_algebra/anderson_acceleration.hpp).
   [[nodiscard]] bool wants_acceleration() const { return accelerates_; }
+  [[nodiscard]] Error failure(double correction) const {
+    return {
+        ErrorKind::not_converged,
+        fmt::format("Newton's method did not converge in {} iterations (the last correction moves a node by {:.3g})",
+                    all_rounds_, correction)};
+  }
   [[nodiscard]] int rounds() const { return all_rounds_; }
 
  private:

@@ -1,7 +1,5 @@
 #include "ricochet/solver/newton_rounds.hpp"
 
-#include <fmt/format.h>
-
 #include <limits>
 
 #include "ricochet/base/error.hpp"
@@ -98,11 +96,7 @@ void NewtonRounds::solve(const OperatorCoefficients& coefficients, const SolveLi
       total_ += solution.increment;
       break;
     }
-    if (advice == NewtonProgress::Advice::failed) {
-      throw Error(ErrorKind::not_converged, fmt::format("Newton's method did not converge in {} iterations (the last "
-                                                        "correction moves a node by {:.3g})",
-                                                        progress_.rounds(), correction));
-    }
+    if (advice == NewtonProgress::Advice::failed) throw progress_.failure(correction);
     if (std::isfinite(correction)) correct(solution.increment);
     take_internal_force(coefficients.stiffness);
     if (advice == NewtonProgress::Advice::renew) {

@@ -48,16 +48,19 @@ std::vector<OperatorCoefficients> FiniteLayer::operators(const SemidiscreteProbl
   return {layer, midpoint};
 }
 
-/// L̄, but L₁ on contact nodes, and the parts of it that vary.
+/// L̄, the part of it that varies, and ½(L₁ − L₀).
 void FiniteLayer::take_loads(const SemidiscreteProblem& problem, double step, const State& state) {
   load_ = problem.loads.constant();
-  if (!problem.loads.varies()) return;
+  has_end_load_ = problem.loads.varies() || problem.pressure;
+  if (!problem.loads.varies()) {
+    if (has_end_load_) rise_.setZero(load_.size());
+    return;
+  }
   problem.loads.varying(state.time, product_);
-  problem.loads.varying(state.time + step, end_load_);
-  product_ = 0.5 * (product_ + end_load_);
-  for (const Index dof : problem.contact_dofs) product_[dof] = end_load_[dof];
-  end_load_ = product_;  // what acts over the step
-  load_ += end_load_;
+  problem.loads.varying(state.time + step, rise_);
+  varying_load_ = 0.5 * (product_ + rise_);
+  rise_ -= varying_load_;
+  load_ += varying_load_;
 }
 
 void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const State& state) {
@@ -69,6 +72,9 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   relaxed_ = state.displacement;
   layer_energy_start_.reset();
   sigma_.start();
+  kinetic_ = 0.5 * problem.mass.form(state.velocity);
+  converged_ = false;
+  lacked_ = std::numeric_limits<double>::infinity();
   lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
   reactions_.normal.resize(0);
   acceleration_.restart();
@@ -81,12 +87,15 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
                       : stored_energy(*problem.internal_force, state.displacement, state.internal_strain);
 }
 
-void FiniteLayer::evaluate_pressure(const SemidiscreteProblem& problem, const State& state) {
-  if (!problem.pressure) return;
-  pressure_middle_.setZero(middle_.size());
-  problem.pressure->add_mean_force(middle_, state.time, end_time_, pressure_middle_);
-  pressure_end_.setZero(layer_ ? end_.size() : 0);
-  if (layer_) problem.pressure->add_force(end_, end_time_, pressure_end_);
+/// P(x), and what acts at the end beside L̄.
+void FiniteLayer::evaluate_loads(const SemidiscreteProblem& problem, const State& state) {
+  if (problem.pressure) {
+    pressure_.setZero(middle_.size());
+    problem.pressure->add_mean_force(middle_, state.time, end_time_, pressure_);
+  }
+  if (!has_end_load_ || !layer_) return;
+  end_load_ = rise_;
+  if (problem.pressure) problem.pressure->add_force(end_, end_time_, end_load_);
 }
 
 /// f̄, p, f(u₁), and σ from the balance of energy at these.
@@ -103,7 +112,7 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   if (viscous != nullptr) viscous->add_mean_force(branches, force_);
   if (layer_) layer_->evaluate(end_, end_force_);
   if (layer_ && layer_->viscous() != nullptr) layer_->viscous()->add_end_force(branches, end_force_);
-  evaluate_pressure(problem, state);
+  evaluate_loads(problem, state);
   if (!near) return;
   if (viscous != nullptr) viscous_dissipation_ = viscous->advance_internal(branches, internal_);
   energy_ = stored_energy(elastic, end_, internal_);
@@ -111,9 +120,9 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
     elastic.evaluate(end_, product_);  // says which cell is turned inside out
     throw Error(ErrorKind::not_converged, "the elastic energy at the end of the step is no number");
   }
-  // ΔW − (L₁+P(x))·Δ_c and Ψ(u_f1) − Ψ(u_f0), which differ by (P(u₁)−P(x))·Δ_c + ρ·HΔ_c − d. What L₁ and P(x) do there
-  // is in the work of D, too.
-  const double at_end = pressure_work_ + work_at_end_ - dissipation_;
+  // ΔW − (L̄+P(x))·Δ_c and what of the end's reactions is, which differ by (P(u₁)−P(x))·Δ_c − ½(L₁−L₀)·J + ρ·HΔ_c − d.
+  // What L̄ and P(x) do there is in the work of D, too.
+  const double at_end = end_load_work_ + work_at_end_ - dissipation_;
   const double wanted = (energy_ - energy_start_) + viscous_dissipation_ - on_contact(problem, load_, increment_) -
                         obstacle_work_ - end_weight_ * at_end;
   product_ = load_ + mean_nodal_;
@@ -132,7 +141,7 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   product_ = middle_ - base_;
   problem.mass.multiply(product_, right_);
   stage.right_hand_side = load_ - force_ - (4.0 / (step * step)) * right_;
-  if (problem.pressure) stage.right_hand_side += pressure_middle_;
+  if (problem.pressure) stage.right_hand_side += pressure_;
   if (sigma_.value() != 0.0) stage.right_hand_side -= sigma_.value() * strain_force_;
   if (problem.has_damping()) {
     product_ = middle_ - state.displacement;
@@ -155,7 +164,7 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
 void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                   const State& state, StageSolve& stages, Stage& stage) {
   right_ = load_ - end_force_ - 2.0 * stage.right_hand_side + row_force_;
-  if (problem.pressure) right_ += pressure_end_;
+  if (has_end_load_) right_ += end_load_;
   layer_right_ = right_(problem.contact_dofs);
   const Vector& shift = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
@@ -205,7 +214,7 @@ void FiniteLayer::accelerate(const SemidiscreteProblem& problem, const State& st
   reactions_.acting_tangential = image.tail(slips);
 }
 
-/// Hᵀρ, Hᵀρ̄, and where some of it is that of the end one round for the contact nodes that attain Ψ(u_f0; ρ).
+/// Hᵀρ, Hᵀρ̄, and where some of it is that of the end one round for u₀ + J.
 void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, const State& state, StageSolve& stages,
                                const Stage& stage, const StageSolution& solution) {
   nodal_.setZero();
@@ -218,7 +227,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   }
   obstacle_work_ = obstacle_work(*stage.rows, solution.acting_normal(), solution.acting_tangential(), step);
   end_weight_ = solution.end_weight;
-  dissipation_ = work_at_end_ = pressure_work_ = 0.0;
+  dissipation_ = work_at_end_ = end_load_work_ = 0.0;
   if (end_weight_ == 0.0 || (solution.normal_reaction.isZero(0.0) && state.forces.normal_reaction.isZero(0.0))) {
     if (!problem.loads.varies()) {
       relaxed_ = state.displacement;
@@ -231,23 +240,24 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   increment_ = end_ - state.displacement;
   const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
   if (viscous != nullptr) viscous->add_start_force(branches, relaxed_, end_force_);
-  if (problem.pressure) nodal_at_end_ = nodal_ + pressure_end_;
-  const Vector& at_end = problem.pressure ? nodal_at_end_ : nodal_;
-  right_ = load_ + at_end - end_force_;
+  if (has_end_load_) nodal_at_start_ = nodal_ + end_load_ - 2.0 * rise_;
+  const Vector& at_start = has_end_load_ ? nodal_at_start_ : nodal_;
+  right_ = load_ + at_start - end_force_;
   layer_right_ = right_(problem.contact_dofs);
   const Vector& change = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) relaxed_[dof] += change[dof];
   // d: both energies are of the cells at contact nodes, as the others are the same.
   product_ = relaxed_ - state.displacement;
-  right_ = load_ + at_end;
+  right_ = load_ + at_start;
   if (!layer_energy_start_) layer_energy_start_ = layer_->energy(state.displacement);
   dissipation_ = on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
   if (viscous != nullptr)
     dissipation_ -= viscous->start_energy(branches, relaxed_) - viscous->start_energy(branches, state.displacement);
+  if (problem.loads.varies()) end_load_work_ = -on_contact(problem, rise_, product_);
   product_ = end_ - state.displacement;
   if (problem.pressure) {
-    right_ = pressure_end_ - pressure_middle_;
-    pressure_work_ = on_contact(problem, right_, product_);
+    right_ = end_load_ - rise_ - pressure_;
+    end_load_work_ += on_contact(problem, right_, product_);
   }
   work_at_end_ = on_contact(problem, nodal_, product_) -
                  obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step);
@@ -273,10 +283,10 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   state.acceleration = (4.0 / (step * step)) * product_;
   follow_without_inertia(problem, increment, step, state);
   equations_.take_contact(stage, solution, step, state);
-  if (problem.loads.varies()) state.forces.varying_load = end_load_;
+  if (problem.loads.varies()) state.forces.varying_load = varying_load_;
   if (problem.pressure) {
-    if (!problem.loads.varies()) state.forces.varying_load.setZero(pressure_middle_.size());
-    state.forces.varying_load += pressure_middle_;
+    if (!problem.loads.varies()) state.forces.varying_load.setZero(pressure_.size());
+    state.forces.varying_load += pressure_;
   }
   if (problem.has_damping()) {
     problem.damping.evaluate(increment, state.forces.damping_force);
@@ -286,7 +296,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   if (problem.contact.follows_motion()) lagged_.remember(state);
   energy_step_ = state.step + 1;
   kept_energy_ = energy_;
-  corrections_ = {.load_work = end_weight_ * pressure_work_,
+  corrections_ = {.load_work = end_weight_ * end_load_work_,
                   .numerical_dissipation = end_weight_ * dissipation_,
                   .integration_error = lacking_,
                   .viscous_dissipation = viscous_dissipation_};
@@ -295,16 +305,55 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
 }
 
-/// A step that makes or loses energy is none of this scheme.
-void FiniteLayer::require_balance(double kinetic) const {
+/// Whether places have converged and the energy is balanced, as far as rounding of forces and energies lets it. A step
+/// that makes or loses energy is none of this scheme: Error(not_converged).
+bool FiniteLayer::is_balanced(const Round& round) {
   constexpr double most = 1e-8;
-  const double part = std::abs(lacking_) / (kinetic + energy_start_ + energy_);
-  if (part <= most) return;
+  const double size = kinetic_ + energy_start_ + energy_;
+  const bool is_exact = std::abs(lacking_) <= energy_tolerance * size;
+  const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : std::abs(lacking_) > 0.5 * lacked_;
+  lacked_ = std::abs(lacking_);
+  if (log::enabled(log::Level::debug)) {
+    log::debug(fmt::format(
+        "Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
+        "missing, {:.3g} of the reactions are the end's",
+        progress_.rounds(), round.correction, round.increment, sigma_.value(), lacking_ / size, end_weight_));
+  }
+  if (!converged_ || !(is_exact || is_last)) return false;
+  if (lacked_ <= most * size) return true;
   throw Error(
       ErrorKind::not_converged,
       fmt::format("no force of the middle of the step has the work of the elastic energy: {:.2g} of the energy is "
                   "missing, as strains change too much in one step",
-                  part));
+                  lacked_ / size));
+}
+
+void FiniteLayer::heed(NewtonProgress::Advice advice, const Round& round, StageSolve& stages) {
+  if (advice == NewtonProgress::Advice::failed) throw progress_.failure(round.correction);
+  if (advice != NewtonProgress::Advice::renew) return;
+  stages.renew(middle_, end_);
+  progress_.count_renewal();
+  progress_.restart();
+  acceleration_.restart();
+}
+
+/// The linear stage of a round.
+const StageSolution& FiniteLayer::solve_round(const SemidiscreteProblem& problem, ReactionMean mean, double step,
+                                              const State& state, StageSolve& stages) {
+  const std::size_t number = MasslessLayer::midpoint_stage(problem);
+  Stage& stage = stages.stage(number);
+  last_middle_ = middle_;
+  last_end_ = end_;
+  balance(problem, step, state, stage);
+  if (problem.contact_dofs.empty()) {
+    stage.eligible.clear();
+    stage.motion.reset();
+  } else {
+    require_contact(problem, mean, step, state, stages, stage);
+  }
+  const StageSolution& solution = stages.solve(number);
+  if (lagged_.exact() != nullptr) stage.rows = lagged_.exact();
+  return solution;
 }
 
 void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
@@ -323,72 +372,32 @@ void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, doubl
 
 void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state,
                           StageSolve& stages, Vector& increment) {
-  const std::size_t number = MasslessLayer::midpoint_stage(problem);
   start(problem, step, state);
   stages.follow(middle_);
   evaluate(problem, step, state, false);
   progress_.start(8.0 * std::numeric_limits<double>::epsilon() *
                   (problem.nodes.cwiseAbs().maxCoeff() + end_.lpNorm<Eigen::Infinity>()));
-  Stage& stage = stages.stage(number);
-  const StageSolution* solution = nullptr;
-  const double kinetic = 0.5 * problem.mass.form(state.velocity);
-  converged_ = false;
-  double lacked = std::numeric_limits<double>::infinity();
+  const Stage& stage = stages.stage(MasslessLayer::midpoint_stage(problem));
   while (true) {
-    last_middle_ = middle_;
-    last_end_ = end_;
-    balance(problem, step, state, stage);
-    if (problem.contact_dofs.empty()) {
-      stage.eligible.clear();
-      stage.motion.reset();
-    } else {
-      require_contact(problem, mean, step, state, stages, stage);
-    }
-    solution = &stages.solve(number);
-    if (lagged_.exact() != nullptr) stage.rows = lagged_.exact();
-    const Round round = correct(problem, state, *solution);
+    const StageSolution& solution = solve_round(problem, mean, step, state, stages);
+    const Round round = correct(problem, state, solution);
     const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
     if (progress_.wants_acceleration() && advice == NewtonProgress::Advice::go_on) accelerate(problem, state);
     converged_ = converged_ || advice == NewtonProgress::Advice::done;
-    if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, *solution);
+    if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, solution);
     const bool near = round.correction <= near_solution * round.increment || converged_;
     halve_where_inverted(problem, step, state, near);
-    const bool is_exact = std::abs(lacking_) <= energy_tolerance * (kinetic + energy_start_ + energy_);
-    // Rounding of forces and energies may leave more.
-    const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : std::abs(lacking_) > 0.5 * lacked;
-    const bool balanced = is_exact || (converged_ && is_last);
-    lacked = std::abs(lacking_);
-    if (log::enabled(log::Level::debug)) {
-      log::debug(
-          fmt::format("Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
-                      "missing, {:.3g} of the reactions are the end's",
-                      progress_.rounds(), round.correction, round.increment, sigma_.value(),
-                      lacking_ / (kinetic + energy_start_ + energy_), end_weight_));
-    }
-    if (converged_ && near && balanced) {
-      require_balance(kinetic);
-      break;
+    if (is_balanced(round)) {
+      finish(problem, step, state, stage, solution, increment);
+      return;
     }
     if (converged_ && sigma_.is_weak()) {  // with another number now
       converged_ = false;
       progress_.restart();
-      continue;
-    }
-    if (converged_) continue;
-    if (advice == NewtonProgress::Advice::failed) {
-      throw Error(ErrorKind::not_converged,
-                  fmt::format("Newton's method did not converge in {} iterations (the last correction moves a node by "
-                              "{:.3g})",
-                              progress_.rounds(), round.correction));
-    }
-    if (advice == NewtonProgress::Advice::renew) {
-      stages.renew(middle_, end_);
-      progress_.count_renewal();
-      progress_.restart();
-      acceleration_.restart();
+    } else if (!converged_) {
+      heed(advice, round, stages);
     }
   }
-  finish(problem, step, state, stage, *solution, increment);
 }
 
 }  // namespace ricochet

@@ -19,33 +19,34 @@
 /// ½(u₀+u₁) on f and on c where the equations on them have it, and the forces at x of two stresses,
 ///   f̄ of S(E(x) + ⅛ (∇Δ)ᵀ∇Δ)  (InternalForce::mean_force),
 ///   p of 𝔻₀ : the derivative of E along Δ  (InternalForce::strain_force),   D = f̄ + σ p:
-///   M (v₁−v₀)/h + (2/h) C (x−u₀) + D = L̄ on f,   D = L₁ + Hᵀρ̄ on c,   f(u₁) = L₁ + Hᵀρ on c,
+///   M (v₁−v₀)/h + (2/h) C (x−u₀) + D = L̄ on f,   D = L̄ + Hᵀρ̄ on c,   f(u₁) = L₁ + Hᵀρ on c,
 /// and Coulomb's law at the end. D has neither resultant nor moment about x beside contact and loads, so linear and
 /// angular momentum change by the impulses of these alone, whatever σ is. The number σ makes the work of D the change
-/// of the elastic energy. A rigid motion has no stress: bodies that spin do not swell. With Ψ(u_f; ρ) = min over u_c of
-/// W(u) − (L₁ + Hᵀρ)·u_c, which u₁ attains,
-///   D_f·Δ_f = (1−μ)(ΔW − L₁·Δ_c) + μ (Ψ(u_f1; ρ) − Ψ(u_f0; ρ)),   ρ̄ = (1−μ) ρ̄_path + μ ρ,
-/// and then
-///   E₁ − E₀ = work of loads, supports and damping + μ (ρ·HΔ_c − d),
-///   d = [W(u₀) − (L₁+Hᵀρ)·u_c0] − Ψ(u_f0; ρ) ≥ 0,   ρ·HΔ_c = −r_N·g₀ − Σ F r_N |Δy_T| ≤ 0 against planes.
-/// Where a pressure P(u, t) follows the surface, P(x), of the mean of the pressures at both ends, is added to L̄ and to
-/// L₁ in the equations at x, so that all round a body it has neither resultant nor moment about x, and P(u₁) to L₁ in
-/// that at the end and in Ψ. It works P(x)·Δ, and μ (P_c(u₁) − P_c(x))·Δ_c besides.
+/// of the elastic energy. A rigid motion has no stress: bodies that spin do not swell. Reactions of the end that act over
+/// all of a step move contact nodes at its start, by J, to where W(u) − (L₀ + Hᵀρ)·u_c is least over u_c at u_f0. The
+/// works asked for,
+///   D_f·Δ_f = ΔW − L̄·Δ_c − μ (ρ·HΔ_c − ½(L₁ − L₀)·J − d),   ρ̄ = (1−μ) ρ̄_path + μ ρ,
+///   d = [W(u₀) − (L₀+Hᵀρ)·u_c0] − min over u_c of the same ≥ 0,
+/// are those of a body with a quadratic W at σ = 0, and make
+///   E₁ − E₀ = work of L̄, supports and damping + μ (ρ·HΔ_c − ½(L₁ − L₀)·J − d):
+/// over the jump loads are those of the start. ρ·HΔ_c = −r_N·g₀ − Σ F r_N |Δy_T| ≤ 0 against planes.
+/// Where a pressure P(u, t) follows the surface, P(x), of the mean of the pressures at both ends, is added to L̄ in the
+/// equations at x, so that all round a body it has neither resultant nor moment about x, and P(u₁) to L₁ and L₀ in those
+/// at the end and of J. It works P(x)·Δ, and μ (P_c(u₁) − P_c(x))·Δ_c besides.
 ///
-/// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that Ψ is a minimum, which is so
-/// while K_cc is positive definite between u₀ and it.
+/// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that J leads to a minimum, which
+/// is so while K_cc is positive definite on the way.
 ///
 /// Branches beside the laws (fem/relaxation.hpp) add the forces of 2gμ q̄ to f̄ and those of 2gμ q₁ to f(u₁), both for
 /// the strain that goes linearly from 2Ē − E₁ to E₁. Where a mean of the reactions makes x_c half of the way, that is
 /// the step's own strain; reactions of the end that act over all of it move contact nodes at its start, by J, and so
 /// does this strain. With V(u, A) = W(u) + Σ ∫ gμ |dev E(u) − A|², the stored energy, 𝒟 ≥ 0 of relaxation.hpp, and
-///   P(u) = W(u) + Σ ∫ gμ (2(1−θ) |dev E(u) − A₀|² + 2(2θ−1) q₁ : E(u)) − (L₁ + Hᵀρ)·u_c,
+///   P(u) = W(u) + Σ ∫ gμ (2(1−θ) |dev E(u) − A₀|² + 2(2θ−1) q₁ : E(u)) − (L₀ + Hᵀρ)·u_c,
 /// the works asked for are those above with V(u₁, A₁) − V(u₀, A₀) + 𝒟 for ΔW, with d = P(u₀) − min over u_c of P ≥ 0,
-/// and
-///   V(u₁, A₁) − V(u₀, A₀) + 𝒟 − (L₁ + Hᵀρ)·Δ_c + d  for Ψ(u_f1; ρ) − Ψ(u_f0; ρ), so that
-///   E₁ − E₀ = work of loads, supports and damping + μ (ρ·HΔ_c − d) − 𝒟,   d ≥ 0,   𝒟 ≥ 0:
+/// so that
+///   E₁ − E₀ = work of loads, supports and damping + μ (ρ·HΔ_c − ½(L₁ − L₀)·J − d) − 𝒟,   d ≥ 0,   𝒟 ≥ 0:
 /// no step creates energy, whatever h/τ is. Where V is quadratic in the displacement and the end reactions act, P is
-/// least at the displacement of E₀ + J, since its force there is 2D − f(u₁) = L₁ + Hᵀρ; then D works just that, and
+/// least at the displacement of E₀ + J, since its force there is 2D − f(u₁) = L₀ + Hᵀρ; then D works just that, and
 /// σ = 0.
 ///
 /// Where W is quadratic in the displacement, σ = 0 and this is
@@ -75,11 +76,15 @@ class FiniteLayer {
     Vector normal, tangential, acting_normal, acting_tangential;
   };
   void start(const SemidiscreteProblem& problem, double step, const State& state);
-  void evaluate_pressure(const SemidiscreteProblem& problem, const State& state);
+  void evaluate_loads(const SemidiscreteProblem& problem, const State& state);
   void take_loads(const SemidiscreteProblem& problem, double step, const State& state);
   /// Forces at the middle and at the end; near the solution also what the energy lacks, and σ for it.
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
-  void require_balance(double kinetic) const;
+  const StageSolution& solve_round(const SemidiscreteProblem& problem, ReactionMean mean, double step,
+                                   const State& state, StageSolve& stages);
+  [[nodiscard]] bool is_balanced(const Round& round);
+  /// What the progress of a round asks for. Throws Error(not_converged).
+  void heed(NewtonProgress::Advice advice, const Round& round, StageSolve& stages);
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
                        StageSolve& stages, Stage& stage);
@@ -109,15 +114,19 @@ class FiniteLayer {
   double viscous_dissipation_ = 0.0;          ///< 𝒟
   double energy_ = 0.0, energy_start_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
   bool converged_ = false;                          ///< places
+  double kinetic_ = 0.0;                            ///< at the start of the step
+  double lacked_ = 0.0;                             ///< |lacking_| of the round before
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
   double end_time_ = 0.0;
-  double pressure_work_ = 0.0;  ///< (P_c(u₁) − P_c(x))·Δ_c
+  double end_load_work_ = 0.0;  ///< (P(u₁) − P(x))·Δ_c − ½(L₁ − L₀)·J
   ObstacleMotion obstacle_;
-  Vector load_, end_load_, base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
-  Vector nodal_at_end_;                    ///< Hᵀρ + P(u₁)
-  Vector pressure_middle_, pressure_end_;  ///< P(x) with the mean of the pressures at both ends, P(u₁); empty: none
-  Vector internal_;                        ///< A₁
-  Vector relaxed_;                         ///< u_f0 with the contact nodes that attain Ψ(u_f0; ρ)
+  bool has_end_load_ = false;  ///< loads that vary, or follow the surface
+  Vector load_, varying_load_, base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
+  Vector rise_, end_load_;  ///< ½(L₁ − L₀), and with P(u₁): what acts at the end beside L̄
+  Vector nodal_at_start_;   ///< Hᵀρ + P(u₁) − ½(L₁ − L₀)
+  Vector pressure_;         ///< P(x) with the mean of the pressures at both ends
+  Vector internal_;         ///< A₁
+  Vector relaxed_;          ///< u₀ + J
   Vector product_, right_, layer_right_, damping_force_, before_, last_middle_, last_end_;
   Vector row_force_;  ///< of the reactions along rows that the solver had not
 };
