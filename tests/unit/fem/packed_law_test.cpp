@@ -14,7 +14,7 @@ struct PackedCase {
   Parameters parameters;
 };
 
-const std::vector<PackedCase>& laws() {
+const std::vector<PackedCase>& packed_laws() {
   static const std::vector<PackedCase> all{{"linear", {{"lambda", 1.3}, {"mu", 0.8}}},
                                     {"saint-venant-kirchhoff", {{"lambda", 1.3}, {"mu", 0.8}}},
                                     {"neo-hookean", {{"lambda", 1.3}, {"mu", 0.8}}},
@@ -79,7 +79,7 @@ TEST(PackedLaw, HasOfPacksWhatItHasOfEachPoint) {
     const RandomStrains random(count, in_plane);
     const int width = random.packs().width, components = random.packs().components();
     std::vector<double> energies(static_cast<std::size_t>(count * width)), stresses(energies.size() * 6);
-    for (const PackedCase& each : laws()) {
+    for (const PackedCase& each : packed_laws()) {
       const auto law = make_material_law(each.name, each.parameters);
       const OnePointAfterAnother slow(*law);
       for (const MaterialLaw* const asked :
@@ -129,7 +129,7 @@ TEST(PackedLaw, IsNotFiniteWhereTheVolumeIsNegative) {
       energies(static_cast<std::size_t>(pack_width()));
   std::fill_n(strains.begin(), pack_width(), -0.6);
   for (const std::string name : {"neo-hookean", "mooney-rivlin"}) {
-    const PackedCase& each = name == "neo-hookean" ? laws()[2] : laws()[3];
+    const PackedCase& each = name == "neo-hookean" ? packed_laws()[2] : packed_laws()[3];
     make_material_law(each.name, each.parameters)->energies({strains.data(), 1, pack_width(), false}, energies.data());
     for (const double energy : energies) EXPECT_FALSE(std::isfinite(energy)) << name;
   }
