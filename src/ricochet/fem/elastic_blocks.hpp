@@ -1,10 +1,10 @@
 #pragma once
 
+#include "ricochet/fem/branch_kernels.hpp"
 #include "ricochet/fem/cell_assembly.hpp"
 #include "ricochet/fem/cell_kernel.hpp"
 #include "ricochet/fem/cell_packs.hpp"
 #include "ricochet/fem/elastic_cells.hpp"
-#include "ricochet/fem/relaxation.hpp"
 
 /// @file What stays the same of the cells of a body with elastic energy. Not part of the public interface.
 namespace ricochet {
@@ -16,11 +16,25 @@ struct ElasticCells::Blocks {
   std::vector<KernelBlock<d>> all;
   /// Numbers of all parts: what goes in, and what comes out.
   mutable std::vector<double> displacement, increment, force, strain_force;
+  mutable std::vector<double> end, at;                       ///< of branches alone
+  mutable std::vector<std::vector<BranchNumbers>> branches;  ///< per material, over a step
 
   Blocks(const Body& of, const NodeGraph* graph, const std::vector<int>& cells) : body(of), packs(of, graph, cells) {
+    for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b], packs.lanes(b)));
     for (std::vector<double>* numbers : {&displacement, &increment, &force, &strain_force})
       *numbers = packs.template room<d>();
-    for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b], packs.lanes(b)));
+    const auto relaxes = [](const Material& each) { return !each.relaxation.empty(); };
+    if (std::any_of(body.materials.begin(), body.materials.end(), relaxes)) end = at = packs.template room<d>();
+  }
+  /// Of a step of this length; 0: of an instant.
+  void take_branches(double step) const {
+    branches.resize(body.materials.size());
+    for (std::size_t m = 0; m < branches.size(); ++m) {
+      const Material& of = body.materials[m];
+      branches[m].clear();
+      for (const RelaxationBranch& branch : of.relaxation)
+        branches[m].push_back({branch.modulus * of.mu(), RelaxationRule(step > 0.0 ? step / branch.time : 1.0)});
+    }
   }
   [[nodiscard]] const Material& material(Index cell) const { return material_of(body, cell); }
   [[nodiscard]] CellKernel<d> kernel(std::size_t block, Index local, Index cell) const {
@@ -101,7 +115,6 @@ inline const ElasticCells::Blocks<3>& ElasticCells::blocks<3>() const {
 }
 
 /// Of an internal strain of a branch.
-inline constexpr Index internal_components = 6;
 inline Tensor read_tensor(const double* from) {
   Tensor result;
   for (std::size_t k = 0; k < tangent_components.size(); ++k) {
@@ -109,9 +122,6 @@ inline Tensor read_tensor(const double* from) {
     result(i, j) = result(j, i) = from[k];
   }
   return result;
-}
-inline void write_tensor(const Tensor& tensor, double* to) {
-  for (const auto& [i, j] : tangent_components) *to++ = tensor(i, j);
 }
 
 /// Calls work(std::integral_constant<int, d>) for the dimension.

@@ -95,16 +95,21 @@ class ElasticCells {
   template <int d>
   [[nodiscard]] const Blocks<d>& blocks() const;
   template <int d>
+  class CellStrips;
+  template <int d>
   class StripWork;
-  template <int d, class Work>
+  template <int d>
+  class BranchStrips;
+  template <int d, template <int> class Strips, class Work>
   void for_each_part(const Work& work) const;
   [[nodiscard]] InvertedCell mean_forces(const Vector& middle, const Vector& increment, Vector& result,
                                          Vector* strain_result) const;
   void find_internal_places();
-  template <int d, class MakeForce>
-  void add_up_branches(const MakeForce& make, Vector& result) const;
-  template <int d, class MakeWork>
-  double sum_branches(const MakeWork& make) const;
+  struct BranchPlaces;
+  template <int d, class Find>
+  void add_up_branches(const BranchPlaces& places, const Find& find, Vector& result) const;
+  template <int d, class Find>
+  double sum_branches(const BranchPlaces& places, const Find& find) const;
 
   const Body& body_;
   const NodeGraph* graph_;

@@ -1,4 +1,4 @@
-#include "ricochet/fem/elastic_blocks.hpp"
+#include "ricochet/fem/cell_strips.hpp"
 
 /// @file Branches of the materials beside their laws, of the cells of a body.
 namespace ricochet {
@@ -21,125 +21,145 @@ void ElasticCells::find_internal_places() {
   if (sum > 0) internal_begin_ = std::move(begin);
 }
 
-/// Adds up the forces of the cells that have branches: make(kernel, nodes) gives a function of a material and the place
-/// of the internal strains of the kernel's point that returns F S there.
-template <int d, class MakeForce>
-void ElasticCells::add_up_branches(const MakeForce& make, Vector& result) const {
-  const Blocks<d>& all = blocks<d>();
-  assemble_vector<d>(
-      body_, *graph_,
-      [&](const CellWalk& walk, std::size_t, Index cell, auto& local) {
-        local.fill(0.0);
-        const Material& material = all.material(cell);
-        if (material.relaxation.empty()) return;
-        CellKernel<d> kernel = all.kernel(walk, cell);
-        const auto force_at = make(kernel, walk.nodes());
-        Index at = internal_begin_[static_cast<std::size_t>(cell)];
-        for (int q = 0; q < kernel.points(); ++q) {
-          kernel.go_to(q);
-          kernel.add_force(q, force_at(material, at), local);
-          at += internal_components * static_cast<Index>(material.relaxation.size());
-        }
-      },
-      result);
-}
+/// Where the strains of branches are.
+struct ElasticCells::BranchPlaces {
+  const BranchStep* step = nullptr;      ///< null: no step, but an instant
+  const Vector* displacement = nullptr;  ///< null: only the places of the step
+  const Vector& internal;
+};
 
-/// Σ of make(kernel, nodes)(material, place of the internal strains) times the weight over the points of these cells.
-template <int d, class MakeWork>
-double ElasticCells::sum_branches(const MakeWork& make) const {
-  const Blocks<d>& all = blocks<d>();
-  const Index count = cells_.empty() ? body_.mesh->cell_count() : static_cast<Index>(cells_.size());
-  return parallel_sum<double>(count, [&](Index first, Index last) {
-    CellWalk walk(body_.space->cells);
-    double sum = 0.0;
-    for (Index i = first; i < last; ++i) {
-      const Index cell = cells_.empty() ? i : cells_[static_cast<std::size_t>(i)];
-      const Material& material = all.material(cell);
-      if (material.relaxation.empty()) continue;
-      walk.go_to(cell);
-      CellKernel<d> kernel = all.kernel(walk, cell);
-      const auto work_at = make(kernel, walk.nodes());
-      Index at = internal_begin_[static_cast<std::size_t>(cell)];
-      for (int q = 0; q < kernel.points(); ++q) {
-        kernel.go_to(q);
-        sum += kernel.weight(q) * work_at(material, at);
-        at += internal_components * static_cast<Index>(material.relaxation.size());
-      }
+/// What is computed of branches.
+template <int d>
+class ElasticCells::BranchStrips : public CellStrips<d> {
+ public:
+  BranchStrips(const Body& body, const Blocks<d>& blocks) : CellStrips<d>(body, blocks), blocks_(blocks) {}
+
+  /// Calls work(strip) for the strips of a part whose cells have branches, with their strains.
+  template <class Work>
+  void for_each_strip(Index part, Index begin, const BranchPlaces& places, const std::vector<Index>& internal_begin,
+                      const Work& work) {
+    read(part, places);
+    const auto has_branches = [](const Material& material) { return !material.relaxation.empty(); };
+    CellStrips<d>::for_each_strip(part, has_branches, [&](const PackStrip<d>& strip) {
+      internal_.fill(places.internal.data());
+      this->for_each_lane(strip, [&](Index pack, int lane, Index, int cell) {
+        internal_[lane_number(strip, pack, lane)] =
+            places.internal.data() + internal_begin[static_cast<std::size_t>(cell + this->first_cell())];
+      });
+      find_all_strains(strip, begin, places);
+      work(strip);
+    });
+  }
+
+  void add_forces(BranchStress of, const PackStrip<d>& strip, double* forces) {
+    find_branch_stresses(of, points(strip), result_.data());
+    const auto& gradients = of == BranchStress::mean ? gradients_ : of == BranchStress::end ? ends_ : others_;
+    ricochet::add_forces(strip, false, gradients.data(), result_.data(), forces);
+  }
+  [[nodiscard]] double work(BranchWork of, const PackStrip<d>& strip) {
+    find_branch_works(of, points(strip), result_.data());
+    return this->integral(strip, result_.data());
+  }
+  /// To a vector of the same order.
+  void advance(const PackStrip<d>& strip, const BranchPlaces& places, Vector& next) {
+    next_.fill(nullptr);
+    this->for_each_lane(strip, [&](Index pack, int lane, Index, int) {
+      const std::size_t number = lane_number(strip, pack, lane);
+      next_[number] = next.data() + (internal_[number] - places.internal.data());
+    });
+    advance_branches(points(strip), next_.data());
+  }
+
+ private:
+  static constexpr auto most_lanes = static_cast<std::size_t>(CellStrips<d>::points_at_once * most_pack_width);
+  static std::size_t lane_number(const PackStrip<d>& strip, Index pack, int lane) {
+    return static_cast<std::size_t>((pack - strip.begin) * strip.block.width + lane);
+  }
+  void read(Index part, const BranchPlaces& places) {
+    if (places.step != nullptr) {
+      blocks_.packs.template read<d>(part, places.step->middle, blocks_.displacement);
+      blocks_.packs.template read<d>(part, places.step->increment, blocks_.increment);
+      blocks_.packs.template read<d>(part, places.step->end, blocks_.end);
     }
-    return sum;
+    if (places.displacement != nullptr) blocks_.packs.template read<d>(part, *places.displacement, blocks_.at);
+  }
+  /// E₀ of the gradient of u₁ less that of the increment; or E at the displacement, where no E₀ is needed.
+  void find_all_strains(const PackStrip<d>& strip, Index begin, const BranchPlaces& places) {
+    const Index count = strip.points();
+    has_step_ = places.step != nullptr;
+    has_displacement_ = places.displacement != nullptr;
+    if (has_step_) {
+      find_gradients(strip, blocks_.displacement.data() + begin, gradients_.data());
+      find_gradients(strip, blocks_.increment.data() + begin, others_.data());
+      static_cast<void>(find_strains<d>(count, false, gradients_.data(), others_.data(), middle_.data()));
+      find_gradients(strip, blocks_.end.data() + begin, ends_.data());
+      static_cast<void>(find_strains<d>(count, false, ends_.data(), nullptr, end_.data()));
+    }
+    if (has_displacement_) {
+      find_gradients(strip, blocks_.at.data() + begin, others_.data());
+    } else {
+      const auto size = static_cast<std::size_t>(count * gradient_components<d> * strip.block.width);
+      for (std::size_t k = 0; k < size; ++k) others_[k] = ends_[k] - others_[k];
+    }
+    static_cast<void>(find_strains<d>(count, false, others_.data(), nullptr, other_.data()));
+  }
+  [[nodiscard]] BranchPoints<d> points(const PackStrip<d>& strip) const {
+    return {strip.end - strip.begin,
+            strip.block.points,
+            blocks_.branches[this->material_number()],
+            internal_.data(),
+            has_step_ ? middle_.data() : nullptr,
+            has_displacement_ ? nullptr : other_.data(),
+            has_step_ ? end_.data() : nullptr,
+            has_displacement_ ? other_.data() : nullptr};
+  }
+
+  const Blocks<d>& blocks_;
+  bool has_step_ = false, has_displacement_ = false;
+  std::array<const double*, most_lanes> internal_;
+  std::array<double*, most_lanes> next_;
+  // At the middle and the end of a step, and at its start or at a displacement.
+  alignas(64) StripNumbers<gradient_components<d>> gradients_, ends_, others_;
+  alignas(64) StripNumbers<strain_components<d>> middle_, end_, other_, result_;
+};
+
+/// find(strips, strip, forces) adds those of a strip.
+template <int d, class Find>
+void ElasticCells::add_up_branches(const BranchPlaces& places, const Find& find, Vector& result) const {
+  const Blocks<d>& all = blocks<d>();
+  all.take_branches(places.step != nullptr ? places.step->step : 0.0);
+  for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
+    all.packs.template clear<d>(part, all.force);
+    strips.for_each_strip(part, begin, places, internal_begin_,
+                          [&](const PackStrip<d>& strip) { find(strips, strip, all.force.data() + begin); });
   });
+  all.packs.template add_up<d>(all.force, result);
 }
 
-namespace {
-
-/// The strain of a cell's points at one displacement.
-template <int d>
-class CellStrain {
- public:
-  CellStrain(const CellKernel<d>& kernel, const Index* nodes, const Vector& displacement) : kernel_(kernel) {
-    kernel.gather(nodes, displacement, u_);
-  }
-  /// At the point of the kernel.
-  [[nodiscard]] Tensor gradient() const { return kernel_.gradient(u_); }
-  [[nodiscard]] Tensor deviator() const { return deviator_of(green_strain(gradient())); }
-
- private:
-  const CellKernel<d>& kernel_;
-  typename CellKernel<d>::LocalVector u_;
-};
-
-/// The same over a step.
-template <int d>
-class CellStep {
- public:
-  struct Point {
-    Tensor middle_motion, end_motion;  ///< displacement gradients
-    Tensor start, middle, end;         ///< deviators of E₀, Ē and E₁
-  };
-  CellStep(const CellKernel<d>& kernel, const Index* nodes, const BranchStep& step)
-      : kernel_(kernel), end_(kernel, nodes, step.end) {
-    kernel.gather(nodes, step.middle, middle_);
-    kernel.gather(nodes, step.increment, increment_);
-  }
-  [[nodiscard]] Point point() const {
-    const auto [motion, strain] = kernel_.mean_motion_of(middle_, increment_);
-    const Tensor end = end_.gradient();
-    const Tensor start = end - kernel_.gradient(increment_);
-    return {motion, end, deviator_of(green_strain(start)), deviator_of(strain), deviator_of(green_strain(end))};
-  }
-
- private:
-  const CellKernel<d>& kernel_;
-  typename CellKernel<d>::LocalVector middle_, increment_;
-  CellStrain<d> end_;
-};
-
-/// Calls visit(modulus gμ, τ, A, place of A) for the branches of a point.
-template <class Visit>
-void for_each_branch(const Material& material, const Vector& internal, Index at, const Visit& visit) {
-  for (const RelaxationBranch& branch : material.relaxation) {
-    visit(branch.modulus * material.mu(), branch.time, read_tensor(internal.data() + at), at);
-    at += internal_components;
-  }
+/// find(strips, strip) gives the part of a strip.
+template <int d, class Find>
+double ElasticCells::sum_branches(const BranchPlaces& places, const Find& find) const {
+  const Blocks<d>& all = blocks<d>();
+  all.take_branches(places.step != nullptr ? places.step->step : 0.0);
+  std::array<double, most_node_parts> sums{};
+  for_each_part<d, BranchStrips>([&](Index part, Index begin, BranchStrips<d>& strips) {
+    double& sum = sums[static_cast<std::size_t>(part)];
+    strips.for_each_strip(part, begin, places, internal_begin_,
+                          [&](const PackStrip<d>& strip) { sum += find(strips, strip); });
+  });
+  double total = 0.0;
+  for (const double sum : sums) total += sum;
+  return total;
 }
-
-Tensor pulled(const Tensor& motion, const Tensor& stress) {
-  return product(Tensor::Identity() + motion, stress);
-}
-
-}  // namespace
 
 void ElasticCells::relax(const Vector& displacement, Vector& internal) const {
   internal.setZero(internal_size());
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    sum_branches<d>([&](const CellKernel<d>& kernel, const Index* nodes) {
-      return [&, strain = CellStrain<d>(kernel, nodes, displacement)](const Material& material, Index at) {
-        const Tensor deviator = strain.deviator();
-        for (std::size_t i = 0; i < material.relaxation.size(); ++i, at += internal_components)
-          write_tensor(deviator, internal.data() + at);
-        return 0.0;
-      };
+    const BranchPlaces places{nullptr, &displacement, internal};
+    sum_branches<d>(places, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
+      strips.advance(strip, places, internal);
+      return 0.0;
     });
   });
 }
@@ -147,15 +167,8 @@ void ElasticCells::relax(const Vector& displacement, Vector& internal) const {
 double ElasticCells::branch_energy(const Vector& displacement, const Vector& internal) const {
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    return sum_branches<d>([&](const CellKernel<d>& kernel, const Index* nodes) {
-      return [&, strain = CellStrain<d>(kernel, nodes, displacement)](const Material& material, Index at) {
-        const Tensor deviator = strain.deviator();
-        double sum = 0.0;
-        for_each_branch(material, internal, at, [&](double modulus, double, const Tensor& own, Index) {
-          sum += modulus * (deviator - own).squaredNorm();
-        });
-        return sum;
-      };
+    return sum_branches<d>({nullptr, &displacement, internal}, [](BranchStrips<d>& strips, const PackStrip<d>& strip) {
+      return strips.work(BranchWork::energy, strip);
     });
   });
 }
@@ -163,79 +176,40 @@ double ElasticCells::branch_energy(const Vector& displacement, const Vector& int
 void ElasticCells::mean_branch_force(const BranchStep& step, Vector& result) const {
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    add_up_branches<d>(
-        [&](const CellKernel<d>& kernel, const Index* nodes) {
-          return [&, cell = CellStep<d>(kernel, nodes, step)](const Material& material, Index at) {
-            const auto point = cell.point();
-            Tensor stress = Tensor::Zero();
-            for_each_branch(material, step.internal, at, [&](double modulus, double time, const Tensor& own, Index) {
-              stress += 2.0 * modulus * RelaxationRule(step.step / time).mean(point.middle, point.end, own);
-            });
-            return pulled(point.middle_motion, stress);
-          };
-        },
-        result);
+    const auto find = [](BranchStrips<d>& strips, const PackStrip<d>& strip, double* forces) {
+      strips.add_forces(BranchStress::mean, strip, forces);
+    };
+    add_up_branches<d>({&step, nullptr, step.internal}, find, result);
   });
 }
 
 void ElasticCells::end_branch_force(const BranchStep& step, Vector& result) const {
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    add_up_branches<d>(
-        [&](const CellKernel<d>& kernel, const Index* nodes) {
-          return [&, cell = CellStep<d>(kernel, nodes, step)](const Material& material, Index at) {
-            const auto point = cell.point();
-            Tensor stress = Tensor::Zero();
-            for_each_branch(material, step.internal, at, [&](double modulus, double time, const Tensor& own, Index) {
-              stress +=
-                  2.0 * modulus * (point.end - RelaxationRule(step.step / time).next(point.middle, point.end, own));
-            });
-            return pulled(point.end_motion, stress);
-          };
-        },
-        result);
+    const auto find = [](BranchStrips<d>& strips, const PackStrip<d>& strip, double* forces) {
+      strips.add_forces(BranchStress::end, strip, forces);
+    };
+    add_up_branches<d>({&step, nullptr, step.internal}, find, result);
   });
 }
 
 double ElasticCells::start_branch_energy(const BranchStep& step, const Vector& displacement) const {
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    return sum_branches<d>([&](const CellKernel<d>& kernel, const Index* nodes) {
-      return [&, cell = CellStep<d>(kernel, nodes, step), strain = CellStrain<d>(kernel, nodes, displacement)](
-                 const Material& material, Index at) {
-        const auto point = cell.point();
-        const Tensor deviator = strain.deviator();
-        double sum = 0.0;
-        for_each_branch(material, step.internal, at, [&](double modulus, double time, const Tensor& own, Index) {
-          const RelaxationRule rule(step.step / time);
-          const Tensor elastic_end = point.end - rule.next(point.middle, point.end, own);
-          sum += modulus * rule.start_energy(deviator, own, elastic_end);
-        });
-        return sum;
-      };
-    });
+    return sum_branches<d>({&step, &displacement, step.internal},
+                           [](BranchStrips<d>& strips, const PackStrip<d>& strip) {
+                             return strips.work(BranchWork::start_energy, strip);
+                           });
   });
 }
 
 void ElasticCells::start_branch_force(const BranchStep& step, const Vector& displacement, Vector& result) const {
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    add_up_branches<d>(
-        [&](const CellKernel<d>& kernel, const Index* nodes) {
-          return [&, cell = CellStep<d>(kernel, nodes, step), strain = CellStrain<d>(kernel, nodes, displacement)](
-                     const Material& material, Index at) {
-            const auto point = cell.point();
-            const Tensor deviator = strain.deviator();
-            Tensor stress = Tensor::Zero();
-            for_each_branch(material, step.internal, at, [&](double modulus, double time, const Tensor& own, Index) {
-              const RelaxationRule rule(step.step / time);
-              const Tensor elastic_end = point.end - rule.next(point.middle, point.end, own);
-              stress += 2.0 * modulus * rule.start_stress(deviator, own, elastic_end);
-            });
-            return pulled(strain.gradient(), stress);
-          };
-        },
-        result);
+    const auto find = [](BranchStrips<d>& strips, const PackStrip<d>& strip, double* forces) {
+      strips.add_forces(BranchStress::start, strip, forces);
+    };
+    add_up_branches<d>({&step, &displacement, step.internal}, find, result);
   });
 }
 
@@ -243,17 +217,11 @@ double ElasticCells::advance_internal(const BranchStep& step, Vector& internal) 
   internal.resize(internal_size());
   return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
-    return sum_branches<d>([&](const CellKernel<d>& kernel, const Index* nodes) {
-      return [&, cell = CellStep<d>(kernel, nodes, step)](const Material& material, Index at) {
-        const auto point = cell.point();
-        double sum = 0.0;
-        for_each_branch(material, step.internal, at, [&](double modulus, double time, const Tensor& own, Index place) {
-          const RelaxationRule rule(step.step / time);
-          sum += modulus * rule.dissipation(point.start, point.middle, point.end, own);
-          write_tensor(rule.next(point.middle, point.end, own), internal.data() + place);
-        });
-        return sum;
-      };
+    const BranchPlaces places{&step, nullptr, step.internal};
+    return sum_branches<d>(places, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
+      const double dissipation = strips.work(BranchWork::dissipation, strip);
+      strips.advance(strip, places, internal);
+      return dissipation;
     });
   });
 }

@@ -1,9 +1,7 @@
-#include <array>
 #include <limits>
 #include <optional>
 
-#include "ricochet/fem/elastic_blocks.hpp"
-#include "ricochet/fem/pack_kernels.hpp"
+#include "ricochet/fem/cell_strips.hpp"
 
 /// @file Forces and energies of all cells, pack by pack.
 namespace ricochet {
@@ -28,26 +26,23 @@ InvertedCell worst_of(const PartCells& parts) {
 
 }  // namespace
 
-/// What is computed of a few packs, in memory that stays in the nearest cache where cells have few points.
+/// What is computed of laws.
 template <int d>
-class ElasticCells::StripWork {
+class ElasticCells::StripWork : public CellStrips<d> {
  public:
-  StripWork(const Body& body, const Blocks<d>& blocks) : body_(body), blocks_(blocks) {}
+  using CellStrips<d>::CellStrips;
 
-  /// Calls work(strip) for the strips of a part; law() is that of its cells then.
+  /// Calls work(strip) for all strips of a part.
   template <class Work>
   void for_each_strip(Index part, const Work& work) {
-    for (const PackRun& run : blocks_.packs.runs(part)) {
-      const KernelBlock<d>& block = blocks_.all[run.block];
-      material_ = &body_.materials[static_cast<std::size_t>(run.material)];
-      law_.emplace(*material_->law, is_plane_stress(body_));
-      const bool has_mean = material_->mean_dilatation && block.dilatation_functions.size() > 0;
-      mean_modulus_ = has_mean ? material_->law->volumetric_modulus() : 0.0;
-      run_ = &run;
-      const Index size = std::max<Index>(1, points_at_once / block.points);
-      for (Index begin = run.begin; begin < run.end; begin += size)
-        work(PackStrip<d>{block, blocks_.packs.slots(run.block).data(), begin, std::min(run.end, begin + size)});
-    }
+    CellStrips<d>::for_each_strip(
+        part, [](const Material&) { return true; },
+        [&](const PackStrip<d>& strip) {
+          law_.emplace(*material().law, is_plane_stress(this->body()));
+          const bool has_mean = material().mean_dilatation && strip.block.dilatation_functions.size() > 0;
+          mean_modulus_ = has_mean ? material().law->volumetric_modulus() : 0.0;
+          work(strip);
+        });
   }
 
   /// H, E and S from the numbers of a part; those of an increment (null: none) make E that of the mean of both ends.
@@ -63,14 +58,14 @@ class ElasticCells::StripWork {
     if (!upright) find_worst(strip, worst);
   }
   void add_forces(const PackStrip<d>& strip, double* forces) {
-    material_->law->stresses(packs(strip), stresses_.data());
+    material().law->stresses(packs(strip), stresses_.data());
     if (mean_modulus_ > 0.0) add_mean_pressures(strip, mean_modulus_, strains_.data(), stresses_.data());
     ricochet::add_forces(strip, law_->is_linear(), gradients_.data(), stresses_.data(), forces);
   }
   /// Of 𝔻₀ : (the derivative of E along the increment).
   void add_rate_forces(const PackStrip<d>& strip, double* forces) {
     if (law_->is_linear()) return;
-    const auto law = IsotropicElasticity::of(material_->lambda(), material_->mu(), law_->is_plane_stress());
+    const auto law = IsotropicElasticity::of(material().lambda(), material().mu(), law_->is_plane_stress());
     find_rate_stresses<d>(strip.points(), law, gradients_.data(), increments_.data(), stresses_.data());
     ricochet::add_forces(strip, false, gradients_.data(), stresses_.data(), forces);
   }
@@ -81,45 +76,24 @@ class ElasticCells::StripWork {
     add_rate_forces(strip, forces);
   }
   [[nodiscard]] double energy(const PackStrip<d>& strip) {
-    material_->law->energies(packs(strip), stresses_.data());
+    material().law->energies(packs(strip), stresses_.data());
     if (mean_modulus_ > 0.0) add_mean_energies(strip, mean_modulus_, strains_.data(), stresses_.data());
-    const KernelBlock<d>& block = strip.block;
-    double sum = 0.0;
-    for_each_lane(strip, [&](Index pack, int lane, Index first, int) {
-      for (int q = 0; q < block.points; ++q)
-        sum += block.weight[static_cast<std::size_t>(block.place(pack, q) + lane)] *
-               stresses_[static_cast<std::size_t>((first + q) * block.width + lane)];
-    });
-    return sum;
+    return this->integral(strip, stresses_.data());
   }
 
  private:
-  /// At least what one pack needs.
-  static constexpr int points_at_once = 16;
-  static constexpr auto room = static_cast<std::size_t>(most_cell_points * most_pack_width);
+  using CellStrips<d>::material;
 
   [[nodiscard]] StrainPacks packs(const PackStrip<d>& strip) const {
     return {strains_.data(), strip.points(), strip.block.width, d == 2};
   }
-  /// Calls work(pack, lane, number of its first point in the strip, cell of the block) for the lanes that are used.
-  template <class Work>
-  void for_each_lane(const PackStrip<d>& strip, const Work& work) const {
-    const auto& lanes = blocks_.packs.lanes(run_->block);
-    Index first = 0;
-    for (Index pack = strip.begin; pack < strip.end; ++pack, first += strip.block.points) {
-      for (int lane = 0; lane < strip.block.width; ++lane) {
-        const int cell = lanes[static_cast<std::size_t>(pack * strip.block.width + lane)];
-        if (cell >= 0) work(pack, lane, first, cell);
-      }
-    }
-  }
-  [[nodiscard]] double& number(std::array<double, strain_components<d> * room>& of, Index point, int component,
-                               const PackStrip<d>& strip, int lane) const {
+  [[nodiscard]] static double& number(StripNumbers<strain_components<d>>& of, Index point, int component,
+                                      const PackStrip<d>& strip, int lane) {
     return of[static_cast<std::size_t>((point * strain_components<d> + component) * strip.block.width + lane)];
   }
   /// Plane stress: the strain across the plane, one point after another.
   void complete(const PackStrip<d>& strip) {
-    for_each_lane(strip, [&](Index, int lane, Index first, int) {
+    this->for_each_lane(strip, [&](Index, int lane, Index first, int) {
       for (Index point = first; point < first + strip.block.points; ++point) {
         Tensor strain = Tensor::Zero();
         strain(0, 0) = number(strains_, point, 0, strip, lane);
@@ -132,7 +106,7 @@ class ElasticCells::StripWork {
   }
   void find_worst(const PackStrip<d>& strip, InvertedCell& worst) {
     const int width = strip.block.width;
-    for_each_lane(strip, [&](Index, int lane, Index first, int cell) {
+    this->for_each_lane(strip, [&](Index, int lane, Index first, int cell) {
       double least = 1.0;
       for (Index point = first; point < first + strip.block.points; ++point) {
         const double* const at = gradients_.data() + point * gradient_components<d> * width + lane;
@@ -143,45 +117,22 @@ class ElasticCells::StripWork {
         const double volume = determinant(deformation);
         if (!(volume >= least)) least = std::isnan(volume) ? -std::numeric_limits<double>::infinity() : volume;
       }
-      if (!(least > 0.0)) worse(worst, cell + first_cell(), least);
+      if (!(least > 0.0)) worse(worst, cell + this->first_cell(), least);
     });
   }
-  /// Number of the first cell of the block through all blocks.
-  [[nodiscard]] Index first_cell() const {
-    Index sum = 0;
-    for (std::size_t block = 0; block < run_->block; ++block) sum += body_.mesh->cells[block].size();
-    return sum;
-  }
-
-  const Body& body_;
-  const Blocks<d>& blocks_;
-  const PackRun* run_ = nullptr;
-  const Material* material_ = nullptr;
   std::optional<PointLaw> law_;
   double mean_modulus_ = 0.0;
   // Filled strip by strip.
-  alignas(64) std::array<double, gradient_components<d> * room> gradients_;
-  alignas(64) std::array<double, gradient_components<d> * room> increments_;
-  alignas(64) std::array<double, strain_components<d> * room> strains_;
-  alignas(64) std::array<double, strain_components<d> * room> stresses_;
+  alignas(64) StripNumbers<gradient_components<d>> gradients_, increments_;
+  alignas(64) StripNumbers<strain_components<d>> strains_, stresses_;
 };
-
-/// Calls work(part, its first number of a node, work space) for the parts, several at once.
-template <int d, class Work>
-void ElasticCells::for_each_part(const Work& work) const {
-  const Blocks<d>& all = blocks<d>();
-  parallel_ranges(all.packs.parts(), [&](Index first, Index last) {
-    StripWork<d> strips(body_, all);
-    for (Index part = first; part < last; ++part) work(part, all.packs.template begin<d>(part), strips);
-  });
-}
 
 InvertedCell ElasticCells::force(const Vector& displacement, Vector& result) const {
   PartCells worst;
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
-    for_each_part<d>([&](Index part, Index begin, StripWork<d>& strips) {
+    for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
       all.packs.template read<d>(part, displacement, all.displacement);
       all.packs.template clear<d>(part, all.force);
       strips.for_each_strip(part, [&](const PackStrip<d>& strip) {
@@ -209,7 +160,7 @@ InvertedCell ElasticCells::mean_forces(const Vector& middle, const Vector& incre
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
-    for_each_part<d>([&](Index part, Index begin, StripWork<d>& strips) {
+    for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
       all.packs.template read<d>(part, middle, all.displacement);
       all.packs.template read<d>(part, increment, all.increment);
       all.packs.template clear<d>(part, all.force);
@@ -231,7 +182,7 @@ void ElasticCells::strain_force(const Vector& displacement, const Vector& increm
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
-    for_each_part<d>([&](Index part, Index begin, StripWork<d>& strips) {
+    for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
       all.packs.template read<d>(part, displacement, all.displacement);
       all.packs.template read<d>(part, increment, all.increment);
       all.packs.template clear<d>(part, all.strain_force);
@@ -250,7 +201,7 @@ double ElasticCells::energy(const Vector& displacement) const {
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
-    for_each_part<d>([&](Index part, Index begin, StripWork<d>& strips) {
+    for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
       double& sum = sums[static_cast<std::size_t>(part)];
       all.packs.template read<d>(part, displacement, all.displacement);
       strips.for_each_strip(part, [&](const PackStrip<d>& strip) {

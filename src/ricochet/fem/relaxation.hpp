@@ -1,6 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
+
+#include "ricochet/base/instruction_sets.hpp"
 
 /// @file Stress that relaxes: branches beside a material law (a Prony series).
 ///
@@ -21,7 +24,12 @@
 /// changes of the strain in this way.)
 namespace ricochet {
 
-/// The numbers of a branch's step.
+template <class A, class B>
+[[nodiscard]] double double_dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  return a.cwiseProduct(b).sum();
+}
+
+/// The numbers of a branch's step. Strains are matrices, or tensors of symmetric_tensor.hpp: of one point or of a pack.
 class RelaxationRule {
  public:
   /// x = h/τ > 0.
@@ -29,32 +37,37 @@ class RelaxationRule {
 
   /// q̄ of the deviators of Ē and E₁.
   template <class Strain>
-  [[nodiscard]] Strain mean(const Strain& middle, const Strain& end, const Strain& internal) const {
+  [[nodiscard]] RICOCHET_PART_OF_CALLER Strain mean(const Strain& middle, const Strain& end,
+                                                    const Strain& internal) const {
     return scale_ * ((1.0 - excess_) * middle + excess_ * end - internal);
   }
   /// ∂q̄/∂Ē where E₀ is given: 1 where h is short, and about 2τ/h where it is long.
   [[nodiscard]] double stiffness() const { return (1.0 + excess_) * scale_; }
   /// A₁.
   template <class Strain>
-  [[nodiscard]] Strain next(const Strain& middle, const Strain& end, const Strain& internal) const {
+  [[nodiscard]] RICOCHET_PART_OF_CALLER Strain next(const Strain& middle, const Strain& end,
+                                                    const Strain& internal) const {
     return internal + x_ * mean(middle, end, internal);
   }
   /// 𝒟/gμ, with E₀.
   template <class Strain>
-  [[nodiscard]] double dissipation(const Strain& start, const Strain& middle, const Strain& end,
-                                   const Strain& internal) const {
+  [[nodiscard]] RICOCHET_PART_OF_CALLER auto dissipation(const Strain& start, const Strain& middle, const Strain& end,
+                                                         const Strain& internal) const {
     const Strain acting = mean(middle, end, internal);
     const Strain change = end - start - x_ * acting;
-    return excess_ * change.squaredNorm() + 2.0 * x_ * acting.squaredNorm();
+    return excess_ * double_dot(change, change) + 2.0 * x_ * double_dot(acting, acting);
   }
   /// 2(1−θ)|q|² + 2(2θ−1) q₁:E of a strain E with A as at the start, and half of its derivative. Of E₀ + J the
   /// latter is 2q̄ − q₁: the stress at the start of the path that has q̄ and q₁.
   template <class Strain>
-  [[nodiscard]] double start_energy(const Strain& strain, const Strain& internal, const Strain& elastic_end) const {
-    return (1.0 - excess_) * (strain - internal).squaredNorm() + 2.0 * excess_ * elastic_end.cwiseProduct(strain).sum();
+  [[nodiscard]] RICOCHET_PART_OF_CALLER auto start_energy(const Strain& strain, const Strain& internal,
+                                                          const Strain& elastic_end) const {
+    const Strain elastic = strain - internal;
+    return (1.0 - excess_) * double_dot(elastic, elastic) + 2.0 * excess_ * double_dot(elastic_end, strain);
   }
   template <class Strain>
-  [[nodiscard]] Strain start_stress(const Strain& strain, const Strain& internal, const Strain& elastic_end) const {
+  [[nodiscard]] RICOCHET_PART_OF_CALLER Strain start_stress(const Strain& strain, const Strain& internal,
+                                                            const Strain& elastic_end) const {
     return (1.0 - excess_) * (strain - internal) + excess_ * elastic_end;
   }
 

@@ -49,6 +49,30 @@ RICOCHET_PART_OF_CALLER void store_tensor(double* to, const T& of) {
       value, [&](int k, auto& component) RICOCHET_LAMBDA_OF_CALLER { store<width>(to + k * width, component); });
 }
 
+// Sums, differences and multiples.
+template <class N, class Work>
+RICOCHET_PART_OF_CALLER SpaceTensor<N> each_component(const SpaceTensor<N>& a, const SpaceTensor<N>& b,
+                                                      const Work& work) {
+  return {work(a.xx, b.xx), work(a.yy, b.yy), work(a.zz, b.zz), work(a.xy, b.xy), work(a.yz, b.yz), work(a.zx, b.zx)};
+}
+template <class N, class Work>
+RICOCHET_PART_OF_CALLER PlaneTensor<N> each_component(const PlaneTensor<N>& a, const PlaneTensor<N>& b,
+                                                      const Work& work) {
+  return {work(a.xx, b.xx), work(a.yy, b.yy), work(a.zz, b.zz), work(a.xy, b.xy)};
+}
+template <class T, class N = typename T::Number>
+RICOCHET_PART_OF_CALLER T operator+(const T& a, const T& b) {
+  return each_component(a, b, [](const N& x, const N& y) RICOCHET_LAMBDA_OF_CALLER { return x + y; });
+}
+template <class T, class N = typename T::Number>
+RICOCHET_PART_OF_CALLER T operator-(const T& a, const T& b) {
+  return each_component(a, b, [](const N& x, const N& y) RICOCHET_LAMBDA_OF_CALLER { return x - y; });
+}
+template <class T, class N = typename T::Number>
+RICOCHET_PART_OF_CALLER T operator*(double factor, const T& a) {
+  return each_component(a, a, [factor](const N& x, const N&) RICOCHET_LAMBDA_OF_CALLER { return factor * x; });
+}
+
 template <class T>
 RICOCHET_PART_OF_CALLER typename T::Number trace(const T& a) {
   return a.xx + a.yy + a.zz;
@@ -107,6 +131,12 @@ RICOCHET_PART_OF_CALLER SpaceTensor<N> combination(const N& a, const SpaceTensor
 template <class N>
 RICOCHET_PART_OF_CALLER PlaneTensor<N> combination(const N& a, const PlaneTensor<N>& first, const N& c) {
   return {a * first.xx + c, a * first.yy + c, a * first.zz + c, a * first.xy};
+}
+
+template <class T>
+RICOCHET_PART_OF_CALLER T deviator(const T& a) {
+  using Number = typename T::Number;
+  return combination(Number{} + 1.0, a, Number(trace(a) * (-1.0 / 3.0)));
 }
 
 /// λ tr A I + 2μ A.

@@ -1,0 +1,160 @@
+#include "ricochet/fem/branch_kernels.hpp"
+
+#include "ricochet/fem/symmetric_tensor.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// What branches of a pack of points see: deviators of strains.
+template <class T>
+struct BranchStrains {
+  T middle, start, end, at;
+};
+
+template <int d, int W>
+struct BranchPack {
+  using Number = Pack<W>;
+  using Strain = std::conditional_t<d == 2, PlaneTensor<Number>, SpaceTensor<Number>>;
+  const BranchPoints<d>& points;
+  Index pack;
+  int point;
+
+  RICOCHET_PART_OF_CALLER Strain deviator_at(const double* strains) const {
+    if (strains == nullptr) return Strain{};
+    return deviator(load_tensor<Strain>(strains + (pack * points.points + point) * Strain::components * W));
+  }
+  RICOCHET_PART_OF_CALLER BranchStrains<Strain> strains() const {
+    return {deviator_at(points.middle), deviator_at(points.start), deviator_at(points.end), deviator_at(points.at)};
+  }
+  /// In the internal strains of a cell.
+  [[nodiscard]] RICOCHET_PART_OF_CALLER std::size_t place(std::size_t branch) const {
+    return (static_cast<std::size_t>(point) * points.branches.size() + branch) * internal_components;
+  }
+  RICOCHET_PART_OF_CALLER Strain internal(std::size_t branch) const {
+    const double* const* const lanes = points.internal + pack * W;
+    Strain result;
+    for_each_component(result, [&](int k, Number& component) RICOCHET_LAMBDA_OF_CALLER {
+      for (int lane = 0; lane < W; ++lane) component[lane] = lanes[lane][place(branch) + static_cast<std::size_t>(k)];
+    });
+    return result;
+  }
+  RICOCHET_PART_OF_CALLER void write(const Strain& from, std::size_t branch, double* const* next) const {
+    Strain value = from;
+    for (int lane = 0; lane < W; ++lane) {
+      double* const cell = next[pack * W + lane];
+      if (cell == nullptr) continue;
+      double* const to = cell + place(branch);
+      for (Index k = Strain::components; k < internal_components; ++k) to[k] = 0.0;
+      for_each_component(value,
+                         [&](int k, const Number& component) RICOCHET_LAMBDA_OF_CALLER { to[k] = component[lane]; });
+    }
+  }
+};
+
+/// Calls work(pack of points) for all.
+template <int W, int d, class Work>
+RICOCHET_PART_OF_CALLER void for_each_pack(const BranchPoints<d>& points, const Work& work) {
+  for (Index pack = 0; pack < points.packs; ++pack) {
+    for (int point = 0; point < points.points; ++point) work(BranchPack<d, W>{points, pack, point});
+  }
+}
+
+template <int d>
+struct BranchStresses {
+  BranchStress of;
+  const BranchPoints<d>& points;
+  double* result;
+
+  template <class T>
+  RICOCHET_PART_OF_CALLER T acting(const RelaxationRule& rule, const BranchStrains<T>& at, const T& own) const {
+    if (of == BranchStress::mean) return rule.mean(at.middle, at.end, own);
+    const T end = at.end - rule.next(at.middle, at.end, own);
+    return of == BranchStress::end ? end : rule.start_stress(at.at, own, end);
+  }
+  template <int W>
+  RICOCHET_PART_OF_CALLER void run() const {
+    using Strain = typename BranchPack<d, W>::Strain;
+    for_each_pack<W>(points, [&](const BranchPack<d, W>& pack) RICOCHET_LAMBDA_OF_CALLER {
+      const BranchStrains<Strain> at = pack.strains();
+      Strain stress{};
+      for (std::size_t b = 0; b < points.branches.size(); ++b) {
+        const auto& [modulus, rule] = points.branches[b];
+        stress = stress + 2.0 * modulus * acting(rule, at, pack.internal(b));
+      }
+      store_tensor(result + (pack.pack * points.points + pack.point) * Strain::components * W, stress);
+    });
+  }
+};
+
+template <int d>
+struct BranchWorks {
+  BranchWork of;
+  const BranchPoints<d>& points;
+  double* result;
+
+  template <class T>
+  RICOCHET_PART_OF_CALLER typename T::Number work(const RelaxationRule& rule, const BranchStrains<T>& at,
+                                                  const T& own) const {
+    if (of == BranchWork::dissipation) return rule.dissipation(at.start, at.middle, at.end, own);
+    if (of == BranchWork::start_energy)
+      return rule.start_energy(at.at, own, T(at.end - rule.next(at.middle, at.end, own)));
+    const T elastic = at.at - own;
+    return double_dot(elastic, elastic);
+  }
+  template <int W>
+  RICOCHET_PART_OF_CALLER void run() const {
+    using Strain = typename BranchPack<d, W>::Strain;
+    for_each_pack<W>(points, [&](const BranchPack<d, W>& pack) RICOCHET_LAMBDA_OF_CALLER {
+      const BranchStrains<Strain> at = pack.strains();
+      Pack<W> sum{};
+      for (std::size_t b = 0; b < points.branches.size(); ++b) {
+        const auto& [modulus, rule] = points.branches[b];
+        sum += modulus * work(rule, at, pack.internal(b));
+      }
+      store<W>(result + (pack.pack * points.points + pack.point) * W, sum);
+    });
+  }
+};
+
+template <int d>
+struct BranchAdvance {
+  const BranchPoints<d>& points;
+  double* const* next;
+
+  template <int W>
+  RICOCHET_PART_OF_CALLER void run() const {
+    using Strain = typename BranchPack<d, W>::Strain;
+    for_each_pack<W>(points, [&](const BranchPack<d, W>& pack) RICOCHET_LAMBDA_OF_CALLER {
+      const BranchStrains<Strain> at = pack.strains();
+      for (std::size_t b = 0; b < points.branches.size(); ++b) {
+        pack.write(points.middle == nullptr ? at.at : points.branches[b].rule.next(at.middle, at.end, pack.internal(b)),
+                   b, next);
+      }
+    });
+  }
+};
+
+}  // namespace
+
+template <int d>
+void find_branch_stresses(BranchStress of, const BranchPoints<d>& points, double* stresses) {
+  run_in_packs(BranchStresses<d>{of, points, stresses});
+}
+template <int d>
+void find_branch_works(BranchWork of, const BranchPoints<d>& points, double* works) {
+  run_in_packs(BranchWorks<d>{of, points, works});
+}
+template <int d>
+void advance_branches(const BranchPoints<d>& points, double* const* next) {
+  run_in_packs(BranchAdvance<d>{points, next});
+}
+
+template void find_branch_stresses<2>(BranchStress, const BranchPoints<2>&, double*);
+template void find_branch_stresses<3>(BranchStress, const BranchPoints<3>&, double*);
+template void find_branch_works<2>(BranchWork, const BranchPoints<2>&, double*);
+template void find_branch_works<3>(BranchWork, const BranchPoints<3>&, double*);
+template void advance_branches<2>(const BranchPoints<2>&, double* const*);
+template void advance_branches<3>(const BranchPoints<3>&, double* const*);
+
+}  // namespace ricochet

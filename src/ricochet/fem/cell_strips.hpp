@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+
+#include "ricochet/fem/elastic_blocks.hpp"
+#include "ricochet/fem/pack_kernels.hpp"
+
+/// @file A few packs of cells at a time. Not part of the public interface.
+namespace ricochet {
+
+/// Numbers of the points of a strip, in memory that stays in the nearest cache where cells have few points.
+template <int components>
+using StripNumbers = std::array<double, static_cast<std::size_t>(components* most_cell_points* most_pack_width)>;
+
+/// The strips of a part, one after another, with what their cells have in common.
+template <int d>
+class ElasticCells::CellStrips {
+ public:
+  CellStrips(const Body& body, const Blocks<d>& blocks) : body_(body), blocks_(blocks) {}
+
+  /// Calls work(strip) for those of the runs that are wanted(material).
+  template <class Wanted, class Work>
+  void for_each_strip(Index part, const Wanted& wanted, const Work& work) {
+    for (const PackRun& run : blocks_.packs.runs(part)) {
+      const KernelBlock<d>& block = blocks_.all[run.block];
+      run_ = &run;
+      if (!wanted(material())) continue;
+      const Index size = std::max<Index>(1, points_at_once / block.points);
+      for (Index begin = run.begin; begin < run.end; begin += size)
+        work(PackStrip<d>{block, blocks_.packs.slots(run.block).data(), begin, std::min(run.end, begin + size)});
+    }
+  }
+
+ protected:
+  /// At least what one pack has.
+  static constexpr int points_at_once = 16;
+
+  [[nodiscard]] const Body& body() const { return body_; }
+  /// Of the run of the strip.
+  [[nodiscard]] const Material& material() const { return body_.materials[material_number()]; }
+  [[nodiscard]] std::size_t material_number() const { return static_cast<std::size_t>(run_->material); }
+  /// Calls work(pack, lane, number of its first point in the strip, cell of the block) for the lanes that are used.
+  template <class Work>
+  void for_each_lane(const PackStrip<d>& strip, const Work& work) const {
+    const auto& lanes = blocks_.packs.lanes(run_->block);
+    Index first = 0;
+    for (Index pack = strip.begin; pack < strip.end; ++pack, first += strip.block.points) {
+      for (int lane = 0; lane < strip.block.width; ++lane) {
+        const int cell = lanes[static_cast<std::size_t>(pack * strip.block.width + lane)];
+        if (cell >= 0) work(pack, lane, first, cell);
+      }
+    }
+  }
+  /// Σ of weight times value, one value per point and lane.
+  [[nodiscard]] double integral(const PackStrip<d>& strip, const double* values) const {
+    const KernelBlock<d>& block = strip.block;
+    double sum = 0.0;
+    for_each_lane(strip, [&](Index pack, int lane, Index first, int) {
+      for (int q = 0; q < block.points; ++q)
+        sum += block.weight[static_cast<std::size_t>(block.place(pack, q) + lane)] *
+               values[(first + q) * block.width + lane];
+    });
+    return sum;
+  }
+  /// Number of the first cell of the block through all blocks.
+  [[nodiscard]] Index first_cell() const {
+    Index sum = 0;
+    for (std::size_t block = 0; block < run_->block; ++block) sum += body_.mesh->cells[block].size();
+    return sum;
+  }
+
+ private:
+  const Body& body_;
+  const Blocks<d>& blocks_;
+  const PackRun* run_ = nullptr;
+};
+
+/// Calls work(part, its first number of a node, strips) for the parts, several at once; Strips is made of the body and
+/// its blocks.
+template <int d, template <int> class Strips, class Work>
+void ElasticCells::for_each_part(const Work& work) const {
+  const Blocks<d>& all = blocks<d>();
+  parallel_ranges(all.packs.parts(), [&](Index first, Index last) {
+    Strips<d> strips(body_, all);
+    for (Index part = first; part < last; ++part) work(part, all.packs.template begin<d>(part), strips);
+  });
+}
+
+}  // namespace ricochet
