@@ -2,7 +2,7 @@
 import numpy as np
 import matplotlib.pyplot as plt
 
-from picture_tools import run, save
+from picture_tools import EXACT, run, save
 
 
 def deformed(name):
@@ -101,3 +101,33 @@ def rubber_ball():
 
 def golf_ball():
     balls_at("golf-ball", (0.0, 0.12e-3, None, 0.5e-3, 0.8e-3), "cases/golf-ball/squeezed.png")
+
+
+def balloon():
+    from matplotlib.collections import PolyCollection
+
+    history = run("balloon/balloon", "balloon", "output.fields_every=1")
+    nodes, cells, frames = deformed("balloon")
+    figure, (section, growth, small) = plt.subplots(1, 3, figsize=(13, 3.8), width_ratios=(1.0, 1.3, 1.3))
+    corners = cells[:, [0, 4, 1, 5, 2, 6, 3, 7]]  # and the nodes between them
+    for time, colour in ((0.0, "0.75"), (0.05, "tab:orange"), (1.0, "tab:blue")):
+        time, fields = nearest(frames, time)
+        now = 1e3 * (nodes + fields["displacement"])[:, :2]
+        section.add_collection(PolyCollection(now[corners], facecolor="none", edgecolor=colour, linewidth=0.8))
+        section.plot([], [], color=colour, label=f"{1e3 * time:.0f} ms")
+    section.set(aspect="equal", xlim=(0, 35), ylim=(0, 35), xlabel="x, mm", ylabel="y, mm", title="section")
+    section.legend(loc="upper right", fontsize=8)
+    for place, exact in (("inner", 5.13738), ("outer", 2.67449)):
+        growth.axhline(exact, **EXACT)
+        growth.plot(1e3 * history["time"], 1e3 * history[f"{place}.displacement_x"], label=f"{place} radius")
+    growth.set(xlabel="time, ms", ylabel="mm", title="growth of the radii; grey: the law alone")
+    growth.legend(loc="center right", fontsize=8)
+    creep = run("balloon/creep", "balloon-creep")
+    time = creep["time"]
+    rise, retardation = np.pi / 0.05, 1 / 0.1
+    after = rise / 2 * rise * (np.exp(retardation * 0.05) + 1) / (retardation**2 + rise**2) * np.exp(-retardation * time)
+    small.plot(1e3 * time[10:], (710.526 * (1 - after / 2) + 0.14)[10:], **EXACT, label="linear viscoelasticity")
+    small.plot(1e3 * time, 1e9 * creep["inner.displacement_x"], label="creep.toml")
+    small.set(xlabel="time, ms", ylabel="nm", title="inner radius, small pressure")
+    small.legend(loc="lower right", fontsize=8)
+    save(figure, "cases/balloon/balloon.png")

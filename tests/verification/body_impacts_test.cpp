@@ -7,6 +7,7 @@
 
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/simulation/impacts.hpp"
+#include "ricochet/simulation/restitution.hpp"
 #include "ricochet/simulation/rigid_bodies.hpp"
 #include "support/case_run.hpp"
 #include "support/strip.hpp"
@@ -193,6 +194,44 @@ TEST(BodyImpacts, AreOneForEachBodyAndObstacle) {
   const double mass = floor[0].mass;
   EXPECT_NEAR((mass * (after[0].velocity - before[0].velocity) - sum).norm(), 0.0, 1e-10 * mass);
   EXPECT_GT(sum.norm(), 0.01 * mass);
+}
+
+/// A bar of length 1 and speed 1 that strikes an equal bar whose far end is held: the two are one bar of length 2 that
+/// has struck a wall, half of it at rest, and after 4L/c the first one goes back at the whole of its speed. The wall's
+/// forces give the second bar as much as the first one, and nothing of that is of the approach.
+TEST(BodyImpacts, OfABarAgainstAHeldOneGiveItsSpeedBack) {
+  const auto text = [](int cells, const std::string& contact, const std::string& place) {
+    const std::string mesh = strip_mesh(0.0, 1.0, cells);
+    return part("one", mesh, 0.0, "[1.0, 0.0]") + part("two", mesh, 1.1, "[0.0, 0.0]") + material("one", 1.0) +
+           material("two", 1.0) + "[[support]]\ngroup = [\"one.sides\", \"two.sides\"]\ncomponents = [\"y\"]\n" +
+           "[[support]]\ngroup = \"two.right\"\ncomponents = [\"x\"]\n" + place + "[[contact]]\n" + contact +
+           time_section(cells, 6.0);
+  };
+  double last_error = 0.2;
+  for (const int cells : {10, 20, 40, 80}) {
+    const std::vector<Impact> found = impacts_of(text(cells, one_against_two, ""));
+    ASSERT_EQ(found.size(), 1U) << cells;
+    EXPECT_FALSE(found[0].held);
+    EXPECT_TRUE(found[0].other_is_ground());
+    ASSERT_TRUE(found[0].restitution().has_value()) << why_no_restitution(found[0]);
+    EXPECT_NEAR(found[0].normal_velocity_before(), -1.0, 1e-9);
+    EXPECT_EQ(found[0].approach_mass(), found[0].mass);
+    EXPECT_NEAR(found[0].end - found[0].begin, 4.0, 6.0 / cells);
+    const double error = std::abs(1.0 - *found[0].restitution());
+    EXPECT_LT(error, 0.75 * last_error) << cells;
+    last_error = error;
+  }
+  // The same with the bars named the other way round.
+  const std::vector<Impact> exchanged = impacts_of(text(80, "group = \"two.left\"\nagainst = \"one.right\"\n", ""));
+  ASSERT_EQ(exchanged.size(), 1U);
+  EXPECT_TRUE(exchanged[0].is_ground());
+  ASSERT_TRUE(exchanged[0].restitution().has_value()) << why_no_restitution(exchanged[0]);
+  EXPECT_NEAR(std::abs(1.0 - *exchanged[0].restitution()), last_error, 1e-6);
+  // Held by a support that moves the second bar is no part of the ground.
+  const std::vector<Impact> moved = impacts_of(text(10, one_against_two, "value = \"-1e-3*t*t\"\n"));
+  ASSERT_GE(moved.size(), 1U);
+  EXPECT_FALSE(moved[0].other->held);
+  EXPECT_DOUBLE_EQ(moved[0].approach_mass(), 0.5 * moved[0].mass);
 }
 
 /// Goes on from a snapshot to the same numbers, those of the other body included.

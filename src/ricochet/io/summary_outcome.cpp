@@ -48,7 +48,8 @@ Json bodies_to_json(const RunSummary& summary) {
                       {"mass", Json::number(body.rigid.mass)},
                       {"centre", components(body.rigid.centre, summary.dimension)},
                       {"moment_of_inertia", inertia},
-                      {"separation_time", Json::number(body.separation)}});
+                      {"separation_time", Json::number(body.separation)},
+                      {"held", body.rigid.held}});
   }
   return result;
 }
@@ -212,18 +213,20 @@ RigidMotionState motion_from(const Json& impact, const std::string& when) {
           impact.at("kinetic_energy_" + when).to_number(), impact.at("rigid_kinetic_energy_" + when).to_number()};
 }
 
-double mass_of(int body, const std::vector<BodyDescription>& bodies, const std::string& path) {
+const RigidBody& rigid_body(int body, const std::vector<BodyDescription>& bodies, const std::string& path) {
   if (body < 0 || body >= static_cast<int>(bodies.size()))
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: not a summary of a run: an impact is of body {}, which it does not list", path, body));
-  return bodies[static_cast<std::size_t>(body)].rigid.mass;
+  return bodies[static_cast<std::size_t>(body)].rigid;
 }
 
 OtherBody other_from(const Json& json, bool ended, const std::vector<BodyDescription>& bodies,
                      const std::string& path) {
   OtherBody other;
   other.number = json.at("body");
-  other.mass = mass_of(other.number, bodies, path);
+  const RigidBody& rigid = rigid_body(other.number, bodies, path);
+  other.mass = rigid.mass;
+  other.held = rigid.held;
   other.before = motion_from(json, "before");
   if (ended) other.after = motion_from(json, "after");
   return other;
@@ -249,7 +252,9 @@ Impact impact_from(const Json& json, const std::vector<BodyDescription>& bodies,
   impact.first_place = to_numbers(json.value("first_place", Json::array()));
   const Json method_energy = json.value("method_energy", Json());
   if (method_energy.is_number() || method_energy.is_string()) impact.method_energy = method_energy.to_number();
-  impact.mass = mass_of(impact.body, bodies, path);
+  const RigidBody& rigid = rigid_body(impact.body, bodies, path);
+  impact.mass = rigid.mass;
+  impact.held = rigid.held;
   if (json.contains("against")) {
     impact.other = other_from(json.at("against"), impact.ended, bodies, path);
   } else {
@@ -270,6 +275,7 @@ BodyDescription body_from(const Json& json) {
   for (std::size_t k = 0; inertia.is_array() && k < 3; ++k)
     body.rigid.inertia.row(static_cast<Index>(k)) = vector_from(inertia.at(k));
   body.separation = json.at("separation_time").to_number();
+  body.rigid.held = json.value("held", false);
   body.name = json.value("name", "");
   return body;
 }

@@ -25,6 +25,49 @@ std::string names_of_pair(const ContactPair& pair) {
   return fmt::format("contact groups \"{}\" and \"{}\"", pair.group, pair.opposite_group);
 }
 
+/// The contact points of a pair with a gap below zero by more than rounding.
+struct Overlap {
+  Index inside = 0;
+  double deepest = 0.0;  ///< positive
+  Vector place;          ///< of the deepest, in the mesh
+};
+
+Overlap find_overlap(const Model& model, std::size_t number, const Vector& gap) {
+  const ContactBoundary& contact = model.problem.contact;
+  Overlap result;
+  Index deepest = -1;
+  for (Index i = 0; i < contact.size(); ++i) {
+    if (contact.pair[static_cast<std::size_t>(i)] != static_cast<int>(number)) continue;
+    if (!(gap[i] < -contact.rows->gap_rounding[i])) continue;
+    ++result.inside;
+    if (deepest < 0 || gap[i] < gap[deepest]) deepest = i;
+  }
+  if (deepest < 0) return result;
+  result.deepest = -gap[deepest];
+  result.place = Vector::Zero(model.mesh.dimension);
+  contact.visit_own_nodes(deepest,
+                          [&](Index node, double weight) { result.place += weight * model.space.nodes.col(node); });
+  return result;
+}
+
+/// Bodies that pair_at has moved into each other have gone past where they meet: what faces what there is not what will
+/// when they touch.
+void warn_of_overlap_where_paired(const Case& input, std::size_t number, const Model& model) {
+  const ContactPair& pair = model.contact_pairs[number];
+  if (pair.pair_at.size() == 0 || pair.closed_gaps) return;
+  const ContactBoundary& contact = model.problem.contact;
+  Vector gap = contact.initial_gap;
+  for (Index i = 0; i < gap.size(); ++i) gap[i] += contact.rows->normal(i).dot(pair.pair_at);
+  const Overlap overlap = find_overlap(model, number, gap);
+  if (overlap.inside == 0) return;
+  log::warning(fmt::format(
+      "{}: {} overlap where pair_at puts them: {} inside of the other body, the deepest by {:.3g} at {} of the mesh, "
+      "so that facets are paired past where they will meet; give the displacement at which the bodies begin to touch, "
+      "or set initial_gap = \"closed\" where surfaces that touch overlap since their facets are flat",
+      input.where(fmt::format("contact.{}.pair_at", number)).text(), names_of_pair(pair),
+      counted(overlap.inside, "contact point is", "contact points are"), overlap.deepest, place_text(overlap.place)));
+}
+
 }  // namespace
 
 ContactPair body_pair(const Case& input, std::size_t number, const Model& model) {
@@ -75,9 +118,14 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
   if (facing.points == 0 && facing.held == 0) {
     refuse(input, fmt::format("contact.{}.against", number),
            fmt::format("{} do not face each other: seen along the normals of \"{}\" there is no facet of \"{}\"; check "
-                       "which groups they are and where the bodies lie, or say with pair_at by how much the body of "
-                       "\"{}\" moves until they meet",
-                       names_of_pair(pair), pair.group, pair.opposite_group, input.contacts[number].group));
+                       "which groups they are and where the bodies lie, {} by how much the body of "
+                       "\"{}\" moves until they meet{}",
+                       names_of_pair(pair), pair.group, pair.opposite_group,
+                       pair.pair_at.size() > 0 ? "and that pair_at says" : "or say with pair_at",
+                       input.contacts[number].group,
+                       pair.pair_at.size() > 0 ? " (surfaces that it puts deeper than half a cell into each other are "
+                                                 "past each other)"
+                                               : ""));
   }
   if (facing.held > 0) {
     log::warning(fmt::format("{}: {} held by supports on both sides in the direction of contact: no contact {} there",
@@ -113,6 +161,7 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
                     "normals; give the facets of each side of the edge a contact of their own",
                     names_of_pair(pair), pair.group, place_text(facing.edge)));
   }
+  warn_of_overlap_where_paired(input, number, model);
   if (pair.multipliers == "nodal" && !facing.matches) {
     log::warning(fmt::format(
         "{}: multipliers \"nodal\" on meshes that do not match: nodes of one side against facets of the other do not "
@@ -125,28 +174,19 @@ void check_body_overlaps(const Case& input, const Model& model) {
   if (model.initial.static_equilibrium) return;  // a press fit: the static start pushes the bodies apart
   Vector gap;
   model.problem.gaps(model.initial.displacement, 0.0, gap);
-  const ContactBoundary& contact = model.problem.contact;
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
     if (!pair.between_bodies() || pair.tied) continue;
-    Index deepest = -1, inside = 0;
-    for (Index i = 0; i < contact.size(); ++i) {
-      if (contact.pair[static_cast<std::size_t>(i)] != static_cast<int>(number)) continue;
-      if (!(gap[i] < -contact.rows->gap_rounding[i])) continue;
-      ++inside;
-      if (deepest < 0 || gap[i] < gap[deepest]) deepest = i;
-    }
-    if (deepest < 0) continue;
-    Vector place = Vector::Zero(model.mesh.dimension);
-    contact.visit_own_nodes(deepest, [&](Index node, double weight) { place += weight * model.space.nodes.col(node); });
+    const Overlap overlap = find_overlap(model, number, gap);
+    if (overlap.inside == 0) continue;
     refuse(
         input, fmt::format("contact.{}.group", number),
         fmt::format("{} overlap at the start: {} inside of the other body, the deepest by {:.3g} at {}, and would be "
                     "pushed out at once, which creates energy; move the bodies apart, set initial_gap = \"closed\" "
                     "where surfaces that touch overlap since their facets are flat, or set initial.displacement = "
                     "\"static\" for a press fit",
-                    names_of_pair(pair), counted(inside, "contact point is", "contact points are"), -gap[deepest],
-                    place_text(place)));
+                    names_of_pair(pair), counted(overlap.inside, "contact point is", "contact points are"),
+                    overlap.deepest, place_text(overlap.place)));
   }
 }
 

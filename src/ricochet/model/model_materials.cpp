@@ -5,6 +5,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
+#include "ricochet/fem/wave_speed.hpp"
 #include "ricochet/model/model_parts.hpp"
 
 namespace ricochet {
@@ -74,6 +75,60 @@ void add_relaxation(const Case& input, std::size_t i, Model& model) {
   }
 }
 
+/// Where in the case the user gave one of these numbers, the first that there is.
+std::string key_of(const MaterialSection& section, std::size_t i, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (section.parameters.has(name)) return fmt::format("material.{}.{}", i, name);
+  }
+  return fmt::format("material.{}.law", i);
+}
+
+/// Stiffnesses of one material are added up in one operator, so that of the 16 digits of the softest only those are
+/// left that the stiffest does not need. (What a body is made of beside others may be as stiff as it likes.)
+void require_digits(const Case& input, std::size_t i, const Model& model) {
+  constexpr double most = 1e13;  // three digits
+  const MaterialSection& section = input.materials[i];
+  const Material& material = model.body.materials[i];
+  const double shear = material.law->mu(), bulk = material.law->lambda() + 2.0 / 3.0 * shear;
+  double at_once = 0.0;
+  for (const RelaxationBranch& branch : material.relaxation) at_once += branch.modulus;
+  if (!(at_once <= most)) {
+    refuse(input, fmt::format("material.{}.relaxation", i),
+           fmt::format("the entries of \"modulus\" sum to {:.3g}: they are relative to the shear modulus of the law, "
+                       "what is left in the end, of which hardly a digit counts beside {:.0e} and more; the law's own "
+                       "constants are those that are left, so take larger ones there and smaller entries here",
+                       at_once, most));
+  }
+  if (bulk > most * shear || shear > most * bulk) {
+    const bool is_stiff_in_volume = bulk > shear;
+    refuse(
+        input, key_of(section, i, {"poisson", "bulk_modulus", "lambda"}),
+        fmt::format("material \"{}\" has the shear modulus {:.3g} and the bulk modulus {:.3g}: beside the larger one "
+                    "hardly a digit of the other is left (at most {:.0e} times as much is possible); {}",
+                    section.group, shear, bulk, most,
+                    is_stiff_in_volume ? "Poisson's ratio up to 0.49999 is nearly incompressible, too"
+                                       : "a Poisson's ratio of -0.9999 is as near to -1 as matters"));
+  }
+}
+
+/// Where no support holds a body, its motion as a whole has no other resistance than its inertia, which is added to its
+/// stiffness: that is (h ω)² times as much, ω the highest frequency of the mesh, which is above that of a wave that
+/// crosses all of it.
+void require_inertia(const Case& input, std::size_t i, const Model& model) {
+  constexpr double most = 1e15;
+  if (!input.supports.empty()) return;
+  const Material& material = model.body.materials[i];
+  const double speed = compression_wave_speed(material, is_plane_stress(model.body));
+  const double crossings = input.time.step * speed / extent(model.mesh.nodes);
+  if (crossings * crossings <= most) return;
+  refuse(input, key_of(input.materials[i], i, {"young", "mu", "c10"}),
+         fmt::format(
+             "material \"{}\" has compression waves of the speed {:.3g}, which cross all of the mesh {:.3g} times in "
+             "time.step = {:.3g}: beside such a stiffness no digit is left of the inertia of bodies that no "
+             "support holds; check the units of stiffness ({:.3g}, Young's modulus) and density ({:.3g})",
+             input.materials[i].group, speed, crossings, input.time.step, material.young(), material.density));
+}
+
 /// A body with a linear law does not see how far it turns, and the watch of rotations would have to know which it is.
 void require_one_kind_of_law(const Case& input, const Model& model) {
   if (!has_finite_strain(model.body)) return;
@@ -117,8 +172,10 @@ void assign_materials(const Case& input, Model& model) {
     }
     model.body.materials.push_back({section.group, section.density, make_material_law(section.law, section.parameters),
                                     section.damping.mass, section.damping.stiffness});
-    choose_dilatation(input, i, model);
     add_relaxation(input, i, model);
+    require_digits(input, i, model);
+    require_inertia(input, i, model);
+    choose_dilatation(input, i, model);
   }
   require_one_kind_of_law(input, model);
   refuse_stretches_of_small_strain(input, model);

@@ -21,4 +21,17 @@ double IntegrationError::end(const SemidiscreteProblem& problem, const Vector& i
   return (energy_ - before) - increment.dot(mean_);
 }
 
+double MidpointIntegrationError::of_step(const SemidiscreteProblem& problem, const State& state,
+                                         const Vector& increment) {
+  if (problem.internal_force->is_linear()) return 0.0;
+  const double before = step_ == state.step ? energy_ : problem.internal_force->energy(state.displacement);
+  step_ = -1;
+  place_ = state.displacement + 0.5 * increment;
+  problem.internal_force->evaluate(place_, force_);
+  place_ = state.displacement + increment;
+  energy_ = problem.internal_force->energy(place_);
+  step_ = state.step + 1;
+  return (energy_ - before) - increment.dot(force_);
+}
+
 }  // namespace ricochet

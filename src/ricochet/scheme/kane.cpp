@@ -30,6 +30,7 @@ void Kane::take(const SemidiscreteProblem& problem, const Stage& stage, const St
                 Vector& increment) {
   const double h = step();
   increment = predicted_ + solution.increment;
+  integration_error_ = error_.of_step(problem, state, increment);
   state.displacement += increment;
   state.velocity += (2.0 / h) * solution.increment;
   state.acceleration = (2.0 / (h * h)) * solution.increment;  // (V₁−V₀)/h

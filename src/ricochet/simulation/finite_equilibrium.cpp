@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/graph_components.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/simulation/held_bodies.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
 
 namespace ricochet {
@@ -24,38 +24,11 @@ constexpr double proximal_fraction = 1e-10, proximal_fraction_of_unheld = 1e-6;
 /// What may be left of the largest of the forces.
 constexpr double left_of_forces = 1e-10;
 
-/// The rigid motions of a body at its supported dofs, in units of its size: supported dofs × motions.
-Matrix supported_motions(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
-  const Index d = problem.dimension;
-  const Points places = problem.nodes(Eigen::all, members);
-  const Vector centre = places.rowwise().mean();
-  const double size = (places.colwise() - centre).colwise().norm().maxCoeff();
-  std::vector<Vector> rows;
-  for (const Index node : members) {
-    Eigen::Vector3d arm = Eigen::Vector3d::Zero();
-    arm.head(d) = (problem.nodes.col(node) - centre) / size;
-    for (Index k = 0; k < d; ++k) {
-      if (!problem.supports.contains(node * d + k)) continue;
-      const Eigen::Vector3d moment = arm.cross(Eigen::Vector3d::Unit(k));
-      Vector row = Vector::Zero(d == 2 ? 3 : 6);
-      row[k] = 1.0;
-      d == 2 ? void(row[2] = moment[2]) : void(row.tail(3) = moment);
-      rows.push_back(problem.axisymmetric ? Vector(row.segment(1, 1)) : row);
-    }
-  }
-  Matrix result = Matrix::Zero(static_cast<Index>(rows.size()), problem.axisymmetric ? 1 : d == 2 ? 3 : 6);
-  for (std::size_t i = 0; i < rows.size(); ++i) result.row(static_cast<Index>(i)) = rows[i];
-  return result;
-}
-
 /// Whether no body can move as a whole for all that its supports say.
-bool are_held_by_supports(const SemidiscreteProblem& problem) {
-  constexpr double negligible = 1e-8;
+bool all_are_held_by_supports(const SemidiscreteProblem& problem) {
   for (const std::vector<Index>& members : graph_components(problem.internal_force->tangent(), problem.dimension)) {
     if (members.size() == 1 && problem.is_tied_dof(members.front() * problem.dimension)) continue;
-    const Matrix motions = supported_motions(problem, members);
-    const Vector sizes = symmetric_eigenvalues(Matrix(motions.transpose() * motions));
-    if (!(sizes[0] > negligible * sizes[sizes.size() - 1])) return false;
+    if (!are_held_by_supports(problem, members)) return false;
   }
   return true;
 }
@@ -66,7 +39,7 @@ double proximal_coefficient(const SemidiscreteProblem& problem) {
   for (Index i = 0; i < mass.size(); ++i) {
     if (mass[i] > 0.0 && stiffness[i] > 0.0) lowest = std::min(lowest, stiffness[i] / mass[i]);
   }
-  return (are_held_by_supports(problem) ? proximal_fraction : proximal_fraction_of_unheld) * lowest;
+  return (all_are_held_by_supports(problem) ? proximal_fraction : proximal_fraction_of_unheld) * lowest;
 }
 
 class LoadPath {

@@ -10,16 +10,20 @@ Eigen::Vector3d Impact::normal() const {
 }
 
 double Impact::normal_velocity_before() const {
-  const double others = other ? other->before.velocity.dot(normal()) : obstacle_velocity;
-  return before.velocity.dot(normal()) - others;
+  const double own = is_ground() ? 0.0 : before.velocity.dot(normal());
+  if (other_is_ground()) return own;
+  return own - (other ? other->before.velocity.dot(normal()) : obstacle_velocity);
 }
 
 double Impact::normal_velocity_after() const {
-  const double others = other ? other->after.velocity.dot(normal()) : obstacle_velocity;
-  return after.velocity.dot(normal()) - others;
+  const double own = is_ground() ? 0.0 : after.velocity.dot(normal());
+  if (other_is_ground()) return own;
+  return own - (other ? other->after.velocity.dot(normal()) : obstacle_velocity);
 }
 
 double Impact::approach_mass() const {
+  if (is_ground()) return other->mass;
+  if (other_is_ground()) return mass;
   return other ? mass * other->mass / (mass + other->mass) : mass;
 }
 

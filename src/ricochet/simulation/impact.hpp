@@ -14,8 +14,13 @@ struct OtherBody {
   int number = 0;
   double mass = 0.0;
   RigidMotionState before, after;  ///< `after`: zero where it has not ended
+  bool held = false;               ///< RigidBody::held
 };
 
+/// Where supports at rest hold one of two bodies and not the other, that one is a part of the ground: the free body's
+/// impulse goes through it into the supports, and the motion of its own centre of mass is vibration. Velocities along
+/// the normal are then those of the free body alone, as against a wall, and so is the mass of the approach (m₁m₂/(m₁ +
+/// m₂) with the ground's m₂ = ∞).
 struct Impact {
   int body = 0;
   std::string obstacle;            ///< empty where two bodies met
@@ -36,6 +41,7 @@ struct Impact {
   /// Of the obstacle's material across its normal, likewise.
   Eigen::Vector3d obstacle_sliding = Eigen::Vector3d::Zero();
   double mass = 0.0;               ///< of the body
+  bool held = false;               ///< RigidBody::held
   RigidMotionState before, after;  ///< `after`: zero where it has not ended
   /// What the discretization of time has put into all bodies meanwhile (EnergyAccount::of_method); negative: it has
   /// taken it away. Of older results it is not known.
@@ -43,11 +49,15 @@ struct Impact {
 
   /// Mean direction of the normal impulse, out of the obstacle or the other body; zero without one.
   [[nodiscard]] Eigen::Vector3d normal() const;
+  /// Of two bodies: the first, or the other one, is held, and the one that it meets is not.
+  [[nodiscard]] bool is_ground() const { return other && held && !other->held; }
+  [[nodiscard]] bool other_is_ground() const { return other && other->held && !held; }
   /// Of the centre of mass along the normal, relative to the obstacle or to the other body's; negative: it comes
   /// nearer.
   [[nodiscard]] double normal_velocity_before() const;
   [[nodiscard]] double normal_velocity_after() const;
-  /// The mass m for which ½ m v² is the energy of that approach: the body's, of two bodies m₁m₂/(m₁ + m₂).
+  /// The mass m for which ½ m v² is the energy of that approach: the body's, of two bodies m₁m₂/(m₁ + m₂) or, where
+  /// one is held, the other's.
   [[nodiscard]] double approach_mass() const;
   /// Of the centre of mass, across the normal; not relative to the obstacle or the other body.
   [[nodiscard]] Eigen::Vector3d tangential_velocity_before() const;

@@ -295,12 +295,14 @@ Impact ImpactRecorder::describe(const Interval& interval) const {
     result.obstacle_velocity = interval.travel / interval.pressing;
     result.obstacle_sliding = vector_of(interval.sliding) / interval.pressing;
   }
-  result.mass = rigid_.bodies()[static_cast<std::size_t>(place.body)].mass;
+  const RigidBody& body = rigid_.bodies()[static_cast<std::size_t>(place.body)];
+  result.mass = body.mass;
+  result.held = body.held;
   result.before = motion(interval.before);
   if (result.ended) result.after = motion(interval.after);
   if (place.other >= 0) {
-    result.other = OtherBody{
-        place.other, rigid_.bodies()[static_cast<std::size_t>(place.other)].mass, motion(interval.other_before), {}};
+    const RigidBody& other = rigid_.bodies()[static_cast<std::size_t>(place.other)];
+    result.other = OtherBody{place.other, other.mass, motion(interval.other_before), {}, other.held};
     if (result.ended) result.other->after = motion(interval.other_after);
   }
   result.method_energy = (result.ended ? interval.method_after : method_before_) - interval.method_before;

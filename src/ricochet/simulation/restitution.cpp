@@ -15,23 +15,27 @@ constexpr double slowest_beside_sliding = 0.01, slowest_beside_others = 0.1;
 
 namespace {
 
-/// Twice the energy of spin and vibrations over the mass: the square of their speed.
-double squared_speed_of_others(double mass, const RigidMotionState& motion) {
-  const double energy = motion.kinetic_energy - 0.5 * mass * motion.velocity.squaredNorm();
+/// Twice the energy of spin and vibrations over the mass: the square of their speed. All that a held body does is
+/// vibration.
+double squared_speed_of_others(double mass, const RigidMotionState& motion, bool is_ground) {
+  const double of_centre = is_ground ? 0.0 : 0.5 * mass * motion.velocity.squaredNorm();
+  const double energy = motion.kinetic_energy - of_centre;
   return std::max(0.0, 2.0 * energy / mass);
 }
 
 /// Of spin and vibrations, of both bodies where there are two.
 double speed_of_others(const Impact& impact) {
-  double squared = squared_speed_of_others(impact.mass, impact.before);
-  if (impact.other) squared += squared_speed_of_others(impact.other->mass, impact.other->before);
+  double squared = squared_speed_of_others(impact.mass, impact.before, impact.is_ground());
+  if (impact.other)
+    squared += squared_speed_of_others(impact.other->mass, impact.other->before, impact.other_is_ground());
   return std::sqrt(squared);
 }
 
 /// Across the normal, against the obstacle or the other body.
 double sliding_speed(const Impact& impact) {
-  Eigen::Vector3d sliding = impact.tangential_velocity_before() - impact.obstacle_sliding;
-  if (impact.other) {
+  Eigen::Vector3d sliding = -impact.obstacle_sliding;
+  if (!impact.is_ground()) sliding += impact.tangential_velocity_before();
+  if (impact.other && !impact.other_is_ground()) {
     const Eigen::Vector3d& others = impact.other->before.velocity;
     sliding -= others - others.dot(impact.normal()) * impact.normal();
   }
@@ -40,8 +44,9 @@ double sliding_speed(const Impact& impact) {
 
 /// Along the normal, of one body against the other where there are two: what pulls both alike makes none.
 double velocity_by_other_forces(const Impact& impact) {
-  Eigen::Vector3d velocity = impact.other_impulse() / impact.mass;
-  if (impact.other) velocity -= impact.other_impulse_on_other() / impact.other->mass;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  if (!impact.is_ground()) velocity += impact.other_impulse() / impact.mass;
+  if (impact.other && !impact.other_is_ground()) velocity -= impact.other_impulse_on_other() / impact.other->mass;
   return std::abs(velocity.dot(impact.normal()));
 }
 

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "ricochet/simulation/held_bodies.hpp"
+
 namespace ricochet {
 
 RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> body_of_node, int count)
@@ -18,11 +20,20 @@ RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> bo
     nodes[b] += 1.0;
   }
   for (std::size_t b = 0; b < nodes.size(); ++b) origin_[b] /= nodes[b];
+  find_held();
   if (problem.axisymmetric) {
     measure_round_axis();
   } else {
     measure();
   }
+}
+
+void RigidBodies::find_held() {
+  if (problem_.supports.size() == 0) return;
+  std::vector<std::vector<Index>> members(bodies_.size());
+  for (Index node = 0; node < problem_.nodes.cols(); ++node)
+    members[static_cast<std::size_t>(body_of_node(node))].push_back(node);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].held = are_held_at_rest(problem_, members[b]);
 }
 
 Eigen::Vector3d RigidBodies::arm(Index node) const {

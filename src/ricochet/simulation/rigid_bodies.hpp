@@ -23,6 +23,7 @@ class RigidBodies {
 
  private:
   [[nodiscard]] Eigen::Vector3d arm(Index node) const;
+  void find_held();
   void measure();
   void measure_at(const Vector& displacement);
   void measure_round_axis();

@@ -11,6 +11,7 @@ struct RigidBody {
   double mass = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre; in the plane only its zz entry is used
+  bool held = false;                                  ///< supports, which do not move, leave it no rigid motion
 };
 
 /// Mean motion of a body and its energies.

@@ -1,10 +1,13 @@
 #include "ricochet/simulation/starting_state.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <string_view>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -172,13 +175,15 @@ namespace {
 
 /// A body that starts inside its obstacle is pushed out at once, which creates energy: rarely what was meant.
 void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
-  const auto [points, deepest] = points_inside(problem, state.displacement);
+  const PointsInside inside = points_inside(problem, state.displacement);
+  const auto& points = inside.points;
   if (points.empty()) return;
   log::warning(fmt::format(
       "at the start {} of {} {} inside their obstacle, the deepest by {:.3g}: they are "
       "pushed out at once, which creates energy; check where the obstacle is and on which side of it the body (a "
       "plane's normal points out of it, a sphere has a side), or start from initial.displacement = \"static\"",
-      points.size(), counted(problem.contact.size(), "contact point"), points.size() == 1 ? "is" : "are", deepest));
+      points.size(), counted(problem.contact.size(), "contact point"), points.size() == 1 ? "is" : "are",
+      inside.deepest));
 }
 
 }  // namespace
@@ -190,7 +195,9 @@ PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& dis
   for (Index i = 0; i < gap.size(); ++i) {
     if (!(gap[i] < -problem.contact.rows->gap_rounding[i])) continue;
     inside.points.push_back(i);
-    inside.deepest = std::max(inside.deepest, -gap[i]);
+    if (-gap[i] <= inside.deepest) continue;
+    inside.deepest = -gap[i];
+    inside.deepest_point = i;
   }
   return inside;
 }
@@ -233,15 +240,55 @@ void require_upright_cells(const SemidiscreteProblem& problem, const Vector& dis
 
 }  // namespace
 
+namespace {
+
+/// A body that starts inside of something is pushed out at once, whatever the loads are: where that leads nowhere, the
+/// reasons of the search are about what came of it.
+[[noreturn]] void refuse_static_from_inside(const SemidiscreteProblem& problem, const PointsInside& inside,
+                                            const Error& reason) {
+  Vector place = Vector::Zero(problem.dimension);
+  problem.contact.visit_own_nodes(inside.deepest_point,
+                                  [&](Index node, double weight) { place += weight * problem.nodes.col(node); });
+  const int contact = problem.contact.pair[static_cast<std::size_t>(inside.deepest_point)];
+  constexpr std::string_view key = "initial.displacement = \"static\": ";
+  std::string search = reason.what();
+  if (search.starts_with(key)) search.erase(0, key.size());
+  const bool at_obstacle = problem.obstacles[static_cast<std::size_t>(contact)] != nullptr;
+  throw Error(
+      reason.kind(),
+      fmt::format("initial.displacement = \"static\": without it {} of {} {} inside of {}, the deepest by {:.3g} at "
+                  "({:.6g}) (contact.{}), and pushing them out has led to no equilibrium. {}, so that no more overlaps "
+                  "than a press fit takes, a part of a cell; a body that nothing presses on another one needs a "
+                  "[[support]], or no static start. The search says: {}",
+                  inside.points.size(), counted(problem.contact.size(), "contact point"),
+                  inside.points.size() == 1 ? "is" : "are", at_obstacle ? "their obstacle" : "the other body",
+                  inside.deepest, fmt::join(place, ", "), contact,
+                  at_obstacle ? "Move the obstacle or the body (a plane's normal points out of it, a sphere has a side)"
+                              : "Move the bodies apart",
+                  search));
+}
+
+StaticEquilibrium find_static_equilibrium(const SemidiscreteProblem& problem, const Vector& velocity,
+                                          const StepSolverOptions& options) {
+  const Vector undeformed = Vector::Zero(problem.dof_count());
+  try {
+    return problem.internal_force->is_linear() ? static_equilibrium(problem, undeformed, velocity, options)
+                                               : finite_equilibrium(problem, undeformed, options);
+  } catch (const Error& reason) {
+    const PointsInside inside = points_inside(problem, undeformed);
+    if (inside.points.empty()) throw;
+    refuse_static_from_inside(problem, inside, reason);
+  }
+}
+
+}  // namespace
+
 State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial, double step,
                           const StepSolverOptions& options) {
   State state;
   Vector pressed;
   if (initial.static_equilibrium) {
-    const Vector undeformed = Vector::Zero(problem.dof_count());
-    StaticEquilibrium equilibrium = problem.internal_force->is_linear()
-                                        ? static_equilibrium(problem, undeformed, initial.velocity, options)
-                                        : finite_equilibrium(problem, undeformed, options);
+    StaticEquilibrium equilibrium = find_static_equilibrium(problem, initial.velocity, options);
     state.displacement = std::move(equilibrium.displacement);
     pressed = std::move(equilibrium.normal_reaction);
     log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(problem, state.displacement)));

@@ -17,6 +17,7 @@ struct InitialConditions {
 struct PointsInside {
   std::vector<Index> points;
   double deepest = 0.0;  ///< of them, positive
+  Index deepest_point = -1;
 };
 [[nodiscard]] PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& displacement);
 

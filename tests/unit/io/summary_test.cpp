@@ -108,6 +108,7 @@ TEST_F(SummaryTest, KeepsBothBodiesOfAnImpact) {
   summary.bodies.push_back({{}, 0.2, "body \"two\""});
   summary.bodies[0].rigid.mass = 2.0;
   summary.bodies[1].rigid.mass = 3.0;
+  summary.bodies[1].rigid.held = true;
   Impact impact;
   impact.mass = 2.0;
   impact.before.velocity = {1.0, 0.0, 0.0};
@@ -116,6 +117,7 @@ TEST_F(SummaryTest, KeepsBothBodiesOfAnImpact) {
   impact.other = OtherBody{1, 3.0, {}, {}};
   impact.other->before = {{0.25, 0.5, 0.0}, {0.0, 0.0, 7.0}, 11.0, 10.0};
   impact.other->after = {{1.25, 0.5, 0.0}, {0.0, 0.0, 8.0}, 13.0, 12.0};
+  impact.other->held = true;
   summary.impacts.push_back(impact);
   summary.impacts.push_back(impact);
   summary.impacts[1].other.reset();
@@ -127,6 +129,8 @@ TEST_F(SummaryTest, KeepsBothBodiesOfAnImpact) {
   const OtherBody& other = *back.impacts[0].other;
   EXPECT_EQ(other.number, 1);
   EXPECT_EQ(other.mass, 3.0);
+  EXPECT_TRUE(other.held);
+  EXPECT_FALSE(back.impacts[0].held);
   EXPECT_EQ(other.before.velocity, impact.other->before.velocity);
   EXPECT_EQ(other.after.spin, impact.other->after.spin);
   EXPECT_EQ(other.after.kinetic_energy, 13.0);

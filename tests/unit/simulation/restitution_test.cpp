@@ -153,6 +153,39 @@ TEST(Restitution, OfTwoBodiesIsNoneWhereOtherThingsMakeTheVelocityAfter) {
   expect_none(falls, "other forces gave them");
 }
 
+/// Supports that hold the second body put any impulse into it. It is a part of the ground, and what its centre does is
+/// vibration, whichever of the two is named first.
+TEST(Restitution, OfABodyThatMeetsAHeldOneIsItsOwn) {
+  Impact onto_held = impact_of_two();
+  onto_held.other->held = true;
+  onto_held.other->before = onto_held.other->after = {};
+  onto_held.other->after.velocity = {0.0, -0.3, 0.0};
+  EXPECT_NEAR(onto_held.normal_velocity_before(), -1.0, 1e-15);
+  EXPECT_NEAR(onto_held.normal_velocity_after(), 0.5, 1e-15);
+  EXPECT_EQ(onto_held.approach_mass(), 2.0);
+  ASSERT_TRUE(onto_held.restitution().has_value()) << why_no_restitution(onto_held);
+  EXPECT_NEAR(*onto_held.restitution(), 0.5, 1e-15);
+  Impact exchanged = onto_held;
+  exchanged.held = true;
+  std::swap(exchanged.mass, exchanged.other->mass);
+  exchanged.other->held = false;
+  std::swap(exchanged.before, exchanged.other->before);
+  std::swap(exchanged.after, exchanged.other->after);
+  exchanged.impulse = exchanged.normal_impulse = -onto_held.impulse;
+  EXPECT_EQ(exchanged.approach_mass(), 2.0);
+  ASSERT_TRUE(exchanged.restitution().has_value()) << why_no_restitution(exchanged);
+  EXPECT_NEAR(*exchanged.restitution(), 0.5, 1e-15);
+  // Whatever it does before is vibration; of two that are held there is none, as each gets impulses from its supports.
+  Impact vibrates = onto_held;
+  vibrates.other->before.velocity = {0.0, 30.0, 0.0};
+  vibrates.other->before.kinetic_energy = 0.5 * 30.0 * 30.0;
+  expect_none(vibrates, "spins and vibrations");
+  Impact both = onto_held;
+  both.held = true;
+  both.after.velocity = {0.0, 100.0, 0.0};
+  expect_none(both, "other forces gave them");
+}
+
 /// At an approach of 1 the energy of a body of mass 2 is 1, and of a restitution of 0.5 the body has lost 0.75.
 TEST(Restitution, IsInexactWhereTheMethodDidATenthOfIt) {
   Impact lossy = impact(3.0, 1.0);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/mesh/merge_parts.hpp"
 #include "support/case_run.hpp"
 #include "support/two_bodies.hpp"
@@ -58,6 +59,25 @@ TEST(BodyPairs, RefuseBodiesThatOverlap) {
   // Closed gaps and a press fit are asked for.
   const CaseRun closed(case_of(overlap, pair_of("upper.y0", "lower.y1", "initial_gap = \"closed\"\n")));
   EXPECT_EQ(closed.problem().contact.initial_gap.minCoeff(), 0.0);
+}
+
+/// pair_at takes the body of `group` 0.05 too far, whichever side carries the multipliers.
+TEST(BodyPairs, WarnOfBodiesThatOverlapWherePaired) {
+  const std::string mesh = write_blocks(1, 0.2);
+  for (const std::string side : {"group", "against"}) {
+    const auto warnings = [&](const std::string& more) {
+      const log::Silence silence;
+      const CaseRun run(case_of(mesh, pair_of("upper.y0", "lower.y1", "multipliers_on = \"" + side + "\"\n" + more)));
+      return run.session().warnings();
+    };
+    EXPECT_TRUE(warnings("pair_at = [0.0, -0.2]\n").empty()) << side;
+    EXPECT_TRUE(warnings("pair_at = [0.0, -0.15]\n").empty()) << side;
+    EXPECT_TRUE(warnings("pair_at = [0.0, -0.25]\ninitial_gap = \"closed\"\n").empty()) << side;
+    const std::vector<std::string> told = warnings("pair_at = [0.0, -0.25]\n");
+    ASSERT_EQ(told.size(), 1U) << side;
+    for (const std::string part : {"overlap where pair_at puts them", "the deepest by 0.05 at ("})
+      EXPECT_NE(told[0].find(part), std::string::npos) << told[0];
+  }
 }
 
 TEST(BodyPairs, RefuseGroupsThatNeverFaceEachOther) {

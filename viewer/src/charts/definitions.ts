@@ -20,7 +20,7 @@ export interface ChartDefinition {
 
 const energies = ["total_energy", "kinetic_energy", "elastic_energy", "load_potential", "algorithmic_energy"];
 const works = ["load_work", "contact_work", "friction_work", "support_work", "obstacle_work", "damping_work",
-  "numerical_dissipation", "energy_residual"];
+  "viscous_dissipation", "numerical_dissipation", "integration_error", "energy_residual"];
 const counts = ["active_contacts", "sticking", "slipping"];
 const others = ["max_penetration", "max_rotation", "iterations"];
 

@@ -229,7 +229,8 @@ export interface Summary {
   probes: { name: string; position: number[]; distance: number; in_contact_boundary: boolean }[];
   checks: Record<string, CheckOutcome>;
   warnings: string[];
-  bodies: { mass: Value; name?: string }[];
+  /** `held`: supports at rest hold it; not in results of older versions. */
+  bodies: { mass: Value; name?: string; held?: boolean }[];
   impacts: Impact[];
   impacts_left_out: number;
   peak_stress: PeakStress | null;

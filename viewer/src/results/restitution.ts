@@ -19,10 +19,12 @@ const acts = (run: Run, work: string): boolean => {
   return Math.max(Math.abs(low), Math.abs(high)) > 0;
 };
 
-/** The mass that the energy of the approach is reckoned with: of two bodies m₁m₂/(m₁ + m₂). */
+/** The mass that the energy of the approach is reckoned with: of two bodies m₁m₂/(m₁ + m₂), of one that meets a held one its own. */
 function approachMass(run: Run, { body, against }: Impact): number {
-  const mass = toNumber(run.summary.bodies[body]?.mass);
-  const other = against ? toNumber(run.summary.bodies[against.body]?.mass) : Infinity;
+  const [own, opposite] = [run.summary.bodies[body], against ? run.summary.bodies[against.body] : undefined];
+  const mass = toNumber(own?.mass);
+  const other = against ? toNumber(opposite?.mass) : Infinity;
+  if (against && Boolean(own?.held) !== Boolean(opposite?.held)) return own?.held ? other : mass;
   return Number.isFinite(other) ? (mass * other) / (mass + other) : mass;
 }
 

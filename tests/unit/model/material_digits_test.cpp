@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "support/case_run.hpp"
+
+/// @file Material data beside which nothing is left of other data: refused at the place where they are.
+namespace ricochet {
+namespace material_digits_test {
+
+using test_support::CaseRun;
+
+/// Line 3 is the first of the material.
+std::string block(const std::string& material, const std::string& support = "") {
+  const std::string mesh = test_support::mesh_geometry(
+      "material-digits",
+      "Rectangle(1) = {0, 0, 0, 1, 1};\nPhysical Surface(\"body\") = {1};\nPhysical Curve(\"bottom\") = {1};\n", 0.5,
+      1);
+  return fmt::format(
+      "[mesh]\nfile = \"{}\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\n{}\n{}"
+      "[initial]\nvelocity = [0.0, -1.0]\n[time]\nstep = 0.01\nend = 0.02\n",
+      mesh, material, support);
+}
+
+std::string refusal(const std::string& material) {
+  try {
+    const log::Silence silence;
+    const CaseRun run(block(material));
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::invalid_input) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MaterialDigits, WhatLeavesNoneIsRefused) {
+  struct Absurd {
+    std::string material, place, reason;
+  };
+  const std::string rubber = "law = \"neo-hookean\"\nyoung = 100.0\npoisson = 0.3\n";
+  const std::vector<Absurd> all{
+      {rubber + "relaxation = {modulus = [1.0, 1e30], time = [1.0, 2.0]}", ":9:", "\"modulus\" sum to 1e+30"},
+      {"law = \"mooney-rivlin\"\nc10 = 10.0\nc01 = 0.0\nbulk_modulus = 1e30", ":9:16: ", "bulk modulus 1e+30"},
+      {"law = \"mooney-rivlin\"\nc10 = 1.0\nc01 = -0.9999999999999999\nbulk_modulus = 100.0",
+       ":9:16: ", "shear modulus 2.22e-16"},
+      {"young = 100.0\npoisson = 0.4999999999999999", ":7:11: ", "hardly a digit of the other"},
+      {"young = 1e30\npoisson = 0.3", ":6:9: ", "no digit is left of the inertia"},
+      {"lambda = 1.0\nmu = 1e30", ":7:6: ", "no digit is left of the inertia"},
+  };
+  for (const Absurd& absurd : all) {
+    const std::string message = refusal(absurd.material);
+    EXPECT_NE(message.find(absurd.place), std::string::npos) << message;
+    EXPECT_NE(message.find(absurd.reason), std::string::npos) << message;
+    EXPECT_EQ(message.find("Cholesky"), std::string::npos) << message;
+  }
+}
+
+TEST(MaterialDigits, WhatLeavesSomeRuns) {
+  EXPECT_EQ(
+      refusal("law = \"neo-hookean\"\nyoung = 100.0\npoisson = 0.3\nrelaxation = {modulus = [1e6], time = [1.0]}"), "");
+  EXPECT_EQ(refusal("young = 100.0\npoisson = 0.499999"), "");
+  EXPECT_EQ(refusal("young = 1e10\npoisson = 0.3"), "");
+  // Supports hold a body of any stiffness.
+  const CaseRun held(
+      block("young = 1e30\npoisson = 0.3", "[[support]]\ngroup = \"bottom\"\ncomponents = [\"x\", \"y\"]\n"));
+  EXPECT_EQ(held.state().step, 0);
+}
+
+}  // namespace material_digits_test
+}  // namespace ricochet

@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "ricochet/base/error.hpp"
+#include "support/case_run.hpp"
+
+/// @file Static starts of bodies that are inside of an obstacle: a press fit is found, and of all else the error says
+/// so.
+namespace ricochet {
+namespace static_overlap_test {
+
+using test_support::CaseRun;
+
+/// A unit square of E = 100 whose lower side is `depth` inside of the floor.
+std::string square(const std::string& law, double depth, const std::string& held) {
+  const std::string mesh = test_support::mesh_geometry(
+      "static-overlap",
+      "Rectangle(1) = {0, 0, 0, 1, 1};\nPhysical Surface(\"body\") = {1};\nPhysical Curve(\"bottom\") = {1};\n"
+      "Physical Curve(\"top\") = {3};\n",
+      0.25, 1);
+  return fmt::format(
+      "[mesh]\nfile = \"{}\"\n[[material]]\ngroup = \"body\"\ndensity = 1.0\nlaw = \"{}\"\nyoung = 100.0\npoisson = "
+      "0.3\n"
+      "[obstacle.floor]\ntype = \"plane\"\npoint = [0, {}]\nnormal = [0, 1]\n[[contact]]\ngroup = \"bottom\"\n"
+      "obstacle = \"floor\"\n[[support]]\ngroup = \"top\"\ncomponents = {}\n[initial]\ndisplacement = \"static\"\n"
+      "[time]\nstep = 0.01\nend = 0.05\n",
+      mesh, law, depth, held);
+}
+
+TEST(StaticOverlap, SmallOnesOfHeldBodiesArePressFits) {
+  for (const std::string law : {"linear", "neo-hookean"}) {
+    const CaseRun run(square(law, 0.05, "[\"x\", \"y\"]"));
+    Vector gap;
+    run.problem().gaps(run.state().displacement, 0.0, gap);
+    EXPECT_LT(gap.cwiseAbs().maxCoeff(), 1e-12) << law;
+    EXPECT_GT(run.state().forces.normal_reaction.minCoeff(), 0.0) << law;
+  }
+}
+
+TEST(StaticOverlap, IsWhatTheErrorIsAbout) {
+  const std::vector<std::pair<std::string, std::string>> cases{{"linear", square("linear", 0.5, "[\"x\"]")},
+                                                               {"free", square("neo-hookean", 0.5, "[\"x\"]")},
+                                                               {"held", square("neo-hookean", 0.5, "[\"x\", \"y\"]")}};
+  for (const auto& [what, text] : cases) {
+    try {
+      const CaseRun run(text);
+      FAIL() << what;
+    } catch (const Error& error) {
+      const std::string message = error.what();
+      for (const std::string part :
+           {"initial.displacement = \"static\": without it 5 of 5 contact points are inside of",
+            "the deepest by 0.5 at (", ", 0) (contact.0)", "Move the obstacle or the body"})
+        EXPECT_NE(message.find(part), std::string::npos) << what << ": " << message;
+    }
+  }
+}
+
+/// Where nothing overlaps at the start the reasons are those of the search.
+TEST(StaticOverlap, IsNotSaidWhereThereIsNone) {
+  for (const std::string law : {"linear", "neo-hookean"}) {
+    std::string text = square(law, -0.1, "[\"x\"]");
+    text.insert(text.find("[initial]"), "[load]\ngravity = [0.0, 1.0]\n");
+    try {
+      const CaseRun run(text);
+      FAIL() << law;
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).find("without it"), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace static_overlap_test
+}  // namespace ricochet
