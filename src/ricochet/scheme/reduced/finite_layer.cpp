@@ -48,31 +48,15 @@ std::vector<OperatorCoefficients> FiniteLayer::operators(const SemidiscreteProbl
   return {layer, midpoint};
 }
 
-/// L̄, the part of it that varies, and ½(L₁ − L₀).
-void FiniteLayer::take_loads(const SemidiscreteProblem& problem, double step, const State& state) {
-  load_ = problem.loads.constant();
-  has_end_load_ = problem.loads.varies() || problem.pressure;
-  if (!problem.loads.varies()) {
-    if (has_end_load_) rise_.setZero(load_.size());
-    return;
-  }
-  problem.loads.varying(state.time, product_);
-  problem.loads.varying(state.time + step, rise_);
-  varying_load_ = 0.5 * (product_ + rise_);
-  rise_ -= varying_load_;
-  load_ += varying_load_;
-}
-
 void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const State& state) {
-  take_loads(problem, step, state);
-  end_time_ = state.time + step;
+  loads_.start(problem, step, state);
   base_ = state.displacement + (0.5 * step) * state.velocity;
   flight_->predict(state.displacement, state.velocity, step, end_);
   middle_ = 0.5 * (state.displacement + end_);
   relaxed_ = state.displacement;
   layer_energy_start_.reset();
   sigma_.start();
-  kinetic_ = 0.5 * problem.mass.form(state.velocity);
+  kinetic_ = kinetic_start_ = 0.5 * problem.mass.form(state.velocity);
   converged_ = false;
   lacked_ = std::numeric_limits<double>::infinity();
   lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
@@ -85,17 +69,6 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   energy_start_ = energy_step_ == state.step
                       ? kept_energy_
                       : stored_energy(*problem.internal_force, state.displacement, state.internal_strain);
-}
-
-/// P(x), and what acts at the end beside L̄.
-void FiniteLayer::evaluate_loads(const SemidiscreteProblem& problem, const State& state) {
-  if (problem.pressure) {
-    pressure_.setZero(middle_.size());
-    problem.pressure->add_mean_force(middle_, state.time, end_time_, pressure_);
-  }
-  if (!has_end_load_ || !layer_) return;
-  end_load_ = rise_;
-  if (problem.pressure) problem.pressure->add_force(end_, end_time_, end_load_);
 }
 
 /// f̄, p, f(u₁), and σ from the balance of energy at these.
@@ -112,7 +85,7 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   if (viscous != nullptr) viscous->add_mean_force(branches, force_);
   if (layer_) layer_->evaluate(end_, end_force_);
   if (layer_ && layer_->viscous() != nullptr) layer_->viscous()->add_end_force(branches, end_force_);
-  evaluate_loads(problem, state);
+  loads_.evaluate(problem, middle_, end_, layer_ != nullptr);
   if (!near) return;
   if (viscous != nullptr) viscous_dissipation_ = viscous->advance_internal(branches, internal_);
   energy_ = stored_energy(elastic, end_, internal_);
@@ -123,9 +96,9 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   // ΔW − (L̄+P(x))·Δ_c and what of the end's reactions is, which differ by (P(u₁)−P(x))·Δ_c − ½(L₁−L₀)·J + ρ·HΔ_c − d.
   // What L̄ and P(x) do there is in the work of D, too.
   const double at_end = end_load_work_ + work_at_end_ - dissipation_;
-  const double wanted = (energy_ - energy_start_) + viscous_dissipation_ - on_contact(problem, load_, increment_) -
-                        obstacle_work_ - end_weight_ * at_end;
-  product_ = load_ + mean_nodal_;
+  const double wanted = (energy_ - energy_start_) + viscous_dissipation_ -
+                        on_contact(problem, loads_.mean(), increment_) - obstacle_work_ - end_weight_ * at_end;
+  product_ = loads_.mean() + mean_nodal_;
   const double has = force_.dot(increment_) - on_contact(problem, product_, increment_);
   const double unit = strain_force_.dot(increment_);
   lacking_ = wanted - has - sigma_.value() * unit;
@@ -140,8 +113,9 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
 void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage) {
   product_ = middle_ - base_;
   problem.mass.multiply(product_, right_);
-  stage.right_hand_side = load_ - force_ - (4.0 / (step * step)) * right_;
-  if (problem.pressure) stage.right_hand_side += pressure_;
+  kinetic_ = kinetic_start_ + (4.0 / step) * (state.velocity + (2.0 / step) * product_).dot(right_);
+  stage.right_hand_side = loads_.mean() - force_ - (4.0 / (step * step)) * right_;
+  loads_.add_pressure(stage.right_hand_side);
   if (sigma_.value() != 0.0) stage.right_hand_side -= sigma_.value() * strain_force_;
   if (problem.has_damping()) {
     product_ = middle_ - state.displacement;
@@ -163,8 +137,8 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
 /// lagged rows.
 void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                   const State& state, StageSolve& stages, Stage& stage) {
-  right_ = load_ - end_force_ - 2.0 * stage.right_hand_side + row_force_;
-  if (has_end_load_) right_ += end_load_;
+  right_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side + row_force_;
+  if (loads_.change()) right_ += loads_.beside_at_end();
   layer_right_ = right_(problem.contact_dofs);
   const Vector& shift = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
@@ -240,25 +214,21 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   increment_ = end_ - state.displacement;
   const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
   if (viscous != nullptr) viscous->add_start_force(branches, relaxed_, end_force_);
-  if (has_end_load_) nodal_at_start_ = nodal_ + end_load_ - 2.0 * rise_;
-  const Vector& at_start = has_end_load_ ? nodal_at_start_ : nodal_;
-  right_ = load_ + at_start - end_force_;
+  at_start_ = loads_.mean() + nodal_;
+  if (loads_.change()) at_start_ += loads_.beside_at_start();
+  right_ = at_start_ - end_force_;
   layer_right_ = right_(problem.contact_dofs);
   const Vector& change = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) relaxed_[dof] += change[dof];
   // d: both energies are of the cells at contact nodes, as the others are the same.
   product_ = relaxed_ - state.displacement;
-  right_ = load_ + at_start;
   if (!layer_energy_start_) layer_energy_start_ = layer_->energy(state.displacement);
-  dissipation_ = on_contact(problem, right_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
+  dissipation_ = on_contact(problem, at_start_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
   if (viscous != nullptr)
     dissipation_ -= viscous->start_energy(branches, relaxed_) - viscous->start_energy(branches, state.displacement);
-  if (problem.loads.varies()) end_load_work_ = -on_contact(problem, rise_, product_);
+  end_load_work_ = -loads_.work_of_rise(problem.contact_dofs, product_);
   product_ = end_ - state.displacement;
-  if (problem.pressure) {
-    right_ = end_load_ - rise_ - pressure_;
-    end_load_work_ += on_contact(problem, right_, product_);
-  }
+  end_load_work_ += loads_.work_of_end_pressure(problem.contact_dofs, product_);
   work_at_end_ = on_contact(problem, nodal_, product_) -
                  obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step);
 }
@@ -283,11 +253,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   state.acceleration = (4.0 / (step * step)) * product_;
   follow_without_inertia(problem, increment, step, state);
   equations_.take_contact(stage, solution, step, state);
-  if (problem.loads.varies()) state.forces.varying_load = varying_load_;
-  if (problem.pressure) {
-    if (!problem.loads.varies()) state.forces.varying_load.setZero(pressure_.size());
-    state.forces.varying_load += pressure_;
-  }
+  loads_.take_varying(state.forces.varying_load);
   if (problem.has_damping()) {
     problem.damping.evaluate(increment, state.forces.damping_force);
     state.forces.damping_force *= 1.0 / step;
@@ -309,7 +275,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
 /// that makes or loses energy is none of this scheme: Error(not_converged).
 bool FiniteLayer::is_balanced(const Round& round) {
   constexpr double most = 1e-8;
-  const double size = kinetic_ + energy_start_ + energy_;
+  const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
   const bool is_exact = std::abs(lacking_) <= energy_tolerance * size;
   const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : std::abs(lacking_) > 0.5 * lacked_;
   lacked_ = std::abs(lacking_);

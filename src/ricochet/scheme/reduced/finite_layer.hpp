@@ -10,6 +10,7 @@
 #include "ricochet/scheme/reduced/end_contact.hpp"
 #include "ricochet/scheme/reduced/energy_secant.hpp"
 #include "ricochet/scheme/reduced/lagged_rows.hpp"
+#include "ricochet/scheme/reduced/step_loads.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -22,17 +23,17 @@
 ///   M (v₁−v₀)/h + (2/h) C (x−u₀) + D = L̄ on f,   D = L̄ + Hᵀρ̄ on c,   f(u₁) = L₁ + Hᵀρ on c,
 /// and Coulomb's law at the end. D has neither resultant nor moment about x beside contact and loads, so linear and
 /// angular momentum change by the impulses of these alone, whatever σ is. The number σ makes the work of D the change
-/// of the elastic energy. A rigid motion has no stress: bodies that spin do not swell. Reactions of the end that act over
-/// all of a step move contact nodes at its start, by J, to where W(u) − (L₀ + Hᵀρ)·u_c is least over u_c at u_f0. The
-/// works asked for,
+/// of the elastic energy. A rigid motion has no stress: bodies that spin do not swell. Reactions of the end that act
+/// over all of a step move contact nodes at its start, by J, to where W(u) − (L₀ + Hᵀρ)·u_c is least over u_c at u_f0.
+/// The works asked for,
 ///   D_f·Δ_f = ΔW − L̄·Δ_c − μ (ρ·HΔ_c − ½(L₁ − L₀)·J − d),   ρ̄ = (1−μ) ρ̄_path + μ ρ,
 ///   d = [W(u₀) − (L₀+Hᵀρ)·u_c0] − min over u_c of the same ≥ 0,
 /// are those of a body with a quadratic W at σ = 0, and make
 ///   E₁ − E₀ = work of L̄, supports and damping + μ (ρ·HΔ_c − ½(L₁ − L₀)·J − d):
 /// over the jump loads are those of the start. ρ·HΔ_c = −r_N·g₀ − Σ F r_N |Δy_T| ≤ 0 against planes.
 /// Where a pressure P(u, t) follows the surface, P(x), of the mean of the pressures at both ends, is added to L̄ in the
-/// equations at x, so that all round a body it has neither resultant nor moment about x, and P(u₁) to L₁ and L₀ in those
-/// at the end and of J. It works P(x)·Δ, and μ (P_c(u₁) − P_c(x))·Δ_c besides.
+/// equations at x, so that all round a body it has neither resultant nor moment about x, and P(u₁) to L₁ and L₀ in
+/// those at the end and of J. It works P(x)·Δ, and μ (P_c(u₁) − P_c(x))·Δ_c besides.
 ///
 /// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that J leads to a minimum, which
 /// is so while K_cc is positive definite on the way.
@@ -76,8 +77,6 @@ class FiniteLayer {
     Vector normal, tangential, acting_normal, acting_tangential;
   };
   void start(const SemidiscreteProblem& problem, double step, const State& state);
-  void evaluate_loads(const SemidiscreteProblem& problem, const State& state);
-  void take_loads(const SemidiscreteProblem& problem, double step, const State& state);
   /// Forces at the middle and at the end; near the solution also what the energy lacks, and σ for it.
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
   const StageSolution& solve_round(const SemidiscreteProblem& problem, ReactionMean mean, double step,
@@ -107,6 +106,7 @@ class FiniteLayer {
   Reactions reactions_;  ///< of the round before in this step; empty: there was none
   AndersonAcceleration acceleration_{8};
   StepEquations equations_;
+  StepLoads loads_;
   StepCorrections corrections_;
   long energy_step_ = -1;                     ///< the step whose end is known already
   double kept_energy_ = 0.0;                  ///< W there
@@ -114,19 +114,15 @@ class FiniteLayer {
   double viscous_dissipation_ = 0.0;          ///< 𝒟
   double energy_ = 0.0, energy_start_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
   bool converged_ = false;                          ///< places
-  double kinetic_ = 0.0;                            ///< at the start of the step
+  double kinetic_start_ = 0.0, kinetic_ = 0.0;      ///< at the ends of the step, the second of the round before
   double lacked_ = 0.0;                             ///< |lacking_| of the round before
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
-  double end_time_ = 0.0;
-  double end_load_work_ = 0.0;  ///< (P(u₁) − P(x))·Δ_c − ½(L₁ − L₀)·J
+  double end_load_work_ = 0.0;                      ///< (P(u₁) − P(x))·Δ_c − ½(L₁ − L₀)·J
   ObstacleMotion obstacle_;
-  bool has_end_load_ = false;  ///< loads that vary, or follow the surface
-  Vector load_, varying_load_, base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
-  Vector rise_, end_load_;  ///< ½(L₁ − L₀), and with P(u₁): what acts at the end beside L̄
-  Vector nodal_at_start_;   ///< Hᵀρ + P(u₁) − ½(L₁ − L₀)
-  Vector pressure_;         ///< P(x) with the mean of the pressures at both ends
-  Vector internal_;         ///< A₁
-  Vector relaxed_;          ///< u₀ + J
+  Vector base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
+  Vector at_start_;  ///< L₀ + P(u₁) + Hᵀρ
+  Vector internal_;  ///< A₁
+  Vector relaxed_;   ///< u₀ + J
   Vector product_, right_, layer_right_, damping_force_, before_, last_middle_, last_end_;
   Vector row_force_;  ///< of the reactions along rows that the solver had not
 };

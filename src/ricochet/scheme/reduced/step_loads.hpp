@@ -1,0 +1,39 @@
+#pragma once
+
+#include "ricochet/problem/semidiscrete_problem.hpp"
+#include "ricochet/scheme/state.hpp"
+
+/// @file Loads of a step whose forces act at its middle x, and whose contact nodes are in equilibrium at its end.
+namespace ricochet {
+
+/// Forces per dof: L̄ = ½(L₀+L₁) of loads that keep their direction, and P(x), of the mean of the pressures at both
+/// ends, of those that follow the surface, act over the step; L₁ and P(u₁) at its end.
+class StepLoads {
+ public:
+  void start(const SemidiscreteProblem& problem, double step, const State& state);
+  /// Pressures at these places; those of the end where contact nodes ask for them.
+  void evaluate(const SemidiscreteProblem& problem, const Vector& middle, const Vector& end, bool has_contact_nodes);
+
+  [[nodiscard]] const Vector& mean() const { return mean_; }
+  /// Whether anything acts at the ends of a step beside L̄.
+  [[nodiscard]] bool change() const { return varies_ || follows_; }
+  /// L₁ − L̄ + P(u₁), and the same with L₀.
+  [[nodiscard]] const Vector& beside_at_end() const { return at_end_; }
+  [[nodiscard]] auto beside_at_start() const { return at_end_ - 2.0 * rise_; }
+  void add_pressure(Vector& force) const {
+    if (follows_) force += pressure_;
+  }
+  /// (P(u₁) − P(x))·Δ on the given dofs, and ½(L₁ − L₀)·J.
+  [[nodiscard]] double work_of_end_pressure(const std::vector<Index>& dofs, const Vector& increment) const;
+  [[nodiscard]] double work_of_rise(const std::vector<Index>& dofs, const Vector& jump) const;
+  /// What of L̄ and P(x) is no constant, if anything.
+  void take_varying(Vector& varying_load) const;
+
+ private:
+  bool varies_ = false, follows_ = false;
+  double start_time_ = 0.0, end_time_ = 0.0;
+  Vector mean_, varying_, rise_;  ///< L̄, the part of it that varies, ½(L₁ − L₀)
+  Vector pressure_, at_end_;      ///< P(x), ½(L₁ − L₀) + P(u₁)
+};
+
+}  // namespace ricochet
