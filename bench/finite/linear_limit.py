@@ -30,7 +30,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 AGREEMENT = 1e-6
 LAWS = ("saint-venant-kirchhoff", "neo-hookean")
 # Parts that start at a distance: what moves them back by (1 - factor) of the gap.
-GAPS_OF_PARTS = {"bars-pair/pair": ("two", 0, 0.0005), "bars-pair/hammer": ("pile", 0, 0.0005)}
+GAPS_OF_PARTS = {"bars-pair/pair": ("two", 0, 0.0005), "bars-pair/hammer": ("pile", 0, 0.0005), "balls/balls": ("upper", 2, 4.76e-8),
+                 "balls/unequal": ("upper", 2, 3.57e-8), "ball-block/ball-block": ("ball", 2, 6.418e-8)}
 
 
 def scaled(value, factor):
@@ -102,7 +103,7 @@ def overrides(path, case, factor):
     key = f"{path.parent.name}/{path.stem}"
     if key in GAPS_OF_PARTS:
         part, axis, gap = GAPS_OF_PARTS[key]
-        move = list(case["part"][part]["move"])
+        move = list(case["part"][part].get("move", [0.0, 0.0, 0.0]))
         move[axis] -= (1.0 - factor) * gap
         settings[f"part.{part}.move"] = move
     return settings, notes
