@@ -1,5 +1,6 @@
 #include "ricochet/fem/branch_kernels.hpp"
 
+#include "ricochet/fem/node_packs.hpp"
 #include "ricochet/fem/symmetric_tensor.hpp"
 
 namespace ricochet {
@@ -32,22 +33,44 @@ struct BranchPack {
     return (static_cast<std::size_t>(point) * points.branches.size() + branch) * internal_components;
   }
   RICOCHET_PART_OF_CALLER Strain internal(std::size_t branch) const {
-    const double* const* const lanes = points.internal + pack * W;
+    const double* const* lanes = points.internal + pack * W;
+    const std::size_t from = place(branch);
+    Pack<4> parts[2][8];  // of four cells each: six components, and nothing
+    for (int k = 0; k < W / 4; ++k, lanes += 4) {
+      Pack<4>* const own = parts[k];
+      transpose(load<4>(lanes[0] + from), load<4>(lanes[1] + from), load<4>(lanes[2] + from), load<4>(lanes[3] + from),
+                own[0], own[1], own[2], own[3]);
+      if (d == 3) {
+        const auto tail = [&](int lane) RICOCHET_LAMBDA_OF_CALLER {
+          const Pack<2> two = load<2>(lanes[lane] + from + 4);
+          return __builtin_shufflevector(two, two, 0, 1, 0, 1);
+        };
+        transpose(tail(0), tail(1), tail(2), tail(3), own[4], own[5], own[6], own[7]);
+      }
+    }
     Strain result;
-    for_each_component(result, [&](int k, Number& component) RICOCHET_LAMBDA_OF_CALLER {
-      for (int lane = 0; lane < W; ++lane) component[lane] = lanes[lane][place(branch) + static_cast<std::size_t>(k)];
-    });
+    for_each_component(
+        result, [&](int k, Number& component) RICOCHET_LAMBDA_OF_CALLER { component = joined<W>(&parts[0][k], 8); });
     return result;
   }
   RICOCHET_PART_OF_CALLER void write(const Strain& from, std::size_t branch, double* const* next) const {
+    double* const* lanes = next + pack * W;
+    const std::size_t to = place(branch);
     Strain value = from;
-    for (int lane = 0; lane < W; ++lane) {
-      double* const cell = next[pack * W + lane];
-      if (cell == nullptr) continue;
-      double* const to = cell + place(branch);
-      for (Index k = Strain::components; k < internal_components; ++k) to[k] = 0.0;
-      for_each_component(value,
-                         [&](int k, const Number& component) RICOCHET_LAMBDA_OF_CALLER { to[k] = component[lane]; });
+    Number components[8] = {};
+    for_each_component(value,
+                       [&](int k, const Number& component) RICOCHET_LAMBDA_OF_CALLER { components[k] = component; });
+    for (int k = 0; k < W / 4; ++k, lanes += 4) {
+      Pack<4> heads[4], tails[4];
+      transpose(quarter<W>(components[0], k), quarter<W>(components[1], k), quarter<W>(components[2], k),
+                quarter<W>(components[3], k), heads[0], heads[1], heads[2], heads[3]);
+      transpose(quarter<W>(components[4], k), quarter<W>(components[5], k), Pack<4>{}, Pack<4>{}, tails[0], tails[1],
+                tails[2], tails[3]);
+      for (int lane = 0; lane < 4; ++lane) {
+        if (lanes[lane] == nullptr) continue;
+        store<4>(lanes[lane] + to, heads[lane]);
+        store<2>(lanes[lane] + to + 4, __builtin_shufflevector(tails[lane], tails[lane], 0, 1));
+      }
     }
   }
 };
@@ -91,6 +114,7 @@ template <int d>
 struct BranchWorks {
   BranchWork of;
   const BranchPoints<d>& points;
+  double* const* next;
   double* result;
 
   template <class T>
@@ -110,7 +134,9 @@ struct BranchWorks {
       Pack<W> sum{};
       for (std::size_t b = 0; b < points.branches.size(); ++b) {
         const auto& [modulus, rule] = points.branches[b];
-        sum += modulus * work(rule, at, pack.internal(b));
+        const Strain own = pack.internal(b);
+        sum += modulus * work(rule, at, own);
+        if (next != nullptr) pack.write(rule.next(at.middle, at.end, own), b, next);
       }
       store<W>(result + (pack.pack * points.points + pack.point) * W, sum);
     });
@@ -118,19 +144,15 @@ struct BranchWorks {
 };
 
 template <int d>
-struct BranchAdvance {
+struct BranchRelaxation {
   const BranchPoints<d>& points;
   double* const* next;
 
   template <int W>
   RICOCHET_PART_OF_CALLER void run() const {
-    using Strain = typename BranchPack<d, W>::Strain;
     for_each_pack<W>(points, [&](const BranchPack<d, W>& pack) RICOCHET_LAMBDA_OF_CALLER {
-      const BranchStrains<Strain> at = pack.strains();
-      for (std::size_t b = 0; b < points.branches.size(); ++b) {
-        pack.write(points.middle == nullptr ? at.at : points.branches[b].rule.next(at.middle, at.end, pack.internal(b)),
-                   b, next);
-      }
+      const auto strain = pack.deviator_at(points.at);
+      for (std::size_t b = 0; b < points.branches.size(); ++b) pack.write(strain, b, next);
     });
   }
 };
@@ -142,19 +164,19 @@ void find_branch_stresses(BranchStress of, const BranchPoints<d>& points, double
   run_in_packs(BranchStresses<d>{of, points, stresses});
 }
 template <int d>
-void find_branch_works(BranchWork of, const BranchPoints<d>& points, double* works) {
-  run_in_packs(BranchWorks<d>{of, points, works});
+void find_branch_works(BranchWork of, const BranchPoints<d>& points, double* const* next, double* works) {
+  run_in_packs(BranchWorks<d>{of, points, next, works});
 }
 template <int d>
-void advance_branches(const BranchPoints<d>& points, double* const* next) {
-  run_in_packs(BranchAdvance<d>{points, next});
+void relax_branches(const BranchPoints<d>& points, double* const* next) {
+  run_in_packs(BranchRelaxation<d>{points, next});
 }
 
 template void find_branch_stresses<2>(BranchStress, const BranchPoints<2>&, double*);
 template void find_branch_stresses<3>(BranchStress, const BranchPoints<3>&, double*);
-template void find_branch_works<2>(BranchWork, const BranchPoints<2>&, double*);
-template void find_branch_works<3>(BranchWork, const BranchPoints<3>&, double*);
-template void advance_branches<2>(const BranchPoints<2>&, double* const*);
-template void advance_branches<3>(const BranchPoints<3>&, double* const*);
+template void find_branch_works<2>(BranchWork, const BranchPoints<2>&, double* const*, double*);
+template void find_branch_works<3>(BranchWork, const BranchPoints<3>&, double* const*, double*);
+template void relax_branches<2>(const BranchPoints<2>&, double* const*);
+template void relax_branches<3>(const BranchPoints<3>&, double* const*);
 
 }  // namespace ricochet

@@ -42,13 +42,13 @@ enum class BranchWork {
   start_energy,  ///< the potential there
   dissipation    ///< of the step
 };
-/// Σ over the branches, one number per point and lane.
+/// Σ over the branches, one number per point and lane. With `next` (or null) A₁, per lane to where that says (null: a
+/// lane that is not used).
 template <int d>
-void find_branch_works(BranchWork of, const BranchPoints<d>& points, double* works);
+void find_branch_works(BranchWork of, const BranchPoints<d>& points, double* const* next, double* works);
 
-/// A₁, per lane to where `next` says (null: a lane that is not used); without `middle` the deviator at the
-/// displacement.
+/// Makes the deviator at the displacement the internal strain of all branches.
 template <int d>
-void advance_branches(const BranchPoints<d>& points, double* const* next);
+void relax_branches(const BranchPoints<d>& points, double* const* next);
 
 }  // namespace ricochet

@@ -21,10 +21,11 @@ struct ElasticCells::Blocks {
 
   Blocks(const Body& of, const NodeGraph* graph, const std::vector<int>& cells) : body(of), packs(of, graph, cells) {
     for (std::size_t b = 0; b < body.mesh->cells.size(); ++b) all.push_back(make(body.mesh->cells[b], packs.lanes(b)));
-    for (std::vector<double>* numbers : {&displacement, &increment, &force, &strain_force})
-      *numbers = packs.template room<d>();
+    displacement = packs.template room<d>();
+    if (graph == nullptr) return;  // neither forces nor branches
+    increment = force = strain_force = displacement;
     const auto relaxes = [](const Material& each) { return !each.relaxation.empty(); };
-    if (std::any_of(body.materials.begin(), body.materials.end(), relaxes)) end = at = packs.template room<d>();
+    if (std::any_of(body.materials.begin(), body.materials.end(), relaxes)) end = at = displacement;
   }
   /// Of a step of this length; 0: of an instant.
   void take_branches(double step) const {

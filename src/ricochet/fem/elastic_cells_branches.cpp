@@ -57,23 +57,31 @@ class ElasticCells::BranchStrips : public CellStrips<d> {
     ricochet::add_forces(strip, false, gradients.data(), result_.data(), forces);
   }
   [[nodiscard]] double work(BranchWork of, const PackStrip<d>& strip) {
-    find_branch_works(of, points(strip), result_.data());
+    find_branch_works(of, points(strip), nullptr, result_.data());
     return this->integral(strip, result_.data());
   }
-  /// To a vector of the same order.
-  void advance(const PackStrip<d>& strip, const BranchPlaces& places, Vector& next) {
-    next_.fill(nullptr);
-    this->for_each_lane(strip, [&](Index pack, int lane, Index, int) {
-      const std::size_t number = lane_number(strip, pack, lane);
-      next_[number] = next.data() + (internal_[number] - places.internal.data());
-    });
-    advance_branches(points(strip), next_.data());
+  /// Writes A₁ to a vector of the same order as A, and returns the dissipation.
+  [[nodiscard]] double advance(const PackStrip<d>& strip, const BranchPlaces& places, Vector& next) {
+    find_next(strip, places, next);
+    find_branch_works(BranchWork::dissipation, points(strip), next_.data(), result_.data());
+    return this->integral(strip, result_.data());
+  }
+  void relax(const PackStrip<d>& strip, const BranchPlaces& places, Vector& next) {
+    find_next(strip, places, next);
+    relax_branches(points(strip), next_.data());
   }
 
  private:
   static constexpr auto most_lanes = static_cast<std::size_t>(CellStrips<d>::points_at_once * most_pack_width);
   static std::size_t lane_number(const PackStrip<d>& strip, Index pack, int lane) {
     return static_cast<std::size_t>((pack - strip.begin) * strip.block.width + lane);
+  }
+  void find_next(const PackStrip<d>& strip, const BranchPlaces& places, Vector& next) {
+    next_.fill(nullptr);
+    this->for_each_lane(strip, [&](Index pack, int lane, Index, int) {
+      const std::size_t number = lane_number(strip, pack, lane);
+      next_[number] = next.data() + (internal_[number] - places.internal.data());
+    });
   }
   void read(Index part, const BranchPlaces& places) {
     if (places.step != nullptr) {
@@ -158,7 +166,7 @@ void ElasticCells::relax(const Vector& displacement, Vector& internal) const {
     constexpr int d = dimension;
     const BranchPlaces places{nullptr, &displacement, internal};
     sum_branches<d>(places, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
-      strips.advance(strip, places, internal);
+      strips.relax(strip, places, internal);
       return 0.0;
     });
   });
@@ -219,9 +227,7 @@ double ElasticCells::advance_internal(const BranchStep& step, Vector& internal) 
     constexpr int d = dimension;
     const BranchPlaces places{&step, nullptr, step.internal};
     return sum_branches<d>(places, [&](BranchStrips<d>& strips, const PackStrip<d>& strip) {
-      const double dissipation = strips.work(BranchWork::dissipation, strip);
-      strips.advance(strip, places, internal);
-      return dissipation;
+      return strips.advance(strip, places, internal);
     });
   });
 }

@@ -7,6 +7,37 @@
 /// source files only. Not part of the public interface.
 namespace ricochet {
 
+/// Rows a, b, c, e become columns.
+RICOCHET_PART_OF_CALLER void transpose(const Pack<4>& a, const Pack<4>& b, const Pack<4>& c, const Pack<4>& e,
+                                       Pack<4>& first, Pack<4>& second, Pack<4>& third, Pack<4>& fourth) {
+  const Pack<4> odd = __builtin_shufflevector(a, b, 0, 4, 2, 6), even = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Pack<4> next_odd = __builtin_shufflevector(c, e, 0, 4, 2, 6),
+                next_even = __builtin_shufflevector(c, e, 1, 5, 3, 7);
+  first = __builtin_shufflevector(odd, next_odd, 0, 1, 4, 5);
+  second = __builtin_shufflevector(even, next_even, 0, 1, 4, 5);
+  third = __builtin_shufflevector(odd, next_odd, 2, 3, 6, 7);
+  fourth = __builtin_shufflevector(even, next_even, 2, 3, 6, 7);
+}
+
+/// Lanes 4k to 4k + 3.
+template <int W>
+RICOCHET_PART_OF_CALLER Pack<4> quarter(const Pack<W>& of, int k) {
+  if constexpr (W == 4) {
+    return of;
+  } else {
+    return k == 0 ? __builtin_shufflevector(of, of, 0, 1, 2, 3) : __builtin_shufflevector(of, of, 4, 5, 6, 7);
+  }
+}
+/// Of fours of lanes.
+template <int W>
+RICOCHET_PART_OF_CALLER Pack<W> joined(const Pack<4>* parts, int stride) {
+  if constexpr (W == 4) {
+    return parts[0];
+  } else {
+    return __builtin_shufflevector(parts[0], parts[stride], 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+}
+
 /// Four cells: components of their nodes at `slots`.
 template <int d>
 RICOCHET_PART_OF_CALLER void read_four(const double* numbers, const int* slots, Pack<4>* components) {
@@ -19,12 +50,8 @@ RICOCHET_PART_OF_CALLER void read_four(const double* numbers, const int* slots, 
   } else {
     const Pack<4> a = load<4>(numbers + 4 * slots[0]), b = load<4>(numbers + 4 * slots[1]),
                   c = load<4>(numbers + 4 * slots[2]), e = load<4>(numbers + 4 * slots[3]);
-    const Pack<4> xz = __builtin_shufflevector(a, b, 0, 4, 2, 6), y = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    const Pack<4> next_xz = __builtin_shufflevector(c, e, 0, 4, 2, 6),
-                  next_y = __builtin_shufflevector(c, e, 1, 5, 3, 7);
-    components[0] = __builtin_shufflevector(xz, next_xz, 0, 1, 4, 5);
-    components[1] = __builtin_shufflevector(y, next_y, 0, 1, 4, 5);
-    components[2] = __builtin_shufflevector(xz, next_xz, 2, 3, 6, 7);
+    Pack<4> rest;
+    transpose(a, b, c, e, components[0], components[1], components[2], rest);
   }
 }
 
