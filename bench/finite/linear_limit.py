@@ -12,7 +12,7 @@ the same one, times the factor. Exceptions, which the table names:
   and the curvature stays: fewer nodes touch than in the case. A bowl stays where it is.
 - Stiffness damping, which finite strain refuses, is left out.
 - Displacements are found to the rounding of positions, so a stiff body whose displacements are small already needs a larger factor.
-- With friction reduced-kane has the reactions of the end at finite strain, and so has the linear run here.
+- With friction, and between bodies, reduced-kane has the reactions of the end at finite strain, and so has the linear run here.
 - A run that takes longer than --seconds is stopped: the steps until then are compared.
 """
 
@@ -97,7 +97,7 @@ def overrides(path, case, factor):
     for name, entry in [("mesh", case["mesh"])] * ("file" in case.get("mesh", {})) + [(f"part.{name}", entry) for name, entry in case.get("part", {}).items()]:
         settings[f"{name}.file"] = str(path.parent / entry["file"])
     time = case["time"]
-    if time.get("scheme", "reduced-kane") == "reduced-kane" and "reaction_weight" not in time and any("friction" in contact for contact in case["contact"]):
+    if time.get("scheme", "reduced-kane") == "reduced-kane" and "reaction_weight" not in time and any("friction" in contact or "against" in contact for contact in case["contact"]):
         settings["time.reaction_weight"] = "end"
         notes.append("reactions of the end")
     key = f"{path.parent.name}/{path.stem}"

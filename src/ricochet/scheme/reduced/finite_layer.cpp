@@ -17,6 +17,8 @@ namespace {
 
 /// What the balance of energy of a step may lack, relative to kinetic and elastic energy.
 constexpr double energy_tolerance = 1e-15;
+/// The same where σ hardly changes the work (EnergySecant::is_weak): another σ there brings no more than rounding.
+constexpr double weak_energy_tolerance = 1e-14;
 /// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
 constexpr double near_solution = 1e-2;
 
@@ -276,7 +278,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
 bool FiniteLayer::is_balanced(const Round& round) {
   constexpr double most = 1e-8;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
-  const bool is_exact = std::abs(lacking_) <= energy_tolerance * size;
+  const bool is_exact = std::abs(lacking_) <= (sigma_.is_weak() ? weak_energy_tolerance : energy_tolerance) * size;
   const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : std::abs(lacking_) > 0.5 * lacked_;
   lacked_ = std::abs(lacking_);
   if (log::enabled(log::Level::debug)) {
