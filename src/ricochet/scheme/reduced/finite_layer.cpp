@@ -104,9 +104,10 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   const double has = force_.dot(increment_) - on_contact(problem, product_, increment_);
   const double unit = strain_force_.dot(increment_);
   lacking_ = wanted - has - sigma_.value() * unit;
-  const double least = energy_tolerance * std::abs(energy_start_ + energy_);
+  const double rounding = energy_tolerance * std::abs(energy_start_ + energy_);
+  const double least = sigma_.is_weak() ? weak_energy_tolerance / energy_tolerance * rounding : rounding;
   // What is rounding of the energies says nothing, least of all where the body hardly moves.
-  if (std::abs(lacking_) <= least || unit <= least * energy_tolerance) return;
+  if (std::abs(lacking_) <= least || unit <= rounding * energy_tolerance) return;
   if (sigma_.choose((wanted - has) / unit, lacking_, converged_))
     progress_.restart();  // the next correction is that of σ
 }
