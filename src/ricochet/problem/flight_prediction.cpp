@@ -66,7 +66,7 @@ void FlightPrediction::fit(const Vector& displacement, const Vector& velocity, d
     }
     const double angle = 2.0 * std::atan(0.5 * step * flight.spin.norm());
     if (angle > 0.0) flight.rotation = Eigen::AngleAxisd(angle, flight.spin.normalized()).toRotationMatrix();
-    if (flight.rotation.allFinite()) continue;
+    if (flight.rotation.allFinite() && flight.spin.allFinite() && flight.centre.allFinite()) continue;
     flight.spin.setZero();
     flight.rotation.setIdentity();
   }

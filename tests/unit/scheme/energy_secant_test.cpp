@@ -15,7 +15,7 @@ int rounds_to_balance(double c, double slope, double tolerance) {
     const double asked = c + slope * secant.value();
     const double lacking = asked - secant.value();
     if (std::abs(lacking) <= tolerance) return round;
-    secant.choose(asked, lacking, true);
+    secant.choose(asked, lacking, 0.0, true);
   }
   return 1000;
 }
@@ -30,15 +30,15 @@ TEST(EnergySecant, FindsABalanceThatIsLinearInSigmaInThreeRounds) {
 TEST(EnergySecant, WaitsUntilPlacesHaveSettledWhereTheWorkHardlyAnswers) {
   EnergySecant secant;
   secant.start();
-  EXPECT_FALSE(secant.choose(0.01, 1.0, false));  // nothing is known of the slope yet
+  EXPECT_FALSE(secant.choose(0.01, 1.0, 0.0, false));  // nothing is known of the slope yet
   EXPECT_FALSE(secant.is_weak());
-  EXPECT_TRUE(secant.choose(0.0195, 1.0, false));  // 0.95 of it came back
+  EXPECT_TRUE(secant.choose(0.0195, 1.0, 0.0, false));  // 0.95 of it came back
   EXPECT_TRUE(secant.is_weak());
   const double kept = secant.value();
-  EXPECT_FALSE(secant.choose(0.5, 0.5, false));
-  EXPECT_FALSE(secant.choose(0.5, 0.5, false));
+  EXPECT_FALSE(secant.choose(0.5, 0.5, 0.0, false));
+  EXPECT_FALSE(secant.choose(0.5, 0.5, 0.0, false));
   EXPECT_EQ(secant.value(), kept);
-  EXPECT_TRUE(secant.choose(0.3, 0.3, false));
+  EXPECT_TRUE(secant.choose(0.3, 0.3, 0.0, false));
   EXPECT_NE(secant.value(), kept);
 }
 
@@ -47,17 +47,30 @@ TEST(EnergySecant, GivesUpWhereChangesBringNothingAndStaysWithinStrains) {
   secant.start();
   int changes = 0;
   while (!secant.is_settled() && changes < 100) {
-    secant.choose(1e3 + 0.9 * secant.value() + 0.05 * (changes % 2), 1.0, true);
+    secant.choose(1e3 + 0.9 * secant.value() + 0.05 * (changes % 2), 1.0, 0.0, true);
     EXPECT_LE(std::abs(secant.value()), 1.0);
     ++changes;
   }
   EXPECT_LT(changes, 20);
   const double last = secant.value();
-  EXPECT_FALSE(secant.choose(-0.5, 1.0, true));
+  EXPECT_FALSE(secant.choose(-0.5, 1.0, 0.0, true));
   EXPECT_EQ(secant.value(), last);
   secant.start();
   EXPECT_EQ(secant.value(), 0.0);
   EXPECT_FALSE(secant.is_settled());
+}
+
+/// Rounding in what is asked for would make any slope of it.
+TEST(EnergySecant, KeepsTheSlopeThatItHasWhereTheRestIsRounding) {
+  EnergySecant secant;
+  secant.start();
+  const auto asked_for = [](double sigma) { return 0.01 + 0.5 * sigma; };  // σ = 0.02
+  secant.choose(asked_for(0.0), 1e-2, 1e-12, true);
+  secant.choose(asked_for(secant.value()), 5e-3, 1e-12, true);
+  EXPECT_NEAR(secant.value(), 0.02, 1e-15);
+  secant.choose(secant.value() + 1e-16, 1e-16, 1e-12, true);
+  secant.choose(secant.value() - 3e-16, 3e-16, 1e-12, true);
+  EXPECT_NEAR(secant.value(), 0.02, 1e-15);
 }
 
 }  // namespace

@@ -12,9 +12,10 @@ class EnergySecant {
  public:
   /// Of a step: σ = 0.
   void start();
-  /// With the σ that the balance asks for at places that were found with value(), what that balance lacks, and whether
-  /// these places have converged. True where a weak σ was changed: corrections of places are judged anew.
-  bool choose(double asked, double lacking, bool has_converged);
+  /// With the σ that the balance asks for at places that were found with value(), what that balance lacks, the size
+  /// below which that is too near to rounding to tell a slope, and whether these places have converged. True where a
+  /// weak σ was changed: corrections of places are judged anew.
+  bool choose(double asked, double lacking, double near_rounding, bool has_converged);
   [[nodiscard]] double value() const { return sigma_; }
   [[nodiscard]] bool is_weak() const { return is_weak_; }
   /// Several changes in a row brought nothing: it stays as it is.
@@ -26,6 +27,7 @@ class EnergySecant {
   double sigma_ = 0.0;
   /// σ of the round before and what the balance of energy asked for then; NaN before the second round.
   double sigma_before_ = 0.0, asked_before_ = 0.0;
+  double slope_ = 0.0;  ///< dσ_asked/dσ, the last that could be told; NaN: none
   bool is_weak_ = false;
   int settling_ = 0, vain_ = 0;  ///< rounds with this σ; changes in a row that brought nothing
   double least_lacking_ = 0.0;

@@ -19,6 +19,8 @@ namespace {
 constexpr double energy_tolerance = 1e-15;
 /// The same where σ hardly changes the work (EnergySecant::is_weak): another σ there brings no more than rounding.
 constexpr double weak_energy_tolerance = 1e-14;
+/// Times energy_tolerance: what the balance lacks is too near to rounding to tell how it answers σ.
+constexpr double near_rounding = 1e3;
 /// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
 constexpr double near_solution = 1e-2;
 
@@ -95,11 +97,11 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
     elastic.evaluate(end_, product_);  // says which cell is turned inside out
     throw Error(ErrorKind::not_converged, "the elastic energy at the end of the step is no number");
   }
-  // ΔW − (L̄+P(x))·Δ_c and what of the end's reactions is, which differ by (P(u₁)−P(x))·Δ_c − ½(L₁−L₀)·J + ρ·HΔ_c − d.
-  // What L̄ and P(x) do there is in the work of D, too.
-  const double at_end = end_load_work_ + work_at_end_ - dissipation_;
+  // Less what P(x) does on contact nodes, which is in the work of D, too.
+  load_work_ = layer_ ? loads_.work_of_change(problem.contact_dofs, state.displacement, end_, middle_) : 0.0;
   const double wanted = (energy_ - energy_start_) + viscous_dissipation_ -
-                        on_contact(problem, loads_.mean(), increment_) - obstacle_work_ - end_weight_ * at_end;
+                        on_contact(problem, loads_.mean(), increment_) - load_work_ - obstacle_work_ -
+                        end_weight_ * (work_at_end_ - dissipation_);
   product_ = loads_.mean() + mean_nodal_;
   const double has = force_.dot(increment_) - on_contact(problem, product_, increment_);
   const double unit = strain_force_.dot(increment_);
@@ -108,7 +110,7 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   const double least = sigma_.is_weak() ? weak_energy_tolerance / energy_tolerance * rounding : rounding;
   // What is rounding of the energies says nothing, least of all where the body hardly moves.
   if (std::abs(lacking_) <= least || unit <= rounding * energy_tolerance) return;
-  if (sigma_.choose((wanted - has) / unit, lacking_, converged_))
+  if (sigma_.choose((wanted - has) / unit, lacking_, near_rounding * rounding, converged_))
     progress_.restart();  // the next correction is that of σ
 }
 
@@ -204,7 +206,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   }
   obstacle_work_ = obstacle_work(*stage.rows, solution.acting_normal(), solution.acting_tangential(), step);
   end_weight_ = solution.end_weight;
-  dissipation_ = work_at_end_ = end_load_work_ = 0.0;
+  dissipation_ = work_at_end_ = 0.0;
   if (end_weight_ == 0.0 || (solution.normal_reaction.isZero(0.0) && state.forces.normal_reaction.isZero(0.0))) {
     if (!problem.loads.varies()) {
       relaxed_ = state.displacement;
@@ -218,7 +220,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   const BranchStep branches{middle_, increment_, end_, state.internal_strain, step};
   if (viscous != nullptr) viscous->add_start_force(branches, relaxed_, end_force_);
   at_start_ = loads_.mean() + nodal_;
-  if (loads_.change()) at_start_ += loads_.beside_at_start();
+  if (loads_.change()) loads_.add_at_start(at_start_);
   right_ = at_start_ - end_force_;
   layer_right_ = right_(problem.contact_dofs);
   const Vector& change = MasslessLayer::solve_layer(problem, layer_right_, stages);
@@ -229,9 +231,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   dissipation_ = on_contact(problem, at_start_, product_) - (layer_->energy(relaxed_) - *layer_energy_start_);
   if (viscous != nullptr)
     dissipation_ -= viscous->start_energy(branches, relaxed_) - viscous->start_energy(branches, state.displacement);
-  end_load_work_ = -loads_.work_of_rise(problem.contact_dofs, product_);
   product_ = end_ - state.displacement;
-  end_load_work_ += loads_.work_of_end_pressure(problem.contact_dofs, product_);
   work_at_end_ = on_contact(problem, nodal_, product_) -
                  obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step);
 }
@@ -265,7 +265,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   if (problem.contact.follows_motion()) lagged_.remember(state);
   energy_step_ = state.step + 1;
   kept_energy_ = energy_;
-  corrections_ = {.load_work = end_weight_ * end_load_work_,
+  corrections_ = {.load_work = load_work_,
                   .numerical_dissipation = end_weight_ * dissipation_,
                   .integration_error = lacking_,
                   .viscous_dissipation = viscous_dissipation_};

@@ -26,14 +26,15 @@
 /// of the elastic energy. A rigid motion has no stress: bodies that spin do not swell. Reactions of the end that act
 /// over all of a step move contact nodes at its start, by J, to where W(u) − (L₀ + Hᵀρ)·u_c is least over u_c at u_f0.
 /// The works asked for,
-///   D_f·Δ_f = ΔW − L̄·Δ_c − μ (ρ·HΔ_c − ½(L₁ − L₀)·J − d),   ρ̄ = (1−μ) ρ̄_path + μ ρ,
+///   D_f·Δ_f = ΔW − L̄·Δ_c − ℓ − μ (ρ·HΔ_c − d),   ℓ = (L₁ − L₀)·(½(u₀+u₁) − x)_c,   ρ̄ = (1−μ) ρ̄_path + μ ρ,
 ///   d = [W(u₀) − (L₀+Hᵀρ)·u_c0] − min over u_c of the same ≥ 0,
 /// are those of a body with a quadratic W at σ = 0, and make
-///   E₁ − E₀ = work of L̄, supports and damping + μ (ρ·HΔ_c − ½(L₁ − L₀)·J − d):
-/// over the jump loads are those of the start. ρ·HΔ_c = −r_N·g₀ − Σ F r_N |Δy_T| ≤ 0 against planes.
+///   E₁ − E₀ = work of L̄, supports and damping + ℓ + μ (ρ·HΔ_c − d):
+/// L̄·Δ_c + ℓ is the work of loads that change linearly on contact nodes whose places over the step have the mean x (for
+/// μ = 1, J first: ℓ = −½(L₁−L₀)·J). ρ·HΔ_c = −r_N·g₀ − Σ F r_N |Δy_T| ≤ 0 against planes.
 /// Where a pressure P(u, t) follows the surface, P(x), of the mean of the pressures at both ends, is added to L̄ in the
-/// equations at x, so that all round a body it has neither resultant nor moment about x, and P(u₁) to L₁ and L₀ in
-/// those at the end and of J. It works P(x)·Δ, and μ (P_c(u₁) − P_c(x))·Δ_c besides.
+/// equations at x, so that all round a body it has neither resultant nor moment about x, P(u₁) to L₁, and
+/// P₀ = 2P(x) − P(u₁) to L₀.
 ///
 /// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that J leads to a minimum, which
 /// is so while K_cc is positive definite on the way.
@@ -45,7 +46,7 @@
 ///   P(u) = W(u) + Σ ∫ gμ (2(1−θ) |dev E(u) − A₀|² + 2(2θ−1) q₁ : E(u)) − (L₀ + Hᵀρ)·u_c,
 /// the works asked for are those above with V(u₁, A₁) − V(u₀, A₀) + 𝒟 for ΔW, with d = P(u₀) − min over u_c of P ≥ 0,
 /// so that
-///   E₁ − E₀ = work of loads, supports and damping + μ (ρ·HΔ_c − ½(L₁ − L₀)·J − d) − 𝒟,   d ≥ 0,   𝒟 ≥ 0:
+///   E₁ − E₀ = work of loads, supports and damping + ℓ + μ (ρ·HΔ_c − d) − 𝒟,   d ≥ 0,   𝒟 ≥ 0:
 /// no step creates energy, whatever h/τ is. Where V is quadratic in the displacement and the end reactions act, P is
 /// least at the displacement of E₀ + J, since its force there is 2D − f(u₁) = L₀ + Hᵀρ; then D works just that, and
 /// σ = 0.
@@ -117,10 +118,10 @@ class FiniteLayer {
   double kinetic_start_ = 0.0, kinetic_ = 0.0;      ///< at the ends of the step, the second of the round before
   double lacked_ = 0.0;                             ///< |lacking_| of the round before
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
-  double end_load_work_ = 0.0;                      ///< (P(u₁) − P(x))·Δ_c − ½(L₁ − L₀)·J
+  double load_work_ = 0.0;                          ///< of loads that change, beside their mean on the increment
   ObstacleMotion obstacle_;
   Vector base_, middle_, end_, increment_, force_, strain_force_, end_force_, nodal_, mean_nodal_;
-  Vector at_start_;  ///< L₀ + P(u₁) + Hᵀρ
+  Vector at_start_;  ///< L₀ + P₀ + Hᵀρ
   Vector internal_;  ///< A₁
   Vector relaxed_;   ///< u₀ + J
   Vector product_, right_, layer_right_, damping_force_, before_, last_middle_, last_end_;

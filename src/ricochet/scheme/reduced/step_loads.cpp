@@ -30,17 +30,14 @@ void StepLoads::evaluate(const SemidiscreteProblem& problem, const Vector& middl
   if (follows_) problem.pressure->add_force(end, end_time_, at_end_);
 }
 
-double StepLoads::work_of_end_pressure(const std::vector<Index>& dofs, const Vector& increment) const {
-  if (!follows_) return 0.0;
+double StepLoads::work_of_change(const std::vector<Index>& dofs, const Vector& start, const Vector& end,
+                                 const Vector& middle) const {
+  if (!change()) return 0.0;
   double sum = 0.0;
-  for (const Index dof : dofs) sum += (at_end_[dof] - rise_[dof] - pressure_[dof]) * increment[dof];
-  return sum;
-}
-
-double StepLoads::work_of_rise(const std::vector<Index>& dofs, const Vector& jump) const {
-  if (!varies_) return 0.0;
-  double sum = 0.0;
-  for (const Index dof : dofs) sum += rise_[dof] * jump[dof];
+  for (const Index dof : dofs) {
+    const double half_change = at_end_[dof] - (follows_ ? pressure_[dof] : 0.0);
+    sum += 2.0 * half_change * (0.5 * (start[dof] + end[dof]) - middle[dof]);
+  }
   return sum;
 }
 

@@ -17,15 +17,20 @@ class StepLoads {
   [[nodiscard]] const Vector& mean() const { return mean_; }
   /// Whether anything acts at the ends of a step beside L̄.
   [[nodiscard]] bool change() const { return varies_ || follows_; }
-  /// L₁ − L̄ + P(u₁), and the same with L₀.
+  /// L₁ − L̄ + P(u₁).
   [[nodiscard]] const Vector& beside_at_end() const { return at_end_; }
-  [[nodiscard]] auto beside_at_start() const { return at_end_ - 2.0 * rise_; }
+  /// Adds L₀ − L̄ + P₀, with P₀ = 2 P(x) − P(u₁).
+  void add_at_start(Vector& force) const {
+    force -= at_end_;
+    if (follows_) force += 2.0 * pressure_;
+  }
   void add_pressure(Vector& force) const {
     if (follows_) force += pressure_;
   }
-  /// (P(u₁) − P(x))·Δ on the given dofs, and ½(L₁ − L₀)·J.
-  [[nodiscard]] double work_of_end_pressure(const std::vector<Index>& dofs, const Vector& increment) const;
-  [[nodiscard]] double work_of_rise(const std::vector<Index>& dofs, const Vector& jump) const;
+  /// What loads that change linearly over the step work on the given dofs beside (L̄ + P(x))·(u₁ − u₀): as x is the mean
+  /// of their places, (L₁ − L₀ + P(u₁) − P₀)·(½(u₀+u₁) − x).
+  [[nodiscard]] double work_of_change(const std::vector<Index>& dofs, const Vector& start, const Vector& end,
+                                      const Vector& middle) const;
   /// What of L̄ and P(x) is no constant, if anything.
   void take_varying(Vector& varying_load) const;
 
