@@ -72,10 +72,10 @@ void TurnedFrame::turn(Vector& values) const {
 }
 
 /// Entries of a row come by ascending dof, those of a node together. Rows of a turned frame have all d of them.
-void TurnedFrame::turn_back(const SparseRowMatrix& rows, SparseRowMatrix& result) const {
+/// Calls entry(row, column, value) for all of H R, row by row, columns ascending.
+template <class Entry>
+void TurnedFrame::visit_turned(const SparseRowMatrix& rows, const Entry& visit) const {
   const int d = problem_.dimension;
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(rows.nonZeros() * d));
   for (Index row = 0; row < rows.rows(); ++row) {
     SparseRowMatrix::InnerIterator entry(rows, row);
     while (entry) {
@@ -84,9 +84,27 @@ void TurnedFrame::turn_back(const SparseRowMatrix& rows, SparseRowMatrix& result
       for (; entry && entry.col() / d == node; ++entry) value[entry.col() % d] = entry.value();
       const int body = bodies_.body_of_node(node);
       if (body >= 0) value = (rotation_[static_cast<std::size_t>(body)].transpose() * value).eval();
-      for (int k = 0; k < d; ++k) entries.emplace_back(static_cast<int>(row), static_cast<int>(node * d + k), value[k]);
+      for (int k = 0; k < d; ++k) visit(row, node * d + k, value[k]);
     }
   }
+}
+
+void TurnedFrame::turn_back(const SparseRowMatrix& rows, SparseRowMatrix& result) const {
+  if (result.rows() == rows.rows() && result.cols() == rows.cols() && result.isCompressed()) {
+    Index at = 0;
+    bool same = true;
+    visit_turned(rows, [&](Index row, Index column, double value) {
+      same = same && at < result.outerIndexPtr()[row + 1] && at >= result.outerIndexPtr()[row] &&
+             result.innerIndexPtr()[at] == column;
+      if (same) result.valuePtr()[at++] = value;
+    });
+    if (same && at == result.nonZeros()) return;
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(rows.nonZeros() * problem_.dimension));
+  visit_turned(rows, [&](Index row, Index column, double value) {
+    entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+  });
   result.resize(rows.rows(), rows.cols());
   result.setFromTriplets(entries.begin(), entries.end());
 }

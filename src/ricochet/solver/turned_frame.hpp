@@ -38,6 +38,8 @@ class TurnedFrame {
 
  private:
   static constexpr double slack = 0.02;
+  template <class Entry>
+  void visit_turned(const SparseRowMatrix& rows, const Entry& visit) const;
 
   const SemidiscreteProblem& problem_;
   BodyRotations bodies_;

@@ -30,6 +30,12 @@ double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vec
   return sum;
 }
 
+/// Those of contact dofs. (Eigen's indexed views copy their indices.)
+void take_contact(const SemidiscreteProblem& problem, const Vector& values, Vector& result) {
+  result.resize(static_cast<Index>(problem.contact_dofs.size()));
+  for (Index i = 0; i < result.size(); ++i) result[i] = values[problem.contact_dofs[static_cast<std::size_t>(i)]];
+}
+
 }  // namespace
 
 void FiniteLayer::analyse(const SemidiscreteProblem& problem) {
@@ -64,7 +70,7 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   converged_ = false;
   lacked_ = std::numeric_limits<double>::infinity();
   lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
-  reactions_.normal.resize(0);
+  has_reactions_ = false;
   acceleration_.restart();
   if (problem.contact.follows_motion()) lagged_.start(state);
   row_force_.setZero(problem.dof_count());
@@ -127,7 +133,7 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
     problem.damping.evaluate(product_, damping_force_);
     stage.right_hand_side -= (2.0 / step) * damping_force_;
   }
-  if (problem.contact.follows_motion() && reactions_.normal.size() > 0) {
+  if (problem.contact.follows_motion() && has_reactions_) {
     row_force_.setZero();
     lagged_.add_difference(reactions_.normal, reactions_.tangential, row_force_);
     stage.right_hand_side += row_force_;
@@ -144,7 +150,7 @@ void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMe
                                   const State& state, StageSolve& stages, Stage& stage) {
   right_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side + row_force_;
   if (loads_.change()) right_ += loads_.beside_at_end();
-  layer_right_ = right_(problem.contact_dofs);
+  take_contact(problem, right_, layer_right_);
   const Vector& shift = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
   lagged_.let_go();
@@ -166,8 +172,11 @@ FiniteLayer::Round FiniteLayer::correct(const SemidiscreteProblem& problem, cons
   Round round{(product_ - last_end_).lpNorm<Eigen::Infinity>(), 0.0};
   round.correction = std::max(round.correction, 2.0 * (middle_ - last_middle_).lpNorm<Eigen::Infinity>());
   end_ = product_;
-  reactions_ = {solution.normal_reaction, solution.tangential_reaction, solution.acting_normal(),
-                solution.acting_tangential()};
+  has_reactions_ = true;
+  reactions_.normal = solution.normal_reaction;
+  reactions_.tangential = solution.tangential_reaction;
+  reactions_.acting_normal = solution.acting_normal();
+  reactions_.acting_tangential = solution.acting_tangential();
   // Of the step less that of a free flight: what forces do.
   round.increment = 2.0 * (middle_ - base_).lpNorm<Eigen::Infinity>();
   return round;
@@ -222,7 +231,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   at_start_ = loads_.mean() + nodal_;
   if (loads_.change()) loads_.add_at_start(at_start_);
   right_ = at_start_ - end_force_;
-  layer_right_ = right_(problem.contact_dofs);
+  take_contact(problem, right_, layer_right_);
   const Vector& change = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) relaxed_[dof] += change[dof];
   // d: both energies are of the cells at contact nodes, as the others are the same.

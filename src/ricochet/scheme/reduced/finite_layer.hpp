@@ -104,7 +104,8 @@ class FiniteLayer {
   EnergySecant sigma_;
   EndContact contact_;
   LaggedRows lagged_;    ///< where rows follow the motion
-  Reactions reactions_;  ///< of the round before in this step; empty: there was none
+  Reactions reactions_;  ///< of the round before in this step, if there was one
+  bool has_reactions_ = false;
   AndersonAcceleration acceleration_{8};
   StepEquations equations_;
   StepLoads loads_;
