@@ -149,7 +149,7 @@ void HistoryRecorder::add_contact_force(const State& state) {
 
 void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
   if (finite_strain_) {
-    position_ = Vector(problem_.nodes.reshaped()) + state.displacement;
+    position_ = problem_.nodes.reshaped() + state.displacement;
     weigh_positions();
   }
   if (!problem_.mass.is_scalar()) problem_.mass.multiply(velocity, momentum_);

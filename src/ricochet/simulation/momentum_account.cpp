@@ -150,7 +150,11 @@ void MomentumAccount::enter_step(const State& state) {
   if (finite_strain_) {
     const Vector* const place = scheme_.place_of_forces();
     at_both_ends = place != nullptr && rule_.previous_weight != 0.0;
-    before_ = place != nullptr ? *place : Vector(0.5 * (before_ + state.displacement));
+    if (place != nullptr) {
+      before_ = *place;
+    } else {
+      before_ = 0.5 * (before_ + state.displacement);
+    }
     take_positions(before_);
     before_ = state.displacement;
   }
