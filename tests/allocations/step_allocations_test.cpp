@@ -64,9 +64,6 @@ std::vector<Variant> variants() {
           // Paths of a mean come and go with the points that press.
           {"ReducedKaneMean", "scheme = \"reduced-kane\"\n", "equivalent", "friction = 0.3\n", {}, false},
           {"ReducedKaneIterative", ends, "equivalent", "friction = 0.3\n", {"solver.method=iterative"}},
-          {"FiniteStrain", ends, "equivalent", "friction = 0.3\n", {"material.0.law=neo-hookean"}, false},
-          {"FiniteStrainNewmark", trapezoidal, "equivalent", "", {"material.0.law=neo-hookean"}, false},
-          {"FiniteStrainMean", "scheme = \"mean-reaction\"\n", "equivalent", "", {"material.0.law=neo-hookean"}, false},
           // Its contact at the middle of a step changes where that at the end does not.
           {"ReducedMidpoint", "scheme = \"reduced-midpoint\"\n", "equivalent", "", {}, false},
           {"Kane", "scheme = \"kane\"\n", "consistent", "friction = 0.3\n", {}, false},
