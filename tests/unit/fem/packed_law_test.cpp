@@ -16,9 +16,9 @@ struct PackedCase {
 
 const std::vector<PackedCase>& packed_laws() {
   static const std::vector<PackedCase> all{{"linear", {{"lambda", 1.3}, {"mu", 0.8}}},
-                                    {"saint-venant-kirchhoff", {{"lambda", 1.3}, {"mu", 0.8}}},
-                                    {"neo-hookean", {{"lambda", 1.3}, {"mu", 0.8}}},
-                                    {"mooney-rivlin", {{"c10", 0.3}, {"c01", 0.1}, {"bulk_modulus", 2.0}}}};
+                                           {"saint-venant-kirchhoff", {{"lambda", 1.3}, {"mu", 0.8}}},
+                                           {"neo-hookean", {{"lambda", 1.3}, {"mu", 0.8}}},
+                                           {"mooney-rivlin", {{"c10", 0.3}, {"c01", 0.1}, {"bulk_modulus", 2.0}}}};
   return all;
 }
 
