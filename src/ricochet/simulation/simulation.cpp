@@ -169,9 +169,8 @@ void Simulation::attempt_step() {
     scheme_.advance(problem_, state_, *this, increment_);
   } catch (const Error& problem) {
     // What is asked of a round may have no solution though the step has one: no fault of the case.
-    const bool is_fault_of_case = problem.kind() == ErrorKind::invalid_input && problem_.internal_force->is_linear();
-    const ErrorKind kind =
-        is_fault_of_case || problem.kind() != ErrorKind::invalid_input ? problem.kind() : ErrorKind::not_converged;
+    const bool is_of_a_round = problem.kind() == ErrorKind::invalid_input && !problem_.internal_force->is_linear();
+    const ErrorKind kind = is_of_a_round ? ErrorKind::not_converged : problem.kind();
     const bool has_critical_step = std::isfinite(scheme_.critical_step());  // which a finer mesh makes shorter
     const std::string advice = kind != ErrorKind::not_converged ? ""
                                : has_critical_step              ? "; try a smaller time.step"

@@ -19,8 +19,8 @@ namespace {
 constexpr double energy_tolerance = 1e-15;
 /// The same where σ hardly changes the work (EnergySecant::is_weak): another σ there brings no more than rounding.
 constexpr double weak_energy_tolerance = 1e-14;
-/// Times energy_tolerance: what the balance lacks is too near to rounding to tell how it answers σ.
-constexpr double near_rounding = 1e3;
+/// What the balance lacks is too near to rounding to tell how it answers σ, relative likewise.
+constexpr double near_rounding = 1e-12;
 /// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
 constexpr double near_solution = 1e-2;
 
@@ -81,6 +81,10 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
                       : stored_energy(*problem.internal_force, state.displacement, state.internal_strain);
 }
 
+double FiniteLayer::tolerance() const {
+  return sigma_.is_weak() ? weak_energy_tolerance : energy_tolerance;
+}
+
 /// f̄, p, f(u₁), and σ from the balance of energy at these.
 void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
   const InternalForce& elastic = *problem.internal_force;
@@ -112,11 +116,10 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
   const double has = force_.dot(increment_) - on_contact(problem, product_, increment_);
   const double unit = strain_force_.dot(increment_);
   lacking_ = wanted - has - sigma_.value() * unit;
-  const double rounding = energy_tolerance * std::abs(energy_start_ + energy_);
-  const double least = sigma_.is_weak() ? weak_energy_tolerance / energy_tolerance * rounding : rounding;
+  const double size = std::abs(energy_start_ + energy_);
   // What is rounding of the energies says nothing, least of all where the body hardly moves.
-  if (std::abs(lacking_) <= least || unit <= rounding * energy_tolerance) return;
-  if (sigma_.choose((wanted - has) / unit, lacking_, near_rounding * rounding, converged_))
+  if (std::abs(lacking_) <= tolerance() * size || unit <= energy_tolerance * energy_tolerance * size) return;
+  if (sigma_.choose((wanted - has) / unit, lacking_, near_rounding * size, converged_))
     progress_.restart();  // the next correction is that of σ
 }
 
@@ -288,7 +291,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
 bool FiniteLayer::is_balanced(const Round& round) {
   constexpr double most = 1e-8;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
-  const bool is_exact = std::abs(lacking_) <= (sigma_.is_weak() ? weak_energy_tolerance : energy_tolerance) * size;
+  const bool is_exact = std::abs(lacking_) <= tolerance() * size;
   const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : std::abs(lacking_) > 0.5 * lacked_;
   lacked_ = std::abs(lacking_);
   if (log::enabled(log::Level::debug)) {

@@ -83,6 +83,8 @@ class FiniteLayer {
   const StageSolution& solve_round(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                    const State& state, StageSolve& stages);
   [[nodiscard]] bool is_balanced(const Round& round);
+  /// What the balance of energy may lack, relative to the energies.
+  [[nodiscard]] double tolerance() const;
   /// What the progress of a round asks for. Throws Error(not_converged).
   void heed(NewtonProgress::Advice advice, const Round& round, StageSolve& stages);
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
