@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <vector>
 
@@ -102,8 +103,11 @@ class ElasticCells {
   class BranchStrips;
   template <int d, template <int> class Strips, class Work>
   void for_each_part(const Work& work) const;
-  [[nodiscard]] InvertedCell mean_forces(const Vector& middle, const Vector& increment, Vector& result,
-                                         Vector* strain_result) const;
+  struct PackInput;
+  struct PackSum;
+  template <int d, class Work>
+  InvertedCell visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
+                            const Work& work) const;
   void find_internal_places();
   struct BranchPlaces;
   template <int d, class Find>

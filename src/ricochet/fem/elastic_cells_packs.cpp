@@ -127,71 +127,87 @@ class ElasticCells::StripWork : public CellStrips<d> {
   alignas(64) StripNumbers<strain_components<d>> strains_, stresses_;
 };
 
-InvertedCell ElasticCells::force(const Vector& displacement, Vector& result) const {
+/// A vector per dof that is read, and the numbers of all parts that it becomes.
+struct ElasticCells::PackInput {
+  const Vector& values;
+  std::vector<double>& numbers;
+};
+
+/// Numbers of all parts that are summed up, and the vector per dof that they become.
+struct ElasticCells::PackSum {
+  std::vector<double>& numbers;
+  Vector& result;
+};
+
+/// Calls work(strips, strip, part, its first number of a node, the part's worst cell) for all strips, several parts at
+/// once; returns the worst cell.
+template <int d, class Work>
+InvertedCell ElasticCells::visit_strips(std::initializer_list<PackInput> inputs, std::initializer_list<PackSum> sums,
+                                        const Work& work) const {
+  const CellPacks& packs = blocks<d>().packs;
   PartCells worst;
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
-    constexpr int d = dimension;
-    const Blocks<d>& all = blocks<d>();
-    for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
-      all.packs.template read<d>(part, displacement, all.displacement);
-      all.packs.template clear<d>(part, all.force);
-      strips.for_each_strip(part, [&](const PackStrip<d>& strip) {
-        strips.find_strains(strip, all.displacement.data() + begin, nullptr, worst[static_cast<std::size_t>(part)]);
-        strips.add_forces(strip, all.force.data() + begin);
-      });
+  for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
+    for (const PackInput& input : inputs) packs.template read<d>(part, input.values, input.numbers);
+    for (const PackSum& sum : sums) packs.template clear<d>(part, sum.numbers);
+    strips.for_each_strip(part, [&](const PackStrip<d>& strip) {
+      work(strips, strip, part, begin, worst[static_cast<std::size_t>(part)]);
     });
-    all.packs.template add_up<d>(all.force, result);
   });
+  for (const PackSum& sum : sums) packs.template add_up<d>(sum.numbers, sum.result);
   return worst_of(worst);
 }
 
+InvertedCell ElasticCells::force(const Vector& displacement, Vector& result) const {
+  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    const Blocks<d>& all = blocks<d>();
+    return visit_strips<d>(
+        {{displacement, all.displacement}}, {{all.force, result}},
+        [&](StripWork<d>& strips, const PackStrip<d>& strip, Index, Index begin, InvertedCell& worst) {
+          strips.find_strains(strip, all.displacement.data() + begin, nullptr, worst);
+          strips.add_forces(strip, all.force.data() + begin);
+        });
+  });
+}
+
 InvertedCell ElasticCells::mean_force(const Vector& middle, const Vector& increment, Vector& result) const {
-  return mean_forces(middle, increment, result, nullptr);
+  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
+    constexpr int d = dimension;
+    const Blocks<d>& all = blocks<d>();
+    return visit_strips<d>(
+        {{middle, all.displacement}, {increment, all.increment}}, {{all.force, result}},
+        [&](StripWork<d>& strips, const PackStrip<d>& strip, Index, Index begin, InvertedCell& worst) {
+          strips.find_strains(strip, all.displacement.data() + begin, all.increment.data() + begin, worst);
+          strips.add_forces(strip, all.force.data() + begin);
+        });
+  });
 }
 
 InvertedCell ElasticCells::mean_forces(const Vector& middle, const Vector& increment, Vector& result,
                                        Vector& strain_result) const {
-  return mean_forces(middle, increment, result, &strain_result);
-}
-
-InvertedCell ElasticCells::mean_forces(const Vector& middle, const Vector& increment, Vector& result,
-                                       Vector* strain_result) const {
-  PartCells worst;
-  with_dimension(body_.mesh->dimension, [&](auto dimension) {
+  return with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
-    for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
-      all.packs.template read<d>(part, middle, all.displacement);
-      all.packs.template read<d>(part, increment, all.increment);
-      all.packs.template clear<d>(part, all.force);
-      if (strain_result != nullptr) all.packs.template clear<d>(part, all.strain_force);
-      strips.for_each_strip(part, [&](const PackStrip<d>& strip) {
-        strips.find_strains(strip, all.displacement.data() + begin, all.increment.data() + begin,
-                            worst[static_cast<std::size_t>(part)]);
-        strips.add_forces(strip, all.force.data() + begin);
-        if (strain_result != nullptr) strips.add_rate_forces(strip, all.strain_force.data() + begin);
-      });
-    });
-    all.packs.template add_up<d>(all.force, result);
-    if (strain_result != nullptr) all.packs.template add_up<d>(all.strain_force, *strain_result);
+    return visit_strips<d>(
+        {{middle, all.displacement}, {increment, all.increment}},
+        {{all.force, result}, {all.strain_force, strain_result}},
+        [&](StripWork<d>& strips, const PackStrip<d>& strip, Index, Index begin, InvertedCell& worst) {
+          strips.find_strains(strip, all.displacement.data() + begin, all.increment.data() + begin, worst);
+          strips.add_forces(strip, all.force.data() + begin);
+          strips.add_rate_forces(strip, all.strain_force.data() + begin);
+        });
   });
-  return worst_of(worst);
 }
 
 void ElasticCells::strain_force(const Vector& displacement, const Vector& increment, Vector& result) const {
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
-    for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
-      all.packs.template read<d>(part, displacement, all.displacement);
-      all.packs.template read<d>(part, increment, all.increment);
-      all.packs.template clear<d>(part, all.strain_force);
-      strips.for_each_strip(part, [&](const PackStrip<d>& strip) {
-        strips.add_rate_forces(strip, all.displacement.data() + begin, all.increment.data() + begin,
-                               all.strain_force.data() + begin);
-      });
-    });
-    all.packs.template add_up<d>(all.strain_force, result);
+    visit_strips<d>({{displacement, all.displacement}, {increment, all.increment}}, {{all.strain_force, result}},
+                    [&](StripWork<d>& strips, const PackStrip<d>& strip, Index, Index begin, InvertedCell&) {
+                      strips.add_rate_forces(strip, all.displacement.data() + begin, all.increment.data() + begin,
+                                             all.strain_force.data() + begin);
+                    });
   });
 }
 
@@ -201,15 +217,13 @@ double ElasticCells::energy(const Vector& displacement) const {
   with_dimension(body_.mesh->dimension, [&](auto dimension) {
     constexpr int d = dimension;
     const Blocks<d>& all = blocks<d>();
-    for_each_part<d, StripWork>([&](Index part, Index begin, StripWork<d>& strips) {
-      double& sum = sums[static_cast<std::size_t>(part)];
-      all.packs.template read<d>(part, displacement, all.displacement);
-      strips.for_each_strip(part, [&](const PackStrip<d>& strip) {
-        InvertedCell inverted;
-        strips.find_strains(strip, all.displacement.data() + begin, nullptr, inverted);
-        sum += inverted.cell >= 0 ? std::numeric_limits<double>::infinity() : strips.energy(strip);
-      });
-    });
+    visit_strips<d>({{displacement, all.displacement}}, {},
+                    [&](StripWork<d>& strips, const PackStrip<d>& strip, Index part, Index begin, InvertedCell&) {
+                      InvertedCell inverted;
+                      strips.find_strains(strip, all.displacement.data() + begin, nullptr, inverted);
+                      sums[static_cast<std::size_t>(part)] +=
+                          inverted.cell >= 0 ? std::numeric_limits<double>::infinity() : strips.energy(strip);
+                    });
   });
   double total = 0.0;
   for (const double sum : sums) total += sum;
