@@ -6,10 +6,8 @@
 
 namespace ricochet {
 
-FlightPrediction::FlightPrediction(const SemidiscreteProblem& problem)
-    : problem_(problem), bodies_(problem), is_contact_(static_cast<std::size_t>(problem.nodes.cols()), 0) {
+FlightPrediction::FlightPrediction(const SemidiscreteProblem& problem) : problem_(problem), bodies_(problem) {
   const Index d = problem.dimension;
-  for (const Index dof : problem.massless_dofs) is_contact_[static_cast<std::size_t>(dof / d)] = 1;
   place_.setZero(problem.dof_count());
   for (Index node = 0; node < problem.nodes.cols(); ++node) place_[node * d] = 1.0;
   problem.mass.multiply(place_, momentum_);
@@ -22,6 +20,13 @@ Eigen::Vector3d FlightPrediction::at(const Vector& values, Index node) const {
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
   for (Index k = 0; k < d; ++k) result[k] = values[node * d + k];
   return result;
+}
+
+bool FlightPrediction::has_inertia(Index node) const {
+  for (Index k = 0; k < problem_.dimension; ++k) {
+    if (problem_.is_massless[static_cast<std::size_t>(node * problem_.dimension + k)] != 0) return false;
+  }
+  return true;
 }
 
 /// visit(node, flight) for all nodes of bodies that turn.
@@ -81,8 +86,7 @@ void FlightPrediction::predict(const Vector& displacement, const Vector& velocit
     if (flight.spin.isZero(0.0)) return;
     const Eigen::Vector3d arm = at(place_, node) - flight.centre;
     Eigen::Vector3d straight = Eigen::Vector3d::Zero();  // w
-    if (is_contact_[static_cast<std::size_t>(node)] == 0)
-      straight = at(velocity, node) - flight.velocity - flight.spin.cross(arm);
+    if (has_inertia(node)) straight = at(velocity, node) - flight.velocity - flight.spin.cross(arm);
     const Eigen::Vector3d change = flight.rotation * (arm + step * straight) - arm + step * flight.velocity;
     end.segment(node * d, d) = displacement.segment(node * d, d) + change.head(d);
   });

@@ -32,11 +32,11 @@ class FlightPrediction {
   void fit(const Vector& displacement, const Vector& velocity, double step);
   template <class Visit>
   void visit_nodes(const Visit& visit) const;
+  [[nodiscard]] bool has_inertia(Index node) const;
   [[nodiscard]] Eigen::Vector3d at(const Vector& values, Index node) const;
 
   const SemidiscreteProblem& problem_;
   BodyRotations bodies_;
-  std::vector<char> is_contact_;  ///< per node, of those without inertia
   Vector node_mass_;
   std::vector<Flight> flights_;
   Vector place_, first_moment_, momentum_;  ///< x, M x, M v
