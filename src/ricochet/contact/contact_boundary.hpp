@@ -134,10 +134,13 @@ struct ContactBoundary {
   void recover_pressure(const Vector& normal_reaction, Vector& pressure) const {
     pressure.noalias() = pressure_recovery * normal_reaction;
   }
-  /// Σ_j t_ij X_j with the nodes' positions, d × points: the place of a point or, between bodies, the mean vector
-  /// across the gap. With it as its arm the force of a point has the moment that it has on all bodies together.
-  [[nodiscard]] Points arms(const Points& node_positions) const {
-    return (trace * node_positions.transpose()).transpose();
+  /// Σ_j t_ij X_j with the nodes' positions: the place of a point or, between bodies, the mean vector across the gap.
+  /// With it as its arm the force of a point has the moment that it has on all bodies together.
+  [[nodiscard]] SpaceVector arm(Index point, const Points& node_positions) const {
+    SpaceVector result = SpaceVector::Zero(node_positions.rows());
+    for (SparseRowMatrix::InnerIterator entry(trace, point); entry; ++entry)
+      result += entry.value() * node_positions.col(entry.col());
+    return result;
   }
   /// The nodes that the trace of some point reaches, ascending, each once.
   [[nodiscard]] std::vector<Index> unique_nodes() const;

@@ -1,49 +1,61 @@
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
 
-#include "ricochet/base/dense_decompositions.hpp"
+#include <algorithm>
+#include <utility>
 
 namespace ricochet {
 
-namespace {
-
-/// Directions of changes that differ by less are the same.
-constexpr double same_direction = 1e-10;
-
-void keep_newest(std::vector<Vector>& vectors, Vector newest, std::size_t most) {
-  if (vectors.size() == most) vectors.erase(vectors.begin());
-  vectors.push_back(std::move(newest));
-}
-
-Matrix as_columns(const std::vector<Vector>& vectors) {
-  Matrix result(vectors.front().size(), static_cast<Index>(vectors.size()));
-  for (std::size_t k = 0; k < vectors.size(); ++k) result.col(static_cast<Index>(k)) = vectors[k];
-  return result;
-}
-
-}  // namespace
-
-void AndersonAcceleration::restart() {
-  image_.resize(0);
-  image_changes_.clear();
-  residual_changes_.clear();
-}
-
-Vector AndersonAcceleration::next(const Vector& point, const Vector& image) {
-  const Vector residual = image - point;
-  if (image_.size() > 0) {
-    keep_newest(image_changes_, image - image_, depth_);
-    keep_newest(residual_changes_, residual - residual_, depth_);
+void AndersonAcceleration::advance(const Vector& point, const Vector& image, Vector& next) {
+  if (residual_changes_.rows() != image.size()) {
+    for (Matrix* const each : {&image_changes_, &residual_changes_, &directions_, &moves_})
+      each->resize(image.size(), depth_);
+    restart();
   }
+  std::swap(residual_, last_residual_);
+  residual_ = image - point;
+  if (kept_ >= 0) keep_changes(image);
+  kept_ = std::max<Index>(kept_, 0);
   image_ = image;
-  residual_ = residual;
-  if (residual_changes_.empty()) return image;
-  // Changes become smaller by orders of magnitude, the newest count most.
-  Matrix directions = as_columns(residual_changes_);
-  const Vector lengths = directions.colwise().norm().transpose();
-  for (Index k = 0; k < lengths.size(); ++k) directions.col(k) /= lengths[k] > 0.0 ? lengths[k] : 1.0;
-  Vector weights = LeastNormSolver(directions, same_direction).solve(residual);
-  for (Index k = 0; k < lengths.size(); ++k) weights[k] /= lengths[k] > 0.0 ? lengths[k] : 1.0;
-  return image - as_columns(image_changes_) * weights;
+  next = image;
+  combine(next);
+}
+
+void AndersonAcceleration::keep_changes(const Vector& image) {
+  newest_ = (newest_ + 1) % depth_;
+  kept_ = std::min(kept_ + 1, depth_);
+  image_changes_.col(newest_) = image - image_;
+  residual_changes_.col(newest_) = residual_ - last_residual_;
+}
+
+/// Least squares by the modified method of Gram and Schmidt, each direction twice. Changes become smaller by orders of
+/// magnitude: each counts by its direction, and one that newer ones nearly contain not at all.
+void AndersonAcceleration::combine(Vector& next) {
+  constexpr double same_direction = 1e-10;
+  left_ = residual_;
+  Index count = 0;
+  for (Index age = 0; age < kept_; ++age) {
+    const Index column = (newest_ - age + depth_) % depth_;
+    const double length = residual_changes_.col(column).norm();
+    if (length == 0.0) continue;
+    auto direction = directions_.col(count), move = moves_.col(count);
+    direction = residual_changes_.col(column) / length;
+    move = image_changes_.col(column) / length;
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Index k = 0; k < count; ++k) {
+        const double part = directions_.col(k).dot(direction);
+        direction -= part * directions_.col(k);
+        move -= part * moves_.col(k);
+      }
+    }
+    const double own = direction.norm();
+    if (own <= same_direction) continue;
+    direction /= own;
+    move /= own;
+    const double weight = direction.dot(left_);
+    left_ -= weight * direction;
+    next -= weight * move;
+    ++count;
+  }
 }
 
 }  // namespace ricochet

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "ricochet/base/types.hpp"
 
 /// @file Fixed points x = F(x) of maps that do not contract, or slowly.
@@ -9,19 +7,25 @@ namespace ricochet {
 
 /// Anderson's acceleration (J. ACM 12, 1965): of the last points x_j and residuals f_j = F(x_j) − x_j it takes the
 /// affine combination whose residual is least, Σ θ_j f_j, and goes on from Σ θ_j F(x_j), Σ θ_j = 1. For linear F these
-/// are the iterates of GMRES. Allocates: it is for what plain rounds do not settle.
+/// are the iterates of GMRES. Storage is kept from one use to the next.
 class AndersonAcceleration {
  public:
   /// `depth`: earlier points that take part, at least 1.
-  explicit AndersonAcceleration(int depth) : depth_(static_cast<std::size_t>(depth)) {}
-  void restart();
-  /// The next point; the first after a restart is F(x).
-  [[nodiscard]] Vector next(const Vector& point, const Vector& image);
+  explicit AndersonAcceleration(int depth) : depth_(depth) {}
+  void restart() { kept_ = -1; }
+  /// `next` becomes the next point, after a restart F(x). It may be `image`, F(x).
+  void advance(const Vector& point, const Vector& image, Vector& next);
 
  private:
-  std::size_t depth_;
-  Vector image_, residual_;  ///< of the last point; empty at the start
-  std::vector<Vector> image_changes_, residual_changes_;
+  void keep_changes(const Vector& image);
+  void combine(Vector& next);
+
+  Index depth_;
+  Index kept_ = -1, newest_ = 0;             ///< changes, and the column of the last one; −1: no point yet
+  Vector image_, residual_, last_residual_;  ///< of the last point
+  Matrix image_changes_, residual_changes_;  ///< columns in turn
+  Matrix directions_, moves_;  ///< orthonormal combinations of residual changes, newest first, and those of images
+  Vector left_;                ///< of the residual
 };
 
 }  // namespace ricochet

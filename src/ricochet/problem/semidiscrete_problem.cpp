@@ -91,6 +91,14 @@ void SemidiscreteProblem::trace_rounding(const Vector& values, Vector& rounding)
   }
 }
 
+void SemidiscreteProblem::take_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const {
+  for (std::size_t i = 0; i < contact_dofs.size(); ++i) on_contact[static_cast<Index>(i)] = values[contact_dofs[i]];
+}
+
+void SemidiscreteProblem::put_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const {
+  for (std::size_t i = 0; i < contact_dofs.size(); ++i) values[contact_dofs[i]] = on_contact[static_cast<Index>(i)];
+}
+
 std::vector<Index> contact_node_dofs(const SemidiscreteProblem& problem) {
   std::vector<Index> dofs;
   for (const Index node : problem.contact.unique_nodes()) {

@@ -52,6 +52,9 @@ struct SemidiscreteProblem {
   [[nodiscard]] bool is_tied_dof(Index dof) const { return tied != nullptr && tied->is_tied(dof / dimension); }
   [[nodiscard]] bool has_damping() const { return !damping.is_absent(); }
   [[nodiscard]] bool has_singular_mass() const { return !massless_dofs.empty(); }
+  /// What values per dof are on contact_dofs, and the other way. (Eigen's indexed views copy their indices.)
+  void take_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const;
+  void put_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const;
   /// Null between bodies.
   [[nodiscard]] const Obstacle* obstacle_of_point(Index point) const {
     return obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];

@@ -40,7 +40,6 @@ void MomentumAccount::take_positions(const Vector& displacement) {
   if (finite_strain_) positions_ = problem_.nodes + displacement.reshaped(problem_.dimension, problem_.nodes.cols());
   arm_ = std::max(arm_, positions_.colwise().norm().maxCoeff());
   constant_load_ = of_nodes(problem_.loads.constant());
-  arms_ = problem_.contact.arms(positions_);
 }
 
 /// Of the momentum that is not M V, over h.
@@ -79,24 +78,25 @@ Resultant MomentumAccount::of_nodes(const Vector& force) const {
 }
 
 /// Of the points between bodies about where nodes are: what their rows leave (turning_pairs.hpp).
-Eigen::Vector3d MomentumAccount::moment_between_bodies(const StepForces& forces) const {
-  Vector normal = forces.acting_normal(), tangential = forces.acting_tangential();
+Eigen::Vector3d MomentumAccount::moment_between_bodies(const StepForces& forces) {
+  normal_ = forces.acting_normal();
+  tangential_ = forces.acting_tangential();
   const Index tangents = problem_.dimension - 1;
-  for (Index i = 0; i < normal.size(); ++i) {
+  for (Index i = 0; i < normal_.size(); ++i) {
     if (problem_.contact.between_bodies(i)) continue;
-    normal[i] = 0.0;
-    if (tangential.size() > 0) tangential.segment(i * tangents, tangents).setZero();
+    normal_[i] = 0.0;
+    if (tangential_.size() > 0) tangential_.segment(i * tangents, tangents).setZero();
   }
-  Vector force = Vector::Zero(problem_.dof_count());
-  forces.rows->add_force(normal, tangential, force);
+  force_.setZero(problem_.dof_count());
+  forces.rows->add_force(normal_, tangential_, force_);
   // Before the first step no force has acted anywhere.
   const Vector* const place = scheme_.has_couples_between_bodies() ? scheme_.place_of_forces() : nullptr;
   if (place != nullptr && place->size() == problem_.dof_count() && problem_.contact.follows_motion())
-    problem_.contact.geometry->add_couples(*place, *forces.rows, normal, tangential, force);
-  return of_nodes(force).moment;
+    problem_.contact.geometry->add_couples(*place, *forces.rows, normal_, tangential_, force_);
+  return of_nodes(force_).moment;
 }
 
-MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const {
+MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
   const Index d = problem_.dimension;
   Sum sum;
   const auto include = [&sum](const Resultant& part, double sign = 1.0) {
@@ -116,7 +116,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) const 
     // Between bodies nothing is left but the moment of forces that do not act along the gap.
     const Eigen::Vector3d force = in_space(acting_contact_force(forces, i));
     contact.force += problem_.contact.net[i] * force;
-    contact.moment += in_space(arms_.col(i)).cross(force);
+    contact.moment += in_space(problem_.contact.arm(i, positions_)).cross(force);
   }
   if (presses_bodies) contact.moment += moment_between_bodies(forces);
   include(contact);

@@ -43,8 +43,8 @@ class MomentumAccount {
     Resultant total;
     double size = 0.0;
   };
-  [[nodiscard]] Eigen::Vector3d moment_between_bodies(const StepForces& forces) const;
-  [[nodiscard]] Sum resultant(const StepForces& forces) const;
+  [[nodiscard]] Eigen::Vector3d moment_between_bodies(const StepForces& forces);
+  [[nodiscard]] Sum resultant(const StepForces& forces);
   [[nodiscard]] Resultant algorithmic(const State& state);
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;
   void take_positions(const Vector& displacement);
@@ -58,10 +58,9 @@ class MomentumAccount {
   Points positions_;  ///< of the nodes, that moments are taken with
   Vector before_;     ///< displacement at the start of the step, at finite strain
   Resultant constant_load_;
-  Points arms_;  ///< of the contact points: Σ_j t_ij X_j
   Sum previous_;
-  Resultant algorithmic_;  ///< of M a, Scheme::momentum_acceleration
-  Vector acceleration_, momentum_;
+  Resultant algorithmic_;                                         ///< of M a, Scheme::momentum_acceleration
+  Vector acceleration_, momentum_, force_, normal_, tangential_;  ///< work space
   Resultant impulse_;
   double size_ = 0.0;
 };

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "ricochet/base/dense_decompositions.hpp"
-#include "ricochet/linear_algebra/anderson_acceleration.hpp"
 
 namespace ricochet {
 
@@ -133,7 +132,7 @@ bool MeanReaction::solve_with(ContactProblem& contact, const Vector& offset, con
 /// Without changes of status along the path the first round is right.
 bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const std::function<bool()>& solve_contact,
                           ContactSolution& solution) {
-  AndersonAcceleration acceleration(8);
+  acceleration_.restart();
   double least = std::numeric_limits<double>::infinity();
   int last_progress = 0;
   const int patience = has_friction_ ? patience_of_mean : 5;  // Newton's steps come after it
@@ -151,7 +150,7 @@ bool MeanReaction::rounds(ContactProblem& contact, const Vector& offset, const s
       break;
     }
     if (round == rounds_before_settling) path_.settle();
-    difference_ = acceleration.next(asked, difference_);
+    acceleration_.advance(asked, difference_, difference_);
   }
   reason_ = fmt::format("rounds stopped at {:.2g} of the reactions", least);
   return false;

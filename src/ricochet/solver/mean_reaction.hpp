@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/linear_algebra/anderson_acceleration.hpp"
 #include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
 #include "ricochet/solver/reaction_path.hpp"
@@ -63,7 +64,8 @@ class MeanReaction {
   double mu_ = 1.0, acting_weight_ = 1.0, path_work_ = 0.0;
   bool has_path_ = false;
   Vector q0_, q1_, friction_;
-  std::vector<char> eligible_, pressing_;           ///< per point; pressing_: at the start
+  std::vector<char> eligible_, pressing_;  ///< per point; pressing_: at the start
+  AndersonAcceleration acceleration_{8};
   Vector start_gap_, start_, difference_, acting_;  ///< y₀, ρ₀, ρ̄ − θρ, ρ̄
   std::string reason_;
 };

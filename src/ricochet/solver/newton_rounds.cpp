@@ -33,7 +33,7 @@ void NewtonRounds::evaluate(const Vector& displacement, Vector& force) {
 void NewtonRounds::correct(const Vector& correction) {
   before_ = total_;
   total_ += correction;
-  if (progress_.wants_acceleration()) total_ = acceleration_.next(before_, total_);
+  if (progress_.wants_acceleration()) acceleration_.advance(before_, total_, total_);
 }
 
 /// f(p + κδ). Where a correction turns a cell inside out half of it is taken, and half of that.

@@ -26,10 +26,6 @@ constexpr double rounding_left = 100.0;
 
 }  // namespace
 
-Vector TangentRounds::on_contact(const Vector& increment) const {
-  return increment(problem_.contact_dofs);
-}
-
 void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
   int iterations = solution.iterations, last_progress = 0, last_start = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -69,9 +65,13 @@ void TangentRounds::linearize_at(const Vector& increment, bool accelerate) {
     linearized_at_ = increment;
     return;
   }
-  const Vector next = acceleration_.next(on_contact(linearized_at_), on_contact(increment));
+  point_.resize(static_cast<Index>(problem_.contact_dofs.size()));
+  image_.resize(point_.size());
+  problem_.take_contact(linearized_at_, point_);
+  problem_.take_contact(increment, image_);
+  acceleration_.advance(point_, image_, image_);
   linearized_at_ = increment;
-  linearized_at_(problem_.contact_dofs) = next;
+  problem_.put_contact(image_, linearized_at_);
 }
 
 }  // namespace ricochet

@@ -19,12 +19,12 @@ class TangentRounds {
 
  private:
   void linearize_at(const Vector& increment, bool accelerate);
-  [[nodiscard]] Vector on_contact(const Vector& increment) const;
 
   const SemidiscreteProblem& problem_;
   Vector gap_;
   AndersonAcceleration acceleration_{12};
   Vector linearized_at_;  ///< increment
+  Vector point_, image_;  ///< of a round, on contact dofs
 };
 
 }  // namespace ricochet

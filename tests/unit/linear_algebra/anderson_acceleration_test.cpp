@@ -23,7 +23,7 @@ TEST_F(ExpandingMap, IsSolvedInAsManyRoundsAsItHasEigenvalues) {
   AndersonAcceleration acceleration(12);
   Vector x = Vector::Zero(6), plain = x;
   for (int round = 0; round < 7; ++round) {
-    x = acceleration.next(x, image(x));
+    acceleration.advance(x, image(x), x);
     plain = image(plain);
   }
   EXPECT_LE(residual(x), 1e-9);
@@ -34,7 +34,7 @@ TEST_F(ExpandingMap, IsSolvedInAsManyRoundsAsItHasEigenvalues) {
 TEST_F(ExpandingMap, IsSolvedWithLessMemoryAlso) {
   AndersonAcceleration acceleration(4);
   Vector x = Vector::Zero(6);
-  for (int round = 0; round < 60; ++round) x = acceleration.next(x, image(x));
+  for (int round = 0; round < 60; ++round) acceleration.advance(x, image(x), x);
   EXPECT_LE(residual(x), 1e-9);
 }
 
@@ -43,16 +43,18 @@ TEST_F(ExpandingMap, StaysWhereItIsSolved) {
   AndersonAcceleration acceleration(12);
   Vector x = offset_.cwiseQuotient(Vector::Ones(6) - slopes_);
   const Vector solution = x;
-  for (int round = 0; round < 20; ++round) x = acceleration.next(x, image(x));
+  for (int round = 0; round < 20; ++round) acceleration.advance(x, image(x), x);
   EXPECT_LE((x - solution).norm(), 1e-12 * solution.norm());
 }
 
 TEST_F(ExpandingMap, BeginsWithThePlainRoundAfterARestart) {
   AndersonAcceleration acceleration(12);
   Vector x = Vector::Ones(6);
-  for (int round = 0; round < 3; ++round) x = acceleration.next(x, image(x));
+  for (int round = 0; round < 3; ++round) acceleration.advance(x, image(x), x);
   acceleration.restart();
-  EXPECT_EQ(acceleration.next(x, image(x)), image(x));
+  Vector next;
+  acceleration.advance(x, image(x), next);
+  EXPECT_EQ(next, image(x));
 }
 
 }  // namespace

@@ -30,16 +30,11 @@ double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vec
   return sum;
 }
 
-/// Those of contact dofs. (Eigen's indexed views copy their indices.)
-void take_contact(const SemidiscreteProblem& problem, const Vector& values, Vector& result) {
-  result.resize(static_cast<Index>(problem.contact_dofs.size()));
-  for (Index i = 0; i < result.size(); ++i) result[i] = values[problem.contact_dofs[static_cast<std::size_t>(i)]];
-}
-
 }  // namespace
 
 void FiniteLayer::analyse(const SemidiscreteProblem& problem) {
   flight_ = std::make_unique<FlightPrediction>(problem);
+  layer_right_.resize(static_cast<Index>(problem.contact_dofs.size()));
   if (problem.contact_dofs.empty()) return;
   std::vector<char> wanted(static_cast<std::size_t>(problem.nodes.cols()), 0);
   for (const Index dof : problem.contact_dofs) wanted[static_cast<std::size_t>(dof / problem.dimension)] = 1;
@@ -153,7 +148,7 @@ void FiniteLayer::require_contact(const SemidiscreteProblem& problem, ReactionMe
                                   const State& state, StageSolve& stages, Stage& stage) {
   right_ = loads_.mean() - end_force_ - 2.0 * stage.right_hand_side + row_force_;
   if (loads_.change()) right_ += loads_.beside_at_end();
-  take_contact(problem, right_, layer_right_);
+  problem.take_contact(right_, layer_right_);
   const Vector& shift = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) end_[dof] += shift[dof];
   lagged_.let_go();
@@ -188,21 +183,24 @@ FiniteLayer::Round FiniteLayer::correct(const SemidiscreteProblem& problem, cons
 /// Where corrections hardly shrink: places, with the reactions that acted on them.
 void FiniteLayer::accelerate(const SemidiscreteProblem& problem, const State& state) {
   const auto contact = static_cast<Index>(problem.contact_dofs.size());
-  const Index places = middle_.size() + contact, points = reactions_.normal.size(),
+  const Index middle = middle_.size(), places = middle + contact, points = reactions_.normal.size(),
               slips = reactions_.tangential.size();
-  Vector image(places + 2 * (points + slips));
-  image << middle_, end_(problem.contact_dofs), reactions_.normal, reactions_.acting_normal, reactions_.tangential,
+  image_.resize(places + 2 * (points + slips));
+  image_.head(middle) = middle_;
+  problem.take_contact(end_, image_.segment(middle, contact));
+  image_.tail(2 * (points + slips)) << reactions_.normal, reactions_.acting_normal, reactions_.tangential,
       reactions_.acting_tangential;
-  Vector point = image;
-  point.head(places) << last_middle_, last_end_(problem.contact_dofs);
-  image = acceleration_.next(point, image);
-  middle_ = image.head(middle_.size());
+  point_ = image_;
+  point_.head(middle) = last_middle_;
+  problem.take_contact(last_end_, point_.segment(middle, contact));
+  acceleration_.advance(point_, image_, image_);
+  middle_ = image_.head(middle);
   end_ = 2.0 * middle_ - state.displacement;
-  end_(problem.contact_dofs) = image.segment(middle_.size(), contact);
-  reactions_.normal = image.segment(places, points);
-  reactions_.acting_normal = image.segment(places + points, points);
-  reactions_.tangential = image.segment(places + 2 * points, slips);
-  reactions_.acting_tangential = image.tail(slips);
+  problem.put_contact(image_.segment(middle, contact), end_);
+  reactions_.normal = image_.segment(places, points);
+  reactions_.acting_normal = image_.segment(places + points, points);
+  reactions_.tangential = image_.segment(places + 2 * points, slips);
+  reactions_.acting_tangential = image_.tail(slips);
 }
 
 /// Hᵀρ, Hᵀρ̄, and where some of it is that of the end one round for u₀ + J.
@@ -234,7 +232,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   at_start_ = loads_.mean() + nodal_;
   if (loads_.change()) loads_.add_at_start(at_start_);
   right_ = at_start_ - end_force_;
-  take_contact(problem, right_, layer_right_);
+  problem.take_contact(right_, layer_right_);
   const Vector& change = MasslessLayer::solve_layer(problem, layer_right_, stages);
   for (const Index dof : problem.contact_dofs) relaxed_[dof] += change[dof];
   // d: both energies are of the cells at contact nodes, as the others are the same.

@@ -128,7 +128,8 @@ class FiniteLayer {
   Vector internal_;  ///< A₁
   Vector relaxed_;   ///< u₀ + J
   Vector product_, right_, layer_right_, damping_force_, before_, last_middle_, last_end_;
-  Vector row_force_;  ///< of the reactions along rows that the solver had not
+  Vector point_, image_;  ///< of a round that is accelerated
+  Vector row_force_;      ///< of the reactions along rows that the solver had not
 };
 
 }  // namespace ricochet

@@ -19,9 +19,10 @@ namespace ricochet {
 namespace {
 
 // Keys of State::memory.
-constexpr const char* critical_numbers = "critical_step";             ///< see CriticalNumbers
-constexpr const char* critical_place = "critical_step.displacement";  ///< of the last check
-constexpr const char* critical_mode = "critical_step.mode";           ///< eigenvector M^{½}x found there
+/// (Names this short are looked up without allocating.)
+constexpr const char* critical_numbers = "critical_step";  ///< see CriticalNumbers
+constexpr const char* critical_place = "critical.place";   ///< displacement of the last check
+constexpr const char* critical_mode = "critical.mode";     ///< eigenvector M^{½}x found there
 
 /// Places in the numbers of the state's memory.
 enum CriticalNumbers : Index { last_found, smallest_found, told_near, found_at, evaluations_made };

@@ -56,11 +56,8 @@ void LayerEquilibrium::renew_where_slow(const SemidiscreteProblem& problem, Stat
 /// `place`: the increments of contact dofs.
 void LayerEquilibrium::move_to(const SemidiscreteProblem& problem, const State& state, const Vector& place,
                                Vector& increment, Vector& end) {
-  for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
-    const Index dof = problem.contact_dofs[i];
-    increment[dof] = place[static_cast<Index>(i)];
-    end[dof] = state.displacement[dof] + increment[dof];
-  }
+  problem.put_contact(place, increment);
+  for (const Index dof : problem.contact_dofs) end[dof] = state.displacement[dof] + increment[dof];
 }
 
 /// f at the end. Where the last change of places turns a cell inside out half of it is taken, and half of that.
@@ -73,7 +70,7 @@ void LayerEquilibrium::evaluate(const SemidiscreteProblem& problem, const State&
       layer_->evaluate(end, force_);
       return;
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::not_converged || move_.size() == 0 || halving == most_halvings) throw;
+      if (error.kind() != ErrorKind::not_converged || !moved_ || halving == most_halvings) throw;
     }
     part *= 0.5;
     point_ -= part * move_;
@@ -104,8 +101,10 @@ const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem,
   if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());
   stage.prescribed.setZero(problem.supports.size());  // supported nodes are where they are prescribed
   progress_.start(4.0 * std::numeric_limits<double>::epsilon() * (reach_ + largest_on_contact(problem, end)));
-  move_.resize(0);
-  point_ = increment(problem.contact_dofs);
+  moved_ = false;
+  point_.resize(static_cast<Index>(problem.contact_dofs.size()));
+  image_.resize(point_.size());
+  problem.take_contact(increment, point_);
   evaluate(problem, state, increment, end);
   acceleration_.restart();
   double last = std::numeric_limits<double>::infinity();
@@ -113,8 +112,9 @@ const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem,
     require(problem, state, load, step, equations, increment, end, stage);
     const StageSolution& solution = stages.solve(0);
     const double correction = largest_on_contact(problem, solution.increment);
-    image_ = point_;
-    if (std::isfinite(correction)) image_ += solution.increment(problem.contact_dofs);
+    image_.setZero();
+    if (std::isfinite(correction)) problem.take_contact(solution.increment, image_);
+    image_ += point_;
     const NewtonProgress::Advice advice = progress_.judge(correction, image_.lpNorm<Eigen::Infinity>());
     if (advice == NewtonProgress::Advice::done) {
       move_to(problem, state, image_, increment, end);
@@ -129,9 +129,10 @@ const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem,
     if (correction > last) acceleration_.restart();
     last = correction;
     const bool accelerates = progress_.rounds() > plain_layer_rounds && advice != NewtonProgress::Advice::renew;
-    const Vector next = accelerates ? acceleration_.next(point_, image_) : image_;
-    move_ = next - point_;
-    point_ = next;
+    if (accelerates) acceleration_.advance(point_, image_, image_);
+    move_ = image_ - point_;
+    point_ = image_;
+    moved_ = true;
     move_to(problem, state, point_, increment, end);
     evaluate(problem, state, increment, end);
     if (advice != NewtonProgress::Advice::renew) continue;

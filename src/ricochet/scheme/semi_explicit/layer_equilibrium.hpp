@@ -41,8 +41,9 @@ class LayerEquilibrium {
   NewtonProgress progress_;
   AndersonAcceleration acceleration_{6};
   Vector force_, middle_, rate_;
-  Vector point_, image_,
-      move_;  ///< per contact dof: increment of a round, with its correction, and the last change of it
+  /// Per contact dof: increment of a round, with its correction, and the last change of it.
+  Vector point_, image_, move_;
+  bool moved_ = false;
 };
 
 }  // namespace ricochet
