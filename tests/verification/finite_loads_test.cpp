@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "ricochet/base/error.hpp"
 #include "support/case_run.hpp"
 
 /// @file Loads that vary in time, on contact nodes without inertia, at finite strain.
@@ -52,6 +53,19 @@ TEST(FiniteLoads, AreThoseOfTheLinearLawInTheLimit) {
         EXPECT_GT(largest, 1e-9) << loads << time << step;
       }
     }
+  }
+}
+
+/// No shorter step and no other factor gives it one.
+TEST(FiniteLoads, WithoutAValueAreInvalidInput) {
+  CaseRun run(case_of("neo-hookean", "[[traction]]\ngroup = \"boundary\"\nvalue = [\"0\", \"1e-8*sqrt(0.5-t)\"]\n",
+                      "scheme = \"reduced-kane\"\nstep = 0.1\n"));
+  try {
+    run.run([] {});
+    FAIL() << "a load without a value went unnoticed";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::invalid_input) << error.what();
+    EXPECT_EQ(run.state().step, 5);
   }
 }
 

@@ -9,8 +9,8 @@
 #include "ricochet/fem/kernel_block.hpp"
 #include "ricochet/fem/point_law.hpp"
 
-/// @file One cell: tangents, stress for output, branches. Energy and forces of all cells are those of pack_kernels.hpp.
-/// Not part of the public interface.
+/// @file One cell: tangents, with those of branches, and stress for output. Energy and forces of all cells are those of
+/// pack_kernels.hpp. Not part of the public interface.
 namespace ricochet {
 
 /// One cell at a displacement. A local vector has d components per node of the cell.
@@ -94,14 +94,6 @@ class CellKernel {
   [[nodiscard]] PointMotion motion_of(const LocalVector& u) const {
     const Tensor motion = gradient(u);
     return {motion, law_.strain(motion)};
-  }
-  /// At the middle of an increment Δ the mean of the strains of both ends, ½(E₀ + E₁) = E + ⅛ (∇Δ)ᵀ∇Δ.
-  [[nodiscard]] PointMotion mean_motion_of(const LocalVector& middle, const LocalVector& increment) const {
-    PointMotion result{gradient(middle), Tensor()};
-    const Tensor change = gradient(increment);
-    result.strain = green_strain(result.gradient) + 0.125 * transposed_product(change, change);
-    law_.complete(result.strain);
-    return result;
   }
 
   /// Calls visit(q, F, E, S) at all points, F with the stretch across the plane; the gradients are those of q. What is

@@ -37,7 +37,7 @@ struct BranchStep {
 
 class ElasticCells {
  public:
-  /// Keeps references. Without a graph there is neither force nor tangent.
+  /// Keeps references. Without a graph there are energies of the laws alone: no force, no tangent, no branch.
   explicit ElasticCells(const Body& body, const NodeGraph* graph = nullptr);
   /// Of some cells alone, ascending, that those of the graph are.
   ElasticCells(const Body& body, const NodeGraph* graph, std::vector<int> cells);

@@ -107,7 +107,7 @@ struct Gradients {
   }
 };
 
-/// ½(A + Aᵀ + BᵀC + CᵀB) where A or the products are wanted, with the components zz of the three in the plane.
+/// A displacement gradient at a point of a pack, with its component zz in the plane.
 template <int d, int W>
 struct PointGradient {
   PackMatrix<d, W> matrix;

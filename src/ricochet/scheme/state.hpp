@@ -45,8 +45,9 @@ struct State {
   std::vector<ContactStatus> contact_status;  ///< per contact point, at the instant of the forces
   /// Displacement of the obstacles at the contact points while the body made the increment of the last step.
   ObstacleMotion obstacle_increment;
-  int iterations = 0;     ///< of the contact solver in the last step
-  int newton_rounds = 0;  ///< linear stages that the last step took for an internal force that is not linear
+  int iterations = 0;  ///< of the contact solver in the last step
+  int newton_rounds =
+      0;  ///< linear stages that the last step took, with all attempts and parts, where the force is not linear
   /// What a scheme remembers besides, by name, so that a checkpoint can write it: of a length per dof, per supported
   /// dof, (d−1) per contact point, per value of the rows of G and B_T, or `memory_numbers` of them.
   static constexpr Index memory_numbers = 5;

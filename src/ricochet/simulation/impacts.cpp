@@ -135,7 +135,7 @@ void ImpactRecorder::enter_step(const State& state, double method_energy) {
   find_forces(state.forces, state.obstacle_increment, current_);
   find_other_forces();
   motion_ = nullptr;
-  if (state.step == 1) first_step_ = scheme_.step();
+  if (state.step <= 1 && first_step_ == 0.0) first_step_ = scheme_.step();
   const double instant = state.time + scheme_.acting_instant() * scheme_.step();
   for (std::size_t place = 0; place < places_.size(); ++place) enter_place(place, instant);
   std::swap(previous_, current_);

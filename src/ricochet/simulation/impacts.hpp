@@ -149,7 +149,7 @@ class ImpactRecorder {
   std::vector<Interval> open_;   ///< per place
   std::vector<Interval> filed_;  ///< that are over
   long left_out_ = 0;
-  double first_step_ = 0.0;                           ///< length
+  double first_step_ = 0.0;                           ///< length, or that of its first part
   double method_before_ = 0.0, method_energy_ = 0.0;  ///< at the beginning and the end of a step
   Vector velocity_before_;                            ///< at the beginning of a step
   bool finite_strain_;

@@ -160,7 +160,7 @@ void Simulation::take_step() {
 
 /// Once.
 void Simulation::attempt_step() {
-  iterations_ = newton_rounds_ = 0;
+  iterations_ = 0;
   // Rows that follow the motion go on from those of the state, whatever was solved in between.
   if (problem_.contact.follows_motion()) {
     for (SolvedStage& each : current_->stages) each.stage.rows = state_.forces.rows;
@@ -168,9 +168,7 @@ void Simulation::attempt_step() {
   try {
     scheme_.advance(problem_, state_, *this, increment_);
   } catch (const Error& problem) {
-    // What is asked of a round may have no solution though the step has one: no fault of the case.
-    const bool is_of_a_round = problem.kind() == ErrorKind::invalid_input && !problem_.internal_force->is_linear();
-    const ErrorKind kind = is_of_a_round ? ErrorKind::not_converged : problem.kind();
+    const ErrorKind kind = problem.kind();
     const bool has_critical_step = std::isfinite(scheme_.critical_step());  // which a finer mesh makes shorter
     const std::string advice = kind != ErrorKind::not_converged ? ""
                                : has_critical_step              ? "; try a smaller time.step"
@@ -262,6 +260,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
 void Simulation::advance(const std::function<void(const State&)>& each_part) {
   double energy = 0.0;
   bool in_parts = false;
+  newton_rounds_ = 0;
   if (control_) {
     energy = take_controlled_step();
   } else {

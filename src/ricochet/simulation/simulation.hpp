@@ -83,7 +83,7 @@ class Simulation : private StageSolve {
   State state_;
   StepSolverOptions options_;
   ContactObserver observer_;
-  std::map<int, Level> levels_;  ///< by the control's number; one, 0, without control
+  std::map<int, Level> levels_;  ///< by the control's number; without control 0, and −log₂ of parts of a step
   Level* current_ = nullptr;
   std::optional<StepControl> control_;
   double whole_step_;  ///< without control
@@ -91,7 +91,7 @@ class Simulation : private StageSolve {
   State before_;  ///< an attempt, with control
   std::unique_ptr<EnergyAccount> account_;
   int iterations_ = 0;     ///< of the contact solver in this step
-  int newton_rounds_ = 0;  ///< in this step
+  int newton_rounds_ = 0;  ///< in all attempts and parts of this step
   Vector increment_;
 };
 

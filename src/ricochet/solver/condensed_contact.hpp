@@ -29,7 +29,7 @@ class CondensedContact {
                    bool all_points = false, std::unique_ptr<ContactLayer> layer = nullptr);
 
   /// Finds the reactions on the candidates, adds Yρ to y and the iterations to those of the solution. Throws
-  /// Error(not_converged), and Error(invalid_input) where no motion meets the conditions of contact.
+  /// Error(not_converged), and Error(invalid_input) where no motion of linear bodies meets the conditions of contact.
   void solve(const Stage& stage, Vector& y, StageSolution& solution);
   /// With the increment that followed: false when no other point penetrates. True: those that do are candidates now,
   /// and the stage must be solved again. Completes the solution by m where the stage has a layer.

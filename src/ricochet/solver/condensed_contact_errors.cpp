@@ -37,9 +37,11 @@ void CondensedContact::throw_contradiction(const std::vector<Index>& contradicti
   const bool one = contacts.size() == 1;
   const std::string where =
       fmt::format("{}{}", fmt::join(some, ", "), more > 0 ? fmt::format(" and {} more places", more) : "");
+  // What is asked of an iteration may have no solution though the step has one.
+  const ErrorKind kind = problem_.internal_force->is_linear() ? ErrorKind::invalid_input : ErrorKind::not_converged;
   if (between_bodies) {
     throw Error(
-        ErrorKind::invalid_input,
+        kind,
         fmt::format("no motion meets the conditions of contact: at {} (reference position) bodies would have to "
                     "be outside of what they touch by {}{}; {}",
                     where, fmt::join(contacts, ", "),
@@ -49,7 +51,7 @@ void CondensedContact::throw_contradiction(const std::vector<Index>& contradicti
                           "of these contacts"));
   }
   throw Error(
-      ErrorKind::invalid_input,
+      kind,
       fmt::format("no motion meets the conditions of contact: the body at {} (reference position) would have to be "
                   "outside of the {} of {} at once{}; {}",
                   where, one ? "obstacle" : "obstacles", fmt::join(contacts, ", "),

@@ -23,7 +23,7 @@ constexpr double long_factorization = 1e11;
 constexpr const char* methods_entry = ".methods";  ///< of a snapshot
 constexpr const char* made_at_entry = ".made_at";
 constexpr const char* contact_made_at_entry = ".contact_made_at";
-constexpr const char* pressure_at_entry = ".pressure_at";
+constexpr const char* pressure_at_entry = ".pressure_at";  ///< when the factor was made; the last forces
 constexpr const char* frame_entry = ".frame";
 constexpr const char* kept = "as when the run began";
 
@@ -104,7 +104,9 @@ class StagesStepSolver final : public StepSolver {
       snapshot.save(name + made_at_entry, made_at_);
       snapshot.save(name + contact_made_at_entry, contact_made_at_);
       if (problem_.pressure)
-        snapshot.save(name + pressure_at_entry, Vector(Eigen::Vector2d(pressure_at_.time, pressure_at_.part)));
+        snapshot.save(name + pressure_at_entry,
+                      Vector(Eigen::Vector4d(pressure_at_.time, pressure_at_.part, problem_.pressure->last().time,
+                                             problem_.pressure->last().part)));
       frame_->save(snapshot, name + frame_entry);
     }
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->save(snapshot, fmt::format("{}.{}", name, i));
@@ -112,11 +114,10 @@ class StagesStepSolver final : public StepSolver {
   void load(const Snapshot& snapshot, const std::string& name) override {
     if (frame_) {
       const Vector& made_at = snapshot.reals(name + made_at_entry, 0, problem_.dof_count());
-      if (problem_.pressure) {
-        const Vector& instant = snapshot.reals(name + pressure_at_entry, 2);
-        problem_.pressure->set_last({instant[0], instant[1]});
-      }
+      const Vector* const instants = problem_.pressure ? &snapshot.reals(name + pressure_at_entry, 4) : nullptr;
+      if (instants != nullptr) problem_.pressure->set_last({(*instants)[0], (*instants)[1]});
       if (made_at.size() > 0) renew(made_at, snapshot.reals(name + contact_made_at_entry, problem_.dof_count()));
+      if (instants != nullptr) problem_.pressure->set_last({(*instants)[2], (*instants)[3]});
       frame_->load(snapshot, name + frame_entry);
     }
     for (std::size_t i = 0; i < stages_.size(); ++i) stages_[i]->load(snapshot, fmt::format("{}.{}", name, i));
@@ -144,7 +145,8 @@ class StagesStepSolver final : public StepSolver {
     problem_.pressure->set_last(pressure_at_);
     return make_factors(displacement, of_contact_nodes);
   }
-  /// Of a body that is squeezed against an obstacle the tangent may be indefinite, as contact is not in it.
+  /// Of a body that is squeezed against an obstacle the tangent may be indefinite, as contact is not in it. (Half of a
+  /// displacement is no place of bodies that turn; where supports hold something they mostly do not.)
   bool go_half_way(const Vector& displacement, const Vector& of_contact_nodes) {
     return problem_.supports.size() > 0 && make_factors(0.5 * displacement, 0.5 * of_contact_nodes);
   }

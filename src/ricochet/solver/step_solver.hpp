@@ -53,8 +53,9 @@ class StepSolver {
   /// from now on. Throws Error(invalid_input) when the operator is not positive definite there; the stages are then not
   /// to be solved before another displacement has been given at which it is.
   virtual void refactorize(std::size_t number, const Vector& displacement) = 0;
-  /// The same of all stages, those of contact nodes alone at another displacement. Where some operator is not positive
-  /// definite there, all go back to the undeformed body's tangent, turned as the bodies are.
+  /// The same of all stages, those of contact nodes alone at another displacement, with the pressure of the last
+  /// forces. Where some operator is not positive definite there, all are made without the pressure, or at half of the
+  /// displacement, or, if that does not help, of the undeformed body, turned as the bodies are.
   virtual void renew(const Vector& displacement, const Vector& of_contact_nodes) = 0;
   /// Where the internal force is not linear: operators turn with bodies that are at this displacement. (solve() does
   /// so by itself for a stage with a force_place.)

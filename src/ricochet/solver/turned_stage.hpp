@@ -6,8 +6,9 @@
 /// @file The stages of one operator in a frame that turns with the bodies.
 namespace ricochet {
 
-/// Solves A₀ (Rᵀδ) = Rᵀb + (H R)ᵀρ in place of A δ = b + Hᵀρ; all else of the stage is the same in both frames. Bodies
-/// with supports have R = I. The frame is shared by the stages of a step.
+/// Solves A₀ (Rᵀδ) = Rᵀb + (H R)ᵀρ in place of A δ = b + Hᵀρ; all else of the stage is the same in both frames: R
+/// leaves the components that supports hold as they are (problem/body_rotations.hpp). The frame is shared by the stages
+/// of a step.
 [[nodiscard]] std::unique_ptr<StageSolver> make_turned_stage(std::unique_ptr<StageSolver> solver,
                                                              const TurnedFrame& frame);
 

@@ -41,7 +41,7 @@ RICOCHET_PART_OF_CALLER Number logarithm_rest(const Number& of) {
   if constexpr (std::is_same_v<Number, double>) {
     return logarithm_remainder(of);
   } else {
-    constexpr int most_roots = 5;  // of volumes between 1/20 and 20
+    constexpr int most_roots = 5;  // of 1 + x between 1/20 and 20
     constexpr double near = 0.1;
     Number x = of, sum{};
     double factor = 1.0;

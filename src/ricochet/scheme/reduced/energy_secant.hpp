@@ -27,7 +27,7 @@ class EnergySecant {
   double sigma_ = 0.0;
   /// σ of the round before and what the balance of energy asked for then; NaN before the second round.
   double sigma_before_ = 0.0, asked_before_ = 0.0;
-  double slope_ = 0.0;  ///< dσ_asked/dσ, the last that could be told; NaN: none
+  double slope_ = 0.0;  ///< dσ_asked/dσ, the last; not finite: none
   bool is_weak_ = false;
   int settling_ = 0, vain_ = 0;  ///< rounds with this σ; changes in a row that brought nothing
   double least_lacking_ = 0.0;

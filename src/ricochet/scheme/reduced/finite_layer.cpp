@@ -15,7 +15,8 @@ namespace ricochet {
 
 namespace {
 
-/// What the balance of energy of a step may lack, relative to kinetic and elastic energy.
+/// What the balance of energy of a step may lack: relative to kinetic and elastic energy where a step is accepted, to
+/// the elastic energies where σ is chosen.
 constexpr double energy_tolerance = 1e-15;
 /// The same where σ hardly changes the work (EnergySecant::is_weak): another σ there brings no more than rounding.
 constexpr double weak_energy_tolerance = 1e-14;
@@ -64,6 +65,7 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   kinetic_ = kinetic_start_ = 0.5 * problem.mass.form(state.velocity);
   converged_ = false;
   lacked_ = std::numeric_limits<double>::infinity();
+  vain_ = 0;
   lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
   has_reactions_ = false;
   acceleration_.restart();
@@ -102,8 +104,8 @@ void FiniteLayer::evaluate(const SemidiscreteProblem& problem, double step, cons
     elastic.evaluate(end_, product_);  // says which cell is turned inside out
     throw Error(ErrorKind::not_converged, "the elastic energy at the end of the step is no number");
   }
-  // Less what P(x) does on contact nodes, which is in the work of D, too.
   load_work_ = layer_ ? loads_.work_of_change(problem.contact_dofs, state.displacement, end_, middle_) : 0.0;
+  // P(x) on contact nodes is in neither: it is in the work of D, too.
   const double wanted = (energy_ - energy_start_) + viscous_dissipation_ -
                         on_contact(problem, loads_.mean(), increment_) - load_work_ - obstacle_work_ -
                         end_weight_ * (work_at_end_ - dissipation_);
@@ -218,7 +220,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
   end_weight_ = solution.end_weight;
   dissipation_ = work_at_end_ = 0.0;
   if (end_weight_ == 0.0 || (solution.normal_reaction.isZero(0.0) && state.forces.normal_reaction.isZero(0.0))) {
-    if (!problem.loads.varies()) {
+    if (!loads_.change()) {
       relaxed_ = state.displacement;
       end_weight_ = 0.0;
       return;
@@ -286,12 +288,17 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
 
 /// Whether places have converged and the energy is balanced, as far as rounding of forces and energies lets it. A step
 /// that makes or loses energy is none of this scheme: Error(not_converged).
-bool FiniteLayer::is_balanced(const Round& round) {
+bool FiniteLayer::is_balanced(const Round& round, bool near) {
+  if (!near) return false;  // what is missing is not known
   constexpr double most = 1e-8;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
   const bool is_exact = std::abs(lacking_) <= tolerance() * size;
-  const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : std::abs(lacking_) > 0.5 * lacked_;
+  const bool is_vain = std::abs(lacking_) > 0.5 * lacked_;
+  vain_ = converged_ && is_vain ? vain_ + 1 : 0;
   lacked_ = std::abs(lacking_);
+  // Far from rounding one round may bring little, and the next one much.
+  const int most_vain = lacked_ <= 1e-13 * size ? 1 : 2;
+  const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : vain_ >= most_vain;
   if (log::enabled(log::Level::debug)) {
     log::debug(fmt::format(
         "Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
@@ -361,12 +368,14 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
     const StageSolution& solution = solve_round(problem, mean, step, state, stages);
     const Round round = correct(problem, state, solution);
     const NewtonProgress::Advice advice = progress_.judge(round.correction, round.increment);
-    if (progress_.wants_acceleration() && advice == NewtonProgress::Advice::go_on) accelerate(problem, state);
+    // Once places have converged, which they stay while σ is found, the solution is that of the equations.
+    if (!converged_ && progress_.wants_acceleration() && advice == NewtonProgress::Advice::go_on)
+      accelerate(problem, state);
     converged_ = converged_ || advice == NewtonProgress::Advice::done;
     if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, solution);
     const bool near = round.correction <= near_solution * round.increment || converged_;
     halve_where_inverted(problem, step, state, near);
-    if (is_balanced(round)) {
+    if (is_balanced(round, near)) {
       finish(problem, step, state, stage, solution, increment);
       return;
     }

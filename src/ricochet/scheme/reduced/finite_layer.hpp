@@ -82,7 +82,7 @@ class FiniteLayer {
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
   const StageSolution& solve_round(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                    const State& state, StageSolve& stages);
-  [[nodiscard]] bool is_balanced(const Round& round);
+  [[nodiscard]] bool is_balanced(const Round& round, bool near);
   /// What the balance of energy may lack, relative to the energies.
   [[nodiscard]] double tolerance() const;
   /// What the progress of a round asks for. Throws Error(not_converged).
@@ -113,13 +113,14 @@ class FiniteLayer {
   StepLoads loads_;
   StepCorrections corrections_;
   long energy_step_ = -1;                     ///< the step whose end is known already
-  double kept_energy_ = 0.0;                  ///< W there
+  double kept_energy_ = 0.0;                  ///< V there
   std::optional<double> layer_energy_start_;  ///< of the cells at contact nodes, once it is asked for
   double viscous_dissipation_ = 0.0;          ///< 𝒟
   double energy_ = 0.0, energy_start_ = 0.0, lacking_ = 0.0, end_weight_ = 0.0, dissipation_ = 0.0;
   bool converged_ = false;                          ///< places
   double kinetic_start_ = 0.0, kinetic_ = 0.0;      ///< at the ends of the step, the second of the round before
   double lacked_ = 0.0;                             ///< |lacking_| of the round before
+  int vain_ = 0;                                    ///< rounds in a row that did not halve it
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
   double load_work_ = 0.0;                          ///< of loads that change, beside their mean on the increment
   ObstacleMotion obstacle_;
