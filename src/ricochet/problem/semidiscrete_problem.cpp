@@ -99,6 +99,13 @@ void SemidiscreteProblem::put_contact(const Eigen::Ref<const Vector>& on_contact
   for (std::size_t i = 0; i < contact_dofs.size(); ++i) values[contact_dofs[i]] = on_contact[static_cast<Index>(i)];
 }
 
+std::shared_ptr<const InternalForce> SemidiscreteProblem::force_near_contact() const {
+  if (contact_dofs.empty()) return nullptr;
+  std::vector<char> wanted(static_cast<std::size_t>(nodes.cols()), 0);
+  for (const Index dof : contact_dofs) wanted[static_cast<std::size_t>(dof / dimension)] = 1;
+  return internal_force->near(wanted);
+}
+
 std::vector<Index> contact_node_dofs(const SemidiscreteProblem& problem) {
   std::vector<Index> dofs;
   for (const Index node : problem.contact.unique_nodes()) {

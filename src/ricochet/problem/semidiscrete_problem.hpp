@@ -55,6 +55,8 @@ struct SemidiscreteProblem {
   /// What values per dof are on contact_dofs, and the other way. (Eigen's indexed views copy their indices.)
   void take_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const;
   void put_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const;
+  /// Of the cells at contact_dofs alone, right at the nodes of these; null where there are none.
+  [[nodiscard]] std::shared_ptr<const InternalForce> force_near_contact() const;
   /// Null between bodies.
   [[nodiscard]] const Obstacle* obstacle_of_point(Index point) const {
     return obstacles[static_cast<std::size_t>(contact.pair[static_cast<std::size_t>(point)])];

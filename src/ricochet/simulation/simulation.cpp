@@ -134,8 +134,10 @@ const StageSolution& Simulation::solve(std::size_t number) {
   current_->solver->solve(number, stage, solution);
   if (problem_.ranks->any(!is_finite(problem_, dofs, solution.increment))) {
     throw Error(ErrorKind::not_converged,
-                "the displacement is no longer finite, so the motion has grown beyond all bounds; use a stable scheme "
-                "(reduced-kane with mass \"equivalent\")");
+                problem_.internal_force->is_linear()
+                    ? "the displacement is no longer finite, so the motion has grown beyond all bounds; use a stable "
+                      "scheme (reduced-kane with mass \"equivalent\")"
+                    : "a correction of Newton's method has entries that are no finite numbers");
   }
   iterations_ += solution.iterations;
   // Contact nodes alone are part of other stages' rounds, where there are any.

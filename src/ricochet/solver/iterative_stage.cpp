@@ -153,8 +153,14 @@ void IterativeStage::make_zone_of(const std::vector<Index>& points, const std::v
   zone_.reset();
   near_.clear();
   near_.take_up(points);
-  zone_ = std::make_unique<ContactZone>(problem_, coefficients_, solved_, nodes, points, options_.all_points,
-                                        displacement_, layer_stage_);
+  try {
+    zone_ = std::make_unique<ContactZone>(problem_, coefficients_, solved_, nodes, points, options_.all_points,
+                                          displacement_, layer_stage_);
+  } catch (const Error& problem) {
+    // The tangent of a place that an iteration leads to is no fault of the case.
+    if (problem.kind() != ErrorKind::invalid_input || displacement_.size() == 0) throw;
+    throw Error(ErrorKind::not_converged, problem.what());
+  }
   zone_->observe(observer_);
 }
 

@@ -22,6 +22,8 @@ constexpr double energy_tolerance = 1e-15;
 constexpr double weak_energy_tolerance = 1e-14;
 /// What the balance lacks is too near to rounding to tell how it answers σ, relative likewise.
 constexpr double near_rounding = 1e-12;
+/// Parts of a step may lack what the step may, by their length; those below this part as much as it.
+constexpr double least_part = 0.1;
 /// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
 constexpr double near_solution = 1e-2;
 
@@ -33,13 +35,11 @@ double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vec
 
 }  // namespace
 
-void FiniteLayer::analyse(const SemidiscreteProblem& problem) {
+void FiniteLayer::analyse(const SemidiscreteProblem& problem, double step) {
+  whole_step_ = step;
   flight_ = std::make_unique<FlightPrediction>(problem);
   layer_right_.resize(static_cast<Index>(problem.contact_dofs.size()));
-  if (problem.contact_dofs.empty()) return;
-  std::vector<char> wanted(static_cast<std::size_t>(problem.nodes.cols()), 0);
-  for (const Index dof : problem.contact_dofs) wanted[static_cast<std::size_t>(dof / problem.dimension)] = 1;
-  layer_ = problem.internal_force->near(wanted);
+  layer_ = problem.force_near_contact();
 }
 
 std::vector<OperatorCoefficients> FiniteLayer::operators(const SemidiscreteProblem& problem, double step,
@@ -65,6 +65,7 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   kinetic_ = kinetic_start_ = 0.5 * problem.mass.form(state.velocity);
   converged_ = false;
   lacked_ = std::numeric_limits<double>::infinity();
+  part_ = std::clamp(step / whole_step_, least_part, 1.0);
   vain_ = 0;
   lacking_ = end_weight_ = dissipation_ = viscous_dissipation_ = work_at_end_ = obstacle_work_ = 0.0;
   has_reactions_ = false;
@@ -306,7 +307,7 @@ bool FiniteLayer::is_balanced(const Round& round, bool near) {
         progress_.rounds(), round.correction, round.increment, sigma_.value(), lacking_ / size, end_weight_));
   }
   if (!converged_ || !(is_exact || is_last)) return false;
-  if (lacked_ <= most * size) return true;
+  if (lacked_ <= part_ * most * size) return true;
   throw Error(
       ErrorKind::not_converged,
       fmt::format("no force of the middle of the step has the work of the elastic energy: {:.2g} of the energy is "

@@ -59,8 +59,8 @@ namespace ricochet {
 
 class FiniteLayer {
  public:
-  /// After a mass and supports are known. Throws Error(invalid_input).
-  void analyse(const SemidiscreteProblem& problem);
+  /// After a mass and supports are known, with the whole step. Throws Error(invalid_input).
+  void analyse(const SemidiscreteProblem& problem, double step);
   [[nodiscard]] static std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem, double step,
                                                                    ReactionMean mean);
   void advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state, StageSolve& stages,
@@ -120,6 +120,8 @@ class FiniteLayer {
   bool converged_ = false;                          ///< places
   double kinetic_start_ = 0.0, kinetic_ = 0.0;      ///< at the ends of the step, the second of the round before
   double lacked_ = 0.0;                             ///< |lacking_| of the round before
+  double whole_step_ = 0.0;                         ///< that parts are of
+  double part_ = 1.0;                               ///< of it that is taken
   int vain_ = 0;                                    ///< rounds in a row that did not halve it
   double work_at_end_ = 0.0, obstacle_work_ = 0.0;  ///< ρ·HΔ_c less the obstacles' motion; ρ̄ on that
   double load_work_ = 0.0;                          ///< of loads that change, beside their mean on the increment

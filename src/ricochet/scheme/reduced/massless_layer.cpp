@@ -28,7 +28,7 @@ void MasslessLayer::analyse(const SemidiscreteProblem& problem) {
   }
   if (!problem.internal_force->is_linear()) {
     finite_.emplace();
-    finite_->analyse(problem);
+    finite_->analyse(problem, step_);
     return;
   }
   stiffness_.analyse(problem);

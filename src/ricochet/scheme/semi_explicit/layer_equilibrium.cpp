@@ -34,10 +34,7 @@ double largest_on_contact(const SemidiscreteProblem& problem, const Vector& valu
 }  // namespace
 
 void LayerEquilibrium::analyse(const SemidiscreteProblem& problem) {
-  if (problem.contact_dofs.empty()) return;
-  std::vector<char> wanted(static_cast<std::size_t>(problem.nodes.cols()), 0);
-  for (const Index dof : problem.contact_dofs) wanted[static_cast<std::size_t>(dof / problem.dimension)] = 1;
-  layer_ = problem.internal_force->near(wanted);
+  layer_ = problem.force_near_contact();
   reach_ = problem.nodes.cwiseAbs().maxCoeff();
 }
 
