@@ -19,6 +19,7 @@ class FlightPrediction {
   explicit FlightPrediction(const SemidiscreteProblem& problem);
   /// Displacements after a step; `end` keeps its storage.
   void predict(const Vector& displacement, const Vector& velocity, double step, Vector& end);
+  [[nodiscard]] const BodyRotations& bodies() const { return bodies_; }
 
  private:
   /// Of a body as a whole, three coordinates each.

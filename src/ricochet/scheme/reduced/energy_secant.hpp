@@ -22,7 +22,7 @@ class EnergySecant {
   [[nodiscard]] bool is_settled() const { return vain_ >= most_vain; }
 
  private:
-  static constexpr int most_vain = 6;  ///< changes in a row that do not halve what the energy lacks
+  static constexpr int most_vain = 3;  ///< changes in a row that do not halve what the energy lacks
 
   double sigma_ = 0.0;
   /// σ of the round before and what the balance of energy asked for then; NaN before the second round.

@@ -38,6 +38,7 @@ double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vec
 void FiniteLayer::analyse(const SemidiscreteProblem& problem, double step) {
   whole_step_ = step;
   flight_ = std::make_unique<FlightPrediction>(problem);
+  velocity_correction_ = std::make_unique<VelocityCorrection>(problem, flight_->bodies());
   layer_right_.resize(static_cast<Index>(problem.contact_dofs.size()));
   layer_ = problem.force_near_contact();
 }
@@ -63,7 +64,7 @@ void FiniteLayer::start(const SemidiscreteProblem& problem, double step, const S
   layer_energy_start_.reset();
   sigma_.start();
   kinetic_ = kinetic_start_ = 0.5 * problem.mass.form(state.velocity);
-  converged_ = false;
+  converged_ = corrects_velocity_ = false;
   lacked_ = std::numeric_limits<double>::infinity();
   part_ = std::clamp(step / whole_step_, least_part, 1.0);
   vain_ = 0;
@@ -267,6 +268,10 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   state.internal_strain = internal_;
   state.velocity += (4.0 / step) * product_;
   state.acceleration = (4.0 / (step * step)) * product_;
+  if (corrects_velocity_) {
+    state.velocity += velocity_correction_->value();
+    state.acceleration += (1.0 / step) * velocity_correction_->value();
+  }
   follow_without_inertia(problem, increment, step, state);
   equations_.take_contact(stage, solution, step, state);
   loads_.take_varying(state.forces.varying_load);
@@ -280,7 +285,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   kept_energy_ = energy_;
   corrections_ = {.load_work = load_work_,
                   .numerical_dissipation = end_weight_ * dissipation_,
-                  .integration_error = lacking_,
+                  .integration_error = corrects_velocity_ ? 0.0 : lacking_,
                   .viscous_dissipation = viscous_dissipation_};
   if (end_weight_ == 1.0) return;
   // The mean works nothing along the path; what of it is the end's works what that does.
@@ -289,9 +294,9 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
 
 /// Whether places have converged and the energy is balanced, as far as rounding of forces and energies lets it. A step
 /// that makes or loses energy is none of this scheme: Error(not_converged).
-bool FiniteLayer::is_balanced(const Round& round, bool near) {
+bool FiniteLayer::is_balanced(double step, const State& state, const Round& round, bool near) {
   if (!near) return false;  // what is missing is not known
-  constexpr double most = 1e-8;
+  constexpr double most = 1e-8, most_corrected = 1e-6, most_created = 1e-11;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
   const bool is_exact = std::abs(lacking_) <= tolerance() * size;
   const bool is_vain = std::abs(lacking_) > 0.5 * lacked_;
@@ -306,13 +311,31 @@ bool FiniteLayer::is_balanced(const Round& round, bool near) {
         "missing, {:.3g} of the reactions are the end's",
         progress_.rounds(), round.correction, round.increment, sigma_.value(), lacking_ / size, end_weight_));
   }
-  if (!converged_ || !(is_exact || is_last)) return false;
-  if (lacked_ <= part_ * most * size) return true;
+  if (!converged_) return false;
+  if (!is_exact && !is_last) return false;
+  const bool is_done = is_exact || lacked_ <= near_rounding * size ||
+                       (lacked_ <= most_corrected * size && correct_velocity(step, state));
+  if (end_weight_ * dissipation_ < -most_created * size) {
+    throw Error(ErrorKind::not_converged,
+                fmt::format("contact nodes have more than one place of equilibrium at the start of the step, and would "
+                            "go to one of more energy ({:.2g} of it)",
+                            -end_weight_ * dissipation_ / size));
+  }
+  if (is_done || lacked_ <= part_ * most * size) return true;
   throw Error(
       ErrorKind::not_converged,
       fmt::format("no force of the middle of the step has the work of the elastic energy: {:.2g} of the energy is "
                   "missing, as strains change too much in one step",
                   lacked_ / size));
+}
+
+/// Velocities at the end balance what no σ does.
+bool FiniteLayer::correct_velocity(double step, const State& state) {
+  product_ = middle_ - base_;
+  right_ = state.velocity + (4.0 / step) * product_;
+  corrects_velocity_ = velocity_correction_->find(right_, end_, -lacking_);
+  log::debug(fmt::format("velocities at the end are {}corrected", corrects_velocity_ ? "" : "not "));
+  return corrects_velocity_;
 }
 
 void FiniteLayer::heed(NewtonProgress::Advice advice, const Round& round, StageSolve& stages) {
@@ -376,7 +399,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
     if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, solution);
     const bool near = round.correction <= near_solution * round.increment || converged_;
     halve_where_inverted(problem, step, state, near);
-    if (is_balanced(round, near)) {
+    if (is_balanced(step, state, round, near)) {
       finish(problem, step, state, stage, solution, increment);
       return;
     }

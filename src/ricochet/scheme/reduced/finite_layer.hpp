@@ -11,6 +11,7 @@
 #include "ricochet/scheme/reduced/energy_secant.hpp"
 #include "ricochet/scheme/reduced/lagged_rows.hpp"
 #include "ricochet/scheme/reduced/step_loads.hpp"
+#include "ricochet/scheme/reduced/velocity_correction.hpp"
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/scheme/step_equations.hpp"
 
@@ -36,8 +37,10 @@
 /// equations at x, so that all round a body it has neither resultant nor moment about x, P(u₁) to L₁, and
 /// P₀ = 2P(x) − P(u₁) to L₀.
 ///
+/// Where no σ changes the work of D, velocities at the end balance the energy (velocity_correction.hpp).
+///
 /// With μ = 0 energy is kept, with μ > 0 no step creates any: d ≥ 0 says no more than that J leads to a minimum, which
-/// is so while K_cc is positive definite on the way.
+/// is so while K_cc is positive definite on the way. A step with d < 0 is refused.
 ///
 /// Branches beside the laws (fem/relaxation.hpp) add the forces of 2gμ q̄ to f̄ and those of 2gμ q₁ to f(u₁), both for
 /// the strain that goes linearly from 2Ē − E₁ to E₁. Where a mean of the reactions makes x_c half of the way, that is
@@ -82,7 +85,8 @@ class FiniteLayer {
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
   const StageSolution& solve_round(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                    const State& state, StageSolve& stages);
-  [[nodiscard]] bool is_balanced(const Round& round, bool near);
+  [[nodiscard]] bool is_balanced(double step, const State& state, const Round& round, bool near);
+  [[nodiscard]] bool correct_velocity(double step, const State& state);
   /// What the balance of energy may lack, relative to the energies.
   [[nodiscard]] double tolerance() const;
   /// What the progress of a round asks for. Throws Error(not_converged).
@@ -104,6 +108,8 @@ class FiniteLayer {
   std::shared_ptr<const InternalForce> layer_;  ///< of the cells at contact nodes alone
   NewtonProgress progress_;
   EnergySecant sigma_;
+  std::unique_ptr<VelocityCorrection> velocity_correction_;
+  bool corrects_velocity_ = false;
   EndContact contact_;
   LaggedRows lagged_;    ///< where rows follow the motion
   Reactions reactions_;  ///< of the round before in this step, if there was one
