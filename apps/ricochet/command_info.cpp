@@ -101,7 +101,16 @@ void describe_case(const std::string& path) {
   print_files(input);
   for (const MaterialSection& m : input.materials) {
     const std::unique_ptr<MaterialLaw> law = make_material_law(m.law, m.parameters);
-    fmt::print("  material \"{}\": density {:g}, lambda {:g}, mu {:g}\n", m.group, m.density, law->lambda(), law->mu());
+    std::string more;
+    if (!law->is_linear()) {
+      more = "; law " + m.law;
+      for (const auto& [name, value] : m.parameters.values()) more += fmt::format(", {} {}", name, as_text(value));
+    }
+    for (std::size_t k = 0; k < m.relaxation.time.size(); ++k)
+      more += fmt::format("{} {:g} of mu in {:g}", k == 0 ? "; relaxes by" : ",", m.relaxation.modulus[k],
+                          m.relaxation.time[k]);
+    fmt::print("  material \"{}\": density {:g}, lambda {:g}, mu {:g}{}\n", m.group, m.density, law->lambda(),
+               law->mu(), more);
   }
   print_contacts(describe_contacts(input));
   fmt::print("  scheme {}, mass {}, {} to {:g}\n", input.time.scheme, input.mass.type, steps_text(input.time),

@@ -66,6 +66,11 @@ void print_method(const RunSummary& summary) {
   if (summary.steps == 0) return;
   const std::string reactions = reactions_text(summary);
   fmt::print("  {}{}\n", energy_text(summary), reactions.empty() ? "" : "; reactions: " + reactions);
+  const double heat = summary.digest("viscous_dissipation").last, energy = summary.energy_scale();
+  if (heat > 0.0 && energy > 0.0)
+    fmt::print("  relaxation turned {} of the largest energy into heat\n", percent(heat / energy));
+  const double rounds = summary.digest("newton_rounds").maximum;
+  if (rounds > 0.0) fmt::print("  Newton's method took up to {:.0f} iterations in a step\n", rounds);
 }
 
 std::string steps_text(const RunSummary& summary) {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <ctime>
@@ -19,6 +21,8 @@ namespace {
 
 /// For a step to come to its end, in milliseconds; what is done after it takes some more of the two seconds.
 constexpr int patience = 1200;
+
+constexpr std::chrono::milliseconds same_request{250};
 
 std::atomic<int> received = 0;
 
@@ -45,6 +49,20 @@ int next_signal(const sigset_t& awaited, int milliseconds) {
   }
 }
 
+/// Another request to stop after the first signal, which came at an instant, as next_signal() returns it. Programs such
+/// as timeout send a signal to a process and to its group: the same one again at once is the same request.
+int next_request(const sigset_t& awaited, int first, std::chrono::steady_clock::time_point instant, int milliseconds) {
+  using std::chrono::steady_clock;
+  const auto end = steady_clock::now() + std::chrono::milliseconds(milliseconds);
+  for (int left = milliseconds;;) {
+    const int signal = next_signal(awaited, left);
+    if (signal != first || steady_clock::now() > instant + same_request) return signal;
+    if (milliseconds < 0) continue;
+    const auto rest = std::chrono::duration_cast<std::chrono::milliseconds>(end - steady_clock::now()).count();
+    left = std::max(0, static_cast<int>(rest));
+  }
+}
+
 /// Puts things in order and ends the process, on a thread of its own: another signal must not wait for that.
 void end_process(int signal) {
   try {
@@ -59,16 +77,17 @@ void end_process(int signal) {
 void wait(const sigset_t& awaited) {
   const int first = next_signal(awaited, -1);
   if (first == 0) return;
-  if (const int second = next_signal(awaited, 0); second != 0) _exit(128 + second);
+  const auto instant = std::chrono::steady_clock::now();
+  if (const int second = next_request(awaited, first, instant, 0); second != 0) _exit(128 + second);
   received = first;
   if (interruption::has_stopping_points()) {
     interruption::say("\nricochet: stopping at the end of this step; once more stops at once\n");
-    if (const int second = next_signal(awaited, patience); second != 0) _exit(128 + second);
+    if (const int second = next_request(awaited, first, instant, patience); second != 0) _exit(128 + second);
   } else {
     interruption::say(fmt::format("\nricochet: stopped by SIG{}\n", sigabbrev_np(first)).c_str());
   }
   end_process(first);
-  const int second = next_signal(awaited, -1);
+  const int second = next_request(awaited, first, instant, -1);
   _exit(128 + second);
 }
 

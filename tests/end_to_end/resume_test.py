@@ -60,6 +60,8 @@ class Resume(ResumeTestCase):
             process = start(self.disc, output, values)
             wait_for((output / "summary.json").exists)
             process.send_signal(number)
+            time.sleep(0.02)
+            process.send_signal(number)  # as `timeout` does
             text, errors = process.communicate()
             self.assertEqual(process.returncode, status, errors)
             self.assertIn("run --resume goes on", text)

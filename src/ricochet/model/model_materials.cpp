@@ -129,6 +129,20 @@ void require_inertia(const Case& input, std::size_t i, const Model& model) {
              input.materials[i].group, speed, crossings, input.time.step, material.young(), material.density));
 }
 
+/// Where λ is thousands of times μ, its changes along an iteration hide those of μ.
+void warn_of_iterations(const Case& input, std::size_t i, const Model& model) {
+  constexpr double many = 5000.0;
+  const Material& material = model.body.materials[i];
+  const double ratio = material.law->lambda() / material.law->mu();
+  if (material.law->is_linear() || ratio <= many) return;
+  log::warning(
+      fmt::format("{}: material \"{}\" is incompressible to one part in {:.3g} (lambda / mu, Poisson's ratio "
+                  "{:.8g}): Newton's method takes many iterations, or fails; a ratio of 1000 (Poisson's ratio "
+                  "0.4995) is nearly incompressible, too",
+                  input.where(key_of(input.materials[i], i, {"poisson", "bulk_modulus", "lambda"})).text(),
+                  input.materials[i].group, ratio, material.poisson()));
+}
+
 /// A body with a linear law does not see how far it turns, and the watch of rotations would have to know which it is.
 void require_one_kind_of_law(const Case& input, const Model& model) {
   if (!has_finite_strain(model.body)) return;
@@ -176,6 +190,7 @@ void assign_materials(const Case& input, Model& model) {
     require_digits(input, i, model);
     require_inertia(input, i, model);
     choose_dilatation(input, i, model);
+    warn_of_iterations(input, i, model);
   }
   require_one_kind_of_law(input, model);
   refuse_stretches_of_small_strain(input, model);

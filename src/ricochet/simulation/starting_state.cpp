@@ -62,7 +62,15 @@ void relax_contact_nodes(const SemidiscreteProblem& problem, double step, const 
   Stage stage = contact_stage(problem, state.displacement, residual_force(problem, state.displacement, state.velocity));
   require_friction(problem, state.velocity, obstacle_at_start(problem, state.displacement), 1.0 / step, stage);
   StageSolution solution;
-  solver->solve(0, stage, solution);
+  try {
+    solver->solve(0, stage, solution);
+  } catch (const Error& problem) {
+    throw Error(problem.kind(),
+                fmt::format("at the start contact nodes, which have no inertia, find no equilibrium beside the given "
+                            "places of the others: {}; give an initial.displacement that strains bodies less there, or "
+                            "\"static\", or move the body by supports",
+                            problem.what()));
+  }
   state.displacement += solution.increment;
   state.forces.rows = stage.rows;
   add_reactions(solution, state);

@@ -1,13 +1,10 @@
 #include "ricochet/scheme/reduced/finite_layer.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "ricochet/base/error.hpp"
-#include "ricochet/base/log.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
 #include "ricochet/scheme/reduced/massless_layer.hpp"
 
@@ -20,8 +17,6 @@ namespace {
 constexpr double energy_tolerance = 1e-15;
 /// The same where σ hardly changes the work (EnergySecant::is_weak): another σ there brings no more than rounding.
 constexpr double weak_energy_tolerance = 1e-14;
-/// What the balance lacks is too near to rounding to tell how it answers σ, relative likewise.
-constexpr double near_rounding = 1e-12;
 /// Parts of a step may lack what the step may, by their length; those below this part as much as it.
 constexpr double least_part = 0.1;
 /// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
@@ -290,52 +285,6 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   if (end_weight_ == 1.0) return;
   // The mean works nothing along the path; what of it is the end's works what that does.
   corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
-}
-
-/// Whether places have converged and the energy is balanced, as far as rounding of forces and energies lets it. A step
-/// that makes or loses energy is none of this scheme: Error(not_converged).
-bool FiniteLayer::is_balanced(double step, const State& state, const Round& round, bool near) {
-  if (!near) return false;  // what is missing is not known
-  constexpr double most = 1e-8, most_corrected = 1e-6, most_created = 1e-11;
-  const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
-  const bool is_exact = std::abs(lacking_) <= tolerance() * size;
-  const bool is_vain = std::abs(lacking_) > 0.5 * lacked_;
-  vain_ = converged_ && is_vain ? vain_ + 1 : 0;
-  lacked_ = std::abs(lacking_);
-  // Far from rounding one round may bring little, and the next one much.
-  const int most_vain = lacked_ <= 1e-13 * size ? 1 : 2;
-  const bool is_last = sigma_.is_weak() ? sigma_.is_settled() : vain_ >= most_vain;
-  if (log::enabled(log::Level::debug)) {
-    log::debug(fmt::format(
-        "Newton: round {}, correction {:.2e} of {:.2e}, sigma {:.2e}, {:.2e} of the energy is "
-        "missing, {:.3g} of the reactions are the end's",
-        progress_.rounds(), round.correction, round.increment, sigma_.value(), lacking_ / size, end_weight_));
-  }
-  if (!converged_) return false;
-  if (!is_exact && !is_last) return false;
-  const bool is_done = is_exact || lacked_ <= near_rounding * size ||
-                       (lacked_ <= most_corrected * size && correct_velocity(step, state));
-  if (end_weight_ * dissipation_ < -most_created * size) {
-    throw Error(ErrorKind::not_converged,
-                fmt::format("contact nodes have more than one place of equilibrium at the start of the step, and would "
-                            "go to one of more energy ({:.2g} of it)",
-                            -end_weight_ * dissipation_ / size));
-  }
-  if (is_done || lacked_ <= part_ * most * size) return true;
-  throw Error(
-      ErrorKind::not_converged,
-      fmt::format("no force of the middle of the step has the work of the elastic energy: {:.2g} of the energy is "
-                  "missing, as strains change too much in one step",
-                  lacked_ / size));
-}
-
-/// Velocities at the end balance what no σ does.
-bool FiniteLayer::correct_velocity(double step, const State& state) {
-  product_ = middle_ - base_;
-  right_ = state.velocity + (4.0 / step) * product_;
-  corrects_velocity_ = velocity_correction_->find(right_, end_, -lacking_);
-  log::debug(fmt::format("velocities at the end are {}corrected", corrects_velocity_ ? "" : "not "));
-  return corrects_velocity_;
 }
 
 void FiniteLayer::heed(NewtonProgress::Advice advice, const Round& round, StageSolve& stages) {

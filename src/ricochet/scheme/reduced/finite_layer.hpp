@@ -80,6 +80,8 @@ class FiniteLayer {
   struct Reactions {
     Vector normal, tangential, acting_normal, acting_tangential;
   };
+  /// What the balance of energy lacks is too near to rounding to tell how it answers σ, relative to the energies.
+  static constexpr double near_rounding = 1e-12;
   void start(const SemidiscreteProblem& problem, double step, const State& state);
   /// Forces at the middle and at the end; near the solution also what the energy lacks, and σ for it.
   void evaluate(const SemidiscreteProblem& problem, double step, const State& state, bool near);
