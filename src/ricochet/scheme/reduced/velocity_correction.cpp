@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <vector>
 
 #include "ricochet/base/dense_decompositions.hpp"
 
@@ -54,8 +55,8 @@ void VelocityCorrection::find_relative(const Vector& velocity, const Vector& dis
   const Index d = problem_.dimension;
   const int modes = mode_count();
   places_ = problem_.nodes + displacement.reshaped(d, problem_.nodes.cols());
-  centres_.assign(bodies_.count(), Eigen::Vector3d::Zero());
-  std::vector<double> sizes(bodies_.count(), 0.0);
+  Points centres = Points::Zero(d, static_cast<Index>(bodies_.count()));
+  Vector sizes = Vector::Zero(centres.cols());
   const auto visit = [&](const auto& work) {
     for (Index node = 0; node < places_.cols(); ++node) {
       const int body = bodies_.body_of_node(node);
@@ -63,10 +64,12 @@ void VelocityCorrection::find_relative(const Vector& velocity, const Vector& dis
     }
   };
   visit([&](Index node, std::size_t body) {
-    centres_[body].head(d) += places_.col(node);
-    sizes[body] += 1.0;
+    centres.col(static_cast<Index>(body)) += places_.col(node);
+    sizes[static_cast<Index>(body)] += 1.0;
   });
-  visit([&](Index node, std::size_t body) { places_.col(node) -= centres_[body].head(d) / sizes[body]; });
+  visit([&](Index node, std::size_t body) {
+    places_.col(node) -= centres.col(static_cast<Index>(body)) / sizes[static_cast<Index>(body)];
+  });
 
   value_ = velocity;
   mask(value_);

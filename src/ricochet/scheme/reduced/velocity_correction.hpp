@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "ricochet/problem/body_rotations.hpp"
 
 /// @file What is left to balance the energy of a step where no stress of its middle does (finite_layer.hpp).
@@ -37,8 +35,7 @@ class VelocityCorrection {
 
   const SemidiscreteProblem& problem_;
   const BodyRotations& bodies_;
-  std::vector<Eigen::Vector3d> centres_;  ///< per body
-  Points places_;                         ///< from the centre of a node's body
+  Points places_;  ///< from the centre of a node's body
   Vector value_, momentum_, mode_;
 };
 
