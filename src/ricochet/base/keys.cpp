@@ -49,6 +49,9 @@ std::string wanted(const Key& key) {
     case KeyType::formulas:
       return fmt::format("a vector of 2 or 3 numbers or expressions in {}{}", key.variables,
                          key.choices.empty() ? "" : ", or " + one_of(key.choices, true));
+    case KeyType::axial_formulas:
+      return fmt::format("a number or an expression in {} in two dimensions, a vector of 3 of them in three",
+                         key.variables);
     case KeyType::components:
     case KeyType::names:
       return fmt::format("a list with one or more of {}", join_names(key.choices, " and "));

@@ -10,22 +10,23 @@
 namespace ricochet {
 
 enum class KeyType {
-  text,        ///< any text; not empty when required
-  choice,      ///< one of `choices`
-  number,      ///< finite, within `range`, or one of `choices`
-  integer,     ///< within `range`, or one of `choices`
-  flag,        ///< true or false
-  vector,      ///< 2 or 3 numbers
-  numbers,     ///< one or more, each within `range`
-  axial,       ///< of a rotation: a number in two dimensions, 3 numbers in three
-  formula,     ///< a number or an expression in `variables`
-  formulas,    ///< 2 or 3 of them, or one of `choices`
-  components,  ///< a list of distinct `choices`, which name the directions of space
-  names,       ///< a list of distinct `choices`
-  groups,      ///< the name of a group of the mesh, or a list of distinct ones: their union
-  parameters,  ///< a table of numbers, for the expressions beside it
-  conditions,  ///< a table of key paths and the values they must have
-  table,       ///< a sub-table with `keys`
+  text,            ///< any text; not empty when required
+  choice,          ///< one of `choices`
+  number,          ///< finite, within `range`, or one of `choices`
+  integer,         ///< within `range`, or one of `choices`
+  flag,            ///< true or false
+  vector,          ///< 2 or 3 numbers
+  numbers,         ///< one or more, each within `range`
+  axial,           ///< of a rotation: a number in two dimensions, 3 numbers in three
+  formula,         ///< a number or an expression in `variables`
+  formulas,        ///< 2 or 3 of them, or one of `choices`
+  axial_formulas,  ///< of a rotation: a number or an expression in two dimensions, 3 of them in three
+  components,      ///< a list of distinct `choices`, which name the directions of space
+  names,           ///< a list of distinct `choices`
+  groups,          ///< the name of a group of the mesh, or a list of distinct ones: their union
+  parameters,      ///< a table of numbers, for the expressions beside it
+  conditions,      ///< a table of key paths and the values they must have
+  table,           ///< a sub-table with `keys`
 };
 
 /// Bounds of a number.

@@ -29,6 +29,9 @@ class Parameters {
   [[nodiscard]] const std::string& text(const std::string& name) const;
   [[nodiscard]] const std::vector<double>& vector(const std::string& name) const;
   [[nodiscard]] const std::map<std::string, Value>& values() const { return values_; }
+  /// Numbers by name, for expressions among the texts.
+  [[nodiscard]] const std::map<std::string, double>& constants() const { return constants_; }
+  void set_constants(std::map<std::string, double> constants) { constants_ = std::move(constants); }
 
   /// Adds the defaults of keys that have no value. Throws Error(invalid_input) that names `owner` where a required
   /// value is missing, belongs to none of the keys, or is not what its key wants. (Checks that concern several keys are
@@ -37,6 +40,7 @@ class Parameters {
 
  private:
   std::map<std::string, Value> values_;
+  std::map<std::string, double> constants_;
 };
 
 /// As in a case file: texts without quotes, numbers in their shortest exact form, lists as "[1, 2]".

@@ -65,6 +65,16 @@ struct ObstacleSection {
   std::string name;
   std::string type;
   Parameters parameters;  ///< of the type
+  // Its motion:
+  std::vector<double> velocity;      ///< empty: none
+  double rotation_rate = 0.0;        ///< about its own axis
+  std::vector<Expression> motion;    ///< of t: a displacement; empty: none
+  std::vector<Expression> rotation;  ///< of t, in rad: one number in 2D, a vector in 3D; empty: none
+  std::vector<double> about;         ///< empty: its own centre
+  std::string table;                 ///< a file of displacements and rotations; empty: none
+  [[nodiscard]] bool moves() const {
+    return !velocity.empty() || rotation_rate != 0.0 || !motion.empty() || !rotation.empty() || !table.empty();
+  }
 };
 
 struct ContactSection {

@@ -12,6 +12,11 @@ namespace ricochet {
 
 namespace {
 
+/// The types that have a key: scheme "newmark", types "sphere" and "cylinder".
+std::string types_text(const Section& section, const Key& key) {
+  return fmt::format("{}{} {}", section.type_key, key.only_for.size() > 1 ? "s" : "", join_names(key.only_for));
+}
+
 using Kind = TomlNode::Kind;
 
 TomlNode default_node(const Key& key, const SourceLocation& location) {
@@ -250,8 +255,8 @@ void TreeChecker::check_foreign_key(const Section& section, const Key& key, cons
     return;
   }
   value->is_refused = true;
-  problems_.add(value->location, fmt::format("\"{}\" is for the {} {} only; the {} is \"{}\"", key.name,
-                                             section.type_key, join_names(key.only_for), section.type_key, type->text));
+  problems_.add(value->location, fmt::format("\"{}\" is for the {} only; the {} is \"{}\"", key.name,
+                                             types_text(section, key), section.type_key, type->text));
 }
 
 void TreeChecker::check_known(const std::vector<Key>& keys, const std::string& title, TomlNode& table) {
@@ -272,10 +277,10 @@ void TreeChecker::check_known_of_type(const Section& section, const TypeKeys* ty
     const Key* const meant = find_key(section.keys, nearest_key(member.key, section.keys));
     const bool is_foreign = meant != nullptr && nearest_key(member.key, allowed).empty();
     problems_.add(member.key_location,
-                  is_foreign ? fmt::format("unknown key \"{}\" in {}; \"{}\" is for the {} {} only; the {} is \"{}\"",
-                                           member.key, title, meant->name, section.type_key,
-                                           join_names(meant->only_for), section.type_key, type->name)
-                             : unknown_key_message(member.key, title, meant != nullptr ? allowed : section.keys));
+                  is_foreign
+                      ? fmt::format("unknown key \"{}\" in {}; \"{}\" is for the {} only; the {} is \"{}\"", member.key,
+                                    title, meant->name, types_text(section, *meant), section.type_key, type->name)
+                      : unknown_key_message(member.key, title, meant != nullptr ? allowed : section.keys));
   }
 }
 

@@ -11,7 +11,7 @@ namespace ricochet {
 void DimensionCheck::note(const Key& key, const std::string& title, const TomlNode& value) {
   const std::string name = fmt::format("\"{}\" of {}", key.name, title);
   const bool is_list = value.kind == TomlNode::Kind::list;
-  if (key.type == KeyType::axial) {
+  if (key.type == KeyType::axial || key.type == KeyType::axial_formulas) {
     vectors_.push_back({value.location, name, is_list ? 3U : 2U,
                         is_list ? "is a vector, as in three dimensions" : "is a number, as in two dimensions"});
   } else if (is_list && (key.type == KeyType::vector || key.type == KeyType::formulas)) {

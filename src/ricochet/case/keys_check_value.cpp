@@ -103,6 +103,12 @@ void check_axial(const Key& key, TomlNode& value, Problems& problems) {
   if (!value.is_number() || !make_finite_number(value)) refuse_type(key, value, problems);
 }
 
+void check_axial_formulas(const Key& key, TomlNode& value, Problems& problems) {
+  if (value.kind == Kind::list && value.children.size() == 3) return check_vector(key, value, true, problems);
+  if (value.kind == Kind::text) return;
+  if (!value.is_number() || !make_finite_number(value)) refuse_type(key, value, problems);
+}
+
 void check_directions(const Key& key, TomlNode& value, Problems& problems) {
   if (value.kind != Kind::list || value.children.empty()) return refuse_type(key, value, problems);
   std::vector<std::string> seen;
@@ -181,6 +187,8 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
       return check_numbers(key, value, problems);
     case KeyType::axial:
       return check_axial(key, value, problems);
+    case KeyType::axial_formulas:
+      return check_axial_formulas(key, value, problems);
     case KeyType::formula:
       if (value.kind != Kind::text) check_number(key, value, problems);
       return;

@@ -116,8 +116,48 @@ Section obstacle_section() {
            .type = KeyType::choice,
            .required = true,
            .decides = true,
-           .doc = "A plane with a half-space behind it, or a sphere: a ball or, seen from inside, a bowl. Other curved "
-                  "obstacles are not supported."},
+           .doc = "Its shape: a plane with a half-space behind it, a sphere or a cylinder or a torus, from outside or "
+                  "from inside, a surface from a file, or what an expression describes."},
+          {.name = "velocity",
+           .type = KeyType::vector,
+           .unit = "length/time",
+           .doc =
+               "Constant velocity of the obstacle; without any motion it rests. Friction acts on the velocity of the "
+               "body relative to it, and obstacle_work is what it puts into the body."},
+          {.name = "rotation_rate",
+           .type = KeyType::number,
+           .unit = "angle/time",
+           .standard = "0",
+           .doc =
+               "Rate in rad per time at which the obstacle turns about its own axis, right-handed: the normal of a "
+               "plane through `point` (a turntable), the axis of a cylinder or a torus, in two dimensions the centre "
+               "of a circle. Its surface stays where it is, and drags what touches it."},
+          {.name = "motion",
+           .type = KeyType::formulas,
+           .unit = "length",
+           .variables = "t",
+           .doc = "Displacement of the obstacle from where it is described, in place of a velocity: [\"0\", "
+                  "\"-0.1*sin(5*t)\"]."},
+          {.name = "rotation",
+           .type = KeyType::axial_formulas,
+           .unit = "angle",
+           .variables = "t",
+           .doc =
+               "Rotation of the obstacle about the point `about`, in rad: one expression in two dimensions, in three "
+               "a vector whose direction is the axis and whose length is the angle. It comes before the motion."},
+          {.name = "about",
+           .type = KeyType::vector,
+           .unit = "length",
+           .doc =
+               "The point of the obstacle, as it is described, that it turns about. Absent: the centre of a sphere, a "
+               "cylinder or a torus, the point of a plane, else the origin."},
+          {.name = "table",
+           .type = KeyType::text,
+           .doc =
+               "Text file with the motion, in place of `motion` and `rotation`: in each line t and the components of "
+               "the displacement, perhaps those of the rotation; separated by commas or spaces. Linear between lines, "
+               "constant before the first and after the last."},
+          parameters_key(),
       }};
   return with_types(std::move(section), "type", obstacle_registry());
 }

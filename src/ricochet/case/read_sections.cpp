@@ -10,6 +10,7 @@
 #include "ricochet/case/names.hpp"
 #include "ricochet/case/quantity.hpp"
 #include "ricochet/case/read_bodies.hpp"
+#include "ricochet/case/read_obstacle.hpp"
 #include "ricochet/case/section_reader.hpp"
 #include "ricochet/simulation/step_control.hpp"
 
@@ -63,14 +64,6 @@ MaterialSection read_material(const SectionReader& reader, Case& result) {
                                                moduli, times));
   }
   return material;
-}
-
-ObstacleSection read_obstacle(const SectionReader& reader) {
-  ObstacleSection obstacle;
-  obstacle.name = reader.name();
-  obstacle.type = reader.text("type");
-  obstacle.parameters = reader.type_parameters(*find_section("obstacle"));
-  return obstacle;
 }
 
 ContactSection read_contact(const SectionReader& reader, Case& result) {
@@ -307,7 +300,8 @@ void read_obstacles_and_contacts(const TomlNode& root, const Sections& sections,
   if (obstacles != nullptr) {
     for (const TomlNode& obstacle : obstacles->children) names.push_back(obstacle.key);
   }
-  for (const SectionReader& reader : sections.all("obstacle")) result.obstacles.push_back(read_obstacle(reader));
+  for (const SectionReader& reader : sections.all("obstacle"))
+    result.obstacles.push_back(read_obstacle(reader, result.path));
   const std::vector<SectionReader> contacts = sections.all("contact");
   for (const SectionReader& reader : contacts) {
     result.contacts.push_back(read_contact(reader, result));

@@ -65,6 +65,11 @@ Json type_schema(const Key& key) {
       const Json vector{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
       return {{"anyOf", Json::array({Json{{"type", "number"}}, vector})}};
     }
+    case KeyType::axial_formulas: {
+      const Json entry{{"type", {"number", "string"}}};
+      const Json vector{{"type", "array"}, {"items", entry}, {"minItems", 3}, {"maxItems", 3}};
+      return {{"anyOf", Json::array({entry, vector})}};
+    }
     case KeyType::formula:
       return {{"type", {"number", "string"}}};
     case KeyType::formulas:

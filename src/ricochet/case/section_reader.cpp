@@ -107,17 +107,21 @@ std::string SectionReader::groups(const std::string& name,
   return list;
 }
 
+std::map<std::string, double> SectionReader::constants() const {
+  std::map<std::string, double> values;
+  const TomlNode* const parameters = table_.find("parameters");
+  if (parameters == nullptr || parameters->is_refused) return values;
+  for (const TomlNode& parameter : parameters->children) values[parameter.key] = parameter.real;
+  return values;
+}
+
 Expression SectionReader::expression(const Key& key, const TomlNode& node) const {
   if (node.is_number()) return Expression(node.real);
-  const TomlNode* parameters = table_.find("parameters");
   // Parameters that were refused make every expression with them fail: one message is enough.
-  if (parameters != nullptr && parameters->is_refused) return {};
-  std::map<std::string, double> values;
-  if (parameters != nullptr) {
-    for (const TomlNode& parameter : parameters->children) values[parameter.key] = parameter.real;
-  }
+  if (const TomlNode* parameters = table_.find("parameters"); parameters != nullptr && parameters->is_refused)
+    return {};
   try {
-    Expression result(node.text, values);
+    Expression result(node.text, constants());
     const bool allows_time = key.variables.ends_with('t'), allows_position = key.variables.starts_with('x');
     if ((result.depends_on_time() && !allows_time) || (result.depends_on_position() && !allows_position)) {
       problems_.add(
@@ -144,6 +148,12 @@ std::vector<Expression> SectionReader::formulas(const std::string& name) const {
     for (const TomlNode& component : node->children) values.push_back(expression(*find_key(keys_, name), component));
   }
   return values;
+}
+
+std::vector<Expression> SectionReader::axial_formulas(const std::string& name) const {
+  const TomlNode* const node = usable(name);
+  if (node == nullptr || node->kind == TomlNode::Kind::list) return formulas(name);
+  return {expression(*find_key(keys_, name), *node)};
 }
 
 std::map<std::string, std::string> SectionReader::conditions(const std::string& name) const {
@@ -179,6 +189,7 @@ void SectionReader::add_info(const std::string& name, const std::string& message
 
 Parameters SectionReader::type_parameters(const Section& section) const {
   Parameters values;
+  values.set_constants(constants());
   const TypeKeys* const type = find_type(section, text(section.type_key));
   if (type == nullptr) return values;
   for (const Key& key : type->keys) {

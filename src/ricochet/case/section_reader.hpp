@@ -50,6 +50,8 @@ class SectionReader final : public ParameterCheck {
                                    std::map<std::string, std::vector<std::string>>& lists) const;
   [[nodiscard]] Expression formula(const std::string& name) const;
   [[nodiscard]] std::vector<Expression> formulas(const std::string& name) const;
+  /// One expression in two dimensions, three in three; empty where it is absent.
+  [[nodiscard]] std::vector<Expression> axial_formulas(const std::string& name) const;
   [[nodiscard]] std::map<std::string, std::string> conditions(const std::string& name) const;
   [[nodiscard]] SectionReader table(const std::string& name) const;
 
@@ -65,6 +67,8 @@ class SectionReader final : public ParameterCheck {
 
  private:
   [[nodiscard]] const TomlNode* usable(const std::string& name) const;
+  /// The section's parameters.
+  [[nodiscard]] std::map<std::string, double> constants() const;
   [[nodiscard]] Expression expression(const Key& key, const TomlNode& node) const;
 
   const std::vector<Key>& keys_;

@@ -56,7 +56,7 @@ BoundaryNodes::BoundaryNodes(const Body& body, const std::vector<ContactPair>& p
       if (added) {
         // Where the normal turns with the motion, only a node that supports hold altogether is held along it.
         const int d = body.space->dimension;
-        const Vector normal = pairs[k].obstacle->is_flat()
+        const Vector normal = pairs[k].obstacle->has_constant_normals()
                                   ? Vector(pairs[k].obstacle->normal(body.space->nodes.col(node)))
                                   : Vector(Vector::Constant(d, 1.0 / std::sqrt(d)));
         entry->second = {static_cast<int>(k), !has_free_part(node, normal, is_free)};

@@ -31,7 +31,9 @@ struct BoundaryPatch {
 
   [[nodiscard]] int first_pair() const { return facets.parts.front().pair; }
   /// At obstacles whose gap is no linear function of the position, and between bodies of finite strain.
-  [[nodiscard]] bool follows_motion() const { return obstacle != nullptr ? !obstacle->is_flat() : !turning.empty(); }
+  [[nodiscard]] bool follows_motion() const {
+    return obstacle != nullptr ? !obstacle->has_constant_normals() : !turning.empty();
+  }
 };
 
 /// Each with its multipliers, conditions and numbers, which are by node (a facet counts as its first one), then by

@@ -156,19 +156,25 @@ std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const
                                                          const FreeComponent& is_free,
                                                          const ContactBoundary& boundary) {
   CurvedContactData data;
+  const auto number_of = [&data](const Obstacle* obstacle) {
+    const auto known = std::find(data.obstacles.begin(), data.obstacles.end(), obstacle);
+    const auto number = static_cast<std::size_t>(known - data.obstacles.begin());
+    if (known == data.obstacles.end()) data.obstacles.push_back(obstacle);
+    return number;
+  };
   for (const auto& patch : patches) {
-    if (patch->obstacle == nullptr || patch->obstacle->is_flat()) continue;
+    if (patch->obstacle == nullptr || patch->obstacle->has_constant_normals()) continue;
     for (std::size_t i = 0; i < patch->kept.size(); ++i) {
       const Index node = freest_node(*patch, i, boundary.dimension, is_free);
-      CurvedContactData::Point point{patch->numbers[i], patch->obstacle, {}};
+      CurvedContactData::Point point{patch->numbers[i], number_of(patch->obstacle), {}};
       for (int k = 0; k < boundary.dimension; ++k) point.is_free[static_cast<std::size_t>(k)] = is_free(node, k);
       data.points.push_back(point);
     }
   }
   for (std::size_t i = 0; i < boundary.nodes.size(); ++i) {
     const Obstacle* const obstacle = pairs[static_cast<std::size_t>(boundary.node_pair[i])].obstacle;
-    if (obstacle != nullptr && !obstacle->is_flat())
-      data.nodes.push_back({static_cast<Index>(i), boundary.nodes[i], obstacle});
+    if (obstacle != nullptr && !obstacle->has_constant_normals())
+      data.nodes.push_back({static_cast<Index>(i), boundary.nodes[i], number_of(obstacle)});
   }
   if (data.points.empty()) return nullptr;
   data.node_positions = body.space->nodes;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ricochet/contact/contact_directions.hpp"
 
@@ -12,24 +13,42 @@ namespace {
 /// Gaps up to so many times what they have changed by: points that may touch soon.
 constexpr double ahead = 4.0;
 
+/// The obstacles where they are at an instant.
+class Placing {
+ public:
+  Placing(const std::vector<const Obstacle*>& obstacles, double time) {
+    for (std::size_t k = 0; k < std::min(obstacles.size(), few_.size()); ++k) few_[k].emplace(obstacles[k]->at(time));
+    for (std::size_t k = few_.size(); k < obstacles.size(); ++k) others_.push_back(obstacles[k]->at(time));
+  }
+  [[nodiscard]] const PlacedObstacle& operator[](std::size_t k) const {
+    return k < few_.size() ? *few_[k] : others_[k - few_.size()];
+  }
+
+ private:
+  std::array<std::optional<PlacedObstacle>, 8> few_;  ///< without allocation
+  std::vector<PlacedObstacle> others_;
+};
+
 class CurvedContact final : public ContactGeometry {
  public:
   explicit CurvedContact(CurvedContactData data) : data_(std::move(data)) {}
 
   void gaps(const Vector& displacement, double time, Vector& gap) const override {
+    const Placing placing(data_.obstacles, time);
     for (const CurvedContactData::Point& point : data_.points)
-      gap[point.number] = point.obstacle->gap(position(point, displacement, time));
+      gap[point.number] = placing[point.obstacle].gap(position(point, displacement));
   }
 
   void node_gaps(const Vector& displacement, double time, Vector& gap) const override {
+    const Placing placing(data_.obstacles, time);
     for (const CurvedContactData::Node& node : data_.nodes)
-      gap[node.entry] = node.obstacle->gap(position(node, displacement, time));
+      gap[node.entry] = placing[node.obstacle].gap(node_position(node.node, displacement));
   }
 
   [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const override {
     const CurvedContactData::Node* const curved = find_node(entry);
-    return curved != nullptr ? curved->obstacle->normal(position(*curved, displacement, time))
-                             : SpaceVector(data_.node_normals.col(entry));
+    if (curved == nullptr) return data_.node_normals.col(entry);
+    return data_.obstacles[curved->obstacle]->at(time).normal(node_position(curved->node, displacement));
   }
 
   [[nodiscard]] bool has_node(Index entry) const override { return find_node(entry) != nullptr; }
@@ -37,18 +56,20 @@ class CurvedContact final : public ContactGeometry {
   void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const override {
     ++revision_;
     gap_ = rows.gap;
-    gaps(displacement, time, rows.gap);
+    const Placing placing(data_.obstacles, time), at_start(data_.obstacles, start != nullptr ? start->time : time);
     double change = 0.0;
-    for (const CurvedContactData::Point& point : data_.points)
+    for (const CurvedContactData::Point& point : data_.points) {
+      rows.gap[point.number] = placing[point.obstacle].gap(position(point, displacement));
       change = std::max(change, std::abs(rows.gap[point.number] - gap_[point.number]));
+    }
     const double reach = ahead * change;
     for (const CurvedContactData::Point& point : data_.points) {
       if (rows.gap[point.number] > std::max(reach, rows.gap_rounding[point.number])) continue;
-      const SpaceVector at = position(point, displacement, time);
+      const SpaceVector at = position(point, displacement);
       write_rows(point,
-                 start == nullptr
-                     ? point.obstacle->normal(at)
-                     : point.obstacle->normal_of_step(position(point, start->displacement, start->time), at),
+                 start == nullptr ? placing[point.obstacle].normal(at)
+                                  : normal_of_step(at_start[point.obstacle], position(point, start->displacement),
+                                                   placing[point.obstacle], at),
                  rows);
     }
   }
@@ -70,21 +91,11 @@ class CurvedContact final : public ContactGeometry {
     const Index d = data_.node_positions.rows();
     return data_.node_positions.col(node) + displacement.segment(node * d, d);
   }
-  /// Seen from the obstacle where it was at t = 0.
-  [[nodiscard]] static SpaceVector seen_from(const Obstacle& obstacle, SpaceVector position, double time) {
-    if (obstacle.moves()) position -= obstacle.translation(time);
-    return position;
-  }
-  [[nodiscard]] SpaceVector position(const CurvedContactData::Node& node, const Vector& displacement,
-                                     double time) const {
-    return seen_from(*node.obstacle, node_position(node.node, displacement), time);
-  }
-  [[nodiscard]] SpaceVector position(const CurvedContactData::Point& point, const Vector& displacement,
-                                     double time) const {
+  [[nodiscard]] SpaceVector position(const CurvedContactData::Point& point, const Vector& displacement) const {
     SpaceVector result = SpaceVector::Zero(data_.node_positions.rows());
     for (SparseRowMatrix::InnerIterator entry(data_.trace, point.number); entry; ++entry)
       result += entry.value() * node_position(entry.col(), displacement);
-    return seen_from(*point.obstacle, result, time);
+    return result;
   }
 
   /// Tangents, and the values of the rows of G and B_T, whose pattern is that of the trace.

@@ -1,85 +1,103 @@
 #pragma once
 
-#include <functional>
-#include <limits>
 #include <memory>
-#include <string>
-#include <vector>
+#include <utility>
 
-#include "ricochet/base/registry.hpp"
-#include "ricochet/base/space_vector.hpp"
+#include "ricochet/contact/obstacle_path.hpp"
+#include "ricochet/contact/obstacle_shape.hpp"
+#include "ricochet/contact/pose.hpp"
 
-/// @file Rigid obstacles. To add one: a file in obstacles/ with a class and its registration, and one line in
-/// obstacle.cpp.
+/// @file Rigid obstacles: a shape (obstacle_shape.hpp) that is somewhere at each instant.
 namespace ricochet {
 
-/// The shape of a part of an obstacle's surface, for pictures: in 2D lines, the obstacle to the right of each, in the
-/// order in which they follow each other; in 3D quadrilaterals that turn counterclockwise where one looks at them from
-/// outside. Cells that meet share points; a quadrilateral at a pole has it twice.
-struct ObstacleSurface {
-  Points points;           ///< d × count
-  std::vector<int> cells;  ///< indices of points, `corners` for each cell
+/// An obstacle where it is at an instant. Refers to its shape.
+class PlacedObstacle {
+ public:
+  PlacedObstacle(const ObstacleShape& shape, Pose pose) : shape_(&shape), pose_(std::move(pose)) {}
+  [[nodiscard]] const Pose& pose() const { return pose_; }
+  /// Signed distance to the surface, positive where bodies may be, and the unit normal towards them.
+  [[nodiscard]] double gap(const SpaceVector& position) const { return shape_->gap(pose_.seen_from(position)); }
+  [[nodiscard]] SpaceVector normal(const SpaceVector& position) const {
+    return pose_.direction(shape_->normal(pose_.seen_from(position)));
+  }
+  [[nodiscard]] double gap_rounding(const SpaceVector& position) const;
 
-  [[nodiscard]] int corners() const { return points.rows() == 2 ? 2 : 4; }
+ private:
+  friend SpaceVector normal_of_step(const PlacedObstacle&, const SpaceVector&, const PlacedObstacle&,
+                                    const SpaceVector&);
+  const ObstacleShape* shape_;
+  Pose pose_;
 };
 
-/// A rigid body seen from a point of space: how far its surface is, which way is out, and how it moves. Gaps and
-/// normals are those at t = 0; an obstacle may translate, and turn in ways that leave its surface what it is. The
-/// normal is the derivative of the gap.
+/// Of the same obstacle at two instants, and of a point that goes from one place to another: with X where the point is
+/// seen from the obstacle, N its ObstacleShape::normal_of_step and Q̄ the mean of the rotations, the direction of Q̄⁻ᵀN.
+/// The obstacle's own motion of the step at the mean place X̄ is v = ΔQ X̄ + Δs, and so, with some a > 0,
+///   n·(Δx − v) = n·Q̄ ΔX = a (gap₁ − gap₀).
+[[nodiscard]] SpaceVector normal_of_step(const PlacedObstacle& start, const SpaceVector& from,
+                                         const PlacedObstacle& end, const SpaceVector& to);
+
 class Obstacle {
  public:
-  virtual ~Obstacle() = default;
-  /// Signed distance to the surface, positive outside.
-  [[nodiscard]] virtual double gap(const SpaceVector& position) const = 0;
-  /// Unit normal out of the obstacle at the surface's nearest point.
-  [[nodiscard]] virtual SpaceVector normal(const SpaceVector& position) const = 0;
-  /// A unit normal of the step from one position to another: with some a > 0
-  ///   n·(to − from) = a (gap(to) − gap(from)),
-  /// so that a force along it works on a body that slides no more than a plane's does. The normal at the middle has
-  /// this property on planes and spheres. For another surface override it: with n the normal at the middle, the
-  /// direction of
-  ///   n + (gap(to) − gap(from) − n·(to − from)) (to − from)/|to − from|²
-  /// (the discrete gradient of O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467), and n itself where the bracket is
-  /// rounding. A step that goes so far round that it leans by more than 60° from the normals at the ends gets the last.
-  [[nodiscard]] virtual SpaceVector normal_of_step(const SpaceVector& from, const SpaceVector& to) const;
-  /// Size of the rounding error of `gap` at this position: gaps no larger than this are zero.
-  [[nodiscard]] virtual double gap_rounding(const SpaceVector& position) const = 0;
-  /// The gap is a linear function of the position.
-  [[nodiscard]] virtual bool is_flat() const = 0;
-  /// The least radius of curvature where it bulges towards bodies; infinite where it is flat or hollow.
-  [[nodiscard]] virtual double least_radius() const { return std::numeric_limits<double>::infinity(); }
-  /// Whether its material moves at all.
-  [[nodiscard]] virtual bool moves() const = 0;
-  /// Displacement of the obstacle as a whole since t = 0: the gap at t is that of position − translation(t) at 0.
-  [[nodiscard]] virtual SpaceVector translation(double time) const = 0;
-  /// For pictures: the surface at t = 0, as far as `radius` around its point nearest to `centre`.
-  [[nodiscard]] virtual ObstacleSurface surface(const Vector& centre, double radius) const = 0;
-  /// For pictures: where points of `surface` are shown at a time. They go with the obstacle, if it does not say
-  /// otherwise: those of a plane stay beside the body when the plane moves along itself, and turn with a turntable.
-  [[nodiscard]] virtual Points surface_points(const Points& at_start, double time) const {
-    return at_start.colwise() + Vector(translation(time));
+  /// `path`: null at rest. `spin`: its material moves along its own surface, at this rate about its own axis.
+  /// `about`: the point whose displacement is that of the path; empty: the shape's centre, if it has one. `time_scale`:
+  /// instants that are nearer than a thousandth of it see the same velocity.
+  explicit Obstacle(std::unique_ptr<ObstacleShape> shape, std::unique_ptr<const ObstaclePath> path = {},
+                    double spin = 0.0, const Vector& about = {}, double time_scale = 1.0);
+
+  [[nodiscard]] const ObstacleShape& shape() const { return *shape_; }
+  void fit(const ContactScale& scale) { shape_->fit(scale); }
+  /// Where it is.
+  [[nodiscard]] PlacedObstacle at(double time) const { return {*shape_, pose(time)}; }
+  /// At t = 0.
+  [[nodiscard]] double gap(const SpaceVector& position) const { return at(0.0).gap(position); }
+  [[nodiscard]] SpaceVector normal(const SpaceVector& position) const { return at(0.0).normal(position); }
+  [[nodiscard]] double gap_rounding(const SpaceVector& position) const { return at(0.0).gap_rounding(position); }
+
+  /// Gaps are linear functions of the position whose normals never change: those of t = 0 less n·translation(t).
+  [[nodiscard]] bool has_constant_normals() const { return shape_->is_flat() && (path_ == nullptr || !path_->turns()); }
+  [[nodiscard]] double least_radius() const { return shape_->least_radius(); }
+  /// Of the files that it comes from; empty: none.
+  [[nodiscard]] std::string checksum() const {
+    return shape_->checksum() + (path_ != nullptr ? path_->checksum() : std::string());
   }
-  /// Velocity of the obstacle's material at a position of its surface: v + ω × (position − its point at that time).
-  [[nodiscard]] virtual SpaceVector surface_velocity(const SpaceVector& position, double time) const = 0;
+  /// Whether its material moves at all.
+  [[nodiscard]] bool moves() const { return path_ != nullptr || spin_ != 0.0; }
+  [[nodiscard]] bool spins() const { return spin_ != 0.0; }
+  /// Whether its places at two instants differ by more than a displacement.
+  [[nodiscard]] bool turns() const { return path_ != nullptr && path_->turns(); }
+  /// u(t) − u(0).
+  [[nodiscard]] SpaceVector translation(double time) const;
+  [[nodiscard]] Pose pose(double time) const;
+  /// Velocity of the obstacle's material that is at a position at that time: its mean over [time − span/2,
+  /// time + span/2], or for span = 0 that at the time.
+  [[nodiscard]] SpaceVector surface_velocity(const SpaceVector& position, double time, double span = 0.0) const;
+  /// Its mean from one instant to another at the point of the obstacle half way between those that two places are
+  /// (normal_of_step).
+  [[nodiscard]] SpaceVector velocity_of_step(const SpaceVector& from, double from_time, const SpaceVector& to,
+                                             double to_time) const;
+
+  /// For pictures: the surface at t = 0, as far as `radius` around its point nearest to `centre`.
+  [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const;
+  /// For pictures: where points of `surface` are shown at a time. Those of a plane stay beside the body when the plane
+  /// moves along itself, and turn with a turntable.
+  [[nodiscard]] Points surface_points(const Points& at_start, double time) const;
+
+ private:
+  [[nodiscard]] SpaceVector spin_velocity(const SpaceVector& position, double time) const;
+  [[nodiscard]] SpaceVector mean_velocity(const SpaceVector& of_shape, double start, double end) const;
+
+  std::unique_ptr<ObstacleShape> shape_;
+  std::unique_ptr<const ObstaclePath> path_;
+  double spin_;
+  SpaceVector axis_;   ///< of the spin, in 3D
+  SpaceVector about_;  ///< c
+  double time_scale_;
 };
 
-using ObstacleConstructor = std::function<std::unique_ptr<Obstacle>(const Parameters& parameters)>;
-using ObstacleRegistration = Registration<ObstacleConstructor>;
-
-/// All types of obstacles. A program of one's own may add to them.
-[[nodiscard]] Registry<ObstacleConstructor>& obstacle_registry();
-/// By type, with the values of its keys; throws Error(invalid_input) that lists the types, or says which value is
-/// missing, too many or wrong.
-[[nodiscard]] std::unique_ptr<Obstacle> make_obstacle(const std::string& type, Parameters parameters);
-/// At rest; `normal` of any length but zero, out of the obstacle.
+/// Of one type, at rest or with a constant velocity.
+[[nodiscard]] std::unique_ptr<Obstacle> make_obstacle(const std::string& type, Parameters parameters,
+                                                      const Vector& velocity = {}, double spin = 0.0);
+/// A plane at rest; `normal` of any length but zero, out of the obstacle.
 [[nodiscard]] std::unique_ptr<Obstacle> make_plane(const Vector& point, const Vector& normal);
-
-// For the files that define obstacles: what several of them have.
-[[nodiscard]] Key obstacle_velocity_key();
-/// Zero where none is given.
-[[nodiscard]] Vector obstacle_velocity(const Parameters& parameters, Index dimension);
-[[nodiscard]] inline Vector as_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
-}
 
 }  // namespace ricochet

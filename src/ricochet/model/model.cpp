@@ -48,9 +48,30 @@ void check_expressions(const Case& input, const std::string& key_path, const std
 
 }  // namespace
 
+namespace {
+
+void check_obstacle_motion(const Case& input, const ObstacleSection& obstacle, int dimension) {
+  const std::string key = "obstacle." + obstacle.name;
+  check_length(input, key + ".velocity", obstacle.velocity.size(), dimension);
+  check_length(input, key + ".motion", obstacle.motion.size(), dimension);
+  check_length(input, key + ".about", obstacle.about.size(), dimension);
+  const std::size_t entries = obstacle.rotation.size();
+  if (entries == 0 || entries == (dimension == 2 ? 1U : 3U)) return;
+  refuse(
+      input, key + ".rotation",
+      dimension == 2
+          ? "\"rotation\" has 3 entries, but the mesh has dimension 2, where it is one angle: write rotation = "
+            "\"0.5*t\""
+          : "\"rotation\" is one angle, but the mesh has dimension 3, where it is a vector: write rotation = [\"0\", "
+            "\"0\", \"0.5*t\"]");
+}
+
+}  // namespace
+
 void check_dimensions(const Case& input, int dimension) {
   for (const CaseMeshFile& file : mesh_files(input)) check_placement(input, file, dimension);
   for (const ObstacleSection& obstacle : input.obstacles) {
+    check_obstacle_motion(input, obstacle, dimension);
     for (const Key& key : obstacle_registry().find(obstacle.type).keys) {
       if (key.type != KeyType::vector || !obstacle.parameters.has(key.name)) continue;
       check_length(input, fmt::format("obstacle.{}.{}", obstacle.name, key.name),

@@ -54,7 +54,14 @@ void check_axisymmetry(const Case& input, int dimension) {
 
 void check_axisymmetric_obstacle(const Case& input, const std::string& name, const Obstacle& obstacle) {
   if (!is_axisymmetric(input) || !obstacle.moves()) return;
-  refuse_radial(input, "obstacle." + name, obstacle.translation(1.0)[0], fmt::format("the motion of \"{}\"", name));
+  const std::string key = "obstacle." + name;
+  if (obstacle.turns() || obstacle.spins())
+    refuse(input, key,
+           fmt::format("obstacle \"{}\" turns, but the case is axisymmetric: only motions along the axis are", name));
+  constexpr int instants = 64;
+  for (int k = 1; k <= instants; ++k)
+    refuse_radial(input, key, obstacle.translation(input.time.end * k / instants)[0],
+                  fmt::format("the motion of \"{}\"", name));
 }
 
 void place_on_axis(const Case& input, Mesh& mesh) {

@@ -106,11 +106,7 @@ ContactPair obstacle_pair(const Case& input, std::size_t number, const Model& mo
 void collect_contacts(const Case& input, Model& model) {
   std::map<std::string, const Obstacle*> by_name;
   for (const ObstacleSection& section : input.obstacles) {
-    try {
-      model.obstacles.push_back(make_obstacle(section.type, section.parameters));
-    } catch (const Error& problem) {
-      refuse(input, "obstacle." + section.name, problem.what());
-    }
+    model.obstacles.push_back(make_obstacle(input, section, model.mesh.dimension));
     check_axisymmetric_obstacle(input, section.name, *model.obstacles.back());
     by_name[section.name] = model.obstacles.back().get();
   }
@@ -122,6 +118,7 @@ void collect_contacts(const Case& input, Model& model) {
     if (!model.contact_pairs.back().tied) check_stability(input, i, model);
   }
   check_overlap(input, model.contact_pairs);
+  fit_obstacles(input, model);
 }
 
 void add_contacts(const Case& input, Model& model) {

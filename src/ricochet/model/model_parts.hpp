@@ -79,6 +79,12 @@ void add_motions(const Case& input, Model& model);
 /// Columns of history.csv that follow from the bodies and their contacts.
 void add_standing_columns(Model& model);
 void add_probes(const Case& input, Model& model);
+/// The obstacle of a section, with its motion.
+[[nodiscard]] std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection& section, int dimension);
+/// The largest distance between neighbouring nodes of these facets, to half of it where there are nodes between.
+[[nodiscard]] double node_spacing(const DisplacementSpace& space, const std::vector<Index>& facets);
+/// Tells obstacles what touches them.
+void fit_obstacles(const Case& input, Model& model);
 /// Refuses, or warns of, obstacles that gaps to cannot be found for, or that points and steps may miss.
 void check_obstacles(const Case& input, const Model& model);
 

@@ -14,8 +14,9 @@ namespace {
 /// Gaps that are known to no more than this, relative to the body, are no gaps of a computation.
 constexpr double least_precision = 1e-6;
 
-/// The largest distance between neighbouring nodes of these facets, to half of it where there are nodes between.
-double spacing(const DisplacementSpace& space, const std::vector<Index>& facets) {
+}  // namespace
+
+double node_spacing(const DisplacementSpace& space, const std::vector<Index>& facets) {
   double largest = 0.0;
   for (const Index facet : facets) {
     const auto [block, number] = locate_facet(space, facet);
@@ -28,10 +29,12 @@ double spacing(const DisplacementSpace& space, const std::vector<Index>& facets)
   return largest;
 }
 
+namespace {
+
 /// Contact is looked at in points: what is sharper than their distance passes between them.
 void warn_of_sharp_obstacle(const ContactPair& pair, const DisplacementSpace& space) {
   const double radius = pair.obstacle->least_radius();
-  const double distance = spacing(space, pair.facets);
+  const double distance = node_spacing(space, pair.facets);
   if (!(radius < distance)) return;
   log::warning(
       fmt::format("contact of group \"{}\": the radius of curvature of obstacle \"{}\", {:.3g}, is smaller than the "

@@ -12,6 +12,7 @@ void subtract_translation(const std::vector<const Obstacle*>& obstacles, const s
                           const Points& normals, double time, Vector& gap) {
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (obstacles[k] == nullptr || !obstacles[k]->moves()) continue;
+    if (!obstacles[k]->has_constant_normals()) continue;  // the geometry has its gaps
     const SpaceVector translation = obstacles[k]->translation(time);
     for (Index i = 0; i < gap.size(); ++i) {
       if (pair[static_cast<std::size_t>(i)] == static_cast<int>(k)) gap[i] -= normals.col(i).dot(translation);
@@ -20,6 +21,11 @@ void subtract_translation(const std::vector<const Obstacle*>& obstacles, const s
 }
 
 }  // namespace
+
+bool SemidiscreteProblem::has_turning_obstacles() const {
+  return std::any_of(obstacles.begin(), obstacles.end(),
+                     [](const Obstacle* obstacle) { return obstacle != nullptr && obstacle->turns(); });
+}
 
 bool SemidiscreteProblem::has_moving_obstacles() const {
   return std::any_of(obstacles.begin(), obstacles.end(),
@@ -53,23 +59,43 @@ SpaceVector SemidiscreteProblem::node_normal(Index entry, const Vector& displace
   return contact.node_normals.col(entry);
 }
 
-void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double time, ObstacleMotion& velocity) const {
+void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double time, double span,
+                                            ObstacleMotion& velocity) const {
+  const auto velocity_at = [&](const Obstacle& obstacle, Index point) {
+    return obstacle.surface_velocity(position(point, displacement), time, span);
+  };
+  visit_moving(velocity_at, velocity);
+}
+
+void SemidiscreteProblem::obstacle_velocity_of_step(const Vector& start, double start_time, const Vector& end,
+                                                    double end_time, ObstacleMotion& velocity) const {
+  const auto velocity_at = [&](const Obstacle& obstacle, Index point) {
+    return obstacle.velocity_of_step(position(point, start), start_time, position(point, end), end_time);
+  };
+  visit_moving(velocity_at, velocity);
+}
+
+/// Where a contact point is.
+SpaceVector SemidiscreteProblem::position(Index point, const Vector& displacement) const {
+  SpaceVector result = SpaceVector::Zero(dimension);
+  contact.visit_nodes(point, [&](Index node, double weight) {
+    result += weight * (nodes.col(node) + displacement.segment(node * dimension, dimension));
+  });
+  return result;
+}
+
+template <class VelocityAt>
+void SemidiscreteProblem::visit_moving(const VelocityAt& velocity_at, ObstacleMotion& velocity) const {
   if (!has_moving_obstacles()) return;
   const int tangents = dimension - 1;
   const ContactRows& rows = *contact.rows;
   velocity.normal.setZero(contact.size());
   velocity.tangential.setZero(contact.size() * tangents);
   if (contact.follows_motion()) velocity.in_space.setZero(dimension, contact.size());
-  SpaceVector position(dimension);
   for (Index i = 0; i < contact.size(); ++i) {
     const Obstacle* const moving = obstacle_of_point(i);
     if (moving == nullptr || !moving->moves()) continue;
-    const Obstacle& obstacle = *moving;
-    position.setZero();
-    contact.visit_nodes(i, [&](Index node, double weight) {
-      position += weight * (nodes.col(node) + displacement.segment(node * dimension, dimension));
-    });
-    const SpaceVector at = obstacle.surface_velocity(position, time);
+    const SpaceVector at = velocity_at(*moving, i);
     if (contact.follows_motion()) velocity.in_space.col(i) = at;
     velocity.normal[i] = rows.normals.col(i).dot(at);
     for (int k = 0; k < tangents; ++k) {

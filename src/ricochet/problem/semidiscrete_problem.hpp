@@ -68,12 +68,22 @@ struct SemidiscreteProblem {
   void node_gaps(const Vector& displacement, double time, Vector& gap) const;
   /// The normal at a node of the contact boundary.
   [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const;
+  /// Some of them turn: their mean velocity of a step depends on where it begins and ends.
+  [[nodiscard]] bool has_turning_obstacles() const;
   /// Velocities of the obstacles where the contact points are at this displacement and time, along the directions of
-  /// the rows at the start.
-  void obstacle_velocity(const Vector& displacement, double time, ObstacleMotion& velocity) const;
+  /// the rows at the start: their means over a span of time with this one in its middle, or for 0 at the time.
+  void obstacle_velocity(const Vector& displacement, double time, double span, ObstacleMotion& velocity) const;
+  /// Their means over a step, from one displacement to another (Obstacle::velocity_of_step).
+  void obstacle_velocity_of_step(const Vector& start, double start_time, const Vector& end, double end_time,
+                                 ObstacleMotion& velocity) const;
   /// Size of the rounding errors of a trace c·v, per point: 8 ε Σ_j |c_ij| |v_j|, a few roundings of v and of the
   /// products.
   void trace_rounding(const Vector& values, Vector& rounding) const;
+
+ private:
+  [[nodiscard]] SpaceVector position(Index point, const Vector& displacement) const;
+  template <class VelocityAt>
+  void visit_moving(const VelocityAt& velocity_at, ObstacleMotion& velocity) const;
 };
 
 /// Dofs of the contact nodes, supported ones too, ascending.

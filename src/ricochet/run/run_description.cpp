@@ -29,10 +29,8 @@ std::vector<ContactDescription> describe_contacts(const Case& input) {
     }
     const auto obstacle = std::find_if(input.obstacles.begin(), input.obstacles.end(),
                                        [&](const ObstacleSection& o) { return o.name == contact.obstacle; });
-    const Parameters& of_obstacle = obstacle->parameters;
     result.push_back({contact.group, contact.obstacle, contact.multipliers, contact.friction, contact.friction_bound,
-                      of_obstacle.has("velocity") ? of_obstacle.vector("velocity") : std::vector<double>(),
-                      of_obstacle.has("rotation_rate") ? of_obstacle.number("rotation_rate") : 0.0, false});
+                      obstacle->velocity, obstacle->rotation_rate, false});
   }
   return result;
 }

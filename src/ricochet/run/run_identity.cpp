@@ -17,13 +17,24 @@ namespace ricochet {
 namespace {
 
 bool decides_results(const std::string& key) {
-  // Of the files of meshes the content counts, not the name.
+  // Of files the content counts, not the name.
   static const std::set<std::string> others{"title", "mesh.file", "output.checkpoint_every",
                                             "output.checkpoint_seconds"};
-  const bool is_file = key.starts_with("part.") && key.ends_with(".file");
+  const bool is_file = (key.starts_with("part.") && key.ends_with(".file")) ||
+                       (key.starts_with("obstacle.") && (key.ends_with(".file") || key.ends_with(".table")));
   // Not the end either: what was written before it does not depend on it.
   return !is_file && !others.contains(key) && key != "time.end" && !key.starts_with("expect.") &&
          !key.starts_with("check.");
+}
+
+/// Of the obstacles that come from files, by their names.
+std::map<std::string, std::string> obstacle_checksums(const Case& input, const Model& model) {
+  std::map<std::string, std::string> result;
+  for (std::size_t i = 0; i < model.obstacles.size(); ++i) {
+    const std::string sum = model.obstacles[i]->checksum();
+    if (!sum.empty()) result[input.obstacles[i].name] = sum;
+  }
+  return result;
 }
 
 /// Of products with a fixed vector: sees every rounding of the operators.
@@ -67,6 +78,13 @@ void save_identity(const Case& input, const Model& model, Snapshot& snapshot) {
   snapshot.save("identity.case.values", std::move(values));
   snapshot.save("identity.mesh.parts", std::move(parts));
   snapshot.save("identity.mesh.sums", std::move(sums));
+  Snapshot::Texts obstacles, obstacle_sums;
+  for (const auto& [name, sum] : obstacle_checksums(input, model)) {
+    obstacles.push_back(name);
+    obstacle_sums.push_back(sum);
+  }
+  snapshot.save("identity.obstacles", std::move(obstacles));
+  snapshot.save("identity.obstacles.sums", std::move(obstacle_sums));
   snapshot.save("identity.libraries", library_versions());
   snapshot.save("identity.operators", operator_checksum(model.problem));
 }
@@ -130,6 +148,16 @@ std::string compare_model(const Case& input, const Model& model, const Snapshot&
                 fmt::format("{}: the run cannot be resumed: the mesh has changed since it began (differences in: {}); "
                             "restore the mesh, or start anew in another directory (-o) or over this run (--force)",
                             input.where(place).text(), differences));
+  }
+  const std::map<std::string, std::string> obstacles =
+      read_map(snapshot, "identity.obstacles", "identity.obstacles.sums");
+  for (const auto& [name, sum] : obstacle_checksums(input, model)) {
+    const auto found = obstacles.find(name);
+    if (found != obstacles.end() && found->second == sum) continue;
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{}: the run cannot be resumed: the file of obstacle \"{}\" has changed since it began; "
+                            "restore it, or start anew in another directory (-o) or over this run (--force)",
+                            input.where("obstacle." + name).text(), name));
   }
   const std::string libraries = library_versions();
   if (libraries != snapshot.text("identity.libraries")) {

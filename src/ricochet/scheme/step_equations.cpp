@@ -34,8 +34,20 @@ void StepEquations::resist(const SemidiscreteProblem& problem, const Vector& vel
   stage.right_hand_side -= damping_force_;
 }
 
-void StepEquations::observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement) {
-  problem.obstacle_velocity(displacement, time, obstacle_velocity_);
+void StepEquations::observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement,
+                                      double span) {
+  problem.obstacle_velocity(displacement, time, span, obstacle_velocity_);
+}
+
+void StepEquations::observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time,
+                                 const Vector& end, double step) {
+  if (!problem.has_moving_obstacles()) return;
+  if (problem.has_turning_obstacles()) {
+    problem.obstacle_velocity_of_step(start, start_time, end, start_time + step, obstacle_velocity_);
+    return;
+  }
+  middle_ = 0.5 * (start + end);
+  observe_obstacles(problem, start_time + 0.5 * step, middle_, step);
 }
 
 void StepEquations::require_impact_law(const SemidiscreteProblem& problem, const Vector& place, double time,
@@ -63,7 +75,7 @@ void StepEquations::require_friction_over_step(const SemidiscreteProblem& proble
                                                const Vector& predicted, double step, Stage& stage) {
   if (problem.has_moving_obstacles()) {
     middle_ = state.displacement + 0.5 * predicted;
-    observe_obstacles(problem, state.time + 0.5 * step, middle_);
+    observe_obstacles(problem, state.time + 0.5 * step, middle_, step);
   }
   if (!problem.contact.has_friction()) return;
   rate_ = predicted / step;

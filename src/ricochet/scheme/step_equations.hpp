@@ -44,9 +44,13 @@ class StepEquations {
         problem, time, [&](Index dof, double place) { return place - base[dof]; }, stage);
   }
 
-  /// The obstacles' velocities where the contact points are at a displacement and a time. They, and friction, act on
-  /// the motion of the whole step.
-  void observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement);
+  /// The obstacles' velocities where the contact points are at a displacement and a time, or their means over a span
+  /// with that time in its middle. They, and friction, act on the motion of the whole step.
+  void observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement,
+                         double span = 0.0);
+  /// The same of a step from one displacement to another: those of obstacles that turn depend on both.
+  void observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time, const Vector& end,
+                    double step);
   [[nodiscard]] const ObstacleMotion& obstacle_velocity() const { return obstacle_velocity_; }
   /// Newton's impact law at the points that touch at `place` and `time`, with the obstacles observed and one
   /// coefficient of restitution e: y = G (after + s δ) + e G before, of velocities relative to the obstacles.

@@ -25,8 +25,8 @@ ObstacleWatch::ObstacleWatch(const SemidiscreteProblem& problem, const std::vect
       size_(size),
       nodes_(obstacles.size()),
       deepest_(obstacles.size()),
-      translation_(obstacles.size()),
       position_(problem.dimension) {
+  for (const Obstacle* obstacle : obstacles) placed_.push_back(obstacle->at(0.0));
   for (std::size_t k = 0; k < obstacles.size(); ++k) find_nodes(cells, boundary, k);
 }
 
@@ -66,7 +66,7 @@ bool ObstacleWatch::is_held_by_supports(std::size_t obstacle, Index node) const 
 
 void ObstacleWatch::look(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    if (obstacles_[k]->moves()) translation_[k] = obstacles_[k]->translation(state.time);
+    if (obstacles_[k]->moves()) placed_[k] = obstacles_[k]->at(state.time);
     for (const Index node : nodes_[k]) look_at_node(k, node, state);
   }
   for (const RimFacet& facet : rim_) look_at_rim(facet, state);
@@ -75,8 +75,7 @@ void ObstacleWatch::look(const State& state) {
 double ObstacleWatch::gap(std::size_t obstacle, Index node, const Vector& displacement) {
   const int d = problem_.dimension;
   for (int k = 0; k < d; ++k) position_[k] = problem_.nodes(k, node) + displacement[node * d + k];
-  if (translation_[obstacle].size() > 0) position_ -= translation_[obstacle];
-  return obstacles_[obstacle]->gap(position_);
+  return placed_[obstacle].gap(position_);
 }
 
 void ObstacleWatch::look_at_start(const State& state) {
@@ -92,9 +91,8 @@ void ObstacleWatch::look_at_start(const State& state) {
 void ObstacleWatch::look_at_node(std::size_t obstacle, Index node, const State& state) {
   const double depth = -gap(obstacle, node, state.displacement);
   if (!(depth > deepest_[obstacle].depth) || depth <= rounding_of_depth * size_[static_cast<std::size_t>(node)] ||
-      depth <= obstacles_[obstacle]->gap_rounding(position_))
+      depth <= placed_[obstacle].gap_rounding(position_))
     return;
-  if (translation_[obstacle].size() > 0) position_ += translation_[obstacle];
   deepest_[obstacle].enter(node, depth, state.time, in_space(position_));
 }
 
@@ -125,7 +123,6 @@ void ObstacleWatch::look_at_rim(const RimFacet& facet, const State& state) {
     });
     if (!is_flat) continue;
     (void)gap(facet.obstacle, node, u);
-    if (translation_[facet.obstacle].size() > 0) position_ += translation_[facet.obstacle];
     rims_.push_back({pair, node, state.time, in_space(position_)});
   }
 }

@@ -65,7 +65,7 @@ class ObstacleWatch {
   std::vector<RimFacet> rim_;
   std::vector<DeepestPoint> deepest_;
   std::vector<RimContact> rims_;
-  std::vector<SpaceVector> translation_;  ///< of each obstacle at this time; empty: it is at rest
+  std::vector<PlacedObstacle> placed_;  ///< each obstacle at this time
   Vector position_;
 };
 

@@ -57,17 +57,23 @@ TEST(MalformedCase, References) {
        "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\n[[contact]]\ngroup = \"low\"\nobstacle = "
        "\"floor\"\n[[contact]]\ngroup = \"low\"\nobstacle = \"floor\"",
        "20:9: the group \"low\" is in another [[contact]] already, at 17:9"},
-      {0, "[obstacle.floor]\ntype = \"torus\"\npoint = [0, 0]\nnormal = [0, 1]",
-       "13:8: \"type\" must be \"plane\" or \"sphere\"; found the text \"torus\". A plane with a half-space behind it, "
-       "or a "
-       "sphere: a ball or, seen from inside, a bowl. Other curved obstacles are not supported."},
+      {0, "[obstacle.floor]\ntype = \"cone\"\npoint = [0, 0]\nnormal = [0, 1]",
+       "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
+       "found the "
+       "text "
+       "\"cone\". Its shape: a plane with a half-space behind it, a sphere or a cylinder or a torus, from outside or "
+       "from "
+       "inside, a surface from a file, or what an expression describes."},
       // What belongs to another shape is no further problem.
       {0,
-       "[obstacle.ring]\ntype = \"torus\"\ncentre = [0, 0, 0]\nminor = 1.0\n[[contact]]\ngroup = "
+       "[obstacle.ring]\ntype = \"cone\"\ncentre = [0, 0, 0]\nminor = 1.0\n[[contact]]\ngroup = "
        "\"low\"\nobstacle = \"ring\"",
-       "13:8: \"type\" must be \"plane\" or \"sphere\"; found the text \"torus\". A plane with a half-space behind it, "
-       "or a "
-       "sphere: a ball or, seen from inside, a bowl. Other curved obstacles are not supported."},
+       "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
+       "found the "
+       "text "
+       "\"cone\". Its shape: a plane with a half-space behind it, a sphere or a cylinder or a torus, from outside or "
+       "from "
+       "inside, a surface from a file, or what an expression describes."},
       {0, "[obstacle.ball]\ntype = \"sphere\"\npoint = [0, 0]\nradius = -1\nside = \"within\"",
        "12:1: [obstacle.ball] has no \"centre\": a vector of 2 or 3 numbers (unit: length). Centre of the sphere; in "
        "two "
@@ -76,27 +82,30 @@ TEST(MalformedCase, References) {
        "or "
        "\"inside\"; found the text \"within\""},
       {0, "[obstacle.floor]\ntype = \"plain\"\nnrmal = [0, 1]",
-       "13:8: \"type\" must be \"plane\" or \"sphere\"; found the text \"plain\"; did you mean \"plane\"?"},
+       "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
+       "found the text \"plain\"; did you mean \"plane\"?"},
       // A suggestion would be refused next where the type does not take it.
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 1]\nradus = 1",
-       "16:1: unknown key \"radus\" in [obstacle.floor]; \"radius\" is for the type \"sphere\" only; the type is "
+       "16:1: unknown key \"radus\" in [obstacle.floor]; \"radius\" is for the types \"sphere\" and \"cylinder\" only; "
+       "the type is "
        "\"plane\""},
       {10, "step = 0.1\nbeat = 0.25",
        "11:1: unknown key \"beat\" in [time]; \"beta\" is for the scheme \"newmark\" only; the scheme is \"midpoint\""},
       {0, "[obstacle.floor]\ntype = \"plane\"\npiont = [0, 0]\nnormal = [0, 1]",
        "14:1: unknown key \"piont\" in [obstacle.floor]; did you mean \"point\"?"},
       {0, "[obstacle.floor]\ntype = 3",
-       "13:8: \"type\" must be \"plane\" or \"sphere\"; found the integer 3. A plane with a half-space behind it, or a "
-       "sphere: a ball or, seen from inside, a bowl. Other curved obstacles are not supported."},
+       "13:8: \"type\" must be one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or \"implicit\"; "
+       "found the integer 3. Its shape: a plane with a half-space behind it, a sphere or a cylinder or a torus, from "
+       "outside or from inside, a surface from a file, or what an expression describes."},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 0]",
        "15:10: \"normal\" must not be zero: it points out of the obstacle"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, 0]\nnormal = [0, 0, 1]",
        "15:10: \"normal\" of [obstacle.floor] has 3 entries, but \"point\" of [obstacle.floor] at 14:9 has 2: all "
        "vectors must have as many as the mesh has dimensions"},
       {0, "[obstacle.floor]\npoint = [0]\nnormal = [0, 1, 2, 3]",
-       "12:1: [obstacle.floor] has no \"type\": \"plane\" or \"sphere\". A plane with a half-space behind it, or a "
-       "sphere: "
-       "a ball or, seen from inside, a bowl. Other curved obstacles are not supported.\n13:9: \"point\" "
+       "12:1: [obstacle.floor] has no \"type\": one of \"plane\", \"sphere\", \"cylinder\", \"torus\", \"surface\" or "
+       "\"implicit\". Its shape: a plane with a half-space behind it, a sphere or a cylinder or a torus, from outside "
+       "or from inside, a surface from a file, or what an expression describes.\n13:9: \"point\" "
        "must be a vector of 2 or 3 numbers (unit: length); found a list of 1 value\n14:10: \"normal\" must be a vector "
        "of 2 or 3 numbers; found a list of 4 values"},
       {0, "[obstacle.floor]\ntype = \"plane\"\npoint = [0, \"a\"]\nnormal = [nan, 1]",

@@ -116,7 +116,8 @@ TEST(CaseKeys, AreDocumentedAndHaveUnits) {
       EXPECT_FALSE(key.doc.empty()) << section.name << '.' << key.name;
       const bool is_number = key.type == KeyType::number || key.type == KeyType::integer ||
                              key.type == KeyType::vector || key.type == KeyType::formula ||
-                             key.type == KeyType::formulas || key.type == KeyType::axial;
+                             key.type == KeyType::formulas || key.type == KeyType::axial ||
+                             key.type == KeyType::axial_formulas;
       EXPECT_EQ(!key.unit.empty(), is_number) << section.name << '.' << key.name;
       EXPECT_FALSE(key.required && key.standard.has_value()) << section.name << '.' << key.name;
     }

@@ -13,11 +13,12 @@ class TwoPoints : public testing::TestWithParam<Index> {
   TwoPoints() {
     using Numbers = std::vector<double>;
     const Index d = GetParam();
-    obstacle_ = make_obstacle("sphere", {{"centre", Numbers(static_cast<std::size_t>(d), 0.0)},
-                                         {"radius", 2.0},
-                                         {"side", std::string("inside")},
-                                         {"velocity", Numbers(static_cast<std::size_t>(d), 0.25)}});
+    obstacle_ = make_obstacle(
+        "sphere",
+        {{"centre", Numbers(static_cast<std::size_t>(d), 0.0)}, {"radius", 2.0}, {"side", std::string("inside")}},
+        Vector::Constant(d, 0.25));
     CurvedContactData data;
+    data.obstacles.push_back(obstacle_.get());
     data.node_positions = Points::Zero(d, 2);
     data.node_positions.row(d - 1).setConstant(-1.9);
     data.node_positions(0, 1) = 0.4;
@@ -28,8 +29,8 @@ class TwoPoints : public testing::TestWithParam<Index> {
     data.trace.insert(1, 1) = 0.75;
     data.trace.makeCompressed();
     for (Index i = 0; i < 2; ++i) {
-      data.points.push_back({i, obstacle_.get(), {true, true, true}});
-      data.nodes.push_back({i, i, obstacle_.get()});
+      data.points.push_back({i, 0, {true, true, true}});
+      data.nodes.push_back({i, i, 0});
     }
     rows_.normals = Points::Zero(d, 2);
     rows_.tangents.resize(2);

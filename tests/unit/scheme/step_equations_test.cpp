@@ -49,7 +49,7 @@ TEST_F(StepEquationsTest, TakeTheSlipOfTheWholeStep) {
   Vector slip;
   problem_.contact.rows->tangential_motion(velocity_, slip);
   ObstacleMotion obstacle;
-  problem_.obstacle_velocity(run_.state().displacement + 0.5 * predicted, 0.5 * h, obstacle);
+  problem_.obstacle_velocity(run_.state().displacement + 0.5 * predicted, 0.5 * h, h, obstacle);
   EXPECT_GT(obstacle.tangential.norm(), 0.0);
   EXPECT_LE((stage_.slip_offset - (slip - obstacle.tangential)).norm(), 1e-14 * slip.norm());
   EXPECT_EQ(stage_.slip_factor, 1.0 / h);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "ricochet/contact/obstacle.hpp"
+#include "ricochet/contact/obstacle_shape.hpp"
 
 namespace ricochet {
 
@@ -16,10 +16,9 @@ constexpr int sectors = 48;
 
 /// A ball that bodies stay outside of, gap |x − o| − R, or a hollow that they stay inside of, gap R − |x − o|. In the
 /// plane a disc and a round hole.
-class Sphere final : public Obstacle {
+class Sphere final : public ObstacleShape {
  public:
-  Sphere(const Vector& centre, double radius, bool is_hollow, const Vector& velocity)
-      : centre_(centre), radius_(radius), sign_(is_hollow ? -1.0 : 1.0), velocity_(velocity) {}
+  Sphere(const Vector& centre, double radius, double side) : centre_(centre), radius_(radius), sign_(side) {}
 
   [[nodiscard]] double gap(const SpaceVector& position) const override {
     return sign_ * ((position - centre_).stableNorm() - radius_);
@@ -33,15 +32,16 @@ class Sphere final : public Obstacle {
   }
   [[nodiscard]] double gap_rounding(const SpaceVector& position) const override {
     const double size = position.lpNorm<1>() + centre_.lpNorm<1>() + radius_;
-    return 8.0 * std::numeric_limits<double>::epsilon() * size;
+    return eight_roundings(size);
   }
-  [[nodiscard]] bool is_flat() const override { return false; }
+  [[nodiscard]] SpaceVector normal_of_step(const SpaceVector& from, const SpaceVector& to) const override {
+    return normal_at_middle(from, to);
+  }
+  [[nodiscard]] SpaceVector centre() const override { return centre_; }
+  [[nodiscard]] OwnAxis own_axis() const override { return {centre_.size() == 2, {}}; }
   [[nodiscard]] double least_radius() const override {
     return sign_ > 0.0 ? radius_ : std::numeric_limits<double>::infinity();
   }
-  [[nodiscard]] bool moves() const override { return !velocity_.isZero(0.0); }
-  [[nodiscard]] SpaceVector translation(double time) const override { return time * velocity_; }
-  [[nodiscard]] SpaceVector surface_velocity(const SpaceVector&, double) const override { return velocity_; }
 
   /// An arc, or a cap of quadrilaterals, around the point nearest to `centre`; wider than asked for, since bodies slide
   /// and roll on it. The obstacle is to the right of the arc, and behind the quadrilaterals.
@@ -95,7 +95,6 @@ class Sphere final : public Obstacle {
   SpaceVector centre_;
   double radius_;
   double sign_;  ///< of the normal along the direction from the centre
-  SpaceVector velocity_;
 };
 
 std::vector<Key> sphere_keys() {
@@ -110,21 +109,15 @@ std::vector<Key> sphere_keys() {
            .required = true,
            .range = positive,
            .doc = "Radius of the sphere."},
-          {.name = "side",
-           .type = KeyType::choice,
-           .standard = "outside",
-           .choices = {"outside", "inside"},
-           .doc = "Where bodies are: \"outside\" of a ball, or \"inside\" of a hollow (a bowl)."},
-          obstacle_velocity_key()};
+          obstacle_side_key("Where bodies are: \"outside\" of a ball, or \"inside\" of a hollow (a bowl).")};
 }
 
 }  // namespace
 
 ObstacleRegistration sphere_obstacle() {
   const auto make = [](const Parameters& parameters) {
-    const Vector centre = as_vector(parameters.vector("centre"));
-    return std::make_unique<Sphere>(centre, parameters.number("radius"), parameters.text("side") == "inside",
-                                    obstacle_velocity(parameters, centre.size()));
+    return std::make_unique<Sphere>(as_vector(parameters.vector("centre")), parameters.number("radius"),
+                                    obstacle_side(parameters));
   };
   return {"sphere", make, sphere_keys()};
 }

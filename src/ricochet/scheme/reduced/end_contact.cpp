@@ -9,8 +9,7 @@ void EndContact::require(const SemidiscreteProblem& problem, ReactionMean mean, 
   const StepStart start{state.displacement, state.time};
   require_no_penetration(problem, place, state.time + step, stage, &start);
   stage.gap_factor = 2.0;
-  middle_ = 0.5 * (state.displacement + place);
-  if (problem.has_moving_obstacles()) equations.observe_obstacles(problem, state.time + 0.5 * step, middle_);
+  equations.observe_step(problem, state.displacement, state.time, place, step);
   rate_ = (place - state.displacement) / step;
   equations.require_friction(problem, rate_, 2.0 / step, stage);
   stick_.require(problem, state, step, stage);

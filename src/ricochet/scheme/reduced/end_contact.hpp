@@ -19,7 +19,7 @@ class EndContact {
 
  private:
   StickMemory stick_;
-  Vector middle_, rate_;
+  Vector rate_;
 };
 
 }  // namespace ricochet

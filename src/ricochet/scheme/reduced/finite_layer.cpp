@@ -213,6 +213,7 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
     problem.contact.geometry->add_couples(middle_, *stage.rows, solution.acting_normal(), solution.acting_tangential(),
                                           mean_nodal_);
   }
+  if (problem.has_turning_obstacles()) equations_.observe_step(problem, state.displacement, state.time, end_, step);
   obstacle_work_ = obstacle_work(*stage.rows, solution.acting_normal(), solution.acting_tangential(), step);
   end_weight_ = solution.end_weight;
   dissipation_ = work_at_end_ = 0.0;
@@ -258,6 +259,7 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
                          const StageSolution& solution, Vector& increment) {
   increment = end_ - state.displacement;
   before_ = state.displacement;
+  if (problem.has_turning_obstacles()) equations_.observe_step(problem, before_, state.time, end_, step);
   product_ = middle_ - base_;
   state.displacement = end_;
   state.internal_strain = internal_;

@@ -49,7 +49,7 @@ void ContactEquilibrium::require(const SemidiscreteProblem& problem, const State
   }
   stage.prescribed.setZero(problem.supports.size());  // what supports prescribe is in the base
   require_no_penetration(problem, base_, state.time + step, stage);
-  if (problem.has_moving_obstacles()) equations.observe_obstacles(problem, state.time + 0.5 * step, middle_);
+  if (problem.has_moving_obstacles()) equations.observe_obstacles(problem, state.time + 0.5 * step, middle_, step);
   equations.require_friction(problem, rate_, 1.0 / step, stage);
 }
 

@@ -92,7 +92,7 @@ const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem,
   stages.follow(end);
   if (problem.has_moving_obstacles()) {
     middle_ = state.displacement + 0.5 * increment;
-    equations.observe_obstacles(problem, state.time + 0.5 * step, middle_);
+    equations.observe_obstacles(problem, state.time + 0.5 * step, middle_, step);
   }
   Stage& stage = stages.stage(0);
   if (stage.right_hand_side.size() != problem.dof_count()) stage.right_hand_side.setZero(problem.dof_count());

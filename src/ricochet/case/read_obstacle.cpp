@@ -1,0 +1,48 @@
+#include "ricochet/case/read_obstacle.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace ricochet {
+
+namespace {
+
+std::string beside(const std::string& case_path, const std::string& file) {
+  return (std::filesystem::path(case_path).parent_path() / file).lexically_normal().string();
+}
+
+/// Of two keys that say the same thing.
+void refuse_both(const SectionReader& reader, const char* key, const char* other) {
+  if (reader.is_given(key) && reader.is_given(other))
+    reader.add_problem(key, fmt::format("the obstacle has \"{}\" already: leave \"{}\" out", other, key));
+}
+
+void read_motion(const SectionReader& reader, const std::string& case_path, ObstacleSection& obstacle) {
+  obstacle.velocity = reader.vector("velocity");
+  obstacle.rotation_rate = reader.number("rotation_rate");
+  obstacle.motion = reader.formulas("motion");
+  obstacle.rotation = reader.axial_formulas("rotation");
+  obstacle.about = reader.vector("about");
+  if (reader.is_given("table") && reader.is_usable("table")) obstacle.table = beside(case_path, reader.text("table"));
+  refuse_both(reader, "motion", "velocity");
+  for (const char* const key : {"velocity", "motion", "rotation"}) refuse_both(reader, "table", key);
+  if (reader.is_given("about") && !reader.is_given("rotation") && !reader.is_given("table"))
+    reader.add_problem("about",
+                       "\"about\" is a point that the obstacle turns about: give \"rotation\", or leave it out");
+}
+
+}  // namespace
+
+ObstacleSection read_obstacle(const SectionReader& reader, const std::string& case_path) {
+  ObstacleSection obstacle;
+  obstacle.name = reader.name();
+  obstacle.type = reader.text("type");
+  obstacle.parameters = reader.type_parameters(*find_section("obstacle"));
+  if (obstacle.parameters.has("file"))
+    obstacle.parameters.set("file", beside(case_path, obstacle.parameters.text("file")));
+  read_motion(reader, case_path, obstacle);
+  return obstacle;
+}
+
+}  // namespace ricochet

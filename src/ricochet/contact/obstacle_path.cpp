@@ -1,0 +1,147 @@
+#include "ricochet/contact/obstacle_path.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "ricochet/base/checksum.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/input_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+class UniformPath final : public ObstaclePath {
+ public:
+  explicit UniformPath(const Vector& velocity) : velocity_(velocity) {}
+  [[nodiscard]] SpaceVector displacement(double time) const override { return time * velocity_; }
+  [[nodiscard]] bool is_uniform() const override { return true; }
+  [[nodiscard]] SpaceVector velocity() const override { return velocity_; }
+
+ private:
+  SpaceVector velocity_;
+};
+
+SpaceVector value_of(const std::vector<Expression>& components, double time) {
+  SpaceVector result(static_cast<Index>(components.size()));
+  for (Index k = 0; k < result.size(); ++k) result[k] = components[static_cast<std::size_t>(k)](0.0, 0.0, 0.0, time);
+  return result;
+}
+
+class ExpressionPath final : public ObstaclePath {
+ public:
+  ExpressionPath(std::vector<Expression> displacement, std::vector<Expression> rotation, Index dimension)
+      : displacement_(std::move(displacement)), rotation_(std::move(rotation)), dimension_(dimension) {}
+  [[nodiscard]] SpaceVector displacement(double time) const override {
+    return displacement_.empty() ? SpaceVector(SpaceVector::Zero(dimension_)) : value_of(displacement_, time);
+  }
+  [[nodiscard]] SpaceVector rotation(double time) const override { return value_of(rotation_, time); }
+  [[nodiscard]] bool turns() const override { return !rotation_.empty(); }
+
+ private:
+  std::vector<Expression> displacement_, rotation_;
+  Index dimension_;
+};
+
+class TablePath final : public ObstaclePath {
+ public:
+  TablePath(std::vector<double> times, Points values, Index dimension)
+      : times_(std::move(times)), values_(std::move(values)), dimension_(dimension) {}
+  [[nodiscard]] SpaceVector displacement(double time) const override { return at(time).head(dimension_); }
+  [[nodiscard]] SpaceVector rotation(double time) const override { return at(time).tail(values_.rows() - dimension_); }
+  [[nodiscard]] bool turns() const override { return values_.rows() > dimension_; }
+  [[nodiscard]] std::string checksum() const override {
+    return Checksum()
+        .add(times_.data(), times_.size())
+        .add(values_.data(), static_cast<std::size_t>(values_.size()))
+        .text();
+  }
+
+ private:
+  using Row = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+  [[nodiscard]] Row at(double time) const {
+    const auto after = std::upper_bound(times_.begin(), times_.end(), time);
+    if (after == times_.begin()) return values_.col(0);
+    if (after == times_.end()) return values_.col(values_.cols() - 1);
+    const auto next = static_cast<Index>(after - times_.begin());
+    const double before = times_[static_cast<std::size_t>(next - 1)];
+    const double part = (time - before) / (*after - before);
+    return (1.0 - part) * values_.col(next - 1) + part * values_.col(next);
+  }
+  std::vector<double> times_;
+  Points values_;
+  Index dimension_;
+};
+
+[[noreturn]] void refuse_line(const std::string& file, std::size_t line, const std::string& problem) {
+  throw Error(ErrorKind::invalid_input, fmt::format("{}:{}: {}", file, line, problem));
+}
+
+/// The numbers of a line; nothing where a word is none.
+bool read_numbers(const std::string& line, std::vector<double>& numbers) {
+  numbers.clear();
+  const char *at = line.data(), *const end = line.data() + line.size();
+  const auto is_separator = [](char c) { return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r'; };
+  while (true) {
+    while (at != end && is_separator(*at)) ++at;
+    if (at == end || *at == '#') return true;
+    double value = 0.0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value) || (next != end && !is_separator(*next))) return false;
+    numbers.push_back(value);
+    at = next;
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<ObstaclePath> make_uniform_path(const Vector& velocity) {
+  if (velocity.size() == 0 || velocity.isZero(0.0)) return nullptr;
+  return std::make_unique<UniformPath>(velocity);
+}
+
+std::unique_ptr<ObstaclePath> make_path(std::vector<Expression> displacement, std::vector<Expression> rotation,
+                                        Index dimension) {
+  if (displacement.empty() && rotation.empty()) return nullptr;
+  return std::make_unique<ExpressionPath>(std::move(displacement), std::move(rotation), dimension);
+}
+
+std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension) {
+  const std::string why_not = why_no_input(file);
+  std::ifstream stream(file);
+  if (!why_not.empty() || !stream)
+    throw Error(ErrorKind::file_access,
+                fmt::format("cannot read the motion \"{}\": {}", file, why_not.empty() ? "no such file" : why_not));
+  const std::size_t still = static_cast<std::size_t>(dimension) + 1, turning = dimension == 2 ? 4 : 7;
+  std::vector<double> times, numbers, values;
+  std::string line;
+  std::size_t columns = 0;
+  for (std::size_t number = 1; std::getline(stream, line); ++number) {
+    if (!read_numbers(line, numbers)) {
+      if (times.empty() && number == 1) continue;  // names of columns
+      refuse_line(file, number, "this line has something else than finite numbers, separated by commas or spaces");
+    }
+    if (numbers.empty()) continue;
+    if (columns == 0) columns = numbers.size();
+    if (numbers.size() != columns || (columns != still && columns != turning)) {
+      refuse_line(
+          file, number,
+          fmt::format("{} numbers; each line of a motion in {}D has {} (t and the displacement), or {} with the "
+                      "rotation in rad",
+                      numbers.size(), dimension, still, turning));
+    }
+    if (!times.empty() && !(numbers.front() > times.back()))
+      refuse_line(file, number, fmt::format("the time {} does not come after {}", numbers.front(), times.back()));
+    times.push_back(numbers.front());
+    values.insert(values.end(), numbers.begin() + 1, numbers.end());
+  }
+  if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: the motion has no numbers", file));
+  const auto rows = static_cast<Index>(columns) - 1, count = static_cast<Index>(times.size());
+  return std::make_unique<TablePath>(std::move(times), Eigen::Map<const Points>(values.data(), rows, count), dimension);
+}
+
+}  // namespace ricochet

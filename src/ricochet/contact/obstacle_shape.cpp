@@ -1,0 +1,87 @@
+#include "ricochet/contact/obstacle_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+// The obstacles, each by the function of its own file that registers it. One line each, in the order of the
+// documentation.
+// clang-format off
+#define RICOCHET_OBSTACLES(obstacle) \
+  obstacle(plane_obstacle)           \
+  obstacle(sphere_obstacle)          \
+  obstacle(cylinder_obstacle)        \
+  obstacle(torus_obstacle)           \
+  obstacle(surface_obstacle)         \
+  obstacle(implicit_obstacle)
+// clang-format on
+
+RICOCHET_DEFINE_REGISTRY(obstacle_registry, ObstacleConstructor, "obstacle type", RICOCHET_OBSTACLES)
+
+std::unique_ptr<ObstacleShape> make_obstacle_shape(const std::string& type, Parameters parameters) {
+  return obstacle_registry().find(type, parameters).type(parameters);
+}
+
+namespace {
+
+/// Of unit vectors: within 60° of each other.
+bool agree(const SpaceVector& a, const SpaceVector& b) {
+  return a.dot(b) > 0.5;
+}
+
+}  // namespace
+
+SpaceVector ObstacleShape::normal_at_middle(const SpaceVector& from, const SpaceVector& to) const {
+  const SpaceVector middle = normal(0.5 * (from + to)), end = normal(to);
+  return agree(middle, end) && agree(middle, normal(from)) ? middle : end;
+}
+
+SpaceVector ObstacleShape::normal_of_step(const SpaceVector& from, const SpaceVector& to) const {
+  SpaceVector result = normal(0.5 * (from + to));
+  const SpaceVector way = to - from, end = normal(to);
+  const double square = way.squaredNorm();
+  const double missing = gap(to) - gap(from) - result.dot(way);
+  if (square > 0.0 && std::abs(missing) > gap_rounding(from) + gap_rounding(to)) {
+    result += missing / square * way;
+    const double length = result.norm();
+    if (!(length > 0.0)) return end;
+    result /= length;
+  }
+  return agree(result, end) && agree(result, normal(from)) ? result : end;
+}
+
+/// Where the square of the length leaves the range of numbers, it is scaled first.
+Vector unit_vector(const Vector& direction, const std::string& what) {
+  const double length = direction.norm();
+  if (length == 0.0 && direction.isZero(0.0)) throw Error(ErrorKind::invalid_input, what + " is zero");
+  constexpr double smallest = 1e-150;
+  if (std::isfinite(length) && length > smallest) return direction / length;
+  return direction.stableNormalized();
+}
+
+void check_direction(const ParameterCheck& place, const Parameters& values, const std::string& key,
+                     const std::string& meaning) {
+  if (!place.is_usable(key)) return;
+  const std::vector<double>& direction = values.vector(key);
+  if (std::all_of(direction.begin(), direction.end(), [](double n) { return n == 0.0; }))
+    place.add_problem(key, '"' + key + "\" must not be zero: it " + meaning);
+}
+
+void require_space(const Parameters& parameters, const std::string& key, const std::string& what,
+                   const std::string& instead) {
+  if (parameters.vector(key).size() != 3)
+    throw Error(ErrorKind::invalid_input, what + " needs three dimensions; in two " + instead);
+}
+
+Key obstacle_side_key(const std::string& doc) {
+  return {.name = "side", .type = KeyType::choice, .standard = "outside", .choices = {"outside", "inside"}, .doc = doc};
+}
+
+double obstacle_side(const Parameters& parameters) {
+  return parameters.text("side") == "inside" ? -1.0 : 1.0;
+}
+
+}  // namespace ricochet
