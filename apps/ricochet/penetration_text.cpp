@@ -13,8 +13,9 @@ std::string found_text(const UnwatchedPenetration& p) {
   const std::string what = p.obstacle.empty() ? fmt::format("{} and {} overlap", p.bodies[0], p.bodies[1])
                                               : fmt::format("{} in \"{}\"", p.bodies[0], p.obstacle);
   const std::string kind =
-      p.contact.empty() ? "PENETRATION WITHOUT CONTACT"
-                        : fmt::format("PENETRATION AT THE CONTACT of \"{}\" and \"{}\"", p.contact[0], p.contact[1]);
+      p.passed_through    ? "PASSED THROUGH WITHIN ONE STEP"
+      : p.contact.empty() ? "PENETRATION WITHOUT CONTACT"
+                          : fmt::format("PENETRATION AT THE CONTACT of \"{}\" and \"{}\"", p.contact[0], p.contact[1]);
   return fmt::format("\n  {}: {}, {:.3g} deep at t = {:.6g} at ({:.4g})", kind, what, p.depth, p.time,
                      fmt::join(p.place, ", "));
 }

@@ -72,6 +72,15 @@ struct ObstacleSection {
   std::vector<Expression> rotation;  ///< of t, in rad: one number in 2D, a vector in 3D; empty: none
   std::vector<double> about;         ///< empty: its own centre
   std::string table;                 ///< a file of displacements and rotations; empty: none
+  // Of a rigid body that moves by the forces on it, whose `velocity` is that at the start:
+  std::optional<double> mass, density;
+  std::vector<double> inertia, centre_of_mass;  ///< empty: those of its shape
+  std::vector<double> spin;                     ///< at the start; empty: none
+  std::vector<Expression> force, torque;        ///< of t; empty: none
+  std::vector<double> spring, damper;           ///< to where it starts, per direction; empty: none
+  double rotation_spring = 0.0, rotation_damper = 0.0;
+  std::vector<std::string> hold;  ///< "x", "y", "z", "rotation"
+  [[nodiscard]] bool is_free() const { return mass || density; }
   [[nodiscard]] bool moves() const {
     return !velocity.empty() || rotation_rate != 0.0 || !motion.empty() || !rotation.empty() || !table.empty();
   }

@@ -106,6 +106,69 @@ Section material_section() {
   return with_types(std::move(section), "law", material_law_registry());
 }
 
+/// Of an obstacle that moves by the forces on it.
+std::vector<Key> free_body_keys() {
+  return {
+      {.name = "mass",
+       .type = KeyType::number,
+       .unit = "mass",
+       .range = positive,
+       .doc = "With it, or a density, the obstacle is a rigid body that moves by the forces on it; `velocity` is then "
+              "that of its centre of mass at the start. In two dimensions the mass per length."},
+      {.name = "density",
+       .type = KeyType::number,
+       .unit = "density",
+       .range = positive,
+       .doc = "The same, of a ball, a ring or a closed surface: mass, centre of mass and inertia are those of what it "
+              "encloses."},
+      {.name = "inertia",
+       .type = KeyType::axial,
+       .unit = "mass·length²",
+       .doc =
+           "Moment of inertia about the centre of mass; in three dimensions the principal ones about the axes x, y and "
+           "z. Absent: that of the shape, with its mass."},
+      {.name = "centre_of_mass", .type = KeyType::vector, .unit = "length", .doc = "Absent: that of the shape."},
+      {.name = "spin",
+       .type = KeyType::axial,
+       .unit = "angle/time",
+       .doc = "Angular velocity of the rigid body at the start, in rad per time."},
+      {.name = "force",
+       .type = KeyType::formulas,
+       .unit = "force",
+       .variables = "t",
+       .doc = "Force on the rigid body's centre of mass, besides gravity, contact, springs and dampers."},
+      {.name = "torque",
+       .type = KeyType::axial_formulas,
+       .unit = "force·length",
+       .variables = "t",
+       .doc = "Torque on the rigid body, about its centre of mass."},
+      {.name = "spring",
+       .type = KeyType::vector,
+       .unit = "force/length",
+       .doc = "Stiffness of springs from the rigid body's centre of mass to where it starts, per direction."},
+      {.name = "damper",
+       .type = KeyType::vector,
+       .unit = "force·time/length",
+       .doc = "Dampers on the velocity of the rigid body's centre of mass, per direction."},
+      {.name = "rotation_spring",
+       .type = KeyType::number,
+       .unit = "force·length",
+       .standard = "0",
+       .range = nonnegative,
+       .doc = "Torque per angle that turns the rigid body back to how it starts; in two dimensions only."},
+      {.name = "rotation_damper",
+       .type = KeyType::number,
+       .unit = "force·length·time",
+       .standard = "0",
+       .range = nonnegative,
+       .doc = "Torque per angular velocity of the rigid body."},
+      {.name = "hold",
+       .type = KeyType::names,
+       .choices = {"x", "y", "z", "rotation"},
+       .doc = "What the rigid body does not do: move along these directions, turn."},
+  };
+}
+
 Section obstacle_section() {
   Section section{
       .name = "obstacle",
@@ -159,6 +222,7 @@ Section obstacle_section() {
                "constant before the first and after the last."},
           parameters_key(),
       }};
+  for (Key& key : free_body_keys()) section.keys.push_back(std::move(key));
   return with_types(std::move(section), "type", obstacle_registry());
 }
 

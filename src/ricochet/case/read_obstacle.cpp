@@ -32,6 +32,31 @@ void read_motion(const SectionReader& reader, const std::string& case_path, Obst
                        "\"about\" is a point that the obstacle turns about: give \"rotation\", or leave it out");
 }
 
+void read_free_body(const SectionReader& reader, ObstacleSection& obstacle) {
+  obstacle.mass = reader.optional_number("mass");
+  obstacle.density = reader.optional_number("density");
+  obstacle.inertia = reader.axial("inertia");
+  obstacle.centre_of_mass = reader.vector("centre_of_mass");
+  obstacle.spin = reader.axial("spin");
+  obstacle.force = reader.formulas("force");
+  obstacle.torque = reader.axial_formulas("torque");
+  obstacle.spring = reader.vector("spring");
+  obstacle.damper = reader.vector("damper");
+  obstacle.rotation_spring = reader.number("rotation_spring");
+  obstacle.rotation_damper = reader.number("rotation_damper");
+  obstacle.hold = reader.chosen("hold");
+  refuse_both(reader, "density", "mass");
+  const bool is_free = reader.is_given("mass") || reader.is_given("density");
+  const auto only = [&](bool allowed, const char* key, const char* reason) {
+    if (!allowed && reader.is_given(key)) reader.add_problem(key, fmt::format("\"{}\" {}", key, reason));
+  };
+  for (const char* const key : {"inertia", "centre_of_mass", "spin", "force", "torque", "spring", "damper",
+                                "rotation_spring", "rotation_damper", "hold"})
+    only(is_free, key, "is of a rigid body that moves by the forces on it: give its mass or density, too");
+  for (const char* const key : {"motion", "rotation", "table", "rotation_rate"})
+    only(!is_free, key, "is a motion that is given; an obstacle with a mass or density moves by the forces on it");
+}
+
 }  // namespace
 
 ObstacleSection read_obstacle(const SectionReader& reader, const std::string& case_path) {
@@ -42,6 +67,7 @@ ObstacleSection read_obstacle(const SectionReader& reader, const std::string& ca
   if (obstacle.parameters.has("file"))
     obstacle.parameters.set("file", beside(case_path, obstacle.parameters.text("file")));
   read_motion(reader, case_path, obstacle);
+  read_free_body(reader, obstacle);
   return obstacle;
 }
 

@@ -82,11 +82,16 @@ class Operators {
  public:
   explicit Operators(int dimension) : d_(dimension) {}
 
-  /// `follows`: rows follow the motion, and a row of G may then have entries at some more nodes.
+  /// `follows`: rows follow the motion, and a row of G may then have entries at some more nodes; those of a rigid body,
+  /// −1 without one, have them in rows of B_T, too.
   void add(int point, const Multiplier& multiplier, const TiedNodes::Weights& free_trace,
            const PointConditions& conditions, const ContactTangents& tangents, bool follows,
-           const std::vector<Index>& more_nodes) {
+           const std::vector<Index>& more_nodes, Index nodes_of_body) {
     const bool is_flat = !follows;
+    for (int dof = static_cast<int>(nodes_of_body) * d_, k = 0; nodes_of_body >= 0 && k < 2 * d_; ++k) {
+      gap_.emplace_back(point, dof + k, 0.0);
+      for (int j = 0; j < d_ - 1; ++j) slip_.emplace_back(point * (d_ - 1) + j, dof + k, 0.0);
+    }
     for (const auto& [node, weight] : multiplier.trace) own_.emplace_back(point, static_cast<int>(node), weight);
     for (const Index node : more_nodes) {
       for (int k = 0; k < d_; ++k) gap_.emplace_back(point, static_cast<int>(node) * d_ + k, 0.0);
@@ -126,6 +131,12 @@ class Operators {
   std::vector<Eigen::Triplet<double>> trace_, own_, gap_, slip_;
 };
 
+/// The first of those of a rigid body that moves freely, or −1.
+Index nodes_of_body(const BoundaryPatch& patch) {
+  const FreeMotion* const body = patch.obstacle != nullptr ? patch.obstacle->free_motion() : nullptr;
+  return body != nullptr ? body->centre_node() : -1;
+}
+
 void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, ContactBoundary& boundary, ContactRows& rows,
                  Operators& operators) {
   for (std::size_t i = 0; i < patch.kept.size(); ++i) {
@@ -146,7 +157,7 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
     boundary.weights[number] = multiplier.weight;
     boundary.net[number] = patch.obstacle != nullptr ? 1.0 : 0.0;
     operators.add(number, multiplier, patch.free_traces[i], conditions, tangents, patch.follows_motion(),
-                  patch.turning.empty() ? std::vector<Index>{} : patch.turning[i].nodes());
+                  patch.turning.empty() ? std::vector<Index>{} : patch.turning[i].nodes(), nodes_of_body(patch));
   }
 }
 
@@ -198,6 +209,12 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
   boundary.geometry->gaps(Vector::Zero(body.space->dof_count()), 0.0, gap);
   boundary.initial_gap = gap;
   rows.gap = gap;
+  const auto moves_freely = [](const ContactPair& pair) {
+    return pair.obstacle != nullptr && pair.obstacle->free_motion() != nullptr;
+  };
+  if (std::none_of(pairs.begin(), pairs.end(), moves_freely)) return;
+  // Where points touch, the entries of these rigid bodies.
+  boundary.geometry->update(Vector::Zero(body.space->dof_count()), 0.0, nullptr, rows);
 }
 
 }  // namespace

@@ -30,8 +30,9 @@ class ContactGeometry {
   /// from touching beside what gaps have changed since the last look keep theirs. `start`: rows are those of the step
   /// from there, null: of that instant.
   virtual void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const = 0;
-  /// Adds what the forces of reactions are at a place beyond those of the rows, where rows are those of a step: between
-  /// bodies a couple that takes back their moment about that place. Nothing at obstacles. `tangential` may be empty.
+  /// Adds what the forces of reactions are at a place beyond those of the rows, where rows are those of a step: couples
+  /// that take back their moment about that place, on the nodes of bodies that touch each other, and on rigid bodies
+  /// that move freely. Nothing at other obstacles. `tangential` may be empty.
   virtual void add_couples(const Vector& /*place*/, const ContactRows& /*rows*/, const Vector& /*normal*/,
                            const Vector& /*tangential*/, Vector& /*force*/) const {}
   /// Whether node_normal() knows a node of the contact boundary better than the start does.

@@ -19,16 +19,24 @@ SpaceVector rate_times_arm(double rate, const SpaceVector& axis, const SpaceVect
   return rate * Eigen::Vector3d(axis).cross(Eigen::Vector3d(arm));
 }
 
-/// The direction of Q̄⁻ᵀ N. A rotation between the two is less than half a turn, or Q̄ has no inverse.
-SpaceVector mean_direction(const Pose::Rotation& mean, const SpaceVector& normal) {
-  SpaceVector result;
-  if (normal.size() == 2) {
-    result = Eigen::Matrix2d(mean.transpose()).inverse() * Eigen::Vector2d(normal);
-  } else {
-    result = Eigen::Matrix3d(mean.transpose()).inverse() * Eigen::Vector3d(normal);
-  }
-  return result.normalized();
+Pose::Rotation rotation_of(const Pose& pose, Index dimension) {
+  return pose.turns() ? pose.rotation : Pose::Rotation(Pose::Rotation::Identity(dimension, dimension));
 }
+SpaceVector shift_of(const Pose& pose, Index dimension) {
+  return pose.shift.size() > 0 ? pose.shift : SpaceVector(SpaceVector::Zero(dimension));
+}
+
+SpaceVector solve(const Pose::Rotation& matrix, const SpaceVector& right) {
+  if (right.size() == 2) return Eigen::Matrix2d(matrix).inverse() * Eigen::Vector2d(right);
+  return Eigen::Matrix3d(matrix).inverse() * Eigen::Vector3d(right);
+}
+
+/// The cosine of half the angle between two rotations, squared: the least singular value of their mean.
+double half_cosine(const Pose::Rotation& first, const Pose::Rotation& last) {
+  const double trace = (first.transpose() * last).trace();
+  return 0.5 * (1.0 + (first.rows() == 2 ? 0.5 * trace : 0.5 * (trace - 1.0)));
+}
+constexpr double least_half_cosine = 0.01;
 
 }  // namespace
 
@@ -38,21 +46,29 @@ double PlacedObstacle::gap_rounding(const SpaceVector& position) const {
          eight_roundings(moved + (pose_.turns() ? position.lpNorm<1>() : 0.0));
 }
 
+SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& middle) {
+  const Index d = middle.size();
+  const SpaceVector before = shift_of(start, d), after = shift_of(end, d);
+  if (!start.turns() && !end.turns()) return after - before;
+  const Pose::Rotation first = rotation_of(start, d), last = rotation_of(end, d);
+  const SpaceVector of_shape = half_cosine(first, last) < least_half_cosine
+                                   ? end.seen_from(middle)
+                                   : solve(0.5 * (first + last), middle - 0.5 * (before + after));
+  return (last - first) * of_shape + after - before;
+}
+
 SpaceVector normal_of_step(const PlacedObstacle& start, const SpaceVector& from, const PlacedObstacle& end,
                            const SpaceVector& to) {
-  const SpaceVector own = end.shape_->normal_of_step(start.pose_.seen_from(from), end.pose_.seen_from(to));
-  if (!end.pose_.turns() && !start.pose_.turns()) return own;
-  const auto rotation = [&](const PlacedObstacle& placed) {
-    return placed.pose_.turns() ? placed.pose_.rotation
-                                : Pose::Rotation(Pose::Rotation::Identity(to.size(), to.size()));
-  };
-  const Pose::Rotation first = rotation(start), last = rotation(end);
-  constexpr double half_turn = 0.1;
-  // The least singular value of Q̄ is the cosine of half the angle between the two, at the traces that they have.
-  const double trace = (first.transpose() * last).trace();
-  const double cosine = to.size() == 2 ? 0.5 * trace : 0.5 * (trace - 1.0);
-  if (0.5 * (1.0 + cosine) < half_turn * half_turn) return last * own;
-  return mean_direction(0.5 * (first + last), own);
+  const ObstacleShape& shape = *end.shape_;
+  const SpaceVector seen_before = start.pose_.seen_from(from), seen_after = end.pose_.seen_from(to);
+  if (!end.pose_.turns() && !start.pose_.turns()) return shape.normal_of_step(seen_before, seen_after);
+  const Pose::Rotation first = rotation_of(start.pose_, to.size()), last = rotation_of(end.pose_, to.size());
+  const SpaceVector at_start = first * shape.normal(seen_before), at_end = last * shape.normal(seen_after);
+  const SpaceVector own = (first + last) * shape.normal(0.5 * (seen_before + seen_after));
+  const SpaceVector way = to - from - motion_at(start.pose_, end.pose_, 0.5 * (from + to));
+  const double change = shape.gap(seen_after) - shape.gap(seen_before);
+  const double rounding = start.gap_rounding(from) + end.gap_rounding(to);
+  return corrected_normal(own.normalized(), way, change, rounding, at_start, at_end);
 }
 
 Obstacle::Obstacle(std::unique_ptr<ObstacleShape> shape, std::unique_ptr<const ObstaclePath> path, double spin,
@@ -90,31 +106,18 @@ SpaceVector Obstacle::spin_velocity(const SpaceVector& position, double time) co
   return rate_times_arm(spin_, axis_, position - shape_->centre() - translation(time));
 }
 
-/// Of the point that is X on the shape.
-SpaceVector Obstacle::mean_velocity(const SpaceVector& of_shape, double start, double end) const {
-  return (pose(end).in_space(of_shape) - pose(start).in_space(of_shape)) / (end - start);
-}
-
 SpaceVector Obstacle::surface_velocity(const SpaceVector& position, double time, double span) const {
   SpaceVector result = spin_velocity(position, time);
   if (path_ == nullptr) return result;
   if (path_->is_uniform()) return result + path_->velocity();
-  const SpaceVector of_shape = pose(time).seen_from(position);
-  if (span > 0.0) return result + mean_velocity(of_shape, time - 0.5 * span, time + 0.5 * span);
+  const auto mean = [&](double start, double end) -> SpaceVector {
+    return motion_at(pose(start), pose(end), position) / (end - start);
+  };
+  if (span > 0.0) return result + mean(time - 0.5 * span, time + 0.5 * span);
   const double near = instant_of_scale * time_scale_;
-  if (time >= near) return result + mean_velocity(of_shape, time - near, time + near);
+  if (time >= near) return result + mean(time - near, time + near);
   // Expressions are not asked for what was before the start.
-  return result + 2.0 * mean_velocity(of_shape, time, time + near) - mean_velocity(of_shape, time, time + 2.0 * near);
-}
-
-SpaceVector Obstacle::velocity_of_step(const SpaceVector& from, double from_time, const SpaceVector& to,
-                                       double to_time) const {
-  const SpaceVector middle = 0.5 * (from + to);
-  SpaceVector result = spin_velocity(middle, 0.5 * (from_time + to_time));
-  if (path_ == nullptr) return result;
-  if (path_->is_uniform()) return result + path_->velocity();
-  return result +
-         mean_velocity(0.5 * (pose(from_time).seen_from(from) + pose(to_time).seen_from(to)), from_time, to_time);
+  return result + 2.0 * mean(time, time + near) - mean(time, time + 2.0 * near);
 }
 
 ObstacleSurface Obstacle::surface(const Vector& centre, double radius) const {
@@ -124,8 +127,13 @@ ObstacleSurface Obstacle::surface(const Vector& centre, double radius) const {
   return result;
 }
 
-Points Obstacle::surface_points(const Points& at_start, double time) const {
+Points Obstacle::surface_points(const Points& at_start, double time, const Vector& displacement) const {
   Points result = at_start;
+  if (free_ != nullptr) {
+    const Pose now = free_->pose(displacement);
+    for (auto point : result.colwise()) point = now.in_space(SpaceVector(point));
+    return result;
+  }
   if (has_constant_normals()) {
     const SpaceVector up = normal(about_);
     const SpaceVector lift = translation(time).dot(up) * up;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "ricochet/contact/free_motion.hpp"
 #include "ricochet/contact/obstacle_path.hpp"
 #include "ricochet/contact/obstacle_shape.hpp"
 #include "ricochet/contact/pose.hpp"
@@ -29,10 +30,16 @@ class PlacedObstacle {
   Pose pose_;
 };
 
-/// Of the same obstacle at two instants, and of a point that goes from one place to another: with X where the point is
-/// seen from the obstacle, N its ObstacleShape::normal_of_step and Q̄ the mean of the rotations, the direction of Q̄⁻ᵀN.
-/// The obstacle's own motion of the step at the mean place X̄ is v = ΔQ X̄ + Δs, and so, with some a > 0,
-///   n·(Δx − v) = n·Q̄ ΔX = a (gap₁ − gap₀).
+/// Where the mean of two poses has a point, from the first to the second it moves by ΔQ Q̄⁻¹(x̄ − s̄) + Δs, x̄ in space.
+/// For a rotation of half a turn and more there is no such point; it moves then as the one that is seen there at the
+/// end.
+[[nodiscard]] SpaceVector motion_at(const Pose& start, const Pose& end, const SpaceVector& middle);
+/// Of the same obstacle at two instants, and of a point that goes from one place to another: a unit normal n such that,
+/// with some a > 0,
+///   n·(Δx − v) = a (gap₁ − gap₀),
+/// v the obstacle's own motion at the mean of both places (motion_at). Where the obstacle does not turn it is that of
+/// its shape (ObstacleShape::normal_of_step); else with X where the point is seen from the obstacle and N the shape's
+/// normal at the mean X̄, the direction of Q̄N and what is missing along Δx − v, as there.
 [[nodiscard]] SpaceVector normal_of_step(const PlacedObstacle& start, const SpaceVector& from,
                                          const PlacedObstacle& end, const SpaceVector& to);
 
@@ -46,7 +53,14 @@ class Obstacle {
 
   [[nodiscard]] const ObstacleShape& shape() const { return *shape_; }
   void fit(const ContactScale& scale) { shape_->fit(scale); }
-  /// Where it is.
+  /// Moves by the forces on it: `place` of a step then says where it is. Null: its path says it.
+  [[nodiscard]] FreeMotion* free_motion() const { return free_.get(); }
+  void set_free(std::shared_ptr<FreeMotion> motion) { free_ = std::move(motion); }
+  /// Where it is at a time and a displacement of the problem.
+  [[nodiscard]] PlacedObstacle at(double time, const Vector& displacement) const {
+    return {*shape_, free_ != nullptr ? free_->pose(displacement) : pose(time)};
+  }
+  /// The same of an obstacle that does not move freely, or at the start.
   [[nodiscard]] PlacedObstacle at(double time) const { return {*shape_, pose(time)}; }
   /// At t = 0.
   [[nodiscard]] double gap(const SpaceVector& position) const { return at(0.0).gap(position); }
@@ -54,16 +68,18 @@ class Obstacle {
   [[nodiscard]] double gap_rounding(const SpaceVector& position) const { return at(0.0).gap_rounding(position); }
 
   /// Gaps are linear functions of the position whose normals never change: those of t = 0 less n·translation(t).
-  [[nodiscard]] bool has_constant_normals() const { return shape_->is_flat() && (path_ == nullptr || !path_->turns()); }
+  [[nodiscard]] bool has_constant_normals() const {
+    return shape_->is_flat() && free_ == nullptr && (path_ == nullptr || !path_->turns());
+  }
   [[nodiscard]] double least_radius() const { return shape_->least_radius(); }
   /// Of the files that it comes from; empty: none.
   [[nodiscard]] std::string checksum() const {
     return shape_->checksum() + (path_ != nullptr ? path_->checksum() : std::string());
   }
-  /// Whether its material moves at all.
+  /// Whether its material moves as the case says.
   [[nodiscard]] bool moves() const { return path_ != nullptr || spin_ != 0.0; }
   [[nodiscard]] bool spins() const { return spin_ != 0.0; }
-  /// Whether its places at two instants differ by more than a displacement.
+  /// Whether its places at two instants then differ by more than a displacement.
   [[nodiscard]] bool turns() const { return path_ != nullptr && path_->turns(); }
   /// u(t) − u(0).
   [[nodiscard]] SpaceVector translation(double time) const;
@@ -71,23 +87,19 @@ class Obstacle {
   /// Velocity of the obstacle's material that is at a position at that time: its mean over [time − span/2,
   /// time + span/2], or for span = 0 that at the time.
   [[nodiscard]] SpaceVector surface_velocity(const SpaceVector& position, double time, double span = 0.0) const;
-  /// Its mean from one instant to another at the point of the obstacle half way between those that two places are
-  /// (normal_of_step).
-  [[nodiscard]] SpaceVector velocity_of_step(const SpaceVector& from, double from_time, const SpaceVector& to,
-                                             double to_time) const;
 
   /// For pictures: the surface at t = 0, as far as `radius` around its point nearest to `centre`.
   [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const;
-  /// For pictures: where points of `surface` are shown at a time. Those of a plane stay beside the body when the plane
-  /// moves along itself, and turn with a turntable.
-  [[nodiscard]] Points surface_points(const Points& at_start, double time) const;
+  /// For pictures: where points of `surface` are shown at a time and a displacement. Those of a plane stay beside the
+  /// body when the plane moves along itself, and turn with a turntable.
+  [[nodiscard]] Points surface_points(const Points& at_start, double time, const Vector& displacement = {}) const;
 
  private:
   [[nodiscard]] SpaceVector spin_velocity(const SpaceVector& position, double time) const;
-  [[nodiscard]] SpaceVector mean_velocity(const SpaceVector& of_shape, double start, double end) const;
 
   std::unique_ptr<ObstacleShape> shape_;
   std::unique_ptr<const ObstaclePath> path_;
+  std::shared_ptr<FreeMotion> free_;
   double spin_;
   SpaceVector axis_;   ///< of the spin, in 3D
   SpaceVector about_;  ///< c

@@ -34,23 +34,49 @@ bool agree(const SpaceVector& a, const SpaceVector& b) {
 
 }  // namespace
 
+namespace {
+
+/// Of a step that goes so far round that its middle says nothing: the normal at the end, unless a force along it would
+/// give energy; then the direction across the way that is nearest to it.
+SpaceVector normal_far_round(const SpaceVector& way, double change, const SpaceVector& at_start,
+                             const SpaceVector& at_end) {
+  if (at_end.dot(way) * change >= 0.0) return at_end;
+  const SpaceVector along = way.normalized();
+  constexpr double least = 0.1;
+  for (const SpaceVector& normal : {at_end, at_start}) {
+    const SpaceVector across = normal - normal.dot(along) * along;
+    const double length = across.norm();
+    if (length > least) return across / length;
+  }
+  Index axis = 0;
+  along.cwiseAbs().minCoeff(&axis);
+  const SpaceVector some = SpaceVector::Unit(along.size(), axis);
+  return (some - some.dot(along) * along).normalized();
+}
+
+}  // namespace
+
 SpaceVector ObstacleShape::normal_at_middle(const SpaceVector& from, const SpaceVector& to) const {
-  const SpaceVector middle = normal(0.5 * (from + to)), end = normal(to);
-  return agree(middle, end) && agree(middle, normal(from)) ? middle : end;
+  const SpaceVector middle = normal(0.5 * (from + to)), start = normal(from), end = normal(to);
+  if (agree(middle, end) && agree(middle, start)) return middle;
+  return normal_far_round(to - from, gap(to) - gap(from), start, end);
+}
+
+SpaceVector corrected_normal(SpaceVector normal, const SpaceVector& way, double change, double rounding,
+                             const SpaceVector& at_start, const SpaceVector& at_end) {
+  const double square = way.squaredNorm(), missing = change - normal.dot(way);
+  if (square > 0.0 && std::abs(missing) > rounding) {
+    normal += missing / square * way;
+    const double length = normal.norm();
+    if (!(length > 0.0)) return normal_far_round(way, change, at_start, at_end);
+    normal /= length;
+  }
+  return agree(normal, at_end) && agree(normal, at_start) ? normal : normal_far_round(way, change, at_start, at_end);
 }
 
 SpaceVector ObstacleShape::normal_of_step(const SpaceVector& from, const SpaceVector& to) const {
-  SpaceVector result = normal(0.5 * (from + to));
-  const SpaceVector way = to - from, end = normal(to);
-  const double square = way.squaredNorm();
-  const double missing = gap(to) - gap(from) - result.dot(way);
-  if (square > 0.0 && std::abs(missing) > gap_rounding(from) + gap_rounding(to)) {
-    result += missing / square * way;
-    const double length = result.norm();
-    if (!(length > 0.0)) return end;
-    result /= length;
-  }
-  return agree(result, end) && agree(result, normal(from)) ? result : end;
+  return corrected_normal(normal(0.5 * (from + to)), to - from, gap(to) - gap(from),
+                          gap_rounding(from) + gap_rounding(to), normal(from), normal(to));
 }
 
 /// Where the square of the length leaves the range of numbers, it is scaled first.

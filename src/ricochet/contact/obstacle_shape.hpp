@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,7 @@ class ObstacleShape {
   /// Signed distance to the surface, positive where bodies may be. Where the nearest point is on the border of a
   /// surface that has one, the distance.
   [[nodiscard]] virtual double gap(const SpaceVector& position) const = 0;
-  /// Unit normal towards bodies at the surface's nearest point: the derivative of the gap, or the mean of the normals
-  /// around that point where the shape says so (surface).
+  /// Unit normal towards bodies: the direction of the derivative of the gap.
   [[nodiscard]] virtual SpaceVector normal(const SpaceVector& position) const = 0;
   /// A unit normal of the step from one position to another: with some a > 0
   ///   n·(to − from) = a (gap(to) − gap(from)),
@@ -46,7 +46,8 @@ class ObstacleShape {
   /// the direction of
   ///   n + (gap(to) − gap(from) − n·(to − from)) (to − from)/|to − from|²
   /// (the discrete gradient of O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467), and n itself where the bracket is
-  /// rounding. A step that goes so far round that it leans by more than 60° from the normals at the ends gets the last.
+  /// rounding. A step that goes so far round that it leans by more than 60° from the normals at the ends gets the last,
+  /// or where that would give energy the direction across the step that is nearest to it.
   /// Override it where the normal at the middle has this property (`normal_at_middle`).
   [[nodiscard]] virtual SpaceVector normal_of_step(const SpaceVector& from, const SpaceVector& to) const;
   /// Size of the rounding error of `gap` at this position: gaps no larger than this are zero.
@@ -66,6 +67,14 @@ class ObstacleShape {
     SpaceVector direction = {};  ///< a unit vector, in 3D
   };
   [[nodiscard]] virtual OwnAxis own_axis() const { return {}; }
+  /// What it is filled with, of density 1: its volume (its area in 2D), centre of mass, and the tensor of inertia about
+  /// that (1 × 1 in 2D). Nothing where it encloses nothing that is finite, or where bodies are inside.
+  struct Solid {
+    double volume = 0.0;
+    SpaceVector centre;
+    Matrix inertia;
+  };
+  [[nodiscard]] virtual std::optional<Solid> solid() const { return std::nullopt; }
   /// Called once, before the first gap is asked for.
   virtual void fit(const ContactScale&) {}
   /// What it takes for itself that results depend on: "normals are means over a radius of 0.01"; empty: nothing.
@@ -103,6 +112,11 @@ void check_direction(const ParameterCheck& place, const Parameters& values, cons
 /// Throws Error(invalid_input) where a vector has two components: "a cylinder is in space; in two dimensions …".
 void require_space(const Parameters& parameters, const std::string& key, const std::string& what,
                    const std::string& instead);
+/// A unit normal corrected along a way so that it knows what the gap changes by on it: that of
+///   n + (change − n·way) way/|way|²,
+/// n where the bracket is rounding; of a step that goes far round see ObstacleShape::normal_of_step.
+[[nodiscard]] SpaceVector corrected_normal(SpaceVector normal, const SpaceVector& way, double change, double rounding,
+                                           const SpaceVector& at_start, const SpaceVector& at_end);
 /// Eight roundings of a number of this size.
 [[nodiscard]] inline double eight_roundings(double size) {
   return 8.0 * std::numeric_limits<double>::epsilon() * size;

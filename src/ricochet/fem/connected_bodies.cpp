@@ -87,6 +87,7 @@ std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies&
   const Points& nodes = body.space->nodes;
   std::vector<Eigen::Vector3d> lowest(count, Eigen::Vector3d::Constant(infinity)), highest(count, -lowest[0]);
   for (Index node = 0; node < nodes.cols(); ++node) {
+    if (bodies.of_node[static_cast<std::size_t>(node)] < 0) continue;
     const auto b = static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)]);
     lowest[b].head(nodes.rows()) = lowest[b].head(nodes.rows()).cwiseMin(nodes.col(node));
     highest[b].head(nodes.rows()) = highest[b].head(nodes.rows()).cwiseMax(nodes.col(node));

@@ -44,11 +44,11 @@ ObstacleSurfaces::ObstacleSurfaces(const SemidiscreteProblem& problem) {
       count, numbers);
 }
 
-std::string ObstacleSurfaces::grid(double time) const {
+std::string ObstacleSurfaces::grid(double time, const Vector& displacement) const {
   std::string positions;
   Index count = 0;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    const Points points = obstacles_[i]->surface_points(points_[i], time);
+    const Points points = obstacles_[i]->surface_points(points_[i], time, displacement);
     count += points.cols();
     // Digits for a picture, in each frame again.
     for (const auto point : points.colwise())

@@ -15,8 +15,8 @@ class ObstacleSurfaces {
   explicit ObstacleSurfaces(const SemidiscreteProblem& problem);
 
   [[nodiscard]] bool any() const { return !obstacles_.empty(); }
-  /// A <Grid> with all of them at a time; the cell field "obstacle" numbers them from 0.
-  [[nodiscard]] std::string grid(double time) const;
+  /// A <Grid> with all of them at a time and a displacement; the cell field "obstacle" numbers them from 0.
+  [[nodiscard]] std::string grid(double time, const Vector& displacement) const;
 
  private:
   std::vector<const Obstacle*> obstacles_;  ///< each once

@@ -211,7 +211,7 @@ void ResultsWriter::write(const State& state) {
   const LockedFrames locked(*own.lock);
   own.file->append(own.values);
   // What the side-file names is in the file by now, even if the run is killed before the next frame.
-  if (own.obstacle_side) own.obstacle_side->append(own.obstacles.grid(state.time));
+  if (own.obstacle_side) own.obstacle_side->append(own.obstacles.grid(state.time, state.displacement));
   own.side->append(own.grid(state.time, frame));
 }
 

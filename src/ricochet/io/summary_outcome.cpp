@@ -141,7 +141,8 @@ Json found_to_json(const UnwatchedPenetration& p) {
           {"place", numbers(p.place)},
           {"first_time", Json::number(p.first_time)},
           {"groups", p.groups},
-          {"contact", p.contact.empty() ? Json() : Json(p.contact)}};
+          {"contact", p.contact.empty() ? Json() : Json(p.contact)},
+          {"passed_through", p.passed_through}};
 }
 
 /// The deepest first, by itself, so that it can be named by its path (summary.unwatched_penetration.depth); then all.
@@ -293,6 +294,7 @@ PenetrationReport penetration_from(const Json& json) {
                             p.at("groups"),
                             {}});
     if (p.contains("contact") && p.at("contact").is_array()) report.found.back().contact = p.at("contact");
+    if (p.contains("passed_through")) report.found.back().passed_through = p.at("passed_through");
   }
   for (const Json& rim : json.at("contact_beyond_rim"))
     report.rims.push_back({rim.at("group"), rim.at("obstacle"), rim.at("time").to_number(), to_numbers(rim.at("place")),

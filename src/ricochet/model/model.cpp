@@ -55,6 +55,19 @@ void check_obstacle_motion(const Case& input, const ObstacleSection& obstacle, i
   check_length(input, key + ".velocity", obstacle.velocity.size(), dimension);
   check_length(input, key + ".motion", obstacle.motion.size(), dimension);
   check_length(input, key + ".about", obstacle.about.size(), dimension);
+  check_length(input, key + ".centre_of_mass", obstacle.centre_of_mass.size(), dimension);
+  check_length(input, key + ".force", obstacle.force.size(), dimension);
+  check_length(input, key + ".spring", obstacle.spring.size(), dimension);
+  check_length(input, key + ".damper", obstacle.damper.size(), dimension);
+  const std::size_t turns = dimension == 2 ? 1 : 3;
+  for (const auto& [name, size] :
+       {std::pair{"inertia", obstacle.inertia.size()}, std::pair{"spin", obstacle.spin.size()},
+        std::pair{"torque", obstacle.torque.size()}}) {
+    if (size != 0 && size != turns)
+      refuse(input, key + "." + name,
+             fmt::format("\"{}\" has {}, but the mesh has dimension {}, where it has {}", name,
+                         counted(size, "entry", "entries"), dimension, turns));
+  }
   const std::size_t entries = obstacle.rotation.size();
   if (entries == 0 || entries == (dimension == 2 ? 1U : 3U)) return;
   refuse(
@@ -183,6 +196,7 @@ void add_supports(const Case& input, Model& model) {
     }
   }
   add_axis_supports(input, model);
+  hold_free_bodies(input, model);
   supports.finish();
   tell_of_supports_at_ties(model, tied);
 }
@@ -289,6 +303,7 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   model->problem.dimension = model->mesh.dimension;
   assign_materials(input, *model);
   collect_contacts(input, *model);
+  add_free_bodies(input, *model);
   add_ties(input, *model);
   model->problem.nodes = model->space.nodes;
   add_supports(input, *model);
@@ -299,10 +314,11 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   add_loads(input, *model);
   add_initial_conditions(input, *model);
   add_motions(input, *model);
+  start_free_bodies(input, *model);
   warn_of_torn_ties(*model);
   check_body_overlaps(input, *model);
   check_obstacles(input, *model);
-  add_standing_columns(*model);
+  add_standing_columns(input, *model);
   add_probes(input, *model);
   model->rotation = std::make_unique<RotationGauge>(model->body);
   model_seconds += timer.restart();

@@ -52,12 +52,15 @@ void check_axisymmetry(const Case& input, int dimension) {
   }
 }
 
-void check_axisymmetric_obstacle(const Case& input, const std::string& name, const Obstacle& obstacle) {
+void check_axisymmetric_obstacle(const Case& input, const ObstacleSection& section, const Obstacle& obstacle) {
+  const std::string& name = section.name;
   if (!is_axisymmetric(input) || !obstacle.moves()) return;
   const std::string key = "obstacle." + name;
   if (obstacle.turns() || obstacle.spins())
     refuse(input, key,
            fmt::format("obstacle \"{}\" turns, but the case is axisymmetric: only motions along the axis are", name));
+  if (!section.velocity.empty())
+    refuse_radial(input, key, section.velocity[0], fmt::format("the motion of \"{}\"", name));
   constexpr int instants = 64;
   for (int k = 1; k <= instants; ++k)
     refuse_radial(input, key, obstacle.translation(input.time.end * k / instants)[0],

@@ -107,7 +107,7 @@ void collect_contacts(const Case& input, Model& model) {
   std::map<std::string, const Obstacle*> by_name;
   for (const ObstacleSection& section : input.obstacles) {
     model.obstacles.push_back(make_obstacle(input, section, model.mesh.dimension));
-    check_axisymmetric_obstacle(input, section.name, *model.obstacles.back());
+    check_axisymmetric_obstacle(input, section, *model.obstacles.back());
     by_name[section.name] = model.obstacles.back().get();
   }
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {

@@ -19,6 +19,7 @@ std::unique_ptr<const ObstaclePath> make_path(const Case& input, const ObstacleS
       throw Error(problem.kind(), fmt::format("{}: {}", input.where(key + ".table").text(), problem.what()));
     }
   }
+  if (section.is_free()) return nullptr;  // its velocity is that at the start
   std::vector<Expression> motion = section.motion;
   if (section.rotation.empty() && motion.empty()) return make_uniform_path(as_vector(section.velocity));
   for (std::size_t k = 0; k < section.velocity.size(); ++k)
@@ -36,6 +37,13 @@ std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection
       refuse(input, key,
              fmt::format("obstacle \"{}\" is in {} dimensions, but the mesh has {}", section.name,
                          shape->centre().size(), dimension));
+    }
+    if (section.rotation_rate != 0.0 && !shape->own_axis().exists) {
+      refuse(
+          input, key + ".rotation_rate",
+          fmt::format("obstacle \"{}\" has no axis of its own that it could turn about and stay the same surface (the "
+                      "normal of a plane is one in three dimensions): give \"rotation\" in place of \"rotation_rate\"",
+                      section.name));
     }
     Vector about = as_vector(section.about);
     if (about.size() == 0)

@@ -41,7 +41,7 @@ void complete_groups(const Case& input, Mesh& mesh);
 /// Refuses what axisymmetric bodies cannot do: translations and forces of gravity across the axis, spins.
 void check_axisymmetry(const Case& input, int dimension);
 /// The same of an obstacle that moves.
-void check_axisymmetric_obstacle(const Case& input, const std::string& name, const Obstacle& obstacle);
+void check_axisymmetric_obstacle(const Case& input, const ObstacleSection& section, const Obstacle& obstacle);
 /// Puts the nodes of an axisymmetric body that are on the axis at exactly x = 0; refuses those beyond it.
 void place_on_axis(const Case& input, Mesh& mesh);
 /// Of a group of facets those that are a surface of the body, not a part of its axis.
@@ -77,12 +77,23 @@ void check_motions(const Case& input, int dimension);
 /// Adds them to the velocity at the start. Refuses two that move one node.
 void add_motions(const Case& input, Model& model);
 /// Columns of history.csv that follow from the bodies and their contacts.
-void add_standing_columns(Model& model);
+void add_standing_columns(const Case& input, Model& model);
 void add_probes(const Case& input, Model& model);
 /// The obstacle of a section, with its motion.
 [[nodiscard]] std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection& section, int dimension);
 /// The largest distance between neighbouring nodes of these facets, to half of it where there are nodes between.
 [[nodiscard]] double node_spacing(const DisplacementSpace& space, const std::vector<Index>& facets);
+/// Gives obstacles with a mass their two nodes, and supports what they are held by.
+void add_free_bodies(const Case& input, Model& model);
+void hold_free_bodies(const Case& input, Model& model);
+/// dofs × dofs, with zeros where it had nothing.
+[[nodiscard]] SparseMatrix resized(SparseMatrix matrix, Index dofs);
+/// The mass with that of rigid bodies.
+[[nodiscard]] SparseMatrix with_free_bodies(const Model& model, SparseMatrix mass);
+/// Springs and dampers of rigid bodies.
+void add_ground(const Case& input, Model& model);
+void add_forces_on_free_bodies(const Case& input, Model& model);
+void start_free_bodies(const Case& input, Model& model);
 /// Tells obstacles what touches them.
 void fit_obstacles(const Case& input, Model& model);
 /// Refuses, or warns of, obstacles that gaps to cannot be found for, or that points and steps may miss.

@@ -141,8 +141,16 @@ void assemble_operators(const Case& input, Model& model) {
   const auto condensed = [&](SparseMatrix matrix, int components) {
     return model.tied.empty() ? matrix : model.tied.condense(matrix, components);
   };
-  const SparseMatrix consistent = condensed(assemble_scalar_mass(model.body, graph), 1);
-  MassInput mass_input{&consistent, &model.space.nodes, model.problem.contact.unique_nodes(), &consistent};
+  // Rigid bodies have no cells: masses are built without their nodes.
+  const Index own_nodes = model.space.node_count() - 2 * static_cast<Index>(model.problem.free_bodies.size());
+  const auto scalar_mass = [&](const std::vector<double>& weight) {
+    SparseMatrix result = condensed(assemble_scalar_mass(model.body, graph, weight), 1);
+    result.conservativeResize(own_nodes, own_nodes);
+    return result;
+  };
+  const SparseMatrix consistent = scalar_mass({});
+  const Points own_places = model.space.nodes.leftCols(own_nodes);
+  MassInput mass_input{&consistent, &own_places, model.problem.contact.unique_nodes(), &consistent};
   MassChoice choice;
   const auto with_cells = [&](const SparseMatrix& from, const std::vector<double>& weight, const auto& make) {
     const CellMasses cells(model.body, weight);
@@ -165,7 +173,7 @@ void assemble_operators(const Case& input, Model& model) {
     return with_cells(from, weight, [&] { return construction->build(mass_input); });
   };
   if (!choice.mass) choice.mass = build(consistent);
-  const SparseMatrix mass = expand_to_components(*choice.mass, d);
+  const SparseMatrix mass = with_free_bodies(model, expand_to_components(*choice.mass, d));
   if (!choice.reason.empty()) {
     log::info(fmt::format("the mass \"{}\" of {} contact nodes is built as \"{}\": {}", input.mass.type,
                           mass_input.contact_nodes.size(), choice.name, choice.reason));
@@ -191,18 +199,23 @@ void assemble_operators(const Case& input, Model& model) {
   };
   if (any(mass_damping))
     model.problem.damping.set_mass_part(
-        expand_to_components(build(condensed(assemble_scalar_mass(model.body, graph, mass_damping), 1), mass_damping),
-                             d),
+        resized(expand_to_components(build(scalar_mass(mass_damping), mass_damping), d), model.space.dof_count()),
         model.space.nodes);
   if (any(stiffness_damping))
     model.problem.damping.set_stiffness_part(condensed(assemble_stiffness(model.body, graph, stiffness_damping), d),
                                              model.space.nodes);
+  add_ground(input, model);
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
   if (!model.problem.internal_force->is_linear() && !scheme->takes_nonlinear_force()) {
     refuse(input, "time.scheme",
            fmt::format("scheme \"{}\" needs the linear material law; \"reduced-kane\", the default, takes those of "
                        "finite strain, too, and so does \"semi-explicit\"",
+                       input.time.scheme));
+  }
+  if (!model.problem.free_bodies.empty() && !scheme->takes_free_bodies()) {
+    refuse(input, "time.scheme",
+           fmt::format("scheme \"{}\" takes no rigid bodies that move freely; \"reduced-kane\", the default, does",
                        input.time.scheme));
   }
   require_relaxation(*scheme, model.problem,
@@ -301,11 +314,15 @@ void add_loads(const Case& input, Model& model) {
     // Gravity acts on the mass as it is distributed: M₀ times the uniform acceleration. So a body in free fall stays
     // undeformed with every mass, and weight and its moments are those of the body.
     Vector acceleration(dofs);
-    for (Index i = 0; i < dofs; ++i) acceleration[i] = input.load.gravity[static_cast<std::size_t>(i % d)];
+    for (Index i = 0; i < dofs; ++i) {
+      const bool turns = model.problem.is_rotation_node(i / d);
+      acceleration[i] = turns ? 0.0 : input.load.gravity[static_cast<std::size_t>(i % d)];
+    }
     Vector weight;
     model.problem.mass.multiply(acceleration, weight);
     loads.add_constant(weight);
   }
+  add_forces_on_free_bodies(input, model);
   const Body& body = model.body;
   const TiedNodes& tied = model.tied;
   try {

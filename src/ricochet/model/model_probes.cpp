@@ -179,8 +179,12 @@ HistoryBodies bodies_of_history(const Model& model) {
 
 }  // namespace
 
-void add_standing_columns(Model& model) {
+void add_standing_columns(const Case& input, Model& model) {
   model.history_bodies = bodies_of_history(model);
+  for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
+    if (model.obstacles[k]->free_motion() != nullptr)
+      model.sensors.push_back(make_free_body_sensor(input.obstacles[k].name, model.problem, *model.obstacles[k]));
+  }
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
     if (!pair.has_two_sides()) continue;

@@ -33,6 +33,7 @@ BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
   const int d = problem.dimension;
   for (const std::vector<Index>& members : graph_components(problem.internal_force->tangent(), d)) {
     if (members.size() == 1 && problem.is_tied_dof(members.front() * d)) continue;
+    if (problem.is_of_free_body(members.front())) continue;
     Body body;
     std::array<bool, 3> held{};
     for (const Index node : members) {

@@ -1,5 +1,7 @@
 #include "ricochet/problem/damping.hpp"
 
+#include <vector>
+
 namespace ricochet {
 
 void Damping::set_mass_part(const SparseMatrix& matrix, const Points& nodes) {
@@ -11,17 +13,32 @@ void Damping::set_stiffness_part(const SparseMatrix& matrix, const Points& nodes
 }
 
 void Damping::evaluate(const Vector& velocity, Vector& force) const {
-  if (!mass_part_) return stiffness_part_->evaluate(velocity, force);
-  mass_part_->multiply(velocity, force);
-  if (!stiffness_part_) return;
-  stiffness_part_->evaluate(velocity, part_);
-  force += part_;
+  if (mass_part_) {
+    mass_part_->multiply(velocity, force);
+  } else {
+    force.setZero(velocity.size());
+  }
+  if (stiffness_part_) {
+    stiffness_part_->evaluate(velocity, part_);
+    force += part_;
+  }
+  if (ground_.size() > 0) force += ground_.cwiseProduct(velocity);
 }
 
 SparseMatrix Damping::matrix() const {
-  if (!mass_part_) return stiffness_part_->tangent();
-  if (!stiffness_part_) return mass_part_->whole();
-  return mass_part_->whole() + stiffness_part_->tangent();
+  SparseMatrix result;
+  const auto add = [&](const SparseMatrix& part) { result = result.rows() == 0 ? part : SparseMatrix(result + part); };
+  if (mass_part_) add(mass_part_->whole());
+  if (stiffness_part_) add(stiffness_part_->tangent());
+  if (ground_.size() == 0) return result;
+  SparseMatrix own(ground_.size(), ground_.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index dof = 0; dof < ground_.size(); ++dof) {
+    if (ground_[dof] != 0.0) entries.emplace_back(static_cast<int>(dof), static_cast<int>(dof), ground_[dof]);
+  }
+  own.setFromTriplets(entries.begin(), entries.end());
+  add(own);
+  return result;
 }
 
 }  // namespace ricochet

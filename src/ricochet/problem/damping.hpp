@@ -18,7 +18,10 @@ class Damping {
   void set_mass_part(const SparseMatrix& matrix, const Points& nodes);
   void set_stiffness_part(const SparseMatrix& matrix, const Points& nodes);
 
-  [[nodiscard]] bool is_absent() const { return !mass_part_ && !stiffness_part_; }
+  /// Dampers to the ground, c_i V_i: per dof.
+  void set_ground_part(const Vector& coefficients) { ground_ = coefficients; }
+
+  [[nodiscard]] bool is_absent() const { return !mass_part_ && !stiffness_part_ && ground_.size() == 0; }
   [[nodiscard]] bool has_stiffness_part() const { return stiffness_part_.has_value(); }
   /// `force` = C `velocity`; two vectors. Needs a part.
   void evaluate(const Vector& velocity, Vector& force) const;
@@ -28,6 +31,7 @@ class Damping {
  private:
   std::optional<NodeMatrix> mass_part_;
   std::optional<LinearElasticity> stiffness_part_;
+  Vector ground_;  ///< empty: none
   mutable Vector part_;
 };
 

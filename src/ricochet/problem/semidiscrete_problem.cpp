@@ -59,22 +59,6 @@ SpaceVector SemidiscreteProblem::node_normal(Index entry, const Vector& displace
   return contact.node_normals.col(entry);
 }
 
-void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double time, double span,
-                                            ObstacleMotion& velocity) const {
-  const auto velocity_at = [&](const Obstacle& obstacle, Index point) {
-    return obstacle.surface_velocity(position(point, displacement), time, span);
-  };
-  visit_moving(velocity_at, velocity);
-}
-
-void SemidiscreteProblem::obstacle_velocity_of_step(const Vector& start, double start_time, const Vector& end,
-                                                    double end_time, ObstacleMotion& velocity) const {
-  const auto velocity_at = [&](const Obstacle& obstacle, Index point) {
-    return obstacle.velocity_of_step(position(point, start), start_time, position(point, end), end_time);
-  };
-  visit_moving(velocity_at, velocity);
-}
-
 /// Where a contact point is.
 SpaceVector SemidiscreteProblem::position(Index point, const Vector& displacement) const {
   SpaceVector result = SpaceVector::Zero(dimension);
@@ -84,8 +68,8 @@ SpaceVector SemidiscreteProblem::position(Index point, const Vector& displacemen
   return result;
 }
 
-template <class VelocityAt>
-void SemidiscreteProblem::visit_moving(const VelocityAt& velocity_at, ObstacleMotion& velocity) const {
+void SemidiscreteProblem::obstacle_velocity(const Vector& displacement, double time, double span,
+                                            ObstacleMotion& velocity) const {
   if (!has_moving_obstacles()) return;
   const int tangents = dimension - 1;
   const ContactRows& rows = *contact.rows;
@@ -95,7 +79,7 @@ void SemidiscreteProblem::visit_moving(const VelocityAt& velocity_at, ObstacleMo
   for (Index i = 0; i < contact.size(); ++i) {
     const Obstacle* const moving = obstacle_of_point(i);
     if (moving == nullptr || !moving->moves()) continue;
-    const SpaceVector at = velocity_at(*moving, i);
+    const SpaceVector at = moving->surface_velocity(position(i, displacement), time, span);
     if (contact.follows_motion()) velocity.in_space.col(i) = at;
     velocity.normal[i] = rows.normals.col(i).dot(at);
     for (int k = 0; k < tangents; ++k) {

@@ -38,6 +38,8 @@ struct SemidiscreteProblem {
   /// Nodes that follow others: their rows of all matrices and loads are zero, and no stage solves for them. Null: none.
   const TiedNodes* tied = nullptr;
   std::vector<const Obstacle*> obstacles;  ///< of each contact pair; null between bodies
+  /// Rigid bodies that move by the forces on them. Two nodes each, the last ones (free_motion.hpp).
+  std::vector<std::shared_ptr<FreeMotion>> free_bodies;
   /// Makes the stress at the contact points, for the schemes that need it.
   std::function<ContactStress()> contact_stress;
   const Ranks* ranks = &one_rank();  ///< that the body is divided among; never null
@@ -50,6 +52,13 @@ struct SemidiscreteProblem {
 
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
   [[nodiscard]] bool is_tied_dof(Index dof) const { return tied != nullptr && tied->is_tied(dof / dimension); }
+  [[nodiscard]] bool is_of_free_body(Index node) const {
+    return node >= nodes.cols() - 2 * static_cast<Index>(free_bodies.size());
+  }
+  /// The second of its nodes: its displacements, velocities and forces are no vectors of space.
+  [[nodiscard]] bool is_rotation_node(Index node) const {
+    return is_of_free_body(node) && (nodes.cols() - node) % 2 == 1;
+  }
   [[nodiscard]] bool has_damping() const { return !damping.is_absent(); }
   [[nodiscard]] bool has_singular_mass() const { return !massless_dofs.empty(); }
   /// What values per dof are on contact_dofs, and the other way. (Eigen's indexed views copy their indices.)
@@ -68,22 +77,17 @@ struct SemidiscreteProblem {
   void node_gaps(const Vector& displacement, double time, Vector& gap) const;
   /// The normal at a node of the contact boundary.
   [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double time) const;
-  /// Some of them turn: their mean velocity of a step depends on where it begins and ends.
+  /// Some of them turn: their mean velocity of a step depends on where contact points are in its middle.
   [[nodiscard]] bool has_turning_obstacles() const;
   /// Velocities of the obstacles where the contact points are at this displacement and time, along the directions of
   /// the rows at the start: their means over a span of time with this one in its middle, or for 0 at the time.
   void obstacle_velocity(const Vector& displacement, double time, double span, ObstacleMotion& velocity) const;
-  /// Their means over a step, from one displacement to another (Obstacle::velocity_of_step).
-  void obstacle_velocity_of_step(const Vector& start, double start_time, const Vector& end, double end_time,
-                                 ObstacleMotion& velocity) const;
   /// Size of the rounding errors of a trace c·v, per point: 8 ε Σ_j |c_ij| |v_j|, a few roundings of v and of the
   /// products.
   void trace_rounding(const Vector& values, Vector& rounding) const;
 
  private:
   [[nodiscard]] SpaceVector position(Index point, const Vector& displacement) const;
-  template <class VelocityAt>
-  void visit_moving(const VelocityAt& velocity_at, ObstacleMotion& velocity) const;
 };
 
 /// Dofs of the contact nodes, supported ones too, ascending.

@@ -75,6 +75,8 @@ class Scheme {
   [[nodiscard]] virtual bool takes_nonlinear_force() const { return false; }
   /// And its steps relax the stress of branches beside the laws (viscous_force.hpp), and say what that dissipates.
   [[nodiscard]] virtual bool takes_relaxation() const { return false; }
+  /// Rigid bodies that move by the forces on them (free_motion.hpp) are part of its steps.
+  [[nodiscard]] virtual bool takes_free_bodies() const { return false; }
   /// Then its steps change the angular momentum about current positions by the moments of outer forces alone, about the
   /// positions where these act.
   [[nodiscard]] virtual bool keeps_moments_at_finite_strain() const { return false; }

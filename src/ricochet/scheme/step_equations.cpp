@@ -42,10 +42,6 @@ void StepEquations::observe_obstacles(const SemidiscreteProblem& problem, double
 void StepEquations::observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time,
                                  const Vector& end, double step) {
   if (!problem.has_moving_obstacles()) return;
-  if (problem.has_turning_obstacles()) {
-    problem.obstacle_velocity_of_step(start, start_time, end, start_time + step, obstacle_velocity_);
-    return;
-  }
   middle_ = 0.5 * (start + end);
   observe_obstacles(problem, start_time + 0.5 * step, middle_, step);
 }

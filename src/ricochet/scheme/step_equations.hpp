@@ -48,7 +48,7 @@ class StepEquations {
   /// with that time in its middle. They, and friction, act on the motion of the whole step.
   void observe_obstacles(const SemidiscreteProblem& problem, double time, const Vector& displacement,
                          double span = 0.0);
-  /// The same of a step from one displacement to another: those of obstacles that turn depend on both.
+  /// The same of a step from one displacement to another.
   void observe_step(const SemidiscreteProblem& problem, const Vector& start, double start_time, const Vector& end,
                     double step);
   [[nodiscard]] const ObstacleMotion& obstacle_velocity() const { return obstacle_velocity_; }

@@ -107,7 +107,16 @@ void HistoryRecorder::weigh_nodes() {
     mass.multiply(Vector::Ones(problem_.dof_count()), momentum_);
     for (Index node = 0; node < node_weight_.size(); ++node) node_weight_[node] = momentum_[node * problem_.dimension];
   }
+  // Rotations of rigid bodies are no momentum of their nodes.
+  for (const auto& body : problem_.free_bodies) node_weight_[body->rotation_node()] = 0.0;
   weigh_positions();
+}
+
+/// Rigid bodies are where they are, whatever the strain of the others.
+void HistoryRecorder::place_free_bodies(const State& state) {
+  const Index d = problem_.dimension;
+  for (const auto& body : problem_.free_bodies)
+    position_.segment(body->centre_node() * d, d) = body->centre(state.displacement);
 }
 
 void HistoryRecorder::weigh_positions() {
@@ -117,6 +126,7 @@ void HistoryRecorder::weigh_positions() {
   } else {
     node_arm_ = position_.reshaped(problem_.dimension, problem_.nodes.cols());
   }
+  for (const auto& body : problem_.free_bodies) node_arm_.col(body->rotation_node()).setZero();
 }
 
 const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccount& account) {
@@ -151,6 +161,9 @@ void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
   if (finite_strain_) {
     position_ = problem_.nodes.reshaped() + state.displacement;
     weigh_positions();
+  } else if (!problem_.free_bodies.empty()) {
+    place_free_bodies(state);
+    weigh_positions();
   }
   if (!problem_.mass.is_scalar()) problem_.mass.multiply(velocity, momentum_);
   const Vector& values = problem_.mass.is_scalar() ? velocity : momentum_;
@@ -158,6 +171,10 @@ void HistoryRecorder::add_momentum(const State& state, const Vector& velocity) {
     return problem_.dimension == 2 ? momenta_of<2>(node_weight_, node_arm_, values, first, last)
                                    : momenta_of<3>(node_weight_, node_arm_, values, first, last);
   });
+  for (const auto& body : problem_.free_bodies) {
+    const SpaceVector own = body->angular_momentum(state.displacement, velocity);
+    sum.angular.tail(own.size()) += own;
+  }
   if (problem_.axisymmetric) {  // over the ring these cancel
     sum.linear[0] = 0.0;
     sum.angular.setZero();
@@ -172,6 +189,7 @@ void HistoryRecorder::sum_of_bodies(const Vector& values) {
   const auto d = static_cast<std::size_t>(problem_.dimension);
   std::fill(body_momentum_.begin(), body_momentum_.end(), 0.0);
   for (Index node = 0; node < node_weight_.size(); ++node) {
+    if (problem_.is_of_free_body(node)) break;
     double* const own =
         body_momentum_.data() + d * static_cast<std::size_t>(bodies_.of_node[static_cast<std::size_t>(node)]);
     for (std::size_t k = problem_.axisymmetric ? 1 : 0; k < d; ++k)

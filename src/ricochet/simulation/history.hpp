@@ -72,6 +72,7 @@ class HistoryRecorder {
  private:
   void weigh_nodes();
   void weigh_positions();
+  void place_free_bodies(const State& state);
   void add_contact_force(const State& state);
   void add_momentum(const State& state, const Vector& velocity);
   void sum_of_bodies(const Vector& values);

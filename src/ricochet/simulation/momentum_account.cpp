@@ -30,7 +30,7 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
       rule_(scheme.work_rule()),
       finite_strain_(!problem.internal_force->is_linear()),
       positions_(problem.nodes) {
-  if (finite_strain_) before_ = state.displacement;
+  if (places_change()) before_ = state.displacement;
   take_positions(state.displacement);
   previous_ = resultant(state.forces);
   algorithmic_ = algorithmic(state);
@@ -38,6 +38,11 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
 
 void MomentumAccount::take_positions(const Vector& displacement) {
   if (finite_strain_) positions_ = problem_.nodes + displacement.reshaped(problem_.dimension, problem_.nodes.cols());
+  // Rigid bodies are where they are, whatever the strain of the others.
+  for (const auto& body : problem_.free_bodies) {
+    positions_.col(body->centre_node()) = body->centre(displacement);
+    positions_.col(body->rotation_node()).setZero();
+  }
   arm_ = std::max(arm_, positions_.colwise().norm().maxCoeff());
   constant_load_ = of_nodes(problem_.loads.constant());
 }
@@ -72,18 +77,31 @@ void MomentumAccount::load(const Snapshot& snapshot, const std::string& name) {
 Resultant MomentumAccount::of_nodes(const Vector& force) const {
   const Index d = problem_.dimension;
   Resultant result;
-  for (Index node = 0; node < problem_.nodes.cols(); ++node)
+  for (Index node = 0; node < problem_.nodes.cols(); ++node) {
+    if (problem_.is_rotation_node(node)) continue;
     add(result, in_space(positions_.col(node)), in_space(force.segment(node * d, d)));
+  }
+  for (const auto& body : problem_.free_bodies) {
+    const SpaceVector torque = body->torque(force);
+    result.moment.tail(torque.size()) += torque;
+  }
   return result;
 }
 
-/// Of the points between bodies about where nodes are: what their rows leave (turning_pairs.hpp).
-Eigen::Vector3d MomentumAccount::moment_between_bodies(const StepForces& forces) {
+/// The forces of a point are those of all its rows, and are taken node by node: between bodies at finite strain, where
+/// they are about where nodes are (turning_pairs.hpp), and at rigid bodies.
+bool MomentumAccount::is_taken_by_nodes(Index point) const {
+  if (problem_.contact.between_bodies(point)) return finite_strain_;
+  return !problem_.free_bodies.empty() && problem_.obstacle_of_point(point)->free_motion() != nullptr;
+}
+
+/// Of these points.
+Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   normal_ = forces.acting_normal();
   tangential_ = forces.acting_tangential();
   const Index tangents = problem_.dimension - 1;
   for (Index i = 0; i < normal_.size(); ++i) {
-    if (problem_.contact.between_bodies(i)) continue;
+    if (is_taken_by_nodes(i)) continue;
     normal_[i] = 0.0;
     if (tangential_.size() > 0) tangential_.segment(i * tangents, tangents).setZero();
   }
@@ -93,7 +111,7 @@ Eigen::Vector3d MomentumAccount::moment_between_bodies(const StepForces& forces)
   const Vector* const place = scheme_.has_couples_between_bodies() ? scheme_.place_of_forces() : nullptr;
   if (place != nullptr && place->size() == problem_.dof_count() && problem_.contact.follows_motion())
     problem_.contact.geometry->add_couples(*place, *forces.rows, normal_, tangential_, force_);
-  return of_nodes(force_).moment;
+  return of_nodes(force_);
 }
 
 MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
@@ -109,7 +127,7 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
   for (Index i = 0; i < forces.acting_normal().size(); ++i) {
     // Under Tresca's law a point without pressure may still carry friction.
     if (!carries_acting_force(forces, i)) continue;
-    if (finite_strain_ && problem_.contact.between_bodies(i)) {
+    if (is_taken_by_nodes(i)) {
       presses_bodies = true;
       continue;
     }
@@ -118,17 +136,35 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
     contact.force += problem_.contact.net[i] * force;
     contact.moment += in_space(problem_.contact.arm(i, positions_)).cross(force);
   }
-  if (presses_bodies) contact.moment += moment_between_bodies(forces);
+  if (presses_bodies) {
+    const Resultant left = between_bodies(forces);
+    contact.force += left.force;
+    contact.moment += left.moment;
+  }
   include(contact);
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
     const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];
-    add(supports, in_space(positions_.col(dof / d)), forces.support_reaction[i] * Eigen::Vector3d::Unit(dof % d));
+    if (!problem_.is_rotation_node(dof / d))
+      add(supports, in_space(positions_.col(dof / d)), forces.support_reaction[i] * Eigen::Vector3d::Unit(dof % d));
     sum.size += std::abs(forces.support_reaction[i]);
   }
+  for (const auto& body : problem_.free_bodies)
+    supports.moment.tail(body->gyration().size()) += held_torque(*body, forces);
   include(supports);
   if (forces.varying_load.size() > 0) include(of_nodes(forces.varying_load));
   if (forces.damping_force.size() > 0) include(of_nodes(forces.damping_force), -1.0);
   return sum;
+}
+
+/// What holds the rotation of a rigid body.
+SpaceVector MomentumAccount::held_torque(const FreeMotion& body, const StepForces& forces) {
+  const Index first = body.rotation_node() * problem_.dimension;
+  force_.setZero(problem_.dof_count());
+  for (Index i = 0; i < forces.support_reaction.size(); ++i) {
+    const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];
+    if (dof >= first && dof < first + problem_.dimension) force_[dof] = forces.support_reaction[i];
+  }
+  return body.torque(force_);
 }
 
 void MomentumAccount::add_impulse(double weight, const Resultant& resultant) {
@@ -147,7 +183,7 @@ void MomentumAccount::enter_step(const State& state) {
   };
   const Resultant load_before = constant_load_;
   bool at_both_ends = false;
-  if (finite_strain_) {
+  if (places_change()) {
     const Vector* const place = scheme_.place_of_forces();
     at_both_ends = place != nullptr && rule_.previous_weight != 0.0;
     if (place != nullptr) {

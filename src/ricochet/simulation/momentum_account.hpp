@@ -43,7 +43,10 @@ class MomentumAccount {
     Resultant total;
     double size = 0.0;
   };
-  [[nodiscard]] Eigen::Vector3d moment_between_bodies(const StepForces& forces);
+  [[nodiscard]] bool is_taken_by_nodes(Index point) const;
+  [[nodiscard]] Resultant between_bodies(const StepForces& forces);
+  [[nodiscard]] SpaceVector held_torque(const FreeMotion& body, const StepForces& forces);
+  [[nodiscard]] bool places_change() const { return finite_strain_ || !problem_.free_bodies.empty(); }
   [[nodiscard]] Sum resultant(const StepForces& forces);
   [[nodiscard]] Resultant algorithmic(const State& state);
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;

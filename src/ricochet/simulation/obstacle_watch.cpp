@@ -66,7 +66,8 @@ bool ObstacleWatch::is_held_by_supports(std::size_t obstacle, Index node) const 
 
 void ObstacleWatch::look(const State& state) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    if (obstacles_[k]->moves()) placed_[k] = obstacles_[k]->at(state.time);
+    if (obstacles_[k]->moves() || obstacles_[k]->free_motion() != nullptr)
+      placed_[k] = obstacles_[k]->at(state.time, state.displacement);
     for (const Index node : nodes_[k]) look_at_node(k, node, state);
   }
   for (const RimFacet& facet : rim_) look_at_rim(facet, state);
@@ -83,6 +84,7 @@ void ObstacleWatch::look_at_start(const State& state) {
   for (const Index node : problem_.contact.nodes) on_boundary[static_cast<std::size_t>(node)] = 1;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     for (Index node = 0; node < problem_.nodes.cols(); ++node) {
+      if (problem_.is_of_free_body(node)) break;
       if (on_boundary[static_cast<std::size_t>(node)] == 0) look_at_node(k, node, state);
     }
   }

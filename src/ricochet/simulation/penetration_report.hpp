@@ -18,6 +18,8 @@ struct UnwatchedPenetration {
   std::vector<std::string> groups;  ///< boundary groups of the mesh that the node belongs to
   /// The two groups of the contact that keeps the node out, which is deeper than that allows; empty: there is none.
   std::vector<std::string> contact = {};
+  /// The node went through the obstacle within one step, so deep on its way.
+  bool passed_through = false;
 };
 
 /// A contact that goes on beyond its group.

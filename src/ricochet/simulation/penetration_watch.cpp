@@ -24,6 +24,7 @@ std::vector<double> sizes_of_bodies(const Points& nodes, const ConnectedBodies& 
   std::vector<Eigen::AlignedBox3d> boxes(static_cast<std::size_t>(bodies.count));
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (Index node = 0; node < nodes.cols(); ++node) {
+    if (bodies.of_node[static_cast<std::size_t>(node)] < 0) continue;  // of a rigid body
     position.head(nodes.rows()) = nodes.col(node);
     boxes[static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)])].extend(position);
   }
@@ -35,8 +36,19 @@ std::vector<double> sizes_of_bodies(const Points& nodes, const ConnectedBodies& 
 /// Of the body that a node belongs to, per node.
 std::vector<double> sizes_at_nodes(const std::vector<double>& size_of_body, const ConnectedBodies& bodies) {
   std::vector<double> result;
-  for (const int body : bodies.of_node) result.push_back(size_of_body[static_cast<std::size_t>(body)]);
+  for (const int body : bodies.of_node) result.push_back(body < 0 ? 0.0 : size_of_body[static_cast<std::size_t>(body)]);
   return result;
+}
+
+/// Ascending, each once.
+std::vector<Index> nodes_of(const std::vector<CellFacet>& boundary, const std::vector<CellBlock>& cells) {
+  std::vector<Index> nodes;
+  for (const CellFacet& facet : boundary) {
+    for (const Index node : nodes_of_facet(cells, facet)) nodes.push_back(node);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
 }
 
 std::string coordinates(const std::vector<double>& place) {
@@ -80,10 +92,12 @@ PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& 
       name_of_body_(names_of_bodies(*body.mesh, bodies_)),
       size_(sizes_at_nodes(size_of_body_, bodies_)),
       obstacles_(problem, body.space->cells, boundary, obstacles_of(obstacles), size_),
+      passages_(problem, nodes_of(boundary, body.space->cells), obstacles_of(obstacles)),
       body_watch_(problem.nodes, body.space->cells, boundary, bodies_, size_,
                   kept_nodes(body, problem.contact, pairs, bodies_.of_node)),
       problem_(problem),
-      told_obstacle_(obstacles.size(), 0) {
+      told_obstacle_(obstacles.size(), 0),
+      told_passage_(obstacles.size(), 0) {
   for (const Group& group : body.mesh->groups) {
     if (group.dimension == body.mesh->dimension - 1)
       boundary_groups_.push_back({group.name, facet_nodes(*body.space, group.members)});
@@ -94,6 +108,7 @@ void PenetrationWatch::look(const State& state) {
   if (looks_ == 0) obstacles_.look_at_start(state);
   ++looks_;
   obstacles_.look(state);
+  passages_.look(state);
   look_at_bodies(state, false);
   tell();
 }
@@ -118,6 +133,15 @@ void PenetrationWatch::tell() {
     log::warning(fmt::format("{} {} is {} inside obstacle \"{}\" at {}, where no contact keeps it out: {}; {}",
                              when(p.time), p.bodies.front(), depth_text(p), p.obstacle, coordinates(p.place), advice(k),
                              see_summary));
+  }
+  for (std::size_t k = 0; k < named_.size(); ++k) {
+    if (told_passage_[k] != 0 || !passages_.passages()[k].found()) continue;
+    told_passage_[k] = 1;
+    const UnwatchedPenetration p = through_obstacle(k);
+    log::warning(
+        fmt::format("{} a node of {} at {} has gone through obstacle \"{}\" within one step, which no contact can "
+                    "see; take a time.step in which bodies move by less than the obstacle is thick",
+                    when(p.time), p.bodies.front(), coordinates(p.place), p.obstacle));
   }
   for (; told_rims_ < obstacles_.rims().size(); ++told_rims_) {
     const ContactBeyondRim rim = beyond(obstacles_.rims()[told_rims_]);
@@ -249,6 +273,14 @@ UnwatchedPenetration PenetrationWatch::in_obstacle(std::size_t obstacle) const {
   return result;
 }
 
+UnwatchedPenetration PenetrationWatch::through_obstacle(std::size_t obstacle) const {
+  const DeepestPoint& deepest = passages_.passages()[obstacle];
+  UnwatchedPenetration result = describe(deepest, {bodies_.of_node[static_cast<std::size_t>(deepest.node)]});
+  result.obstacle = named_[obstacle].name;
+  result.passed_through = true;
+  return result;
+}
+
 UnwatchedPenetration PenetrationWatch::of_pair(const BodyPair& pair) const {
   return describe(pair.deepest, {pair.first, pair.second});
 }
@@ -271,6 +303,7 @@ PenetrationReport PenetrationWatch::report() const {
   PenetrationReport result{true, looks_, body_watch_.looks()};
   for (std::size_t k = 0; k < named_.size(); ++k) {
     if (obstacles_.deepest()[k].found()) result.found.push_back(in_obstacle(k));
+    if (passages_.passages()[k].found()) result.found.push_back(through_obstacle(k));
   }
   for (const BodyPair& pair : body_watch_.pairs()) {
     if (pair.deepest.found()) result.found.push_back(of_pair(pair));
@@ -282,16 +315,19 @@ PenetrationReport PenetrationWatch::report() const {
 
 void PenetrationWatch::save(Snapshot& snapshot, const std::string& name) const {
   obstacles_.save(snapshot, name + ".obstacles");
+  passages_.save(snapshot, name + ".passages");
   body_watch_.save(snapshot, name + ".bodies");
   snapshot.save(name + ".looks", std::int64_t{looks_});
 }
 
 void PenetrationWatch::load(const Snapshot& snapshot, const std::string& name) {
   obstacles_.load(snapshot, name + ".obstacles");
+  passages_.load(snapshot, name + ".passages");
   body_watch_.load(snapshot, name + ".bodies");
   looks_ = snapshot.integer(name + ".looks");
   // What was found was told at once.
   for (std::size_t k = 0; k < told_obstacle_.size(); ++k) told_obstacle_[k] = obstacles_.deepest()[k].found() ? 1 : 0;
+  for (std::size_t k = 0; k < told_passage_.size(); ++k) told_passage_[k] = passages_.passages()[k].found() ? 1 : 0;
   told_rims_ = obstacles_.rims().size();
   told_pairs_.clear();
   told_contacts_.clear();

@@ -5,6 +5,7 @@
 
 #include "ricochet/simulation/body_watch.hpp"
 #include "ricochet/simulation/obstacle_watch.hpp"
+#include "ricochet/simulation/passage_watch.hpp"
 #include "ricochet/simulation/penetration_report.hpp"
 
 /// @file Penetration that no contact prevents: the whole boundary against every obstacle, and bodies against each
@@ -47,6 +48,7 @@ class PenetrationWatch {
   [[nodiscard]] std::vector<double> place_of(const Eigen::Vector3d& place) const;
   [[nodiscard]] UnwatchedPenetration describe(const DeepestPoint& deepest, const std::vector<int>& bodies) const;
   [[nodiscard]] UnwatchedPenetration in_obstacle(std::size_t obstacle) const;
+  [[nodiscard]] UnwatchedPenetration through_obstacle(std::size_t obstacle) const;
   [[nodiscard]] UnwatchedPenetration of_pair(const BodyPair& pair) const;
   [[nodiscard]] UnwatchedPenetration at_contact(const BodyPair& pair) const;
   /// Of the contacts between two bodies, for messages.
@@ -68,13 +70,14 @@ class PenetrationWatch {
   std::vector<std::string> name_of_body_;
   std::vector<double> size_;  ///< of its body, per node
   ObstacleWatch obstacles_;
+  PassageWatch passages_;
   BodyWatch body_watch_;
   const SemidiscreteProblem& problem_;
   Vector node_gap_;
   std::vector<BoundaryGroup> boundary_groups_;
   long looks_ = 0;
   // What was told.
-  std::vector<char> told_obstacle_;
+  std::vector<char> told_obstacle_, told_passage_;
   std::size_t told_rims_ = 0;
   std::vector<char> told_pairs_, told_contacts_;  ///< of the pairs of bodies
 };

@@ -59,6 +59,10 @@ class Sensor {
 [[nodiscard]] std::unique_ptr<Sensor> make_pair_force_sensor(const SemidiscreteProblem& problem, int contact,
                                                              bool exchanged);
 
+/// Motion of a rigid body that moves freely, and the contact force on it.
+[[nodiscard]] std::unique_ptr<Sensor> make_free_body_sensor(const std::string& name, const SemidiscreteProblem& problem,
+                                                            const Obstacle& obstacle);
+
 // For those who write sensors:
 
 /// False for the many points that are open.

@@ -56,6 +56,8 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
     : problem_(problem), scheme_(scheme), options_(options), whole_step_(scheme.step()) {
+  for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k)
+    problem_.free_bodies[k]->load(snapshot, fmt::format("free_body.{}", k));
   state_ = load_state(problem_, snapshot, "state");
   scheme_.analyse(problem_);
   int first = 0;
@@ -83,6 +85,8 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
 
 void Simulation::save(Snapshot& snapshot) const {
   ricochet::save(problem_, state_, snapshot, "state");
+  for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k)
+    problem_.free_bodies[k]->save(snapshot, fmt::format("free_body.{}", k));
   Snapshot::Integers numbers;
   for (const auto& [number, level] : levels_) {
     numbers.push_back(number);
@@ -163,6 +167,7 @@ void Simulation::take_step() {
 /// Once.
 void Simulation::attempt_step() {
   iterations_ = 0;
+  for (const auto& body : problem_.free_bodies) body->begin_step(state_.displacement);
   // Rows that follow the motion go on from those of the state, whatever was solved in between.
   if (problem_.contact.follows_motion()) {
     for (SolvedStage& each : current_->stages) each.stage.rows = state_.forces.rows;

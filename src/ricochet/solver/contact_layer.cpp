@@ -15,6 +15,9 @@ ContactLayer::ContactLayer(const SemidiscreteProblem& problem, const OperatorCoe
       unknown_(number_dofs(problem, solved_dofs(problem, StageDofs::contact))),
       node_dofs_(contact_node_dofs(problem)),
       columns_(layer.factor()) {
+  for (const auto& body : problem.free_bodies) {
+    for (Index k = 0; k < 2 * problem.dimension; ++k) node_dofs_.push_back(body->centre_node() * problem.dimension + k);
+  }
   layer_.setZero(factor_.work_size());
 }
 

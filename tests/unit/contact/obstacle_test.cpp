@@ -96,7 +96,10 @@ TEST_P(Obstacles, HaveNormalsOfStepsThatKnowTheChangeOfTheGap) {
     Vector to = from + 0.3 * random_point();
     SpaceVector normal = obstacle->shape().normal_of_step(from, to);
     EXPECT_NEAR(normal.norm(), 1.0, 1e-15);
-    EXPECT_GE(normal.dot(obstacle->normal(to)), 0.5);
+    EXPECT_GE(normal.dot(obstacle->normal(to)), 0.0);
+    // Whatever a step does: no force along its normal gives energy.
+    EXPECT_GE(normal.dot(to - from) * (obstacle->gap(to) - obstacle->gap(from)), -rounding());
+    if (normal.dot(obstacle->normal(to)) < 0.5) continue;                          // too far round
     if (normal == obstacle->normal(to) && !obstacle->shape().is_flat()) continue;  // too far round
     ++near;
     const double change = obstacle->gap(to) - obstacle->gap(from);
@@ -317,25 +320,26 @@ TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
       EXPECT_LT((before.pose().seen_from(from) - of_shape).norm(), 1e-14);
       const SpaceVector normal = normal_of_step(before, from, after, to);
       EXPECT_NEAR(normal.norm(), 1.0, 1e-14);
-      // The velocity of what is half way, over the step and at an instant.
-      const SpaceVector own = (end - start) * obstacle.velocity_of_step(from, start, to, end);
-      const SpaceVector middle = 0.5 * (of_shape + other);
-      EXPECT_LT((own - after.pose().in_space(middle) + before.pose().in_space(middle)).norm(), 1e-14);
+      // The velocity of what is at the mean place, over the step and at an instant.
+      const SpaceVector own =
+          (end - start) * obstacle.surface_velocity(0.5 * (from + to), 0.5 * (start + end), end - start);
+      EXPECT_LT((own - motion_at(before.pose(), after.pose(), 0.5 * (from + to))).norm(), 1e-14);
       const SpaceVector at_start = obstacle.surface_velocity(from, start);
       const SpaceVector ahead = obstacle.pose(start + 1e-5).in_space(of_shape),
                         behind = obstacle.pose(start - 1e-5).in_space(of_shape);
       EXPECT_LT((at_start - (ahead - behind) / 2e-5).norm(), 1e-5);
       const double change = after.gap(to) - before.gap(from);
-      if (obstacle.shape().normal_of_step(of_shape, other) == obstacle.shape().normal(other) && type != "plane")
-        continue;
+      EXPECT_GE(normal.dot(to - from - own) * change, -1e-12);
+      // Far round it is that of the end, or gives nothing.
+      if (std::abs(normal.dot(to - from - own)) < 1e-12 || (normal - after.normal(to)).norm() < 1e-14) continue;
       ++near;
       EXPECT_GE(normal.dot(to - from - own) * change, -1e-13);
       EXPECT_GE(std::abs(normal.dot(to - from - own)), 0.2 * std::abs(change) - 1e-12);
       if (type == "plane") {
-        EXPECT_LE(std::abs(normal.dot(to - from - own)), std::abs(change) + 1e-13);
+        EXPECT_LE(std::abs(normal.dot(to - from - own)), 1.02 * std::abs(change) + 1e-13);
       }
     }
-    EXPECT_GT(near, 50);
+    EXPECT_GT(near, 40);
   }
 }
 

@@ -105,7 +105,7 @@ TEST_F(RigidSurfaces, TendToASphere) {
   double gap_before = 0.0, normal_before = 0.0;
   for (const int level : {2, 3, 4}) {
     const double size = 1.2 / std::pow(2.0, level);
-    const auto sphere = shape(sphere_surface({0, 0, 0}, 1.0, level), {{"normal_radius", size}});
+    const auto sphere = shape(sphere_surface({0, 0, 0}, 1.0, level), {{"edge_radius", size}});
     double gap = 0.0, normal = 0.0;
     random_.seed(7);
     for (int k = 0; k < 400; ++k) {
@@ -143,35 +143,86 @@ TEST_F(RigidSurfaces, WeighFacetsExactly) {
       }
     }
     sum *= 0.5 * normal.norm() / (n * n);
-    EXPECT_NEAR(weight_of_triangle(corners, normal.normalized(), at, radius), sum, 2e-5);
+    const FacetWeight weight = weight_of_triangle(corners, normal.normalized(), at, radius);
+    EXPECT_NEAR(weight.value, sum, 2e-5);
     double line = 0.0;
     for (int i = 0; i < 4000; ++i) {
       const Three y = corners[0] + (i + 0.5) / 4000 * (corners[1] - corners[0]);
       line += std::max(radius * radius - (y - at).squaredNorm(), 0.0) * (corners[1] - corners[0]).norm() / 4000;
     }
-    EXPECT_NEAR(weight_of_segment(corners[0], corners[1], at, radius), line, 1e-5);
+    const FacetWeight on_line = weight_of_segment(corners[0], corners[1], at, radius);
+    EXPECT_NEAR(on_line.value, line, 1e-5);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      constexpr double h = 1e-5;
+      const Three ahead = at + h * Three::Unit(i), behind = at - h * Three::Unit(i);
+      const auto triangle = [&](const Three& x) {
+        return weight_of_triangle(corners, normal.normalized(), x, radius).value;
+      };
+      const auto segment = [&](const Three& x) { return weight_of_segment(corners[0], corners[1], x, radius).value; };
+      EXPECT_NEAR(weight.gradient[i], (triangle(ahead) - triangle(behind)) / (2.0 * h), 1e-7);
+      EXPECT_NEAR(on_line.gradient[i], (segment(ahead) - segment(behind)) / (2.0 * h), 1e-6);
+    }
   }
 }
 
-/// Whatever the triangles are: that of the plane on a plane, between them at edges and corners, without a jump.
-TEST_F(RigidSurfaces, HaveMeanNormalsThatTurnAroundEdges) {
+/// Whatever the triangles are: the height above a plane, with a derivative that turns around edges and does not jump.
+TEST_F(RigidSurfaces, HaveMeanHeightsWhoseDerivativesTurnAroundEdges) {
   const Three low(-1, -1, -1), high(1, 1, 1);
   const RigidSurface coarse(block_surface(low, high), "coarse"), fine(block_surface(low, high, 7), "fine");
-  const Three none(0, 0, 0);
   constexpr double radius = 0.3;
   for (const RigidSurface* surface : {&coarse, &fine}) {
-    EXPECT_LT((surface->mean_normal({0.2, 0.1, 1.0}, radius, none) - Three(0, 0, 1)).norm(), 1e-14);
-    EXPECT_LT((surface->mean_normal({1.0, 0.1, 1.0}, radius, none) - Three(1, 0, 1).normalized()).norm(), 1e-14);
-    EXPECT_LT((surface->mean_normal({1.0, 1.0, 1.0}, radius, none) - Three(1, 1, 1).normalized()).norm(), 1e-14);
+    const RigidSurface::Height above = surface->mean_height({0.2, 0.1, 1.05}, radius);
+    EXPECT_NEAR(above.value, 0.05, 1e-15);
+    EXPECT_LT((above.gradient - Three(0, 0, 1)).norm(), 1e-14);
+    EXPECT_LT(
+        (surface->mean_height({1.0, 0.1, 1.0}, radius).gradient.normalized() - Three(1, 0, 1).normalized()).norm(),
+        1e-14);
+    EXPECT_LT(
+        (surface->mean_height({1.0, 1.0, 1.0}, radius).gradient.normalized() - Three(1, 1, 1).normalized()).norm(),
+        1e-14);
   }
-  Three before = coarse.mean_normal({0.6, 0.35, 1.0}, radius, none);
+  Three before = coarse.mean_height({0.6, 0.35, 1.0}, radius).gradient;
+  double off = 0.0;
   for (int k = 1; k <= 400; ++k) {
     const Three at(0.6 + 0.001 * k, 0.35, 1.0);
-    const Three on_coarse = coarse.mean_normal(at, radius, none);
-    ASSERT_LT((on_coarse - fine.mean_normal(at, radius, none)).norm(), 1e-13);
-    ASSERT_LT((on_coarse - before).norm(), 0.012);
-    before = on_coarse;
+    const RigidSurface::Height on_coarse = coarse.mean_height(at, radius), on_fine = fine.mean_height(at, radius);
+    ASSERT_LT((on_coarse.gradient - on_fine.gradient).norm(), 1e-12);
+    ASSERT_NEAR(on_coarse.value, on_fine.value, 1e-14);
+    ASSERT_LT((on_coarse.gradient - before).norm(), 0.02);
+    before = on_coarse.gradient;
+    off = std::max(off, std::abs(on_coarse.value));
   }
+  EXPECT_LT(off, 0.13 * radius);
+  EXPECT_GT(off, 0.1 * radius);
+}
+
+/// The derivative of the gap in all of its parts, near edges and corners and beyond the radius.
+TEST_F(RigidSurfaces, HaveNormalsAlongTheDerivativeOfTheGap) {
+  const auto block = shape(block_surface({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}, 2), {{"edge_radius", 0.15}});
+  const auto polygon = [&] {
+    std::ofstream(folder_.file("l.txt")) << "0 0\n2 0\n2 1\n1 1\n1 2\n0 2\n0 0\n";
+    return make_obstacle_shape("surface", {{"file", folder_.file("l.txt")}, {"edge_radius", 0.3}});
+  }();
+  int looked_at = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const bool in_plane = k % 4 == 0;
+    const ObstacleShape& surface = in_plane ? *polygon : *block;
+    const SpaceVector at =
+        in_plane ? SpaceVector(Eigen::Vector2d(1.0 + 1.2 * number(), 1.0 + 1.2 * number())) : SpaceVector(point(0.7));
+    const double gap = surface.gap(at);
+    if (gap < -0.05 || gap > 0.25) continue;
+    SpaceVector slope(at.size());
+    constexpr double h = 1e-6;
+    for (Index i = 0; i < at.size(); ++i) {
+      SpaceVector ahead = at, behind = at;
+      ahead[i] += h;
+      behind[i] -= h;
+      slope[i] = (surface.gap(ahead) - surface.gap(behind)) / (2.0 * h);
+    }
+    EXPECT_LT((slope.normalized() - surface.normal(at)).norm(), 1e-4) << at.transpose() << ": " << gap;
+    ++looked_at;
+  }
+  EXPECT_GT(looked_at, 1000);
 }
 
 TEST_F(RigidSurfaces, AreTheSameFromTextAndFromBytes) {

@@ -38,6 +38,13 @@ class Sphere final : public ObstacleShape {
     return normal_at_middle(from, to);
   }
   [[nodiscard]] SpaceVector centre() const override { return centre_; }
+  [[nodiscard]] std::optional<Solid> solid() const override {
+    if (sign_ < 0.0) return std::nullopt;
+    const double square = radius_ * radius_, pi = std::numbers::pi;
+    if (centre_.size() == 2) return Solid{pi * square, centre_, Matrix::Constant(1, 1, 0.5 * pi * square * square)};
+    const double volume = 4.0 / 3.0 * pi * square * radius_;
+    return Solid{volume, centre_, 0.4 * volume * square * Matrix::Identity(3, 3)};
+  }
   [[nodiscard]] OwnAxis own_axis() const override { return {centre_.size() == 2, {}}; }
   [[nodiscard]] double least_radius() const override {
     return sign_ > 0.0 ? radius_ : std::numeric_limits<double>::infinity();

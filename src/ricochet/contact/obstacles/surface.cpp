@@ -18,9 +18,11 @@ namespace {
 
 using Three = RigidSurface::Three;
 
-/// Where a case gives no radius, normals are means over this part of the distance between contact nodes: what is
-/// smaller than that distance contact does not see.
+/// Where a case gives no radius it is this part of the distance between contact nodes: what is smaller than that
+/// distance contact does not see.
 constexpr double part_of_spacing = 0.25;
+/// A derivative that is shorter, as in a plate that is thinner than the radius, has no direction to speak of.
+constexpr double least_length = 0.1;
 /// Facets of a picture.
 constexpr std::size_t most_shown = 6000;
 
@@ -30,9 +32,10 @@ Three in_three(const SpaceVector& point) {
   return result;
 }
 
-/// A body from a file. The gap is the exact distance to its facets; the normal is their mean over a radius (see
-/// RigidSurface::mean_normal), so that it is continuous along the surface. The gap's own derivative jumps at edges;
-/// the normal of a step has what is missing (ObstacleShape::normal_of_step), and creates no energy there.
+/// A body from a file. With a radius, the gap near the surface is the mean height above the facets that are so near
+/// (RigidSurface::mean_height): its derivative, the normal, turns round edges and in corners, and does not jump. It is
+/// exact on faces and rounds edges: at a right-angled one it is off by 15 % of the radius at most. Farther away than
+/// the radius, and without one, it is the exact distance.
 class Surface final : public ObstacleShape {
  public:
   Surface(RigidSurface surface, double side, std::optional<double> radius, std::string checksum)
@@ -40,59 +43,69 @@ class Surface final : public ObstacleShape {
     if (given_radius_) radius_ = *given_radius_;
   }
 
-  [[nodiscard]] double gap(const SpaceVector& position) const override {
-    const Three at = in_three(position);
-    const RigidSurface::Foot foot = surface_.nearest(at);
-    return signed_distance(at, foot);
-  }
+  [[nodiscard]] double gap(const SpaceVector& position) const override { return look(in_three(position)).gap; }
   [[nodiscard]] SpaceVector normal(const SpaceVector& position) const override {
-    const Three at = in_three(position);
-    const RigidSurface::Foot foot = surface_.nearest(at);
-    const Three own = own_normal(at, foot);
-    const Three result = radius_ > 0.0 ? averaged(at, foot, own) : own;
-    return side_ * result.head(position.size());
+    return look(in_three(position)).normal.head(position.size());
   }
   [[nodiscard]] double gap_rounding(const SpaceVector& position) const override {
     const BoxTree::Box box = surface_.box();
     return eight_roundings(position.lpNorm<1>() + box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).lpNorm<1>());
   }
   [[nodiscard]] SpaceVector centre() const override { return SpaceVector::Zero(surface_.in_space() ? 3 : 2); }
+  [[nodiscard]] std::optional<Solid> solid() const override {
+    if (side_ < 0.0 || !surface_.is_closed()) return std::nullopt;
+    const RigidSurface::Moments moments = surface_.moments();
+    const Index d = surface_.in_space() ? 3 : 2;
+    // ∫ (|r|² 1 − r rᵀ); in the plane its last entry.
+    const Eigen::Matrix3d inertia = moments.second.trace() * Eigen::Matrix3d::Identity() - moments.second;
+    return Solid{moments.volume, moments.centre.head(d),
+                 d == 3 ? Matrix(inertia) : Matrix(inertia.bottomRightCorner(1, 1))};
+  }
   void fit(const ContactScale& scale) override {
     if (!given_radius_) radius_ = part_of_spacing * scale.spacing;
   }
   [[nodiscard]] std::string remarks() const override {
-    return radius_ > 0.0 ? fmt::format("its normals are means over a radius of {:.3g}", radius_)
-                         : std::string("its normals are those of its facets, and jump at edges");
+    return radius_ > 0.0 ? fmt::format("its edges are rounded over a radius of {:.3g}", radius_)
+                         : std::string("its edges are sharp: normals jump there");
   }
   [[nodiscard]] std::string checksum() const override { return checksum_; }
   [[nodiscard]] ObstacleSurface surface(const Vector& centre, double radius) const override;
 
  private:
-  [[nodiscard]] double signed_distance(const Three& at, const RigidSurface::Foot& foot) const {
-    const Three away = at - foot.position;
-    const double along = away.dot(foot.normal);
-    if (foot.on_facet) return side_ * along;
-    const double distance = away.norm();
-    if (foot.on_border && distance > 0.0 && std::abs(along) < distance) return distance;
-    return side_ * (along < 0.0 ? -distance : distance);
+  struct Look {
+    double gap;
+    Three normal;
+  };
+  [[nodiscard]] Look look(const Three& at) const {
+    const RigidSurface::Foot foot = surface_.nearest(at);
+    const Look exact = exact_look(at, foot);
+    const double distance = std::abs(exact.gap) / radius_;
+    if (!(distance < 1.0) || foot.on_border) return exact;
+    const RigidSurface::Height mean = surface_.mean_height(at, radius_);
+    if (!(mean.weight > 0.0)) return exact;
+    // All of the mean up to half of the radius, from there on less and less.
+    const double t = std::max(2.0 * distance - 1.0, 0.0);
+    const double part = t * t * (3.0 - 2.0 * t), slope = 12.0 * t * (1.0 - t) / radius_;
+    const double height = side_ * mean.value;
+    const double away = exact.gap < 0.0 ? -1.0 : 1.0;
+    const Three turned =
+        (1.0 - part) * side_ * mean.gradient + part * exact.normal + slope * away * (exact.gap - height) * exact.normal;
+    const double length = turned.norm();
+    if (!(length > least_length)) return exact;
+    return {(1.0 - part) * height + part * exact.gap, turned / length};
   }
-  /// The derivative of the distance: towards the point, or that of the edge where the two are too near to tell.
-  [[nodiscard]] Three own_normal(const Three& at, const RigidSurface::Foot& foot) const {
-    if (foot.on_facet) return foot.normal;
+  /// The distance and its derivative: towards the point, or that of the edge where the two are too near to tell. Beyond
+  /// a border nothing is behind the surface.
+  [[nodiscard]] Look exact_look(const Three& at, const RigidSurface::Foot& foot) const {
     const Three away = at - foot.position;
-    const double distance = away.norm();
-    constexpr double near = 1e-7;
+    const double along = away.dot(foot.normal), distance = away.norm();
+    if (foot.on_facet) return {side_ * along, side_ * foot.normal};
+    constexpr double near = 1e-10;
     const Three size = at.cwiseAbs() + foot.position.cwiseAbs();
-    if (distance <= near * size.maxCoeff()) return foot.normal;
-    return (away.dot(foot.normal) < 0.0 ? -1.0 : 1.0) / distance * away;
-  }
-  /// On the surface the mean, as far away as the radius the gap's derivative.
-  [[nodiscard]] Three averaged(const Three& at, const RigidSurface::Foot& foot, const Three& own) const {
-    const double part = std::min((at - foot.position).norm() / radius_, 1.0);
-    if (part == 1.0) return own;
-    const Three mean = (1.0 - part) * surface_.mean_normal(foot.position, radius_, foot.normal) + part * own;
-    const double length = mean.norm();
-    return length > 0.5 ? Three(mean / length) : own;
+    if (distance <= near * size.maxCoeff()) return {side_ * (along < 0.0 ? -distance : distance), side_ * foot.normal};
+    if (foot.on_border) return {distance, away / distance};
+    const double sign = along < 0.0 ? -side_ : side_;
+    return {sign * distance, sign / distance * away};
   }
 
   RigidSurface surface_;
@@ -157,13 +170,13 @@ std::vector<Key> surface_keys() {
        .standard = "1",
        .range = positive,
        .doc = "Factor on all coordinates of the file: 1e-3 for millimetres in a case in metres."},
-      {.name = "normal_radius",
+      {.name = "edge_radius",
        .type = KeyType::number,
        .unit = "length",
        .range = nonnegative,
-       .doc = "Normals are means over the part of the surface that is so near, with a weight that falls to zero at "
-              "this radius; 0: those of the facets, which jump at edges. Absent: a quarter of the largest distance "
-              "between nodes of the contacts with it."},
+       .doc =
+           "Gaps and normals are means over the facets that are so near, which rounds edges; 0: edges are sharp, and "
+           "normals jump there. Absent: a quarter of the largest distance between nodes of the contacts with it."},
       obstacle_side_key("Where bodies are: \"outside\" of what the surface encloses, or \"inside\"; then it must be "
                         "closed.")};
 }
@@ -205,7 +218,7 @@ ObstacleRegistration surface_obstacle() {
     }
     tell_of(surface, file);
     std::optional<double> radius;
-    if (parameters.has("normal_radius")) radius = parameters.number("normal_radius");
+    if (parameters.has("edge_radius")) radius = parameters.number("edge_radius");
     Checksum sum;
     for (const Three& corner : surface.corners()) sum.add(corner.data(), 3);
     return std::make_unique<Surface>(std::move(surface), side, radius, sum.text());

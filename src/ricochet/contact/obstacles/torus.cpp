@@ -38,6 +38,14 @@ class Torus final : public ObstacleShape {
     return sign_ > 0.0 ? tube_radius_ : ring_radius_ - tube_radius_;
   }
   [[nodiscard]] SpaceVector centre() const override { return centre_; }
+  [[nodiscard]] std::optional<Solid> solid() const override {
+    if (sign_ < 0.0) return std::nullopt;
+    const double ring = ring_radius_ * ring_radius_, tube = tube_radius_ * tube_radius_;
+    const double volume = 2.0 * std::numbers::pi * std::numbers::pi * ring_radius_ * tube;
+    const double across = 0.5 * ring + 0.625 * tube, along = ring + 0.75 * tube;
+    const Eigen::Matrix3d inertia = across * Eigen::Matrix3d::Identity() + (along - across) * axis_ * axis_.transpose();
+    return Solid{volume, centre_, volume * inertia};
+  }
   [[nodiscard]] OwnAxis own_axis() const override { return {true, axis_}; }
 
   [[nodiscard]] ObstacleSurface surface(const Vector&, double) const override {

@@ -10,7 +10,6 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/contact/closest_point.hpp"
-#include "ricochet/contact/surface/facet_weight.hpp"
 
 namespace ricochet {
 
@@ -195,16 +194,30 @@ void RigidSurface::turn_round() {
   for (Edge& edge : corner_normals_) edge.normal = -edge.normal;
 }
 
-/// About the middle of the box, so that nothing is lost far from the origin.
 double RigidSurface::volume() const {
+  return moments().volume;
+}
+
+/// Σ over cones from the middle of the box to the facets, so that nothing is lost far from the origin: of a tetrahedron
+/// (0, a, b, c) ∫ r rᵀ = V/20 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c; of a triangle A/12 (s sᵀ + a aᵀ + b bᵀ).
+RigidSurface::Moments RigidSurface::moments() const {
   BoxTree::Box box;
   for (const Three& point : corners_) box.extend(point);
   const Three middle = box.center();
-  double sum = 0.0;
+  Moments sum;
   for (std::size_t i = 0; i < facets_.size(); ++i) {
-    const Three a = corner(i, 0) - middle, b = corner(i, 1) - middle, c = corner(i, 2) - middle;
-    sum += in_space_ ? a.dot(b.cross(c)) / 6.0 : -0.5 * (a[0] * b[1] - a[1] * b[0]);
+    const Three a = corner(i, 0) - middle, b = corner(i, 1) - middle;
+    const Three c = in_space_ ? Three(corner(i, 2) - middle) : Three(Three::Zero()), s = a + b + c;
+    const double part = in_space_ ? a.dot(b.cross(c)) / 6.0 : -0.5 * (a[0] * b[1] - a[1] * b[0]);
+    sum.volume += part;
+    sum.centre += part / (in_space_ ? 4.0 : 3.0) * s;
+    sum.second += part / (in_space_ ? 20.0 : 12.0) *
+                  (s * s.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
   }
+  if (sum.volume == 0.0) return sum;
+  sum.centre /= sum.volume;
+  sum.second -= sum.volume * sum.centre * sum.centre.transpose();
+  sum.centre += middle;
   return sum;
 }
 
@@ -257,27 +270,33 @@ RigidSurface::Foot RigidSurface::nearest(const Three& point) const {
   return {closest.position, edge.normal, false, edge.is_border};
 }
 
-double RigidSurface::weight_near(std::size_t facet, const Three& at, double radius) const {
+FacetWeight RigidSurface::weight_near(std::size_t facet, const Three& at, double radius) const {
   return in_space_
              ? weight_of_triangle({corner(facet, 0), corner(facet, 1), corner(facet, 2)}, normals_[facet], at, radius)
              : weight_of_segment(corner(facet, 0), corner(facet, 1), at, radius);
 }
 
-Three RigidSurface::mean_normal(const Three& at, double radius, const Three& otherwise) const {
-  Three sum = Three::Zero();
-  double weights = 0.0;
+RigidSurface::Height RigidSurface::mean_height(const Three& point, double radius) const {
+  double heights = 0.0;
+  Height sum;
+  Three turned = Three::Zero(), weights = Three::Zero();  // Σ h ∇w + w N, Σ ∇w
   const double square = radius * radius;
-  tree_.visit([&](const BoxTree::Box& box) { return box.squaredExteriorDistance(at) < square; },
+  tree_.visit([&](const BoxTree::Box& box) { return box.squaredExteriorDistance(point) < square; },
               [&](int facet) {
                 const auto i = static_cast<std::size_t>(facet);
                 if (normals_[i].isZero(0.0)) return;
-                const double weight = weight_near(i, at, radius);
-                sum += weight * normals_[i];
-                weights += weight;
+                const FacetWeight weight = weight_near(i, point, radius);
+                if (weight.value == 0.0) return;
+                const double height = normals_[i].dot(point - corner(i, 0));
+                heights += weight.value * height;
+                sum.weight += weight.value;
+                turned += height * weight.gradient + weight.value * normals_[i];
+                weights += weight.gradient;
               });
-  constexpr double cancelled = 0.3;
-  const double length = sum.norm();
-  return length > cancelled * weights && weights > 0.0 ? Three(sum / length) : otherwise;
+  if (!(sum.weight > 0.0)) return sum;
+  sum.value = heights / sum.weight;
+  sum.gradient = (turned - sum.value * weights) / sum.weight;
+  return sum;
 }
 
 }  // namespace ricochet

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ricochet/contact/box_tree.hpp"
+#include "ricochet/contact/surface/facet_weight.hpp"
 #include "ricochet/contact/surface/surface_file.hpp"
 
 /// @file The surface of a rigid body, of triangles or, in the plane, of segments.
@@ -29,9 +30,14 @@ class RigidSurface {
     bool on_border;  ///< on an edge that has one facet only
   };
   [[nodiscard]] Foot nearest(const Three& point) const;
-  /// The direction of ∫ N (ρ² − |y − at|²) over the part of the surface that is nearer to `at` than ρ: continuous on
-  /// the surface, whatever its facets are. That of `otherwise` where normals cancel.
-  [[nodiscard]] Three mean_normal(const Three& at, double radius, const Three& otherwise) const;
+  /// The mean height of a point above the planes of the facets, f = Σ w_k h_k / Σ w_k, w_k = ∫ (ρ² − |y − x|²) over the
+  /// part of facet k that is nearer than ρ, and its derivative: continuous, whatever the facets are, and the height
+  /// above a plane where all that is near is one. No weight: nothing is so near.
+  struct Height {
+    double value = 0.0, weight = 0.0;
+    Three gradient = Three::Zero();
+  };
+  [[nodiscard]] Height mean_height(const Three& point, double radius) const;
 
   [[nodiscard]] bool is_closed() const { return border_count_ == 0; }
   /// Edges with one facet, and the middle of one of them.
@@ -47,6 +53,13 @@ class RigidSurface {
   [[nodiscard]] BoxTree::Box box() const { return tree_.nodes().front().box; }
   /// Of what it encloses, where it is closed: volume, or area in the plane.
   [[nodiscard]] double volume() const;
+  /// The same with the centre, and ∫ r rᵀ about it.
+  struct Moments {
+    double volume = 0.0;
+    Three centre = Three::Zero();
+    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  };
+  [[nodiscard]] Moments moments() const;
 
  private:
   struct Edge {
@@ -72,7 +85,7 @@ class RigidSurface {
   [[nodiscard]] const Three& corner(std::size_t facet, int k) const {
     return corners_[static_cast<std::size_t>(facets_[facet][static_cast<std::size_t>(k)])];
   }
-  [[nodiscard]] double weight_near(std::size_t facet, const Three& at, double radius) const;
+  [[nodiscard]] FacetWeight weight_near(std::size_t facet, const Three& at, double radius) const;
 
   bool in_space_;
   std::vector<Three> corners_;              ///< each once

@@ -15,6 +15,7 @@ class EndScheme : public Scheme {
   [[nodiscard]] bool changes_step() const override { return true; }
   [[nodiscard]] bool takes_nonlinear_force() const override { return true; }
   [[nodiscard]] bool takes_relaxation() const override { return true; }
+  [[nodiscard]] bool takes_free_bodies() const override { return true; }
   [[nodiscard]] bool keeps_moments_at_finite_strain() const override { return true; }
   [[nodiscard]] const Vector* place_of_forces() const override { return layer_.place_of_forces(); }
   [[nodiscard]] bool has_couples_between_bodies() const override { return layer_.place_of_forces() != nullptr; }

@@ -28,6 +28,14 @@ double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vec
   return sum;
 }
 
+/// Of forces on rigid bodies that move freely: part of the kinetic energy, as on all that has inertia.
+double on_free_bodies(const SemidiscreteProblem& problem, const Vector& force, const Vector& end, const Vector& start) {
+  double sum = 0.0;
+  const Index dofs = 2 * problem.dimension * static_cast<Index>(problem.free_bodies.size());
+  for (Index dof = end.size() - dofs; dof < end.size(); ++dof) sum += force[dof] * (end[dof] - start[dof]);
+  return sum;
+}
+
 }  // namespace
 
 void FiniteLayer::analyse(const SemidiscreteProblem& problem, double step) {
@@ -124,6 +132,8 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   kinetic_ = kinetic_start_ + (4.0 / step) * (state.velocity + (2.0 / step) * product_).dot(right_);
   stage.right_hand_side = loads_.mean() - force_ - (4.0 / (step * step)) * right_;
   loads_.add_pressure(stage.right_hand_side);
+  for (const auto& body : problem.free_bodies)
+    body->add_gyroscopic_force(end_, state.velocity, step, 1.0, stage.right_hand_side);
   if (sigma_.value() != 0.0) stage.right_hand_side -= sigma_.value() * strain_force_;
   if (problem.has_damping()) {
     product_ = middle_ - state.displacement;
@@ -214,7 +224,8 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
                                           mean_nodal_);
   }
   if (problem.has_turning_obstacles()) equations_.observe_step(problem, state.displacement, state.time, end_, step);
-  obstacle_work_ = obstacle_work(*stage.rows, solution.acting_normal(), solution.acting_tangential(), step);
+  obstacle_work_ = obstacle_work(*stage.rows, solution.acting_normal(), solution.acting_tangential(), step) -
+                   on_free_bodies(problem, mean_nodal_, end_, state.displacement);
   end_weight_ = solution.end_weight;
   dissipation_ = work_at_end_ = 0.0;
   if (end_weight_ == 0.0 || (solution.normal_reaction.isZero(0.0) && state.forces.normal_reaction.isZero(0.0))) {
@@ -243,7 +254,8 @@ void FiniteLayer::follow_start(const SemidiscreteProblem& problem, double step, 
     dissipation_ -= viscous->start_energy(branches, relaxed_) - viscous->start_energy(branches, state.displacement);
   product_ = end_ - state.displacement;
   work_at_end_ = on_contact(problem, nodal_, product_) -
-                 obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step);
+                 obstacle_work(*stage.rows, solution.normal_reaction, solution.tangential_reaction, step) +
+                 on_free_bodies(problem, nodal_, end_, state.displacement);
 }
 
 /// Of reactions on the motion of the obstacles over the step.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -151,7 +153,7 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
   }
   contact_.require(problem, mean, h, state, contact_base_, equations_, stage);
 
-  const StageSolution& solution = stages.solve(midpoint_stage(problem));
+  const StageSolution& solution = solve(problem, state, stage, stages);
   increment = h * state.velocity + 2.0 * solution.increment;
   for (const Index dof : problem.contact_dofs)
     increment[dof] = contact_base_[dof] - state.displacement[dof] + 2.0 * solution.contact_increment[dof];
@@ -161,6 +163,29 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
   take_forces(problem, stage, solution, increment, state);
   contact_.learn(problem, before_, state);
   if (has_layer) correct(problem, mean, stage, solution, increment, state, stages);
+}
+
+/// Again while the gyroscopic force of rigid bodies changes: it depends on how they turn in the step.
+const StageSolution& MasslessLayer::solve(const SemidiscreteProblem& problem, const State& state, Stage& stage,
+                                          StageSolve& stages) {
+  const StageSolution* solution = &stages.solve(midpoint_stage(problem));
+  if (problem.free_bodies.empty() || !problem.free_bodies.front()->has_gyroscopic_force()) return *solution;
+  row_force_.setZero(problem.dof_count());
+  constexpr int most_rounds = 100;
+  for (int round = 0;; ++round) {
+    before_ = state.displacement + step_ * state.velocity + 2.0 * solution->increment;
+    nodal_.setZero(problem.dof_count());
+    for (const auto& body : problem.free_bodies)
+      body->add_gyroscopic_force(before_, state.velocity, step_, 1.0, nodal_);
+    const double size = stage.right_hand_side.lpNorm<Eigen::Infinity>() + nodal_.lpNorm<Eigen::Infinity>();
+    const double change = (nodal_ - row_force_).lpNorm<Eigen::Infinity>();
+    if (change <= 4.0 * std::numeric_limits<double>::epsilon() * size) return *solution;
+    if (round == most_rounds || !std::isfinite(change))
+      throw Error(ErrorKind::not_converged, "the rotation of a rigid body was not found: it turns too far in a step");
+    stage.right_hand_side += nodal_ - row_force_;
+    row_force_ = nodal_;
+    solution = &stages.solve(midpoint_stage(problem));
+  }
 }
 
 void MasslessLayer::move(const SemidiscreteProblem& problem, const Vector& solution, const Vector& increment,

@@ -81,6 +81,7 @@ class MasslessLayer {
                                      const StageSolution& solution, const Vector& increment, StageSolve& stages);
 
  private:
+  const StageSolution& solve(const SemidiscreteProblem& problem, const State& state, Stage& stage, StageSolve& stages);
   void find_damping(const SemidiscreteProblem& problem);
   [[nodiscard]] double load_work_of_mean(const SemidiscreteProblem& problem, double mu, double at_end,
                                          StageSolve& stages);

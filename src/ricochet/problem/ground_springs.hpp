@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+
+#include "ricochet/problem/internal_force.hpp"
+
+/// @file Springs between dofs and the ground.
+namespace ricochet {
+
+/// Another internal force and k_i u_i at some dofs that have no part in it (those of rigid bodies).
+class GroundSprings final : public InternalForce {
+ public:
+  /// k per dof.
+  GroundSprings(std::shared_ptr<const InternalForce> bodies, const Vector& stiffness);
+  void evaluate(const Vector& displacement, Vector& force) const override;
+  [[nodiscard]] double energy(const Vector& displacement) const override;
+  [[nodiscard]] double energy(const Vector& displacement, const Vector& force) const override;
+  void strain_force(const Vector& displacement, const Vector& increment, Vector& force) const override;
+  void mean_force(const Vector& middle, const Vector& increment, Vector& force) const override;
+  void mean_forces(const Vector& middle, const Vector& increment, Vector& force, Vector& of_strain) const override;
+  [[nodiscard]] std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const override {
+    return bodies_->near(nodes);
+  }
+  [[nodiscard]] const ViscousForce* viscous() const override { return bodies_->viscous(); }
+  [[nodiscard]] bool is_linear() const override { return bodies_->is_linear(); }
+  using InternalForce::tangent;
+  [[nodiscard]] SparseMatrix tangent(const Vector& displacement) const override;
+
+ private:
+  void add(const Vector& displacement, Vector& force) const;
+  [[nodiscard]] double own_energy(const Vector& displacement) const;
+
+  std::shared_ptr<const InternalForce> bodies_;
+  std::vector<std::pair<Index, double>> springs_;  ///< dof and stiffness
+};
+
+}  // namespace ricochet

@@ -1,0 +1,89 @@
+#include "ricochet/simulation/passage_watch.hpp"
+
+#include <algorithm>
+
+namespace ricochet {
+
+namespace {
+
+/// How deep the way from one place to another goes, seen from the shape.
+double deepest_between(const ObstacleShape& shape, const SpaceVector& from, const SpaceVector& to) {
+  constexpr int pieces = 16;
+  double depth = 0.0;
+  for (int k = 1; k < pieces; ++k) {
+    const double part = static_cast<double>(k) / pieces;
+    depth = std::max(depth, -shape.gap((1.0 - part) * from + part * to));
+  }
+  return depth;
+}
+
+}  // namespace
+
+PassageWatch::PassageWatch(const SemidiscreteProblem& problem, std::vector<Index> nodes,
+                           const std::vector<const Obstacle*>& obstacles)
+    : problem_(problem),
+      nodes_(std::move(nodes)),
+      obstacles_(obstacles),
+      seen_(obstacles.size()),
+      passages_(obstacles.size()) {}
+
+void PassageWatch::look(const State& state) {
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    // On the other side of a plane it is inside.
+    if (!obstacles_[k]->shape().is_flat()) look_at(k, state);
+  }
+}
+
+void PassageWatch::look_at(std::size_t obstacle, const State& state) {
+  const ObstacleShape& shape = obstacles_[obstacle]->shape();
+  const PlacedObstacle placed = obstacles_[obstacle]->at(state.time, state.displacement);
+  Seen& seen = seen_[obstacle];
+  const Index d = problem_.dimension;
+  const bool is_first = seen.gaps.size() == 0;
+  if (is_first) {
+    seen.places.resize(d, static_cast<Index>(nodes_.size()));
+    seen.gaps.resize(seen.places.cols());
+  }
+  for (Index i = 0; i < seen.places.cols(); ++i) {
+    const Index node = nodes_[static_cast<std::size_t>(i)];
+    const SpaceVector place = problem_.nodes.col(node) + state.displacement.segment(node * d, d);
+    const SpaceVector now = placed.pose().seen_from(place);
+    const SpaceVector before = is_first ? now : SpaceVector(seen.places.col(i));
+    const double way = (now - before).norm();
+    seen.places.col(i) = now;
+    if (!is_first && seen.gaps[i] > way) {
+      seen.gaps[i] -= way;
+      continue;
+    }
+    const double gap = shape.gap(now), gap_before = seen.gaps[i];
+    seen.gaps[i] = gap;
+    if (is_first || passages_[obstacle].found() || way <= std::max(gap, 0.0) + std::max(gap_before, 0.0)) continue;
+    if (!(shape.normal(before).dot(shape.normal(now)) < 0.0)) continue;
+    const double depth = deepest_between(shape, before, now);
+    if (depth <= shape.gap_rounding(now) || gap < -depth || gap_before < -depth) continue;
+    Eigen::Vector3d in_space = Eigen::Vector3d::Zero();
+    in_space.head(d) = place;
+    passages_[obstacle].enter(node, depth, state.time, in_space);
+  }
+}
+
+void PassageWatch::save(Snapshot& snapshot, const std::string& name) const {
+  for (std::size_t k = 0; k < seen_.size(); ++k) {
+    const std::string own = name + "." + std::to_string(k);
+    snapshot.save(own + ".places", Vector(seen_[k].places.reshaped()));
+    snapshot.save(own + ".gaps", seen_[k].gaps);
+    snapshot.save(own + ".passage", Vector(passages_[k].to_numbers()));
+  }
+}
+
+void PassageWatch::load(const Snapshot& snapshot, const std::string& name) {
+  for (std::size_t k = 0; k < seen_.size(); ++k) {
+    const std::string own = name + "." + std::to_string(k);
+    seen_[k].gaps = snapshot.reals(own + ".gaps");
+    const Vector& places = snapshot.reals(own + ".places", problem_.dimension * seen_[k].gaps.size());
+    seen_[k].places = places.reshaped(problem_.dimension, seen_[k].gaps.size());
+    passages_[k] = DeepestPoint::from_numbers(snapshot.reals(own + ".passage", DeepestPoint::numbers));
+  }
+}
+
+}  // namespace ricochet

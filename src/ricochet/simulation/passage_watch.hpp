@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/contact/obstacle.hpp"
+#include "ricochet/scheme/state.hpp"
+#include "ricochet/simulation/deepest_point.hpp"
+
+/// @file Nodes that go through an obstacle within one step, so that neither end of the step shows it.
+namespace ricochet {
+
+/// Looks at nodes against obstacles whose normals are not the same everywhere. Seen from the obstacle a node goes
+/// straight from one place to the other; it has gone through where it was inside between them, and the normals at the
+/// ends are more than a right angle apart. (A node that slides round an edge goes through less of a chord.) As a gap
+/// changes by no more than the node moves, most nodes are not looked at in most steps.
+class PassageWatch {
+ public:
+  /// Keeps a reference to the problem. `nodes`: ascending.
+  PassageWatch(const SemidiscreteProblem& problem, std::vector<Index> nodes,
+               const std::vector<const Obstacle*>& obstacles);
+  void save(Snapshot& snapshot, const std::string& name) const;
+  void load(const Snapshot& snapshot, const std::string& name);
+
+  /// Allocates nothing after the first time.
+  void look(const State& state);
+  /// Of each obstacle, with the depth that it went through.
+  [[nodiscard]] const std::vector<DeepestPoint>& passages() const { return passages_; }
+
+ private:
+  /// Of the nodes before: where they are seen from the obstacle, and no more than their gaps.
+  struct Seen {
+    Points places;
+    Vector gaps;
+  };
+  void look_at(std::size_t obstacle, const State& state);
+
+  const SemidiscreteProblem& problem_;
+  std::vector<Index> nodes_;
+  std::vector<const Obstacle*> obstacles_;
+  std::vector<Seen> seen_;
+  std::vector<DeepestPoint> passages_;
+};
+
+}  // namespace ricochet

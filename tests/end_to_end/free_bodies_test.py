@@ -1,0 +1,119 @@
+"""Rigid bodies that move by the forces on them: momenta, energy, closed forms, and runs that are resumed."""
+
+import math
+import unittest
+
+import numpy
+
+from harness import History, TestCase, run
+from shaped_obstacles_test import block_on, box_stl
+
+PLANE = 'type = "plane"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]'
+
+
+class Bodies(TestCase):
+    def case(self, obstacle, *, space=False, law="neo-hookean", more="", friction=0.3, step=0.002, end=0.2):
+        """A free block, 0.5 high in the plane and 0.6 in space, and a rigid body."""
+        text = block_on(obstacle, self.folder, space=space, drive=more, friction=friction, step=step, end=end, group="top")
+        text = text.replace("density = 1.0", f'density = 1.0\nlaw = "{law}"', 1)
+        return text.replace("lambda = 100.0", "young = 130.0").replace("mu = 50.0", "poisson = 0.3")
+
+
+class Momenta(Bodies):
+    def keeps(self, text, angular=True):
+        results = self.simulate(self.write("case.toml", text))
+        history = History(results / "history.csv")
+        self.assertGreater(max(history["active_contacts"]), 0)
+        self.assertLess(max(map(abs, history["energy_residual"])), 1e-11 * history.largest_energy())
+        self.assertLess(history["total_energy"][-1], history["total_energy"][0])
+        names = [name for name in history.names if name.startswith("momentum_")]
+        names += [name for name in history.names if angular and name.startswith("angular_")]
+        size = max(abs(value) for name in names for value in history[name])
+        for name in names:
+            self.assertLess(numpy.ptp(history[name]), 1e-11 * size, name)
+        return history
+
+    def test_a_disc_and_a_block(self):
+        history = self.keeps(self.case('type = "sphere"\ncentre = [0.4, 0.82]\nradius = 0.3\ndensity = 2.0\nvelocity = [0.3, -1.5]\n'
+                                  "spin = 5.0"))
+        self.assertNotAlmostEqual(history["floor.spin_z"][-1], 5.0, delta=0.1)
+
+    def test_a_brick_and_a_block_in_space(self):
+        """Of unequal moments of inertia: it tumbles, with gyroscopic torques."""
+        (self.folder / "brick.stl").write_text(box_stl([0.3, 0.3, 0.65], [0.8, 0.6, 0.8]))
+        history = self.keeps(self.case('type = "surface"\nfile = "brick.stl"\ndensity = 2.0\nvelocity = [0.2, 0.1, -1.5]\n'
+                                  "spin = [2.0, -3.0, 1.0]", space=True, end=0.3))
+        self.assertGreater(max(history["floor.contact_force_z"]), 0.0)
+
+    def test_linear_bodies(self):
+        """The angular momentum is that of places at the start there; the account has what is missing."""
+        self.keeps(self.case('type = "sphere"\ncentre = [0.4, 0.82]\nradius = 0.3\nmass = 0.5\nvelocity = [0.3, -1.5]',
+                        law="linear"), angular=False)
+
+
+class ClosedForms(Bodies):
+    """A rigid body beside a block that it never touches."""
+
+    def flight(self, obstacle, end=1.0, step=0.005, **more):
+        text = self.case('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 2.0\n' + obstacle, law="linear", end=end,
+                    step=step, **more)
+        return History(self.simulate(self.write("case.toml", text)) / "history.csv")
+
+    def test_a_spring_and_a_damper(self):
+        history = self.flight("velocity = [1.0, 0.0]\nspring = [50.0, 0.0]\ndamper = [2.0, 0.0]\nspin = 3.0\n"
+                              "rotation_damper = 0.5", step=0.001)
+        rate, decay = math.sqrt(25.0 - 0.25), 0.5
+        for time, x, spin in zip(history["time"], history["floor.displacement_x"], history["floor.spin_z"]):
+            self.assertAlmostEqual(x, math.exp(-decay * time) * math.sin(rate * time) / rate, delta=2e-6)
+            self.assertAlmostEqual(spin, 3.0 * math.exp(-0.5 / 0.09 * time), delta=1e-4)
+        self.assertLess(max(map(abs, history["energy_residual"])), 1e-12)
+
+    def test_forces_and_gravity(self):
+        history = self.flight('force = ["4*t", "0"]\ntorque = "0.18"\nvelocity = [0.0, 2.0]',
+                              more="[load]\ngravity = [0.0, -9.81]\n")
+        for time, x, y, turned in zip(*(history[name] for name in ("time", "floor.displacement_x", "floor.displacement_y",
+                                                                   "floor.rotation_z"))):
+            self.assertAlmostEqual(x, time ** 3 / 3.0, delta=1e-5)
+            self.assertAlmostEqual(y, 2.0 * time - 0.5 * 9.81 * time ** 2, delta=1e-12)
+            self.assertAlmostEqual(turned, time ** 2, delta=1e-4)
+
+    def test_what_is_held_stays(self):
+        history = self.flight('hold = ["x", "rotation"]\nforce = ["1", "1"]\ntorque = "1"')
+        self.assertEqual(max(map(abs, history["floor.displacement_x"])), 0.0)
+        self.assertEqual(max(map(abs, history["floor.rotation_z"])), 0.0)
+        self.assertAlmostEqual(history["floor.displacement_y"][-1], 0.25, delta=1e-12)
+
+
+class Runs(Bodies):
+    def test_a_run_that_is_resumed_has_the_same_bits(self):
+        (self.folder / "brick.stl").write_text(box_stl([0.3, 0.3, 0.65], [0.8, 0.6, 0.8]))
+        text = self.case('type = "surface"\nfile = "brick.stl"\ndensity = 2.0\nvelocity = [0.2, 0.1, -1.5]\n'
+                    "spin = [2.0, -3.0, 1.0]", space=True)
+        path = self.write("case.toml", text + "[output]\ncheckpoint_every = 1\n")
+        whole = self.simulate(path, "whole")
+        half = self.folder / "half"
+        process = run("run", path, "-o", half, "--set", "time.end=0.11")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        process = run("run", path, "-o", half, "--resume")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual((whole / "history.csv").read_bytes(), (half / "history.csv").read_bytes())
+
+    def test_what_makes_no_sense_is_refused(self):
+        for obstacle, fragment in (
+                (PLANE + "\nmass = 1.0", "encloses nothing that has a centre of mass"),
+                ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\nrotation = "t"', "moves by the forces on it"),
+                ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\ndensity = 1.0', 'has "mass" already'),
+                ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\nspring = [-1.0, 0.0]', "must not be negative"),
+                ('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0\nhold = ["z"]', "no direction \"z\"")):
+            process = run("run", self.write("case.toml", self.case(obstacle)), "-o", self.folder / "out", "--force")
+            self.assertEqual(process.returncode, 2, process.stderr)
+            self.assertIn(fragment, process.stderr)
+        text = self.case('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 1.0', law="linear")
+        process = run("run", self.write("case.toml", text), "-o", self.folder / "out", "--force", "--set",
+                      "time.scheme=midpoint", "--set", "mass.type=consistent")
+        self.assertEqual(process.returncode, 2, process.stderr)
+        self.assertIn("takes no rigid bodies that move freely", process.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
