@@ -81,9 +81,6 @@ struct ObstacleSection {
   double rotation_spring = 0.0, rotation_damper = 0.0;
   std::vector<std::string> hold;  ///< "x", "y", "z", "rotation"
   [[nodiscard]] bool is_free() const { return mass || density; }
-  [[nodiscard]] bool moves() const {
-    return !velocity.empty() || rotation_rate != 0.0 || !motion.empty() || !rotation.empty() || !table.empty();
-  }
 };
 
 struct ContactSection {

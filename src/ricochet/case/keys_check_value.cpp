@@ -98,14 +98,10 @@ void check_numbers(const Key& key, TomlNode& value, Problems& problems) {
   }
 }
 
-void check_axial(const Key& key, TomlNode& value, Problems& problems) {
-  if (value.kind == Kind::list && value.children.size() == 3) return check_vector(key, value, false, problems);
-  if (!value.is_number() || !make_finite_number(value)) refuse_type(key, value, problems);
-}
-
-void check_axial_formulas(const Key& key, TomlNode& value, Problems& problems) {
-  if (value.kind == Kind::list && value.children.size() == 3) return check_vector(key, value, true, problems);
-  if (value.kind == Kind::text) return;
+void check_axial(const Key& key, TomlNode& value, bool takes_expressions, Problems& problems) {
+  if (value.kind == Kind::list && value.children.size() == 3)
+    return check_vector(key, value, takes_expressions, problems);
+  if (takes_expressions && value.kind == Kind::text) return;
   if (!value.is_number() || !make_finite_number(value)) refuse_type(key, value, problems);
 }
 
@@ -186,9 +182,9 @@ void check_value(const Key& key, TomlNode& value, Problems& problems) {
     case KeyType::numbers:
       return check_numbers(key, value, problems);
     case KeyType::axial:
-      return check_axial(key, value, problems);
+      return check_axial(key, value, false, problems);
     case KeyType::axial_formulas:
-      return check_axial_formulas(key, value, problems);
+      return check_axial(key, value, true, problems);
     case KeyType::formula:
       if (value.kind != Kind::text) check_number(key, value, problems);
       return;

@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "ricochet/base/dense_decompositions.hpp"
-
 namespace ricochet {
 
 namespace {
@@ -129,8 +127,7 @@ SpaceVector FreeMotion::velocity_of_spin(const SpaceVector& spin, const Vector& 
 }
 
 /// g = (1 − ½Θ^)⁻¹ [2J(Θ − hW₀) + Θ × JΘ]/h² − 2J(Θ − hW₀)/h².
-void FreeMotion::add_gyroscopic_force(const Vector& end, const Vector& velocity, double step, double factor,
-                                      Vector& force) const {
+void FreeMotion::add_gyroscopic_force(const Vector& end, const Vector& velocity, double step, Vector& force) const {
   if (!has_gyroscopic_force()) return;
   const Three rotation = turn(end), moments = inertia_.moments;
   const Three spin = Three(velocity.segment<3>(rotation_node() * 3)).cwiseQuotient(Three(gyration_));
@@ -139,7 +136,7 @@ void FreeMotion::add_gyroscopic_force(const Vector& end, const Vector& velocity,
   // (1 − ½Θ^)⁻¹ v = (v + ½Θ×v + ¼Θ(Θ·v))/(1 + ¼Θ²)
   const Three solved =
       (sum + 0.5 * rotation.cross(sum) + 0.25 * rotation.dot(sum) * rotation) / (1.0 + 0.25 * rotation.squaredNorm());
-  force.segment<3>(rotation_node() * 3) -= factor / (step * step) * (solved - linear).cwiseQuotient(Three(gyration_));
+  force.segment<3>(rotation_node() * 3) -= 1.0 / (step * step) * (solved - linear).cwiseQuotient(Three(gyration_));
 }
 
 }  // namespace ricochet

@@ -65,8 +65,8 @@ class FreeMotion {
   /// V of a spin in space at a displacement: for the second node.
   [[nodiscard]] SpaceVector velocity_of_spin(const SpaceVector& spin, const Vector& displacement) const;
 
-  /// Adds −g/ℓ of a step of length h from a velocity, that ends at a displacement, times a factor.
-  void add_gyroscopic_force(const Vector& end, const Vector& velocity, double step, double factor, Vector& force) const;
+  /// Adds −g/ℓ of a step of length h from a velocity, that ends at a displacement.
+  void add_gyroscopic_force(const Vector& end, const Vector& velocity, double step, Vector& force) const;
   [[nodiscard]] bool has_gyroscopic_force() const { return dimension() == 3; }
 
  private:

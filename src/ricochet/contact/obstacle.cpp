@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
 
 namespace ricochet {

@@ -46,10 +46,6 @@ void check_expressions(const Case& input, const std::string& key_path, const std
   for (const Expression& component : value) check_expression(input, key_path, component, dimension);
 }
 
-}  // namespace
-
-namespace {
-
 void check_obstacle_motion(const Case& input, const ObstacleSection& obstacle, int dimension) {
   const std::string key = "obstacle." + obstacle.name;
   check_length(input, key + ".velocity", obstacle.velocity.size(), dimension);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ricochet/base/dense_decompositions.hpp"
+#include "ricochet/linear_algebra/diagonal_matrix.hpp"
 #include "ricochet/model/model_parts.hpp"
 #include "ricochet/problem/ground_springs.hpp"
 
@@ -115,14 +116,10 @@ SparseMatrix resized(SparseMatrix matrix, Index dofs) {
 SparseMatrix with_free_bodies(const Model& model, SparseMatrix mass) {
   if (model.problem.free_bodies.empty()) return mass;
   const Index d = model.mesh.dimension, dofs = model.space.dof_count();
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& body : model.problem.free_bodies) {
-    const auto first = static_cast<int>(body->centre_node() * d);
-    for (int k = 0; k < 2 * d; ++k) entries.emplace_back(first + k, first + k, body->inertia().mass);
-  }
-  SparseMatrix own(dofs, dofs);
-  own.setFromTriplets(entries.begin(), entries.end());
-  return resized(std::move(mass), dofs) + own;
+  Vector of_bodies = Vector::Zero(dofs);
+  for (const auto& body : model.problem.free_bodies)
+    of_bodies.segment(body->centre_node() * d, 2 * d).setConstant(body->inertia().mass);
+  return resized(std::move(mass), dofs) + diagonal_matrix(of_bodies);
 }
 
 void add_ground(const Case& input, Model& model) {

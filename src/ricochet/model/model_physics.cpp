@@ -142,7 +142,7 @@ void assemble_operators(const Case& input, Model& model) {
     return model.tied.empty() ? matrix : model.tied.condense(matrix, components);
   };
   // Rigid bodies have no cells: masses are built without their nodes.
-  const Index own_nodes = model.space.node_count() - 2 * static_cast<Index>(model.problem.free_bodies.size());
+  const Index own_nodes = model.problem.cell_node_count();
   const auto scalar_mass = [&](const std::vector<double>& weight) {
     SparseMatrix result = condensed(assemble_scalar_mass(model.body, graph, weight), 1);
     result.conservativeResize(own_nodes, own_nodes);

@@ -1,6 +1,6 @@
 #include "ricochet/problem/damping.hpp"
 
-#include <vector>
+#include "ricochet/linear_algebra/diagonal_matrix.hpp"
 
 namespace ricochet {
 
@@ -30,14 +30,7 @@ SparseMatrix Damping::matrix() const {
   const auto add = [&](const SparseMatrix& part) { result = result.rows() == 0 ? part : SparseMatrix(result + part); };
   if (mass_part_) add(mass_part_->whole());
   if (stiffness_part_) add(stiffness_part_->tangent());
-  if (ground_.size() == 0) return result;
-  SparseMatrix own(ground_.size(), ground_.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Index dof = 0; dof < ground_.size(); ++dof) {
-    if (ground_[dof] != 0.0) entries.emplace_back(static_cast<int>(dof), static_cast<int>(dof), ground_[dof]);
-  }
-  own.setFromTriplets(entries.begin(), entries.end());
-  add(own);
+  if (ground_.size() > 0) add(diagonal_matrix(ground_));
   return result;
 }
 

@@ -1,5 +1,7 @@
 #include "ricochet/problem/ground_springs.hpp"
 
+#include "ricochet/linear_algebra/diagonal_matrix.hpp"
+
 namespace ricochet {
 
 GroundSprings::GroundSprings(std::shared_ptr<const InternalForce> bodies, const Vector& stiffness)
@@ -49,12 +51,10 @@ void GroundSprings::mean_forces(const Vector& middle, const Vector& increment, V
 }
 
 SparseMatrix GroundSprings::tangent(const Vector& displacement) const {
-  SparseMatrix result = bodies_->tangent(displacement), own(result.rows(), result.cols());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& [dof, stiffness] : springs_)
-    entries.emplace_back(static_cast<int>(dof), static_cast<int>(dof), stiffness);
-  own.setFromTriplets(entries.begin(), entries.end());
-  return result + own;
+  const SparseMatrix of_bodies = bodies_->tangent(displacement);
+  Vector stiffness = Vector::Zero(of_bodies.rows());
+  for (const auto& [dof, value] : springs_) stiffness[dof] = value;
+  return of_bodies + diagonal_matrix(stiffness);
 }
 
 }  // namespace ricochet

@@ -52,9 +52,9 @@ struct SemidiscreteProblem {
 
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
   [[nodiscard]] bool is_tied_dof(Index dof) const { return tied != nullptr && tied->is_tied(dof / dimension); }
-  [[nodiscard]] bool is_of_free_body(Index node) const {
-    return node >= nodes.cols() - 2 * static_cast<Index>(free_bodies.size());
-  }
+  /// Nodes of cells; those of rigid bodies that move freely come after them.
+  [[nodiscard]] Index cell_node_count() const { return nodes.cols() - 2 * static_cast<Index>(free_bodies.size()); }
+  [[nodiscard]] bool is_of_free_body(Index node) const { return node >= cell_node_count(); }
   /// The second of its nodes: its displacements, velocities and forces are no vectors of space.
   [[nodiscard]] bool is_rotation_node(Index node) const {
     return is_of_free_body(node) && (nodes.cols() - node) % 2 == 1;

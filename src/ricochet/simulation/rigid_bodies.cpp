@@ -14,7 +14,7 @@ RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> bo
       bodies_(static_cast<std::size_t>(count)),
       motion_(static_cast<std::size_t>(count)) {
   std::vector<double> nodes(static_cast<std::size_t>(count), 0.0);
-  for (Index node = 0; node < node_count(); ++node) {
+  for (Index node = 0; node < problem_.cell_node_count(); ++node) {
     const auto b = static_cast<std::size_t>(this->body_of_node(node));
     origin_[b].head(problem.dimension) += problem.nodes.col(node);
     nodes[b] += 1.0;
@@ -31,7 +31,7 @@ RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> bo
 void RigidBodies::find_held() {
   if (problem_.supports.size() == 0) return;
   std::vector<std::vector<Index>> members(bodies_.size());
-  for (Index node = 0; node < node_count(); ++node)
+  for (Index node = 0; node < problem_.cell_node_count(); ++node)
     members[static_cast<std::size_t>(body_of_node(node))].push_back(node);
   for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].held = are_held_at_rest(problem_, members[b]);
 }
@@ -47,12 +47,12 @@ void RigidBodies::measure() {
   const int d = problem_.dimension, first_rotation = d == 2 ? 2 : 0;
   Vector velocity(problem_.dof_count());
   const auto momentum_of = [&](const auto& rigid) {
-    for (Index node = 0; node < node_count(); ++node)
+    for (Index node = 0; node < problem_.cell_node_count(); ++node)
       velocity.segment(node * d, d) = Eigen::Vector3d(rigid(node)).head(d);
     problem_.mass.multiply(velocity, momentum_);
   };
   const auto for_each_node = [&](const auto& visit) {
-    for (Index node = 0; node < node_count(); ++node) {
+    for (Index node = 0; node < problem_.cell_node_count(); ++node) {
       Eigen::Vector3d own = Eigen::Vector3d::Zero();
       own.head(d) = momentum_.segment(node * d, d);
       visit(static_cast<std::size_t>(body_of_node(node)), arm(node), own);
@@ -92,12 +92,12 @@ void RigidBodies::measure() {
 void RigidBodies::measure_round_axis() {
   for (Eigen::Vector3d& origin : origin_) origin[0] = 0.0;
   Vector places(problem_.dof_count());
-  for (Index node = 0; node < node_count(); ++node) places.segment(node * 2, 2) = arm(node).head(2);
+  for (Index node = 0; node < problem_.cell_node_count(); ++node) places.segment(node * 2, 2) = arm(node).head(2);
   problem_.mass.multiply(places, momentum_);
   const Vector moments = momentum_;
   problem_.mass.multiply(Vector::Ones(problem_.dof_count()), momentum_);
   std::vector<double> along(bodies_.size(), 0.0), squared(bodies_.size(), 0.0), across(bodies_.size(), 0.0);
-  for (Index node = 0; node < node_count(); ++node) {
+  for (Index node = 0; node < problem_.cell_node_count(); ++node) {
     const auto b = static_cast<std::size_t>(body_of_node(node));
     bodies_[b].mass += momentum_[node * 2 + 1];
     along[b] += moments[node * 2 + 1];
@@ -116,14 +116,14 @@ void RigidBodies::measure_round_axis() {
 void RigidBodies::measure_at(const Vector& displacement) {
   const int d = problem_.dimension;
   position_.resize(problem_.dof_count());
-  for (Index node = 0; node < node_count(); ++node) {
+  for (Index node = 0; node < problem_.cell_node_count(); ++node) {
     const auto b = static_cast<std::size_t>(body_of_node(node));
     position_.segment(node * d, d) = problem_.nodes.col(node) + displacement.segment(node * d, d) - origin_[b].head(d);
   }
   problem_.mass.multiply(position_, weighted_);
   centre_.assign(bodies_.size(), Eigen::Vector3d::Zero());
   inertia_.assign(bodies_.size(), Eigen::Matrix3d::Zero());
-  for (Index node = 0; node < node_count(); ++node) {
+  for (Index node = 0; node < problem_.cell_node_count(); ++node) {
     const auto b = static_cast<std::size_t>(body_of_node(node));
     centre_[b].head(d) += weighted_.segment(node * d, d);
     inertia_[b].topLeftCorner(d, d) += position_.segment(node * d, d) * weighted_.segment(node * d, d).transpose();
@@ -141,7 +141,7 @@ const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity,
   if (displacement != nullptr) measure_at(*displacement);
   problem_.mass.multiply(velocity, momentum_);
   for (RigidMotionState& state : motion_) state = {};
-  for (Index node = 0; node < node_count(); ++node) {
+  for (Index node = 0; node < problem_.cell_node_count(); ++node) {
     const auto b = static_cast<std::size_t>(body_of_node(node));
     Eigen::Vector3d own = Eigen::Vector3d::Zero(), from_centre = arm(node) + origin_[b] - bodies_[b].centre;
     own.head(d) = momentum_.segment(node * d, d);

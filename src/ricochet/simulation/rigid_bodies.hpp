@@ -22,10 +22,6 @@ class RigidBodies {
                                                             const Vector* displacement = nullptr);
 
  private:
-  /// Without those of rigid bodies that move freely.
-  [[nodiscard]] Index node_count() const {
-    return problem_.nodes.cols() - 2 * static_cast<Index>(problem_.free_bodies.size());
-  }
   [[nodiscard]] Eigen::Vector3d arm(Index node) const;
   void find_held();
   void measure();

@@ -38,7 +38,7 @@ class Stepped {
     Vector end = displacement + h * velocity;
     for (int round = 0; round < 60; ++round) {
       Vector sum = Vector::Zero(2 * d);
-      motion.add_gyroscopic_force(end, velocity, h, 1.0, sum);
+      motion.add_gyroscopic_force(end, velocity, h, sum);
       sum.head(d) += force;
       sum.segment(d, own.size()) += own.cwiseQuotient(motion.gyration());
       const Vector next = displacement + h * velocity + h * h / (2.0 * motion.inertia().mass) * sum;

@@ -1,10 +1,9 @@
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
-#include "ricochet/base/error.hpp"
 #include "ricochet/contact/obstacles/grid_surface.hpp"
 
 namespace ricochet {

@@ -1,10 +1,5 @@
 #include <Eigen/Geometry>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "ricochet/base/error.hpp"
 #include "ricochet/contact/obstacle_shape.hpp"
 
 namespace ricochet {

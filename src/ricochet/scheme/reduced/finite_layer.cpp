@@ -31,8 +31,8 @@ double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vec
 /// Of forces on rigid bodies that move freely: part of the kinetic energy, as on all that has inertia.
 double on_free_bodies(const SemidiscreteProblem& problem, const Vector& force, const Vector& end, const Vector& start) {
   double sum = 0.0;
-  const Index dofs = 2 * problem.dimension * static_cast<Index>(problem.free_bodies.size());
-  for (Index dof = end.size() - dofs; dof < end.size(); ++dof) sum += force[dof] * (end[dof] - start[dof]);
+  for (Index dof = problem.cell_node_count() * problem.dimension; dof < end.size(); ++dof)
+    sum += force[dof] * (end[dof] - start[dof]);
   return sum;
 }
 
@@ -133,7 +133,7 @@ void FiniteLayer::balance(const SemidiscreteProblem& problem, double step, const
   stage.right_hand_side = loads_.mean() - force_ - (4.0 / (step * step)) * right_;
   loads_.add_pressure(stage.right_hand_side);
   for (const auto& body : problem.free_bodies)
-    body->add_gyroscopic_force(end_, state.velocity, step, 1.0, stage.right_hand_side);
+    body->add_gyroscopic_force(end_, state.velocity, step, stage.right_hand_side);
   if (sigma_.value() != 0.0) stage.right_hand_side -= sigma_.value() * strain_force_;
   if (problem.has_damping()) {
     product_ = middle_ - state.displacement;

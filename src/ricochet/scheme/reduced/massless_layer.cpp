@@ -175,8 +175,7 @@ const StageSolution& MasslessLayer::solve(const SemidiscreteProblem& problem, co
   for (int round = 0;; ++round) {
     before_ = state.displacement + step_ * state.velocity + 2.0 * solution->increment;
     nodal_.setZero(problem.dof_count());
-    for (const auto& body : problem.free_bodies)
-      body->add_gyroscopic_force(before_, state.velocity, step_, 1.0, nodal_);
+    for (const auto& body : problem.free_bodies) body->add_gyroscopic_force(before_, state.velocity, step_, nodal_);
     const double size = stage.right_hand_side.lpNorm<Eigen::Infinity>() + nodal_.lpNorm<Eigen::Infinity>();
     const double change = (nodal_ - row_force_).lpNorm<Eigen::Infinity>();
     if (change <= 4.0 * std::numeric_limits<double>::epsilon() * size) return *solution;

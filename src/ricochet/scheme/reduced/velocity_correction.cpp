@@ -48,8 +48,7 @@ void VelocityCorrection::set_mode(int mode, Vector& values) const {
 void VelocityCorrection::mask(Vector& values) const {
   for (const Index dof : problem_.supports.dofs()) values[dof] = 0.0;
   for (const Index dof : problem_.massless_dofs) values[dof] = 0.0;
-  const Index of_rigid = 2 * static_cast<Index>(problem_.free_bodies.size()) * problem_.dimension;
-  values.tail(of_rigid).setZero();
+  values.tail(values.size() - problem_.cell_node_count() * problem_.dimension).setZero();
 }
 
 /// w.

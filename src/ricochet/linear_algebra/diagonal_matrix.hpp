@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+namespace ricochet {
+
+/// With these numbers on the diagonal; zeros have no entry.
+[[nodiscard]] inline SparseMatrix diagonal_matrix(const Vector& diagonal) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index i = 0; i < diagonal.size(); ++i) {
+    if (diagonal[i] != 0.0) entries.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal[i]);
+  }
+  SparseMatrix result(diagonal.size(), diagonal.size());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+}  // namespace ricochet
