@@ -41,7 +41,7 @@ std::array<double, 2> lowest_corner(const Box& box, int d, double degrees) {
 
 }  // namespace
 
-RandomCase make_pair_case(unsigned seed, const std::filesystem::path& folder) {
+RandomCase make_pair_case(unsigned seed, bool sliding, const std::filesystem::path& folder) {
   Random random(seed);
   RandomCase result;
   const int d = random.chance(0.65) ? 2 : 3;
@@ -84,6 +84,9 @@ RandomCase make_pair_case(unsigned seed, const std::filesystem::path& folder) {
     const double place = random.between(0.0, 1.0), overhang = 0.5 * upper.lengths[k];
     move[k] = tilt != 0.0 && k == 0 ? place * lower.lengths[0] - lowest[0] : place * lower.lengths[k] - overhang;
     velocity[k] = speed * random.between(-1.0, 1.0);
+    // Half a length of the lower body, or several.
+    const double fast = std::min(lower.lengths[k] / time * random.between(0.2, 2.0), 0.05 * wave);
+    if (sliding) velocity[k] += (random.chance(0.5) ? 1.0 : -1.0) * fast;
   }
   move[up] = lower.lengths[up] + gap - lowest[1];
   pull[up] = -gravity;
@@ -94,10 +97,12 @@ RandomCase make_pair_case(unsigned seed, const std::filesystem::path& folder) {
     return fmt::format("[part.{}]\nfile = \"{}\"\nturn = {{ angle = {:.9g}{} }}\nmove = {}\nvelocity = {}\n", name,
                        mesh, angle, d == 3 ? ", axis = [0, 1, 0]" : "", vector_text(d, by), vector_text(d, with));
   };
+  const bool finite = sliding && !damped && random.chance(0.5);
   const auto material = [&](const char* name, double of_young, double of_density) {
     std::string text =
         fmt::format("[[material]]\ngroup = \"{}.all\"\ndensity = {:.9g}\nyoung = {:.9g}\npoisson = {:.9g}\n", name,
                     of_density, of_young, random.between(0.0, 0.49));
+    if (finite) text += "law = \"neo-hookean\"\n";
     if (damped) text += fmt::format("damping = {{ stiffness = {:.9g} }}\n", crossing * random.power(-1.0, 3.0));
     return text;
   };
@@ -109,13 +114,15 @@ RandomCase make_pair_case(unsigned seed, const std::filesystem::path& folder) {
   constexpr std::array<const char*, 3> spaces{"p1", "dual", "nodal"};
   constexpr std::array<const char*, 3> sides{"automatic", "group", "against"};
   const bool may_be_constant = degree == 2 && (d == 2 || !(lower_simplices || upper_simplices));
-  const std::string space =
-      may_be_constant && random.chance(0.25) ? "p0" : spaces[static_cast<std::size_t>(random.integer(0, 2))];
+  const std::string space = may_be_constant && random.chance(0.25)
+                                ? "p0"
+                                : spaces[sliding ? 0 : static_cast<std::size_t>(random.integer(0, 2))];
+  const std::string pairing = sliding ? "sliding = \"large\"\n" : "";
   const std::string law = fmt::format("friction = {:.9g}\nmultipliers = \"{}\"\n", result.friction, space);
   // Tilted, so that facets see each other where the bodies will meet.
   text += fmt::format("[[contact]]\ngroup = \"upper.bottom\"\nagainst = \"lower.top\"\nmultipliers_on = \"{}\"\n",
                       sides[static_cast<std::size_t>(random.integer(0, 2))]) +
-          law;
+          pairing + law;
   if (on_floor) {
     text += "[obstacle.floor]\ntype = \"plane\"\npoint = " + vector_text(d, {0.0, 0.0, 0.0}) +
             "\nnormal = " + vector_text(d, normal) + "\n[[contact]]\ngroup = \"lower.bottom\"\nobstacle = \"floor\"\n" +
@@ -124,7 +131,10 @@ RandomCase make_pair_case(unsigned seed, const std::filesystem::path& folder) {
   text += "[load]\ngravity = " + vector_text(d, pull) + "\n";
   result.description = fmt::format("{}D degree {} {} on {} F {:.2f} stiffness {:.2g} crossings {:.3g}{}{}{}", d, degree,
                                    upper_simplices ? "simplices" : "boxes", lower_simplices ? "simplices" : "boxes",
-                                   result.friction, ratio, result.crossings, on_floor ? " on-floor" : "",
+                                   result.friction, ratio, result.crossings,
+                                   on_floor ? " on-floor"
+                                   : finite ? " finite"
+                                            : "",
                                    tilt != 0.0 ? " tilted" : "", damped ? " damped" : "");
   return result;
 }

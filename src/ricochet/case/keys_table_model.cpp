@@ -280,8 +280,9 @@ Section contact_section() {
           {.name = "sliding",
            .type = KeyType::choice,
            .standard = "small",
-           .choices = {"small"},
-           .doc = "Between bodies: small sliding keeps the pairs of facets that were found at the start."},
+           .choices = {"small", "large"},
+           .doc = "Between bodies: small sliding keeps the pairs of facets that were found at the start; with large "
+                  "sliding they follow the motion. See docs/sliding.md."},
           {.name = "unstable_multipliers",
            .type = KeyType::choice,
            .standard = "refuse",

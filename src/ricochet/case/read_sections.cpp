@@ -77,9 +77,10 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
   if (contact.multipliers.empty()) contact.multipliers = contact.against.empty() ? "nodal" : "p1";
   contact.multipliers_on = reader.text("multipliers_on");
   contact.closed_gaps = reader.text("initial_gap") == "closed";
+  contact.slides_far = reader.text("sliding") == "large";
   contact.pair_at = reader.vector("pair_at");
   contact.tied = reader.flag("tied");
-  for (const char* const key : {"friction", "friction_bound", "multipliers", "initial_gap", "pair_at"}) {
+  for (const char* const key : {"friction", "friction_bound", "multipliers", "initial_gap", "pair_at", "sliding"}) {
     if (!contact.tied || !reader.is_given(key)) continue;
     reader.add_problem(key,
                        fmt::format("\"{}\" is of surfaces that may part or slide; these are tied: leave it out", key));
@@ -88,6 +89,16 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
     if (!reader.is_given(key) || reader.is_given("against")) continue;
     reader.add_problem(key, fmt::format("\"{}\" is of contact between bodies; give \"against\", or leave it out", key));
   }
+  if (contact.slides_far && reader.is_given("pair_at"))
+    reader.add_problem("pair_at",
+                       "\"pair_at\" is of small sliding, whose pairs stay; with sliding = \"large\" they follow "
+                       "the motion: leave it out");
+  if (contact.slides_far && contact.multipliers != "p1" && contact.multipliers != "p0")
+    reader.add_problem("multipliers",
+                       fmt::format("multipliers \"{}\" do not go with sliding = \"large\", where facets are "
+                                   "covered in part and by others in every step; take \"p1\", or \"p0\" "
+                                   "with a displacement of degree 2",
+                                   contact.multipliers));
   if (reader.is_usable("against") && contact.against == contact.group) {
     reader.add_problem("against",
                        fmt::format("\"against\" is \"{}\", the group itself: a surface does not touch itself "

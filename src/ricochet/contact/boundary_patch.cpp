@@ -161,6 +161,8 @@ Patches make_patches(const Body& body, const std::vector<ContactPair>& pairs, co
     const auto first = static_cast<std::size_t>(patch->first_pair());
     if (patch->obstacle != nullptr) {
       make_obstacle_patch(body, nodes, *patch);
+    } else if (pairs[first].slides_far) {
+      make_sliding_patch(body, pairs[first], is_free, *patch, facings[first]);
     } else {
       make_body_patch(body, pairs[first], is_free, *patch, facings[first]);
     }

@@ -23,7 +23,8 @@ struct BoundaryPatch {
   std::vector<TiedNodes::Weights> free_traces;
   std::vector<int> numbers;              ///< of the kept multipliers among all contact points
   std::vector<BodyContact::Node> nodes;  ///< of a pair of bodies: those of both sides
-  /// Between bodies of finite strain, of each: its direction.
+  bool slides = false;                   ///< between bodies that slide without limit
+  /// Between bodies of finite strain, and between those that slide, of each: its direction.
   std::vector<TurningNormal> turning;
   std::vector<Index> reached;  ///< nodes that traces reach, tied ones, too
   /// Pressures at the nodes of the group, and of the other side: entries (node, kept multiplier, value).
@@ -46,6 +47,16 @@ struct BoundaryPatch {
 
 /// Normals and gaps of the kept multipliers of a patch at an obstacle.
 void take_obstacle_conditions(const Body& body, BoundaryPatch& patch);
+
+/// The multipliers of a pair of bodies that slide without limit. Throws Error(invalid_input) where facets fold, and at
+/// tied nodes.
+void make_sliding_patch(const Body& body, const ContactPair& pair, const FreeComponent& is_free, BoundaryPatch& patch,
+                        PairFacing& facing);
+
+/// What makes the rows of these follow the motion; null: there are none. Tells the boundary which points they are.
+[[nodiscard]] std::unique_ptr<ContactGeometry> follow_sliding(
+    const Body& body, const std::vector<ContactPair>& pairs, const std::vector<std::unique_ptr<BoundaryPatch>>& patches,
+    const FreeComponent& is_free, ContactBoundary& boundary);
 
 /// Between bodies of finite strain, the directions of the kept multipliers, by the facets around them whose vertices
 /// are contact nodes and not tied: own ones, or where there are none those of the other side. Multipliers without such

@@ -15,10 +15,14 @@ namespace {
 /// Ratio from which two sides differ.
 constexpr double alike = 1.1;
 
+/// Ratio of areas from which a surface is the smaller one, and the ratio of mesh sizes up to which that decides.
+constexpr double smaller_from = 1.5, coarsest = 3.0;
+
 struct Side {
   double size = 0.0;       ///< mean distance of nodes on the facets
   double curvature = 0.0;  ///< mean turn of the normal per length from facet to facet
   double stiffness = 0.0;  ///< the mean of Young's modulus behind the facets, by area
+  double area = 0.0;
 };
 
 /// Of facets that share a node: the angle of their normals over the distance of their centres, the mean of all.
@@ -49,7 +53,7 @@ double curvature_of(const Body& body, const FacetSurface& surface) {
 Side measure(const Body& body, const std::vector<Index>& facets) {
   const FacetSurface surface(body, facets);
   Side side;
-  double area = 0.0;
+  double& area = side.area;
   for (std::size_t k = 0; k < surface.facets().size(); ++k) {
     const FacetSurface::Facet& facet = surface.facets()[k];
     side.size += facet.size / body.space->degree;
@@ -82,6 +86,11 @@ SideChoice choose_side(const Body& body, const ContactPair& pair) {
     return SideChoice{
         opposite, fmt::format("{} ({:.3g} against {:.3g})", what, opposite ? others : own, opposite ? own : others)};
   };
+  if (pair.slides_far && smaller_from * std::min(one.area, other.area) < std::max(one.area, other.area)) {
+    const bool is_other = other.area < one.area;
+    if ((is_other ? other.size : one.size) < coarsest * (is_other ? one.size : other.size))
+      return choice(is_other, "its surface is smaller", one.area, other.area);
+  }
   if (differ(one.size, other.size)) return choice(other.size < one.size, "its mesh is finer", one.size, other.size);
   if (differ(one.curvature, other.curvature))
     return choice(other.curvature > one.curvature, "it is more curved", one.curvature, other.curvature);

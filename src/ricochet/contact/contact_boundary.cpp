@@ -37,6 +37,7 @@ void resize(ContactBoundary& boundary, ContactRows& rows, Index count) {
   boundary.initial_gap.resize(count);
   boundary.weights.resize(count);
   boundary.net.resize(count);
+  boundary.slides_far.assign(static_cast<std::size_t>(count), 0);
   boundary.friction_coefficient.resize(count);
   boundary.friction_bound.resize(count);
 }
@@ -157,7 +158,8 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
     boundary.weights[number] = multiplier.weight;
     boundary.net[number] = patch.obstacle != nullptr ? 1.0 : 0.0;
     operators.add(number, multiplier, patch.free_traces[i], conditions, tangents, patch.follows_motion(),
-                  patch.turning.empty() ? std::vector<Index>{} : patch.turning[i].nodes(), nodes_of_body(patch));
+                  patch.turning.empty() || patch.slides ? std::vector<Index>{} : patch.turning[i].nodes(),
+                  nodes_of_body(patch));
   }
 }
 
@@ -200,6 +202,7 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
   std::vector<std::unique_ptr<ContactGeometry>> parts;
   parts.push_back(follow_curved_obstacles(body, patches, pairs, is_free, boundary));
   parts.push_back(turn_with_bodies(body, pairs, patches, is_free, boundary));
+  parts.push_back(follow_sliding(body, pairs, patches, is_free, boundary));
   std::erase(parts, nullptr);
   if (parts.empty()) return;
   rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
@@ -209,12 +212,14 @@ void follow_motion(const Body& body, const Patches& patches, const std::vector<C
   boundary.geometry->gaps(Vector::Zero(body.space->dof_count()), 0.0, gap);
   boundary.initial_gap = gap;
   rows.gap = gap;
-  const auto moves_freely = [](const ContactPair& pair) {
-    return pair.obstacle != nullptr && pair.obstacle->free_motion() != nullptr;
+  const auto reaches_more = [](const ContactPair& pair) {
+    return pair.slides_far || (pair.obstacle != nullptr && pair.obstacle->free_motion() != nullptr);
   };
-  if (std::none_of(pairs.begin(), pairs.end(), moves_freely)) return;
-  // Where points touch, the entries of these rigid bodies.
+  if (std::none_of(pairs.begin(), pairs.end(), reaches_more)) return;
+  // Where points touch, the entries of rigid bodies that move freely, and those of what faces them.
   boundary.geometry->update(Vector::Zero(body.space->dof_count()), 0.0, nullptr, rows);
+  // The rows of the start, whoever else numbers those that come later.
+  rows.revision.assign(static_cast<std::size_t>(rows.size()), 0);
 }
 
 }  // namespace
@@ -239,6 +244,7 @@ Index freest_node(const BoundaryPatch& patch, std::size_t kept, int dimension, c
 
 std::vector<Index> ContactBoundary::unique_nodes() const {
   std::vector<Index> result(trace.innerIndexPtr(), trace.innerIndexPtr() + trace.nonZeros());
+  result.insert(result.end(), reachable_nodes.begin(), reachable_nodes.end());
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

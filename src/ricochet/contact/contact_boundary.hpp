@@ -45,6 +45,7 @@ struct ContactPair {
   std::vector<Index> opposite_facets = {};
   Vector pair_at = {};           ///< displacement of the group's body at which facets are paired; empty: none
   bool closed_gaps = false;      ///< initial gaps below zero are taken for zero
+  bool slides_far = false;       ///< facets are paired anew as the bodies move (sliding/sliding_pair.hpp)
   bool tied = false;             ///< glued (tied_surfaces.hpp): there are no contact points
   bool exchanged = false;        ///< the case names `opposite_group` first: reports give forces on its body
   std::string side_reason = {};  ///< why `group` carries the multipliers; empty: the case says which one does
@@ -91,6 +92,12 @@ struct ContactBoundary {
   Vector net;                                       ///< Σ_j t_ij: 1 at obstacles, 0 between bodies
   std::shared_ptr<const ContactRows> rows;          ///< at the start: against planes for good
   std::shared_ptr<const ContactGeometry> geometry;  ///< null where rows never change
+  /// Between bodies that slide far: 1. Their rows of `trace` are those of c alone: what they see changes with the
+  /// motion.
+  std::vector<char> slides_far;
+  std::vector<Index> reachable_nodes;  ///< of both surfaces of these
+  double out_of_sight = 0.0;           ///< the gap of such a point where it faces nothing
+  std::vector<Index> opposite_node;  ///< per ContactPair, one of the opposite surface of a pair that slides far, or −1
 
   // Per node of the contact boundary (once per obstacle or pair), for what is reported node by node:
   std::vector<Index> nodes;        ///< ascending; all nodes that the trace of some point reaches
@@ -124,6 +131,10 @@ struct ContactBoundary {
     return SparseRowMatrix::InnerIterator(own_trace, point).col();
   }
   [[nodiscard]] bool between_bodies(Index point) const { return net[point] == 0.0; }
+  [[nodiscard]] bool slides(Index point) const {
+    return !slides_far.empty() && slides_far[static_cast<std::size_t>(point)] != 0;
+  }
+  [[nodiscard]] bool has_sliding_pairs() const { return !reachable_nodes.empty(); }
   /// Calls visit(point, value) for the points that the pressure at an entry of `nodes` comes from.
   template <class Visit>
   void visit_recovery(Index entry, const Visit& visit) const {
@@ -142,7 +153,7 @@ struct ContactBoundary {
       result += entry.value() * node_positions.col(entry.col());
     return result;
   }
-  /// The nodes that the trace of some point reaches, ascending, each once.
+  /// The nodes that the row of some point may reach, ascending, each once.
   [[nodiscard]] std::vector<Index> unique_nodes() const;
 };
 

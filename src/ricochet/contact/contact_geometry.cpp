@@ -28,6 +28,20 @@ class CombinedGeometry final : public ContactGeometry {
   void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const override {
     for (const auto& part : parts_) part->update(displacement, time, start, rows);
   }
+  void begin_step() const override {
+    for (const auto& part : parts_) part->begin_step();
+  }
+  bool hold() const override {
+    bool any = false;
+    for (const auto& part : parts_) any = part->hold() || any;
+    return any;
+  }
+  void end_step() const override {
+    for (const auto& part : parts_) part->end_step();
+  }
+  void allow_overlap(Vector& gap) const override {
+    for (const auto& part : parts_) part->allow_overlap(gap);
+  }
   void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {
     for (const auto& part : parts_) part->add_couples(place, rows, normal, tangential, force);

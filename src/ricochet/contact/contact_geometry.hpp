@@ -30,6 +30,15 @@ class ContactGeometry {
   /// from touching beside what gaps have changed since the last look keep theirs. `start`: rows are those of the step
   /// from there, null: of that instant.
   virtual void update(const Vector& displacement, double time, const StepStart* start, ContactRows& rows) const = 0;
+  /// A step begins, or begins again. Nothing is held any more.
+  virtual void begin_step() const {}
+  /// Rounds of a step that come no nearer, as what faces what changes from one to the next, may ask for this: until the
+  /// step is done, rows stay as they are and gaps are linear. False: there is nothing to hold, or it is held already.
+  virtual bool hold() const { return false; }
+  virtual void end_step() const {}
+  /// To the gaps of a step's end: what points were inside of the other body where it began. Steps that were held leave
+  /// that, and to push it out would give energy; it may only not grow.
+  virtual void allow_overlap(Vector& /*gap*/) const {}
   /// Adds what the forces of reactions are at a place beyond those of the rows, where rows are those of a step: couples
   /// that take back their moment about that place, on the nodes of bodies that touch each other, and on rigid bodies
   /// that move freely. Nothing at other obstacles. `tangential` may be empty.

@@ -20,6 +20,9 @@ struct ContactRows {
   SparseRowMatrix tangential_trace;  ///< B_T, (d−1)·points × dofs; a row is zero where nothing slips
   Vector gap;                        ///< where rows may change: at the last look
   std::vector<long> revision;        ///< per point: another number, another row; empty where rows never change
+  /// Of contact between bodies that slide far, where rows reach other nodes as the bodies go: from which places they
+  /// were made. Empty: rows have the same entries for the whole run.
+  Vector places;
 
   [[nodiscard]] Index size() const { return normals.cols(); }
   [[nodiscard]] int dimension() const { return static_cast<int>(normals.rows()); }

@@ -16,7 +16,8 @@ class FacetSurface {
   using Three = Eigen::Vector3d;
   /// A segment or, in three dimensions, a triangle between nodes of a facet.
   struct Piece {
-    int facet = 0;  ///< its place in facets()
+    int facet = 0;               ///< its place in facets()
+    std::array<Index, 3> nodes;  ///< of the mesh, at the corners
     std::array<Three, 3> corners;
     Three normal;  ///< out of the body, of length 1
   };
@@ -33,6 +34,12 @@ class FacetSurface {
   /// `facets`: numbered through all blocks, ascending. They are seen where they are displaced by `shift` (d; empty: not
   /// at all).
   FacetSurface(const Body& body, const std::vector<Index>& facets, const Vector& shift = {});
+  /// Of a surface that moves: facets of second order have all their pieces, whether or not they are curved at the
+  /// start.
+  [[nodiscard]] static FacetSurface moving(const Body& body, const std::vector<Index>& facets);
+  /// Takes the pieces to where the nodes of the mesh are now; sizes and heights stay those of the start. Allocates
+  /// nothing.
+  void move(const Points& nodes);
 
   [[nodiscard]] const std::vector<Facet>& facets() const { return facets_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
@@ -44,14 +51,18 @@ class FacetSurface {
   [[nodiscard]] const Vector& shift() const { return shift_; }
 
  private:
+  FacetSurface(const Body& body, const std::vector<Index>& facets, const Vector& shift, bool moves);
   void add_facet(const Body& body, Index facet, Index cell);
+  void place(Facet& facet);
 
   std::vector<Facet> facets_;
   std::vector<Index> cells_;
   std::vector<Piece> pieces_;
   std::map<Index, double> node_height_;
   Vector shift_;
-  BoxTree tree_;  ///< of the pieces
+  bool plane_, moves_;
+  std::vector<BoxTree::Box> boxes_;  ///< of the pieces
+  BoxTree tree_;
 };
 
 }  // namespace ricochet

@@ -15,17 +15,46 @@ Values values_between(const SparseRowMatrix& rows, Index first, Index last) {
   return {rows.valuePtr() + begin, rows.outerIndexPtr()[last] - begin};
 }
 
-double change_between(const SparseRowMatrix& from, const SparseRowMatrix& to, Index first, Index last) {
-  const Values before = values_between(from, first, last), after = values_between(to, first, last);
-  if (before.size() == 0) return 0.0;
-  const double size = before.lpNorm<Eigen::Infinity>(), change = (after - before).lpNorm<Eigen::Infinity>();
-  if (size > 0.0) return change / size;
-  return change > 0.0 ? 1.0 : 0.0;
+bool reach_the_same(const SparseRowMatrix& one, const SparseRowMatrix& other, Index first, Index last) {
+  const Index begin = one.outerIndexPtr()[first], count = one.outerIndexPtr()[last] - begin;
+  if (other.outerIndexPtr()[last] - other.outerIndexPtr()[first] != count) return false;
+  const int* const columns = one.innerIndexPtr() + begin;
+  return std::equal(columns, columns + count, other.innerIndexPtr() + other.outerIndexPtr()[first]);
 }
 
-void copy_between(const SparseRowMatrix& from, SparseRowMatrix& to, Index first, Index last) {
-  const Values values = values_between(from, first, last);
-  std::copy_n(values.data(), values.size(), to.valuePtr() + to.outerIndexPtr()[first]);
+/// The largest value of a row, and the largest difference of one and another.
+struct RowSizes {
+  double size = 0.0, difference = 0.0;
+};
+RowSizes compare_rows(const SparseRowMatrix& from, const SparseRowMatrix& to, Index row) {
+  RowSizes result;
+  SparseRowMatrix::InnerIterator one(from, row), other(to, row);
+  while (one || other) {
+    const bool has_one = one && (!other || one.col() <= other.col()),
+               has_other = other && (!one || other.col() <= one.col());
+    const double before = has_one ? one.value() : 0.0, after = has_other ? other.value() : 0.0;
+    result.size = std::max(result.size, std::abs(before));
+    result.difference = std::max(result.difference, std::abs(after - before));
+    if (has_one) ++one;
+    if (has_other) ++other;
+  }
+  return result;
+}
+
+double change_between(const SparseRowMatrix& from, const SparseRowMatrix& to, Index first, Index last) {
+  RowSizes sizes;
+  if (reach_the_same(from, to, first, last)) {
+    const Values before = values_between(from, first, last), after = values_between(to, first, last);
+    if (before.size() > 0) sizes = {before.lpNorm<Eigen::Infinity>(), (after - before).lpNorm<Eigen::Infinity>()};
+    first = last;
+  }
+  for (Index row = first; row < last; ++row) {
+    const RowSizes of_row = compare_rows(from, to, row);
+    sizes.size = std::max(sizes.size, of_row.size);
+    sizes.difference = std::max(sizes.difference, of_row.difference);
+  }
+  if (sizes.size > 0.0) return sizes.difference / sizes.size;
+  return sizes.difference > 0.0 ? 1.0 : 0.0;
 }
 
 }  // namespace
@@ -57,13 +86,34 @@ double change_of_rows(const ContactRows& from, const ContactRows& to, Index poin
                   change_between(from.tangential_trace, to.tangential_trace, point * tangents, (point + 1) * tangents));
 }
 
-void copy_point(const ContactRows& from, ContactRows& to, Index point) {
+void PointCopier::copy_rows(const SparseRowMatrix& from, SparseRowMatrix& to, Index first, Index last,
+                            RowWriter& writer) {
+  if (reach_the_same(from, to, first, last)) {
+    const Values values = values_between(from, first, last);
+    std::copy_n(values.data(), values.size(), to.valuePtr() + to.outerIndexPtr()[first]);
+    return;
+  }
+  for (Index row = first; row < last; ++row) {
+    entries_.clear();
+    for (SparseRowMatrix::InnerIterator entry(from, row); entry; ++entry)
+      entries_.emplace_back(entry.col(), entry.value());
+    writer.set(row, entries_);
+  }
+}
+
+void PointCopier::copy(const ContactRows& from, ContactRows& to, Index point) {
   const Index tangents = from.dimension() - 1, first = point * tangents, last = first + tangents;
-  copy_between(from.gap_operator, to.gap_operator, point, point + 1);
-  copy_between(from.tangential_trace, to.tangential_trace, first, last);
+  copy_rows(from.gap_operator, to.gap_operator, point, point + 1, gap_);
+  copy_rows(from.tangential_trace, to.tangential_trace, first, last, slip_);
   to.normals.col(point) = from.normals.col(point);
   to.tangents[static_cast<std::size_t>(point)] = from.tangents[static_cast<std::size_t>(point)];
   for (Index k = first; k < last; ++k) to.slips[static_cast<std::size_t>(k)] = from.slips[static_cast<std::size_t>(k)];
+}
+
+void PointCopier::finish(ContactRows& to) {
+  changed_.resize(static_cast<std::size_t>(to.tangential_trace.rows() + to.gap_operator.rows()));
+  gap_.write(to.gap_operator, changed_);
+  slip_.write(to.tangential_trace, changed_);
 }
 
 }  // namespace ricochet

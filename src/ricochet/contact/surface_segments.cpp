@@ -101,7 +101,7 @@ SegmentFinder::SegmentFinder(const FacetMap& map, const FacetSurface& own, const
       triangle_(quadrature(CellShape::triangle, degree)) {}
 
 /// The opposite pieces that an own piece faces.
-void SegmentFinder::cut_piece(const View& view, int number, std::vector<Cut>& cuts) const {
+void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std::vector<Cut>& cuts) const {
   const FacetSurface::Piece& piece = own_.pieces()[static_cast<std::size_t>(number)];
   if (-view.direction.dot(piece.normal) < edge_on) return;
   const SeenPiece own = view.flatten(piece);
@@ -110,11 +110,12 @@ void SegmentFinder::cut_piece(const View& view, int number, std::vector<Cut>& cu
     const PlanePoint at = view.seen(corner);
     seen.extend(Three(at[0], at[1], view.direction.dot(corner)));
   }
-  const double own_height = own_.facets()[static_cast<std::size_t>(piece.facet)].height;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const double own_height = any_depth ? infinite : own_.facets()[static_cast<std::size_t>(piece.facet)].height;
   const auto may_face = [&](const BoxTree::Box& box) {
     return overlaps(box, view.first, seen.min()[0], seen.max()[0]) &&
            (view.plane || overlaps(box, view.second, seen.min()[1], seen.max()[1])) &&
-           overlaps(box, view.direction, -std::numeric_limits<double>::infinity(), seen.max()[2] + own_height);
+           overlaps(box, view.direction, -infinite, seen.max()[2] + own_height);
   };
   opposite_.tree().visit(may_face, [&](int other) {
     const FacetSurface::Piece& candidate = opposite_.pieces()[static_cast<std::size_t>(other)];
@@ -127,7 +128,7 @@ void SegmentFinder::cut_piece(const View& view, int number, std::vector<Cut>& cu
     PlanePoint centre = PlanePoint::Zero();
     for (int k = 0; k < cut.common.count; ++k) centre += cut.common.at(k) / cut.common.count;
     const double other_height = opposite_.facets()[static_cast<std::size_t>(candidate.facet)].height;
-    if (cut.gap_at(centre) < -deepest_overlap * std::min(own_height, other_height)) return;
+    if (!any_depth && cut.gap_at(centre) < -deepest_overlap * std::min(own_height, other_height)) return;
     cuts.push_back(std::move(cut));
   });
 }
@@ -189,7 +190,7 @@ bool SegmentFinder::find_coordinates(Index facet, const Points& axes, SurfaceSeg
          map_.invert(segment.opposite, axes, seen_at(opposite_.shift()), segment.opposite_local);
 }
 
-FacetSegments SegmentFinder::find(int facet, const Three& direction) const {
+FacetSegments SegmentFinder::find(int facet, const Three& direction, bool any_depth) const {
   const View view(static_cast<int>(own_.shift().size()), direction);
   FacetSegments result;
   result.axes = view.axes();
@@ -198,7 +199,7 @@ FacetSegments SegmentFinder::find(int facet, const Three& direction) const {
   std::vector<Cut> cuts;
   for (int piece = own.first_piece; piece < own.first_piece + own.piece_count; ++piece) {
     cuts.clear();
-    cut_piece(view, piece, cuts);
+    cut_piece(view, piece, any_depth, cuts);
     seen += view.flatten(own_.pieces()[static_cast<std::size_t>(piece)]).area;
     add_points(view, cuts, result.segments);
   }

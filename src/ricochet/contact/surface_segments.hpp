@@ -38,8 +38,8 @@ class SegmentFinder {
   /// `facet`: place in own.facets(). `direction`: unit, out of the opposite surface. Pieces that are seen nearly
   /// edge-on, or do not face each other, count for nothing, and so do those that lie inside of each other by more than
   /// half of the height of the cells behind them: a line that passes through a thin body meets its far side there. Of
-  /// several pieces behind each other the nearest counts.
-  [[nodiscard]] FacetSegments find(int facet, const Eigen::Vector3d& direction) const;
+  /// several pieces behind each other the nearest counts. `any_depth`: no overlap is too deep.
+  [[nodiscard]] FacetSegments find(int facet, const Eigen::Vector3d& direction, bool any_depth = false) const;
 
   /// A point of the own side, seen along a direction: the facet that it faces, and where. None: facet −1.
   /// What is off a facet by less, in its size, is on it.
@@ -57,7 +57,7 @@ class SegmentFinder {
  private:
   struct View;
   struct Cut;
-  void cut_piece(const View& view, int piece, std::vector<Cut>& cuts) const;
+  void cut_piece(const View& view, int piece, bool any_depth, std::vector<Cut>& cuts) const;
   void add_points(const View& view, const std::vector<Cut>& cuts, std::vector<SurfaceSegment>& segments) const;
   [[nodiscard]] bool find_coordinates(Index facet, const Points& axes, SurfaceSegment& segment) const;
 

@@ -102,7 +102,8 @@ void add_nodes(const Body& body, const std::vector<ContactPair>& pairs, const Co
   for (std::size_t i = 0; i < boundary.nodes.size(); ++i) {
     const int number = boundary.node_pair[i];
     const ContactPair& pair = pairs[static_cast<std::size_t>(number)];
-    if (!pair.has_two_sides() || std::isnan(boundary.node_initial_gap[static_cast<Index>(i)])) continue;
+    if (!pair.has_two_sides() || pair.slides_far || std::isnan(boundary.node_initial_gap[static_cast<Index>(i)]))
+      continue;
     const bool opposite = boundary.is_opposite[i] != 0;
     auto known = around_nodes.find({number, opposite});
     if (known == around_nodes.end()) {
@@ -128,7 +129,7 @@ void find_turning_normals(const Body& body, const std::vector<ContactPair>& pair
     for (const TiedNodes::Tie& tie : body.tied->ties()) marked[static_cast<std::size_t>(tie.node)] = 0;
   }
   for (const auto& patch : patches) {
-    if (patch->obstacle != nullptr) continue;
+    if (patch->obstacle != nullptr || patch->slides) continue;
     const ContactPair& pair = pairs[static_cast<std::size_t>(patch->first_pair())];
     const FacetsAround own =
         facets_around_nodes(*body.space, of_marked_nodes(*body.space, patch->facets.parts.front().facets, marked));
@@ -163,7 +164,7 @@ std::unique_ptr<ContactGeometry> turn_with_bodies(const Body& body, const std::v
                                                   const ContactBoundary& boundary) {
   TurningPairsData data;
   for (const auto& patch : patches) {
-    if (patch->turning.empty()) continue;
+    if (patch->turning.empty() || patch->slides) continue;
     for (std::size_t i = 0; i < patch->kept.size(); ++i) data.points.push_back(turning_point(body, *patch, i, is_free));
   }
   if (data.points.empty()) return nullptr;

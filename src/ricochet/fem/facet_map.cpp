@@ -147,6 +147,16 @@ void FacetMap::evaluate(Index facet, const Points& axes, const Vector& weights, 
   }
 }
 
+PolynomialMap<3> FacetMap::map_of(Index facet) const {
+  return geometry(locate_facet(*body_.space, facet));
+}
+
+double FacetMap::density(const PolynomialMap<3>::Place& at) const {
+  const auto& [along, across] = at.slopes;
+  const double area = body_.mesh->dimension == 2 ? along.norm() : along.cross(across).norm();
+  return is_axisymmetric(body_) ? ring_length(at.at[0]) * area : area;
+}
+
 void FacetMap::displacement(Index facet, const Points& local, Matrix& values) const {
   tabulate(shapes_[locate_facet(*body_.space, facet).block].displacement, local, values);
 }

@@ -29,6 +29,10 @@ class FacetMap {
   /// Shape functions at points.local. `weights` are areas in the plane of the axes, from which the measures on the
   /// facet come: the area of the facet over that of its projection.
   void evaluate(Index facet, const Points& axes, const Vector& weights, FacetPoints& points) const;
+  /// Area per reference area, in two dimensions length; of axisymmetric bodies that of the ring.
+  [[nodiscard]] double density(const PolynomialMap<3>::Place& at) const;
+  /// x(ξ) with the derivatives along the axes of the reference facet; a third component is 0 in two dimensions.
+  [[nodiscard]] PolynomialMap<3> map_of(Index facet) const;
   /// Shape functions of the displacement, and the hat functions of the vertices, at points: nodes × points.
   void displacement(Index facet, const Points& local, Matrix& values) const;
   void hats(Index facet, const Points& local, Matrix& values) const;

@@ -2,10 +2,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/contact/choose_side.hpp"
+#include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/model/model_parts.hpp"
 
 /// @file [[contact]] between bodies: which side carries the multipliers, and how the groups face each other.
@@ -68,6 +70,24 @@ void warn_of_overlap_where_paired(const Case& input, std::size_t number, const M
       counted(overlap.inside, "contact point is", "contact points are"), overlap.deepest, place_text(overlap.place)));
 }
 
+/// What a point sees that slides far is told by its body.
+void check_sliding_bodies(const Case& input, const std::string& key, const Model& model, const ContactPair& pair) {
+  const std::vector<int> body_of_node = find_connected_bodies(model.space).of_node;
+  const auto check = [&](const std::vector<Index>& facets, const char* name, const std::string& group) {
+    std::set<int> bodies;
+    for (const Index node : facet_nodes(model.space, facets))
+      bodies.insert(body_of_node[static_cast<std::size_t>(node)]);
+    if (bodies.size() < 2) return;
+    refuse(
+        input, key + name,
+        fmt::format("with sliding = \"large\" each side is the surface of one body, and \"{}\" is on {} bodies; give "
+                    "each of them a contact of its own",
+                    group, bodies.size()));
+  };
+  check(pair.facets, "group", pair.group);
+  check(pair.opposite_facets, "against", pair.opposite_group);
+}
+
 }  // namespace
 
 ContactPair body_pair(const Case& input, std::size_t number, const Model& model) {
@@ -81,6 +101,7 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
   pair.friction = {section.friction, section.friction_bound};
   pair.multipliers = section.multipliers;
   pair.closed_gaps = section.closed_gaps;
+  pair.slides_far = section.slides_far;
   pair.tied = section.tied;
   if (!section.pair_at.empty())
     pair.pair_at = Eigen::Map<const Vector>(section.pair_at.data(), static_cast<Index>(section.pair_at.size()));
@@ -93,6 +114,7 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
                        "facets of one body in each",
                        section.group, section.against, counted(common.size(), "facet")));
   }
+  if (pair.slides_far) check_sliding_bodies(input, key, model, pair);
   const bool is_chosen = section.multipliers_on == "automatic";
   const SideChoice choice =
       is_chosen ? choose_side(model.body, pair) : SideChoice{section.multipliers_on == "against", ""};
@@ -115,6 +137,9 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
 void check_facing(const Case& input, std::size_t number, const Model& model) {
   const ContactPair& pair = model.contact_pairs[number];
   const PairFacing& facing = model.pair_facings[number];
+  if (pair.slides_far && facing.points + facing.held > 0 && facing.uncovered == facing.points) {
+    log::info(fmt::format("{} do not face each other at the start: contact begins where they do", names_of_pair(pair)));
+  }
   if (facing.points == 0 && facing.held == 0) {
     refuse(input, fmt::format("contact.{}.against", number),
            fmt::format("{} do not face each other: seen along the normals of \"{}\" there is no facet of \"{}\"; check "

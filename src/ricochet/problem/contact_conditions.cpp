@@ -36,6 +36,12 @@ void take_rows(const SemidiscreteProblem& problem, const Vector& displacement, d
   problem.contact.geometry->update(displacement, time, start, own_rows(problem, stage));
 }
 
+/// Gaps where a step ends, or at an instant.
+void take_gaps(const SemidiscreteProblem& problem, const Vector& displacement, double time, bool of_step, Vector& gap) {
+  problem.gaps(displacement, time, gap);
+  if (of_step && problem.contact.follows_motion()) problem.contact.geometry->allow_overlap(gap);
+}
+
 /// The obstacles' velocities along the rows of the stage.
 const ObstacleMotion& along_rows(const ObstacleMotion& velocity, Stage& stage) {
   if (velocity.in_space.size() == 0) return velocity;
@@ -62,7 +68,7 @@ void take_slip(const SemidiscreteProblem& problem, const Vector& velocity, const
 void require_no_penetration(const SemidiscreteProblem& problem, const Vector& base, double time, Stage& stage,
                             const StepStart* start) {
   take_rows(problem, base, time, start, stage);
-  problem.gaps(base, time, stage.gap_offset);
+  take_gaps(problem, base, time, start != nullptr, stage.gap_offset);
   stage.gap_offset_rounding = stage.rows->gap_rounding;
   stage.gap_factor = 1.0;
   stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
@@ -109,7 +115,7 @@ void linearize_contact(const SemidiscreteProblem& problem, const Vector& increme
   motion.solution = motion.displacement + stage.gap_factor * increment;
   const StepStart start{motion.start, motion.start_time};
   take_rows(problem, motion.solution, motion.time, motion.start.size() > 0 ? &start : nullptr, stage);
-  problem.gaps(motion.solution, motion.time, stage.gap_offset);
+  take_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.gap_offset);
   stage.rows->normal_motion(increment, motion.gap_change);
   stage.gap_offset -= stage.gap_factor * motion.gap_change;
   if (stage.slip_offset.size() == 0) return;
@@ -122,7 +128,7 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
   ContactMotion& motion = *stage.motion;
   const Vector& increment = solution.contact_motion();
   motion.solution = motion.displacement + stage.gap_factor * increment;
-  problem.gaps(motion.solution, motion.time, gap);
+  take_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, gap);
   stage.rows->normal_motion(increment, motion.gap_change);
   problem.trace_rounding(increment, motion.gap_change_rounding);
   constexpr double none = -std::numeric_limits<double>::infinity();

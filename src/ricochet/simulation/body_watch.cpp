@@ -54,7 +54,7 @@ void BodyWatch::take_kept(const std::vector<KeptNode>& kept, const ConnectedBodi
 
 /// Gaps of nodes that face nothing are no numbers.
 double BodyWatch::Kept::depth_allowed(const Vector& gap) const {
-  return allowance + (gap[entry] < 0.0 ? -gap[entry] : 0.0);
+  return allowance + (entry >= 0 && gap[entry] < 0.0 ? -gap[entry] : 0.0);
 }
 
 void BodyWatch::look(const Vector& displacement, double time, bool now, const NodeGaps& gaps) {

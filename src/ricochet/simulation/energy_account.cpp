@@ -1,5 +1,8 @@
 #include "ricochet/simulation/energy_account.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "ricochet/problem/viscous_force.hpp"
 
 namespace ricochet {
@@ -9,22 +12,25 @@ EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& s
   const Energies start = energies(state);
   initial_ = start.total() + start.algorithmic;
   initial_algorithmic_ = start.algorithmic;
+  if (problem.contact.has_sliding_pairs()) problem.gaps(state.displacement, state.time, gap_before_);
 }
 
 EnergyAccount::EnergyAccount(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
                              const Snapshot& snapshot, const std::string& name)
     : problem_(problem), scheme_(scheme), rule_(scheme.work_rule()), previous_(state.forces) {
-  const Vector& works = snapshot.reals(name + ".works", 9);
-  works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6], works[7], works[8]};
+  const Vector& works = snapshot.reals(name + ".works", 10);
+  works_ = {works[0], works[1], works[2], works[3], works[4], works[5], works[6], works[7], works[8], works[9]};
   initial_ = snapshot.real(name + ".initial");
   initial_algorithmic_ = snapshot.real(name + ".initial_algorithmic");
+  if (problem.contact.has_sliding_pairs()) gap_before_ = snapshot.reals(name + ".gap_before", problem.contact.size());
 }
 
 void EnergyAccount::save(Snapshot& snapshot, const std::string& name) const {
-  Vector works(9);
+  Vector works(10);
   works << works_.load, works_.contact, works_.friction, works_.support, works_.obstacle, works_.damping,
-      works_.numerical_dissipation, works_.integration_error, works_.viscous_dissipation;
+      works_.numerical_dissipation, works_.integration_error, works_.viscous_dissipation, works_.re_pairing;
   snapshot.save(name + ".works", works);
+  if (problem_.contact.has_sliding_pairs()) snapshot.save(name + ".gap_before", gap_before_);
   snapshot.save(name + ".initial", initial_);
   snapshot.save(name + ".initial_algorithmic", initial_algorithmic_);
 }
@@ -51,12 +57,34 @@ void EnergyAccount::find_motion(const ContactRows& rows, const Vector& increment
   if (problem_.contact.has_friction()) slip_on_obstacles(rows, increment, obstacle, slip_increment_);
 }
 
+void EnergyAccount::look_at_gaps(const State& state) {
+  problem_.gaps(state.displacement, state.time, gap_now_);
+  unsettled_gap_ = 0.0;
+  for (Index i = 0; i < gap_now_.size(); ++i) {
+    if (problem_.contact.slides(i) && state.forces.normal_reaction[i] > 0.0 &&
+        gap_now_[i] < problem_.contact.out_of_sight)
+      unsettled_gap_ = std::max(unsettled_gap_, std::abs(gap_now_[i]));
+  }
+}
+
+/// Along the rows that the motion has just been found along.
+void EnergyAccount::enter_re_pairing(const StepForces& forces, double weight) {
+  const Vector& normal = forces.acting_normal();
+  for (Index i = 0; i < normal.size(); ++i) {
+    if (normal[i] == 0.0 || !problem_.contact.slides(i)) continue;
+    // From nothing to something is no change of a gap.
+    if (std::max(gap_now_[i], gap_before_[i]) >= problem_.contact.out_of_sight) continue;
+    works_.re_pairing += weight * normal[i] * (gap_increment_[i] - (gap_now_[i] - gap_before_[i]));
+  }
+}
+
 /// `rows`: those that the motion was found along before.
 void EnergyAccount::enter(const StepForces& forces, double weight, const Vector& increment, const ContactRows*& rows) {
   if (weight == 0.0) return;
   if (rows != forces.rows.get()) find_motion(*forces.rows, increment, obstacle_);
   rows = forces.rows.get();
   const StepWorks step = works_of(forces, increment, obstacle_);
+  if (gap_now_.size() > 0) enter_re_pairing(forces, weight);
   works_.contact += weight * step.contact;
   works_.friction += weight * step.friction;
   works_.obstacle += weight * step.obstacle;
@@ -67,6 +95,7 @@ void EnergyAccount::enter(const StepForces& forces, double weight, const Vector&
 
 void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   obstacle_ = state.obstacle_increment;
+  if (problem_.contact.has_sliding_pairs()) look_at_gaps(state);
   // Forces work along the rows that they act through: those of the two ends of a step differ where they follow the
   // motion, and with the account of either for the other energy would be missing.
   const ContactRows* rows = nullptr;
@@ -86,6 +115,7 @@ void EnergyAccount::enter_step(const Vector& increment, const State& state) {
   works_.integration_error += corrections.integration_error;
   works_.viscous_dissipation += corrections.viscous_dissipation;
   previous_ = state.forces;
+  std::swap(gap_before_, gap_now_);
   algorithmic_.reset();
 }
 

@@ -19,6 +19,9 @@ struct Works {
   double numerical_dissipation = 0.0;  ///< taken away by the scheme, positive when energy is lost
   double integration_error = 0.0;      ///< what the scheme's internal forces miss of the change of the elastic energy
   double viscous_dissipation = 0.0;    ///< of stress that relaxes, which turns into heat; never falls
+  /// Part of `contact`: of normal reactions between bodies that slide far, on what their rows miss of the change of the
+  /// gaps. Zero to rounding for rows of steps (sliding_contact.hpp), but where facets come and go at once.
+  double re_pairing = 0.0;
 
   [[nodiscard]] double sum() const { return load + contact + friction + support + obstacle + damping; }
 };
@@ -57,6 +60,9 @@ class EnergyAccount {
   /// total + algorithmic − initial values − Σ works + numerical and viscous dissipation − integration error: zero to
   /// rounding.
   [[nodiscard]] double residual(const Energies& now) const;
+  /// Between bodies that slide far: the largest gap, or overlap, of points that were pressed in the last step. Zero to
+  /// rounding but where a step has been held (ContactGeometry::hold).
+  [[nodiscard]] double unsettled_gap() const { return unsettled_gap_; }
   /// The velocity that `energies` was last computed from, for this state.
   [[nodiscard]] const Vector& velocity(const State& state) const {
     return scheme_.energy_instant() == 0.0 ? state.velocity : velocity_;
@@ -68,6 +74,8 @@ class EnergyAccount {
   };
   [[nodiscard]] double algorithmic(const State& state);
   [[nodiscard]] StepWorks works_of(const StepForces& forces, const Vector& increment, const ObstacleMotion& obstacle);
+  void look_at_gaps(const State& state);
+  void enter_re_pairing(const StepForces& forces, double weight);
   void enter(const StepForces& forces, double weight, const Vector& increment, const ContactRows*& rows);
   /// Motion of the contact points over the step along these rows, and that of the obstacles.
   void find_motion(const ContactRows& rows, const Vector& increment, ObstacleMotion& obstacle);
@@ -81,6 +89,8 @@ class EnergyAccount {
   std::optional<double> algorithmic_;  ///< of the last step, once it was asked for
   Vector displacement_, velocity_;     ///< of the scheme's instant, where that is not the state's
   Vector gap_increment_, slip_increment_;
+  Vector gap_before_, gap_now_;  ///< where bodies slide far
+  double unsettled_gap_ = 0.0;
   ObstacleMotion obstacle_;
 };
 

@@ -36,12 +36,45 @@ FacetSizes facet_sizes(const Body& body, const std::vector<Index>& facets) {
   return result;
 }
 
+namespace {
+
+/// Both sides of a pair that slides far: which facets a node faces is not known beforehand.
+void add_sliding_nodes(const Body& body, const ContactBoundary& contact, const ContactPair& pair, int number,
+                       const std::vector<int>& body_of_node, std::vector<KeptNode>& result) {
+  const FacetSizes own = facet_sizes(body, pair.facets), opposite = facet_sizes(body, pair.opposite_facets);
+  const double size = std::max(*std::max_element(own.largest.begin(), own.largest.end()),
+                               *std::max_element(opposite.largest.begin(), opposite.largest.end()));
+  const std::set<int> own_bodies = bodies_of(body, pair.facets, body_of_node);
+  const std::set<int> opposite_bodies = bodies_of(body, pair.opposite_facets, body_of_node);
+  std::map<Index, Index> entries;
+  for (std::size_t entry = 0; entry < contact.nodes.size(); ++entry) {
+    if (contact.node_pair[entry] == number) entries[contact.nodes[entry]] = static_cast<Index>(entry);
+  }
+  const auto add = [&](const std::vector<Index>& facets, const std::set<int>& others) {
+    for (const Index node : facet_nodes(*body.space, facets)) {
+      const auto known = entries.find(node);
+      for (const int other : others) {
+        if (other != body_of_node[static_cast<std::size_t>(node)])
+          result.push_back({node, other, number, known != entries.end() ? known->second : -1, half * size});
+      }
+    }
+  };
+  add(pair.facets, opposite_bodies);
+  add(pair.opposite_facets, own_bodies);
+}
+
+}  // namespace
+
 std::vector<KeptNode> kept_nodes(const Body& body, const ContactBoundary& contact,
                                  const std::vector<ContactPair>& pairs, const std::vector<int>& body_of_node) {
   std::vector<KeptNode> result;
   for (std::size_t number = 0; number < pairs.size(); ++number) {
     const ContactPair& pair = pairs[number];
     if (!pair.has_two_sides()) continue;
+    if (pair.slides_far) {
+      add_sliding_nodes(body, contact, pair, static_cast<int>(number), body_of_node, result);
+      continue;
+    }
     const FacetSizes own = facet_sizes(body, pair.facets), opposite = facet_sizes(body, pair.opposite_facets);
     const std::set<int> own_bodies = bodies_of(body, pair.facets, body_of_node);
     const std::set<int> opposite_bodies = bodies_of(body, pair.opposite_facets, body_of_node);
@@ -66,7 +99,7 @@ std::vector<KeptNode> kept_nodes(const Body& body, const ContactBoundary& contac
 Vector slip_limits(const Body& body, const ContactBoundary& contact, const std::vector<ContactPair>& pairs) {
   Vector result = Vector::Zero(contact.size());
   for (std::size_t number = 0; number < pairs.size(); ++number) {
-    if (!pairs[number].has_two_sides()) continue;
+    if (!pairs[number].has_two_sides() || pairs[number].slides_far) continue;
     const FacetSizes own = facet_sizes(body, pairs[number].facets),
                      opposite = facet_sizes(body, pairs[number].opposite_facets);
     for (Index point = 0; point < contact.size(); ++point) {

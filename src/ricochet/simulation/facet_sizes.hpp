@@ -18,7 +18,7 @@ struct KeptNode {
   Index node = 0;
   int other = 0;           ///< that body
   int contact = 0;         ///< index of the ContactPair
-  Index entry = 0;         ///< in ContactBoundary::nodes
+  Index entry = 0;         ///< in ContactBoundary::nodes; −1: it is not there, as the far side of a pair that slides
   double allowance = 0.0;  ///< how deep it may be inside: half of the largest facet there
 };
 /// `body_of_node`: numbers of bodies.

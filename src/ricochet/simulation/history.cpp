@@ -68,6 +68,10 @@ Columns HistoryRecorder::relaxation_columns() {
   return {"viscous_dissipation"};
 }
 
+Columns HistoryRecorder::sliding_columns() {
+  return {"re_pairing_work", {"unsettled_gap", Reduction::maximum}};
+}
+
 Columns HistoryRecorder::columns_of(const SemidiscreteProblem& problem,
                                     const std::vector<std::shared_ptr<Sensor>>& sensors, const HistoryBodies& bodies) {
   Columns columns = standard_columns(problem.dimension);
@@ -77,6 +81,9 @@ Columns HistoryRecorder::columns_of(const SemidiscreteProblem& problem,
   }
   if (problem.internal_force->viscous() != nullptr) {
     for (const Column& column : relaxation_columns()) columns.push_back(column);
+  }
+  if (problem.contact.has_sliding_pairs()) {
+    for (const Column& column : sliding_columns()) columns.push_back(column);
   }
   for (const auto& sensor : sensors) {
     for (const Column& column : sensor->columns()) columns.push_back(column);
@@ -145,6 +152,7 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
     row_.push_back(state.newton_rounds);
   }
   if (problem_.internal_force->viscous() != nullptr) row_.push_back(works.viscous_dissipation);
+  if (problem_.contact.has_sliding_pairs()) row_.insert(row_.end(), {works.re_pairing, account.unsettled_gap()});
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
   problem_.ranks->reduce(row_, reductions_);
   return row_;

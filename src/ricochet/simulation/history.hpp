@@ -66,6 +66,7 @@ class HistoryRecorder {
   [[nodiscard]] static Columns standard_columns(int dimension);
   [[nodiscard]] static Columns finite_strain_columns();
   [[nodiscard]] static Columns relaxation_columns();
+  [[nodiscard]] static Columns sliding_columns();
   /// The row of a state. The reference stays valid until the next call.
   [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
 

@@ -36,6 +36,12 @@ void ImpactRecorder::find_places(const std::vector<ContactPair>& pairs) {
       const int body = rigid_.body_of_node(node);
       if (body != own) opposite[static_cast<std::size_t>(point)][body] -= weight;
     });
+    // What a point sees that slides far is of one body, whatever it sees (model_bodies.cpp).
+    if (contact.slides(point)) {
+      const int body = rigid_.body_of_node(contact.opposite_node[static_cast<std::size_t>(pair_of(point))]);
+      opposite[static_cast<std::size_t>(point)].clear();
+      if (body != own) opposite[static_cast<std::size_t>(point)][body] = 1.0;
+    }
     for (const auto& [body, part] : opposite[static_cast<std::size_t>(point)]) {
       const bool exchanged = pairs[static_cast<std::size_t>(pair_of(point))].exchanged;
       order.enter(exchanged ? body : own, exchanged ? own : body, pair_of(point));

@@ -91,7 +91,7 @@ Resultant MomentumAccount::of_nodes(const Vector& force) const {
 /// The forces of a point are those of all its rows, and are taken node by node: between bodies at finite strain, where
 /// they are about where nodes are (turning_pairs.hpp), and at rigid bodies.
 bool MomentumAccount::is_taken_by_nodes(Index point) const {
-  if (problem_.contact.between_bodies(point)) return finite_strain_;
+  if (problem_.contact.between_bodies(point)) return finite_strain_ || problem_.contact.slides(point);
   return !problem_.free_bodies.empty() && problem_.obstacle_of_point(point)->free_motion() != nullptr;
 }
 

@@ -189,7 +189,8 @@ void PenetrationWatch::tell_at_contact(const BodyPair& pair) const {
   log::warning(
       fmt::format("{} {} and {} overlap by {} at {}, more than half a facet, though the contact of \"{}\" and \"{}\" "
                   "keeps that node out: the facets that faced each other at the start no longer do, as the bodies have "
-                  "slid along or past each other; pair them with pair_at where they meet, or let them move less; {}",
+                  "slid along or past each other; set sliding = \"large\", pair them with pair_at where they meet, or "
+                  "let them move less; {}",
                   when(p.time), p.bodies[0], p.bodies[1], depth_text(p), coordinates(p.place), p.contact[0],
                   p.contact[1], see_summary));
 }

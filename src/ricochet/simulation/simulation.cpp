@@ -170,6 +170,7 @@ void Simulation::attempt_step() {
   for (const auto& body : problem_.free_bodies) body->begin_step(state_.displacement);
   // Rows that follow the motion go on from those of the state, whatever was solved in between.
   if (problem_.contact.follows_motion()) {
+    problem_.contact.geometry->begin_step();
     for (SolvedStage& each : current_->stages) each.stage.rows = state_.forces.rows;
   }
   try {
@@ -184,6 +185,7 @@ void Simulation::attempt_step() {
                                   state_.time + scheme_.step(), scheme_.step(), problem_.contact.size(), problem.what(),
                                   advice));
   }
+  if (problem_.contact.follows_motion()) problem_.contact.geometry->end_step();
   state_.iterations = iterations_;
   state_.newton_rounds = newton_rounds_;
 }

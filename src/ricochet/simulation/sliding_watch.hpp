@@ -10,7 +10,7 @@
 #include "ricochet/simulation/sliding_report.hpp"
 
 /// @file Slip between bodies beyond what their pairing allows: facets that faced each other at the start are taken to
-/// face each other for the whole run.
+/// face each other for the whole run. Of pairs that slide far, steps in which what faces what did not settle.
 namespace ricochet {
 
 class SlidingWatch {
@@ -37,6 +37,7 @@ class SlidingWatch {
   [[nodiscard]] double slip_of(Index point, const State& state) const;
   [[nodiscard]] std::vector<double> place_of(Index point) const;
   void tell(const Largest& largest) const;
+  void look_at_sliding_pairs(const State& state);
 
   const SemidiscreteProblem& problem_;
   const std::vector<ContactPair>& pairs_;
@@ -44,6 +45,10 @@ class SlidingWatch {
   std::vector<Index> points_;    ///< between bodies
   std::vector<std::size_t> at_;  ///< of these: in largest_
   std::vector<Largest> largest_;
+  std::vector<Index> far_points_;  ///< of pairs that slide far
+  double size_ = 0.0;              ///< of the model
+  bool has_told_ = false;
+  Vector gap_;
 };
 
 }  // namespace ricochet

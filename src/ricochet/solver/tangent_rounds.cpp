@@ -19,6 +19,8 @@ constexpr int most_rounds = 400;
 /// Rounds without progress after which the acceleration forgets what it knows: points touch and leave, and the map has
 /// changed; and after which the step fails.
 constexpr int patience_of_acceleration = 20, patience_of_rounds = 60;
+/// Rounds without progress after which pairs of facets are held.
+constexpr int patience_of_pairs = 25;
 /// After so many rounds, where the last ones came no nearer, some times the rounding of the gaps may be left: forces
 /// that turn with large surfaces keep it.
 constexpr int patient_rounds = 40, patience_of_rounding = 5;
@@ -41,6 +43,16 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
     if (round >= patient_rounds && round - last_progress >= patience_of_rounding &&
         error <= rounding_left * stage.gap_offset_rounding.maxCoeff())
       break;
+    // What faces what changes from round to round: it is held, and the next round solves what is then linear.
+    const bool is_stuck = round - last_progress > patience_of_pairs || !std::isfinite(error) || round == most_rounds;
+    if (is_stuck && problem_.contact.geometry->hold()) {
+      least = std::numeric_limits<double>::infinity();
+      last_progress = round;
+      linearize_contact(problem_, linearized_at_, stage);
+      solver.solve(stage, solution);
+      iterations += solution.iterations;
+      continue;
+    }
     if (round == most_rounds || round - last_progress > patience_of_rounds || !std::isfinite(error)) {
       throw Error(ErrorKind::not_converged,
                   fmt::format("the contact forces on curved obstacles, which turn with the surface, did not settle in "

@@ -21,6 +21,8 @@ constexpr double weak_energy_tolerance = 1e-14;
 constexpr double least_part = 0.1;
 /// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
 constexpr double near_solution = 1e-2;
+/// Rounds after which pairs of facets that change all the time are held.
+constexpr int patience_of_pairs = 80;
 
 double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vector& b) {
   double sum = 0.0;
@@ -301,7 +303,20 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
 }
 
-void FiniteLayer::heed(NewtonProgress::Advice advice, const Round& round, StageSolve& stages) {
+/// From now on, until the step is done. False: there is nothing to hold, or it is held already.
+bool FiniteLayer::hold_pairs(const SemidiscreteProblem& problem) {
+  if (!problem.contact.follows_motion() || !problem.contact.geometry->hold()) return false;
+  progress_.restart();
+  acceleration_.restart();
+  return true;
+}
+
+void FiniteLayer::heed(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Round& round,
+                       StageSolve& stages) {
+  // What faces what may change from round to round.
+  const bool is_stuck = advice == NewtonProgress::Advice::failed ||
+                        (advice == NewtonProgress::Advice::renew && progress_.rounds() > patience_of_pairs);
+  if (is_stuck && hold_pairs(problem)) return;
   if (advice == NewtonProgress::Advice::failed) throw progress_.failure(round.correction);
   if (advice != NewtonProgress::Advice::renew) return;
   stages.renew(middle_, end_);
@@ -362,15 +377,24 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
     if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, solution);
     const bool near = round.correction <= near_solution * round.increment || converged_;
     halve_where_inverted(problem, step, state, near);
-    if (is_balanced(step, state, round, near)) {
-      finish(problem, step, state, stage, solution, increment);
-      return;
+    try {
+      if (is_balanced(step, state, round, near)) {
+        finish(problem, step, state, stage, solution, increment);
+        return;
+      }
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::not_converged || !hold_pairs(problem)) throw;
+      converged_ = false;
+      vain_ = 0;
+      lacked_ = std::numeric_limits<double>::infinity();
+      sigma_.start();
+      continue;
     }
     if (converged_ && sigma_.is_weak()) {  // with another number now
       converged_ = false;
       progress_.restart();
     } else if (!converged_) {
-      heed(advice, round, stages);
+      heed(problem, advice, round, stages);
     }
   }
 }

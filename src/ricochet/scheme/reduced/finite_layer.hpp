@@ -92,7 +92,8 @@ class FiniteLayer {
   /// What the balance of energy may lack, relative to the energies.
   [[nodiscard]] double tolerance() const;
   /// What the progress of a round asks for. Throws Error(not_converged).
-  void heed(NewtonProgress::Advice advice, const Round& round, StageSolve& stages);
+  [[nodiscard]] bool hold_pairs(const SemidiscreteProblem& problem);
+  void heed(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Round& round, StageSolve& stages);
   void balance(const SemidiscreteProblem& problem, double step, const State& state, Stage& stage);
   void require_contact(const SemidiscreteProblem& problem, ReactionMean mean, double step, const State& state,
                        StageSolve& stages, Stage& stage);

@@ -14,6 +14,8 @@ const std::string memory_of_rows = "lagged_rows";
 
 void LaggedRows::start(const State& state) {
   exact_ = nullptr;
+  is_stale_ = state.forces.rows->places.size() > 0;
+  if (is_stale_) return;
   const auto known = state.memory.find(memory_of_rows);
   if (known == state.memory.end()) {
     lagged_ = nullptr;
@@ -49,9 +51,14 @@ void LaggedRows::take_over(const Vector& motion, Stage& stage) {
 /// Where Ĥ is off H by too much it becomes H.
 void LaggedRows::renew() {
   const ContactRows* const exact = exact_.get();
-  if (lagged_ == nullptr) {
-    lagged_ = std::make_shared<ContactRows>(*exact);
-    read_only_ = lagged_;
+  if (lagged_ == nullptr || is_stale_) {
+    if (lagged_ == nullptr) {
+      lagged_ = std::make_shared<ContactRows>(*exact);
+      read_only_ = lagged_;
+    } else {
+      *lagged_ = *exact;
+    }
+    is_stale_ = false;
     std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
     is_new_ = true;
     return;
@@ -59,10 +66,11 @@ void LaggedRows::renew() {
   ++revision_;
   for (Index i = 0; i < exact->size(); ++i) {
     if (change_of_rows(*lagged_, *exact, i) <= slack) continue;
-    copy_point(*exact, *lagged_, i);
+    copier_.copy(*exact, *lagged_, i);
     lagged_->revision[static_cast<std::size_t>(i)] = revision_;
     is_new_ = true;
   }
+  copier_.finish(*lagged_);
 }
 
 void LaggedRows::add_difference(const Vector& normal, const Vector& tangential, Vector& force) {
@@ -73,7 +81,7 @@ void LaggedRows::add_difference(const Vector& normal, const Vector& tangential, 
 }
 
 void LaggedRows::remember(State& state) const {
-  if (!is_new_) return;
+  if (!is_new_ || lagged_->places.size() > 0) return;
   state.memory[memory_of_rows] = row_values(*lagged_);
 }
 

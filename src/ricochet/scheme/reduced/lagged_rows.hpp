@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "ricochet/contact/row_values.hpp"
 #include "ricochet/problem/stage.hpp"
 #include "ricochet/scheme/state.hpp"
 
@@ -14,7 +15,8 @@ namespace ricochet {
 /// (H − Ĥ)ᵀρ of the reactions before on its right-hand side, and gaps and slips of H where it stands, it ends where
 /// H has it all. Ĥ is made new point by point where H is off it by more than `slack` of it.
 ///
-/// The state remembers Ĥ, so that a run that is resumed goes on with the same numbers.
+/// The state remembers Ĥ, so that a run that is resumed goes on with the same numbers. Where rows reach other dofs as
+/// bodies slide (ContactRows::places), each step begins with its own H.
 class LaggedRows {
  public:
   /// Those that the state remembers, if any.
@@ -36,7 +38,9 @@ class LaggedRows {
 
   std::shared_ptr<ContactRows> lagged_;
   std::shared_ptr<const ContactRows> read_only_, exact_;
-  bool is_new_ = false;  ///< not yet remembered
+  PointCopier copier_;
+  bool is_new_ = false;    ///< not yet remembered
+  bool is_stale_ = false;  ///< of another step, and not to be used
   long revision_ = 0;
   Vector motion_, negative_;  ///< work space
 };

@@ -12,8 +12,9 @@ class BoundarySensor final : public Sensor {
                  const Vector& about)
       : name_(std::move(name)), problem_(problem) {
     const Index d = problem.dimension;
-    std::vector<char> inside(static_cast<std::size_t>(problem.nodes.cols()), 0);
-    for (const Index node : nodes) inside[static_cast<std::size_t>(node)] = 1;
+    inside_.assign(static_cast<std::size_t>(problem.nodes.cols()), 0);
+    for (const Index node : nodes) inside_[static_cast<std::size_t>(node)] = 1;
+    about_ = about;
     const auto arm = [&](Index node) {
       Eigen::Vector3d result = Eigen::Vector3d::Zero();
       result.head(d) = problem.nodes.col(node) - about;
@@ -22,13 +23,17 @@ class BoundarySensor final : public Sensor {
     for (Index i = 0; i < problem.supports.size(); ++i) {
       const Index dof = problem.supports.dofs()[static_cast<std::size_t>(i)];
       if (problem.axisymmetric && dof % d == 0 && problem.nodes(0, dof / d) == 0.0) continue;  // of the axis itself
-      if (inside[static_cast<std::size_t>(dof / d)] != 0) supports_.push_back({i, dof % d, arm(dof / d)});
+      if (inside_[static_cast<std::size_t>(dof / d)] != 0) supports_.push_back({i, dof % d, arm(dof / d)});
     }
     // Of a point's force the part Σ c_ij acts on these nodes, with the moment Σ c_ij X_j × force.
     for (Index point = 0; point < problem.contact.size(); ++point) {
+      if (problem.contact.slides(point)) {
+        sliding_.push_back(point);
+        continue;
+      }
       Point own{point, 0.0, Eigen::Vector3d::Zero()};
       problem.contact.visit_nodes(point, [&](Index node, double weight) {
-        if (inside[static_cast<std::size_t>(node)] == 0) return;
+        if (inside_[static_cast<std::size_t>(node)] == 0) return;
         own.part += weight;
         own.arm += weight * arm(node);
       });
@@ -59,12 +64,35 @@ class BoundarySensor final : public Sensor {
       force += point.part * own;
       moment += point.arm.cross(own);
     }
+    add_sliding(forces, force, moment);
     if (problem_.axisymmetric) moment.setZero();  // over the ring they cancel
     append(force.head(d), row);
     append(moment.tail(d == 2 ? 1 : 3), row);
   }
 
  private:
+  /// Points whose rows reach other nodes as bodies slide: node by node.
+  void add_sliding(const StepForces& forces, Eigen::Vector3d& force, Eigen::Vector3d& moment) const {
+    const Index d = problem_.dimension, tangents = d - 1;
+    const auto add = [&](Index dof, double value) {
+      if (inside_[static_cast<std::size_t>(dof / d)] == 0) return;
+      const Eigen::Vector3d own = value * Eigen::Vector3d::Unit(dof % d);
+      Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+      arm.head(d) = problem_.nodes.col(dof / d) - about_;
+      force += own;
+      moment += arm.cross(own);
+    };
+    for (const Index point : sliding_) {
+      const double normal = forces.normal_reaction[point];
+      if (normal != 0.0) forces.rows->visit_normal(point, [&](Index dof, double value) { add(dof, value * normal); });
+      if (forces.tangential_reaction.size() == 0) continue;
+      for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
+        const double tangential = forces.tangential_reaction[row];
+        forces.rows->visit_tangential(row, [&](Index dof, double value) { add(dof, -value * tangential); });
+      }
+    }
+  }
+
   struct Support {
     Index number, component;
     Eigen::Vector3d arm;
@@ -78,6 +106,9 @@ class BoundarySensor final : public Sensor {
   const SemidiscreteProblem& problem_;
   std::vector<Support> supports_;
   std::vector<Point> points_;
+  std::vector<Index> sliding_;
+  std::vector<char> inside_;  ///< per node
+  Vector about_;
 };
 
 }  // namespace

@@ -1,0 +1,75 @@
+#include "ricochet/contact/sliding/moving_surfaces.hpp"
+
+#include <algorithm>
+
+namespace ricochet {
+
+namespace {
+
+/// Degree of the rule on segments: exact for products of two shape functions on simplices and on parallelograms.
+int degree_on_segments(const Body& body) {
+  const bool simplices = std::all_of(body.mesh->facets.begin(), body.mesh->facets.end(),
+                                     [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
+  return (simplices ? 2 : 4) * body.space->degree;
+}
+
+/// The mesh of the displacement: isoparametric, whatever the geometry's degree is.
+Mesh mesh_of(const DisplacementSpace& space) {
+  Mesh mesh;
+  mesh.dimension = space.dimension;
+  mesh.degree = space.degree;
+  mesh.nodes = space.nodes;
+  mesh.cells = space.cells;
+  mesh.facets = space.facets;
+  return mesh;
+}
+
+Body on_mesh(const Body& body, const Mesh& mesh) {
+  Body result = body;
+  result.mesh = &mesh;
+  return result;
+}
+
+}  // namespace
+
+MovingSurfaces::MovingSurfaces(const Body& body, const std::vector<Index>& facets,
+                               const std::vector<Index>& opposite_facets)
+    : reference_body_(body),
+      mesh_(mesh_of(*body.space)),
+      body_(on_mesh(body, mesh_)),
+      reference_(reference_body_),
+      map_(body_),
+      own_(FacetSurface::moving(body_, facets)),
+      opposite_(FacetSurface::moving(body_, opposite_facets)),
+      finder_(map_, own_, opposite_, degree_on_segments(body)) {
+  std::vector<Index> all = facets;
+  all.insert(all.end(), opposite_facets.begin(), opposite_facets.end());
+  nodes_ = facet_nodes(*body.space, all);
+  moved_by_.setZero(body.space->dof_count());
+}
+
+void MovingSurfaces::move(const Vector& displacement) {
+  if (moved_by_ == displacement) return;
+  moved_by_ = displacement;
+  const Index d = mesh_.dimension;
+  for (const Index node : nodes_)
+    mesh_.nodes.col(node) = reference_body_.space->nodes.col(node) + displacement.segment(node * d, d);
+  own_.move(mesh_.nodes);
+  opposite_.move(mesh_.nodes);
+}
+
+void MovingSurfaces::scale_to_reference(Index facet, const Points& local, Matrix& values) const {
+  const PolynomialMap<3> before = reference_.map_of(facet), now = map_.map_of(facet);
+  for (Index q = 0; q < local.cols(); ++q) {
+    const double* const at = local.col(q).data();
+    values.col(q) *= reference_.density(before.evaluate(at)) / map_.density(now.evaluate(at));
+  }
+}
+
+Eigen::Vector3d MovingSurfaces::position(Index node) const {
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  result.head(mesh_.dimension) = mesh_.nodes.col(node);
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "ricochet/contact/facet_surface.hpp"
+#include "ricochet/contact/surface_segments.hpp"
+
+/// @file The two surfaces of a pair wherever their nodes have moved to.
+namespace ricochet {
+
+class MovingSurfaces {
+ public:
+  MovingSurfaces(const Body& body, const std::vector<Index>& facets, const std::vector<Index>& opposite_facets);
+  MovingSurfaces(const MovingSurfaces&) = delete;  // finders refer to the surfaces
+  MovingSurfaces& operator=(const MovingSurfaces&) = delete;
+
+  /// To X + U. Does nothing where they are there already.
+  void move(const Vector& displacement);
+
+  [[nodiscard]] const FacetMap& map() const { return map_; }
+  [[nodiscard]] const FacetSurface& own() const { return own_; }
+  [[nodiscard]] const FacetSurface& opposite() const { return opposite_; }
+  [[nodiscard]] const SegmentFinder& finder() const { return finder_; }
+  /// Of both, ascending.
+  [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
+  [[nodiscard]] Eigen::Vector3d position(Index node) const;
+  /// Multiplies values, one per column, by areas of the reference configuration over those where the surface is.
+  void scale_to_reference(Index facet, const Points& local, Matrix& values) const;
+
+ private:
+  const Body& reference_body_;
+  Mesh mesh_;  ///< of the displacement's nodes, where they are
+  Body body_;
+  FacetMap reference_, map_;
+  FacetSurface own_, opposite_;
+  SegmentFinder finder_;
+  std::vector<Index> nodes_;
+  Vector moved_by_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,444 @@
+#include "ricochet/contact/sliding/sliding_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "ricochet/contact/contact_directions.hpp"
+#include "ricochet/contact/row_writer.hpp"
+#include "ricochet/contact/sliding/rigid_part.hpp"
+#include "ricochet/fem/displacement_space.hpp"
+
+namespace ricochet {
+
+namespace {
+
+using Views = std::vector<SlidingView>;
+using SlidingNode = SlidingContactData::Node;
+
+/// Points up to so many times the motion of a step ahead, and up to this part of a cell, have rows.
+constexpr double ahead_of_sliding = 4.0, always_near = 0.1;
+/// Of a row.
+constexpr double most_correction = 0.25;
+/// Of the model: overlaps that are no rounding.
+constexpr double least_overlap = 1e-12;
+/// Motions of less than so many roundings have no direction.
+constexpr double least_motion = 1e3;
+
+class SlidingContact final : public ContactGeometry {
+ public:
+  explicit SlidingContact(SlidingContactData data)
+      : data_(std::move(data)), extent_(extent(data_.node_positions)), seen_(data_.pairs.size()) {
+    for (const auto& pair : data_.pairs)
+      surface_nodes_.insert(surface_nodes_.end(), pair->nodes().begin(), pair->nodes().end());
+    std::sort(surface_nodes_.begin(), surface_nodes_.end());
+    surface_nodes_.erase(std::unique(surface_nodes_.begin(), surface_nodes_.end()), surface_nodes_.end());
+  }
+
+  void gaps(const Vector& displacement, double, Vector& gap) const override {
+    for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
+      if (is_held_) {
+        take_held_gaps(k, displacement, gap);
+        continue;
+      }
+      look_at_gaps(k, displacement);
+      for (std::size_t i = 0; i < data_.pairs[k]->points().size(); ++i) gap[number(k, i)] = gap_of(seen_[k], i);
+    }
+  }
+
+  void node_gaps(const Vector& displacement, double, Vector& gap) const override {
+    for (const SlidingNode& node : data_.nodes)
+      gap[node.entry] = data_.pairs[node.pair]->node_gap(node.node, normal_at(node, displacement), displacement);
+  }
+
+  [[nodiscard]] SpaceVector node_normal(Index entry, const Vector& displacement, double) const override {
+    const SlidingNode* const node = find_node(entry);
+    if (node == nullptr) return data_.node_normals.col(entry);
+    return normal_at(*node, displacement).head(dimension());
+  }
+
+  [[nodiscard]] bool has_node(Index entry) const override { return find_node(entry) != nullptr; }
+
+  void update(const Vector& displacement, double, const StepStart* start, ContactRows& rows) const override {
+    if (is_held_ && start != nullptr) return;
+    remember_places(displacement, start, rows);
+    at_update_ = displacement;
+    middle_ = start != nullptr ? Vector(0.5 * (start->displacement + displacement)) : displacement;
+    if (start != nullptr) step_ = displacement - start->displacement;
+    for (std::size_t k = 0; k < data_.pairs.size(); ++k) update_pair(k, displacement, start, rows);
+    changed_.assign(static_cast<std::size_t>(rows.size()), 0);
+    gap_writer_.write(rows.gap_operator, changed_);
+    const Index tangents = dimension() - 1;
+    slip_changed_.assign(static_cast<std::size_t>(rows.size() * tangents), 0);
+    slip_writer_.write(rows.tangential_trace, slip_changed_);
+    ++revision_;
+    for (std::size_t i = 0; i < changed_.size(); ++i) {
+      const auto first = slip_changed_.begin() + static_cast<std::ptrdiff_t>(i) * tangents;
+      if (changed_[i] != 0 || std::any_of(first, first + tangents, [](char c) { return c != 0; }))
+        rows.revision[i] = revision_;
+    }
+    gap_at_update_ = rows.gap;
+  }
+
+  void begin_step() const override { is_held_ = was_held_ = false; }
+  bool hold() const override {
+    if (is_held_ || at_update_.size() == 0) return false;
+    is_held_ = was_held_ = true;
+    return true;
+  }
+  void end_step() const override { is_held_ = false; }
+
+  void allow_overlap(Vector& gap) const override {
+    for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
+      const Seen& seen = seen_[k];
+      for (std::size_t i = 0; i < seen.at_start.size(); ++i) {
+        const double before = seen.at_start[i].faces ? seen.at_start[i].gap : 0.0;
+        if (before < -least_overlap * extent_ && !is_far(seen, i)) gap[number(k, i)] -= before;
+      }
+    }
+  }
+
+  void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
+                   Vector& force) const override {
+    if (was_held_) return;  // forces are those of the rows
+    for (std::size_t k = 0; k < data_.pairs.size(); ++k) add_couples_of(k, place, rows, normal, tangential, force);
+  }
+
+  /// The places that rows were made at: those of a step's start come after those of its end.
+  [[nodiscard]] Index row_value_count() const override {
+    return 1 + 2 * dimension() * static_cast<Index>(surface_nodes_.size());
+  }
+  [[nodiscard]] Vector row_values(const ContactRows& rows) const override {
+    return rows.places.size() > 0 ? rows.places : Vector(Vector::Zero(row_value_count()));
+  }
+  void restore(const Points&, const Vector&, const Vector& row_values, ContactRows& rows) const override {
+    Vector end = Vector::Zero(data_.node_positions.size()), before = end;
+    const Index d = dimension(), count = d * static_cast<Index>(surface_nodes_.size());
+    for (std::size_t i = 0; i < surface_nodes_.size(); ++i) {
+      const Index at = 1 + static_cast<Index>(i) * d;
+      end.segment(surface_nodes_[i] * d, d) = row_values.segment(at, d);
+      before.segment(surface_nodes_[i] * d, d) = row_values.segment(at + count, d);
+    }
+    const StepStart start{before, 0.0};
+    update(end, 0.0, row_values[0] != 0.0 ? &start : nullptr, rows);
+  }
+
+ private:
+  /// What the points of a pair have been found to see lately.
+  struct Seen {
+    Vector start_at, gaps_at;
+    Views at_start, gaps, middle, entering, other;
+    std::vector<char> any_depth;  ///< points that face something where the step begins
+    std::vector<char> far;        ///< points that do not move so far in the step: their gaps are those of its start
+    std::vector<char> left_out;   ///< of a look at rows
+    bool has_start = false, has_gaps = false;
+  };
+
+  [[nodiscard]] Index dimension() const { return data_.node_positions.rows(); }
+  [[nodiscard]] Index number(std::size_t pair, std::size_t point) const {
+    return data_.pairs[pair]->points()[point].number;
+  }
+  [[nodiscard]] double gap_of(const Seen& seen, std::size_t point) const {
+    const SlidingView& view = is_far(seen, point) ? seen.at_start[point] : seen.gaps[point];
+    return view.faces ? view.gap : data_.out_of_sight;
+  }
+  [[nodiscard]] static bool is_far(const Seen& seen, std::size_t point) {
+    return !seen.far.empty() && seen.far[point] != 0;
+  }
+  [[nodiscard]] const SlidingNode* find_node(Index entry) const {
+    const auto found = std::lower_bound(data_.nodes.begin(), data_.nodes.end(), entry,
+                                        [](const SlidingNode& node, Index e) { return node.entry < e; });
+    return found != data_.nodes.end() && found->entry == entry ? &*found : nullptr;
+  }
+  [[nodiscard]] SlidingVector normal_at(const SlidingNode& node, const Vector& displacement) const {
+    return node.normal.at(data_.node_positions, displacement).normalized();
+  }
+  [[nodiscard]] SlidingVector position(Index node, const Vector& displacement) const {
+    const Index d = dimension();
+    SlidingVector result = SlidingVector::Zero();
+    result.head(d) = data_.node_positions.col(node) + displacement.segment(node * d, d);
+    return result;
+  }
+
+  void remember_places(const Vector& displacement, const StepStart* start, ContactRows& rows) const {
+    const Index d = dimension(), count = d * static_cast<Index>(surface_nodes_.size());
+    rows.places.setZero(row_value_count());
+    rows.places[0] = start != nullptr ? 1.0 : 0.0;
+    for (std::size_t i = 0; i < surface_nodes_.size(); ++i) {
+      const Index at = 1 + static_cast<Index>(i) * d;
+      rows.places.segment(at, d) = displacement.segment(surface_nodes_[i] * d, d);
+      if (start != nullptr) rows.places.segment(at + count, d) = start->displacement.segment(surface_nodes_[i] * d, d);
+    }
+  }
+
+  /// Linear about the last update.
+  void take_held_gaps(std::size_t k, const Vector& displacement, Vector& gap) const {
+    const Seen& seen = seen_[k];
+    const Index d = dimension();
+    for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
+      const Index point = number(k, i);
+      gap[point] = gap_at_update_[point];
+      if (seen.left_out[i] != 0) continue;
+      double along_step = 0.0;
+      for (const auto& [node, value] : (enters(seen, i) ? seen.entering[i] : seen.middle[i]).row) {
+        gap[point] += value.head(d).dot(displacement.segment(node * d, d) - at_update_.segment(node * d, d));
+        along_step += value.head(d).dot(step_.segment(node * d, d));
+      }
+      // Seen from the step's end such a point begins inside: to push it out would give energy.
+      if (enters(seen, i)) gap[point] -= std::min(gap_at_update_[point] - along_step, 0.0);
+    }
+  }
+
+  void look_at_gaps(std::size_t k, const Vector& displacement) const {
+    Seen& seen = seen_[k];
+    if (seen.has_gaps && seen.gaps_at == displacement) return;
+    data_.pairs[k]->look(displacement, SlidingPair::Wanted::gap, seen.far, seen.any_depth, seen.gaps);
+    seen.gaps_at = displacement;
+    seen.has_gaps = true;
+  }
+
+  /// Who faces something where the step begins sees it wherever the step ends.
+  void look_at_start(std::size_t k, const Vector& displacement) const {
+    Seen& seen = seen_[k];
+    if (seen.has_start && seen.start_at == displacement) return;
+    data_.pairs[k]->look(displacement, SlidingPair::Wanted::gap, {}, {}, seen.at_start);
+    seen.start_at = displacement;
+    seen.has_start = true;
+    seen.any_depth.resize(seen.at_start.size());
+    for (std::size_t i = 0; i < seen.any_depth.size(); ++i) seen.any_depth[i] = seen.at_start[i].faces ? 1 : 0;
+    seen.has_gaps = false;
+  }
+
+  /// Which points are farther from touching than the step may take them.
+  void find_far(std::size_t k, bool is_step) const {
+    const SlidingPair& pair = *data_.pairs[k];
+    Seen& seen = seen_[k];
+    std::vector<char>& far = left_out_;
+    far.assign(pair.points().size(), 0);
+    if (is_step) {
+      const double reach = ahead_of_sliding * longest_way(pair) + always_near * pair.height();
+      for (std::size_t i = 0; i < far.size(); ++i)
+        far[i] = seen.at_start[i].faces && seen.at_start[i].gap > reach ? 1 : 0;
+    }
+    if (far == seen.far) return;
+    seen.far = far;
+    seen.has_gaps = false;
+  }
+
+  /// The longest way that a node of the pair goes in the step.
+  [[nodiscard]] double longest_way(const SlidingPair& pair) const {
+    double longest = 0.0;
+    for (const Index node : pair.nodes())
+      longest = std::max(longest, step_.segment(node * dimension(), dimension()).norm());
+    return longest;
+  }
+
+  void update_pair(std::size_t k, const Vector& displacement, const StepStart* start, ContactRows& rows) const {
+    const SlidingPair& pair = *data_.pairs[k];
+    Seen& seen = seen_[k];
+    if (start != nullptr) look_at_start(k, start->displacement);
+    find_far(k, start != nullptr);
+    look_at_gaps(k, displacement);
+    seen.left_out.assign(seen.gaps.size(), 0);
+    bool any_near = false;
+    for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
+      const Index point = number(k, i);
+      rows.gap[point] = gap_of(seen, i);
+      rows.gap_rounding[point] = rounding(pair.points()[i], displacement);
+      seen.left_out[i] = is_far(seen, i) || !seen.gaps[i].faces ? 1 : 0;
+      any_near = any_near || seen.left_out[i] == 0;
+    }
+    if (any_near) pair.look(middle_, SlidingPair::Wanted::row, seen.left_out, seen.any_depth, seen.middle);
+    if (any_near && start != nullptr) look_at_entering(pair, displacement, seen);
+    for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
+      const double gap_rounding = rows.gap_rounding[number(k, i)];
+      if (seen.left_out[i] != 0) {
+        write_plane(pair, i, rows);
+      } else if (start == nullptr) {
+        write_view(pair.points()[i], seen.middle[i], rows);
+      } else if (enters(seen, i)) {
+        SlidingView& view = seen.entering[i];
+        correct(view, {}, gap_rounding);
+        write_view(pair.points()[i], view, rows);
+      } else {
+        SlidingView& view = seen.middle[i];
+        correct(view, seen.gaps[i].gap - seen.at_start[i].gap, gap_rounding);
+        write_view(pair.points()[i], view, rows);
+      }
+    }
+  }
+
+  /// Points that face nothing where the step begins, or in its middle, but where it ends.
+  [[nodiscard]] static bool enters(const Seen& seen, std::size_t i) {
+    return seen.left_out[i] == 0 && !(seen.at_start[i].faces && seen.middle[i].faces);
+  }
+  /// Their rows are those of the end.
+  void look_at_entering(const SlidingPair& pair, const Vector& displacement, Seen& seen) const {
+    bool any = false;
+    left_out_.assign(seen.gaps.size(), 1);
+    for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
+      if (enters(seen, i)) left_out_[i] = 0;
+      any = any || enters(seen, i);
+    }
+    if (any) pair.look(displacement, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.entering);
+  }
+
+  /// Sums over segments of differences of places.
+  [[nodiscard]] double rounding(const SlidingPair::Point& point, const Vector& displacement) const {
+    double size = extent_;
+    for (const auto& [node, weight] : point.multiplier.trace)
+      size = std::max(size, position(node, displacement).lpNorm<1>());
+    return 64.0 * std::numeric_limits<double>::epsilon() * size;
+  }
+
+  /// Makes the row's product with the step the change of the gap; where none is known, no positive one. A product that
+  /// is too large could give energy and is mended in any case; one that is too small takes some, and is, up to a part
+  /// of the row.
+  void correct(SlidingView& view, std::optional<double> change, double rounding) const {
+    const Index d = dimension();
+    places_.clear();
+    motions_.clear();
+    double product = 0.0, size = 0.0;
+    for (const auto& [node, value] : view.row) {
+      places_.push_back(position(node, middle_));
+      SlidingVector motion = SlidingVector::Zero();
+      motion.head(d) = step_.segment(node * d, d);
+      product += value.dot(motion);
+      size += value.squaredNorm();
+      motions_.push_back(motion);
+    }
+    const double missing = change.value_or(std::min(product, 0.0)) - product;
+    if (std::abs(missing) <= 0.25 * rounding) return;
+    take_off_rigid_part(places_, d == 2, motions_);
+    double square = 0.0;
+    for (const SlidingVector& motion : motions_) square += motion.squaredNorm();
+    if (!(std::sqrt(square) > least_motion * std::numeric_limits<double>::epsilon() * extent_)) return;
+    const double factor = std::min(missing / square, most_correction * std::sqrt(size / square));
+    for (std::size_t j = 0; j < view.row.size(); ++j) view.row[j].second += factor * motions_[j];
+  }
+
+  void write_view(const SlidingPair::Point& point, const SlidingView& view, ContactRows& rows) const {
+    const Index d = dimension();
+    entries_.clear();
+    for (const auto& [node, value] : view.row) {
+      for (Index j = 0; j < d; ++j) entries_.emplace_back(node * d + j, value[j]);
+    }
+    gap_writer_.set(point.number, entries_);
+    take_directions(point, view.direction, rows);
+    trace_.clear();
+    for (const auto& [node, weight] : view.own) trace_.emplace_back(node, weight);
+    for (const auto& [node, weight] : view.opposite) trace_.emplace_back(node, -weight);
+    std::sort(trace_.begin(), trace_.end());
+    write_slips(point.number, rows);
+  }
+
+  /// A point that is far from touching, or faces nothing.
+  void write_plane(const SlidingPair& pair, std::size_t i, ContactRows& rows) const {
+    const SlidingPair::Point& point = pair.points()[i];
+    const Index d = dimension();
+    const SlidingVector normal = pair.normal(i, middle_);
+    trace_.clear();
+    for (const auto& [node, weight] : point.multiplier.trace) trace_.emplace_back(node, weight);
+    std::sort(trace_.begin(), trace_.end());
+    entries_.clear();
+    for (const auto& [node, weight] : trace_) {
+      for (Index j = 0; j < d; ++j) entries_.emplace_back(node * d + j, weight * normal[j]);
+    }
+    gap_writer_.set(point.number, entries_);
+    take_directions(point, normal, rows);
+    write_slips(point.number, rows);
+  }
+
+  void take_directions(const SlidingPair::Point& point, const SlidingVector& direction, ContactRows& rows) const {
+    const Index d = dimension();
+    const Vector normal = direction.head(d);
+    const ContactTangents tangents = tangents_at(
+        0, normal, [&](Index, int component) { return point.is_free[static_cast<std::size_t>(component)]; });
+    rows.normals.col(point.number) = normal;
+    rows.tangents[static_cast<std::size_t>(point.number)] = tangents.directions;
+    for (Index j = 0; j < d - 1; ++j)
+      rows.slips[static_cast<std::size_t>(point.number * (d - 1) + j)] =
+          tangents.slips[static_cast<std::size_t>(j)] ? 1 : 0;
+  }
+
+  /// t ⊗ τ with the trace in trace_.
+  void write_slips(Index point, const ContactRows& rows) const {
+    const Index d = dimension();
+    for (Index j = 0; j < d - 1; ++j) {
+      const Index row = point * (d - 1) + j;
+      entries_.clear();
+      if (rows.slips[static_cast<std::size_t>(row)] != 0) {
+        const auto tangent = rows.tangents[static_cast<std::size_t>(point)].col(j);
+        for (const auto& [node, weight] : trace_) {
+          for (Index c = 0; c < d; ++c) entries_.emplace_back(node * d + c, weight * tangent[c]);
+        }
+      }
+      slip_writer_.set(row, entries_);
+    }
+  }
+
+  /// Forces that act at another place than the middle of the step are those of the rows there, with friction as strong
+  /// and along the same tangents, and a couple that takes back its moment across the gap.
+  void add_couples_of(std::size_t k, const Vector& place, const ContactRows& rows, const Vector& normal,
+                      const Vector& tangential, Vector& force) const {
+    const SlidingPair& pair = *data_.pairs[k];
+    Seen& seen = seen_[k];
+    const Index d = dimension(), tangents = d - 1;
+    left_out_.assign(pair.points().size(), 0);
+    bool any = false;
+    for (std::size_t i = 0; i < left_out_.size(); ++i) {
+      const Index point = number(k, i);
+      const bool acts = normal[point] != 0.0 ||
+                        (tangential.size() > 0 && !tangential.segment(point * tangents, tangents).isZero(0.0));
+      left_out_[i] = acts ? 0 : 1;
+      any = any || acts;
+    }
+    if (!any) return;
+    pair.look(place, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.other);
+    const auto add = [&](Index node, const SlidingVector& value) { force.segment(node * d, d) += value.head(d); };
+    for (std::size_t i = 0; i < left_out_.size(); ++i) {
+      const SlidingView& view = seen.other[i];
+      if (left_out_[i] != 0 || !view.faces) continue;
+      const Index point = number(k, i);
+      for (const auto& [node, value] : view.row) add(node, normal[point] * value);
+      rows.visit_normal(point, [&](Index dof, double value) { force[dof] -= value * normal[point]; });
+      if (tangential.size() == 0) continue;
+      SlidingVector friction = SlidingVector::Zero(), across = SlidingVector::Zero();
+      friction.head(d) = rows.force(point, normal, tangential) - normal[point] * rows.normal(point);
+      const auto act = [&](Index node, double weight) {
+        add(node, weight * friction);
+        across += weight * position(node, place);
+      };
+      for (const auto& [node, weight] : view.own) act(node, weight);
+      for (const auto& [node, weight] : view.opposite) act(node, -weight);
+      places_.clear();
+      for (const auto& [node, weight] : view.own) places_.push_back(position(node, place));
+      forces_of_couple(places_, d == 2, -across.cross(friction), motions_);
+      for (std::size_t j = 0; j < motions_.size(); ++j) add(view.own[j].first, motions_[j]);
+      for (Index row = point * tangents; row < (point + 1) * tangents; ++row)
+        rows.visit_tangential(row, [&](Index dof, double value) { force[dof] += value * tangential[row]; });
+    }
+  }
+
+  SlidingContactData data_;
+  double extent_;
+  std::vector<Index> surface_nodes_;  ///< of all pairs, ascending
+  mutable std::vector<Seen> seen_;    ///< per pair
+  mutable Vector middle_, step_;
+  mutable Vector at_update_, gap_at_update_;         ///< of the last update
+  mutable bool is_held_ = false, was_held_ = false;  ///< the second until the next step begins
+  mutable RowWriter gap_writer_, slip_writer_;
+  mutable RowWriter::Entries entries_, trace_;
+  mutable std::vector<char> changed_, slip_changed_, left_out_;
+  mutable std::vector<SlidingVector> places_, motions_;
+  mutable long revision_ = 0;  ///< of the last update: no two rows that differ have the same
+};
+
+}  // namespace
+
+std::unique_ptr<ContactGeometry> make_sliding_contact(SlidingContactData data) {
+  return std::make_unique<SlidingContact>(std::move(data));
+}
+
+}  // namespace ricochet

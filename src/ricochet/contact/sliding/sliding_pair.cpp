@@ -1,0 +1,279 @@
+#include "ricochet/contact/sliding/sliding_pair.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "ricochet/contact/pair_integration.hpp"
+#include "ricochet/contact/sliding/moving_surfaces.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Of a multiplier's whole area: a point that is covered by less faces nothing.
+constexpr double least_sliding_cover = 1e-3;
+
+/// The entry of a node, made where there is none.
+template <class Value>
+Value& entry_of(std::vector<std::pair<Index, Value>>& entries, Index node, const Value& nothing) {
+  for (auto& [known, value] : entries) {
+    if (known == node) return value;
+  }
+  return entries.emplace_back(node, nothing).second;
+}
+
+template <class Value>
+void sort_by_node(std::vector<std::pair<Index, Value>>& entries) {
+  std::sort(entries.begin(), entries.end(), [](const auto& one, const auto& other) { return one.first < other.first; });
+}
+
+/// n·ν from which a place counts in full, and up to which it counts for nothing.
+constexpr double seen_well = 0.7, seen_badly = 0.15;
+
+/// Of what is seen at a place of the opposite surface.
+struct Sight {
+  SlidingVector normal;  ///< along ν, with n·normal = 1
+  double part;           ///< what it counts for: places that are seen nearly edge-on come and go
+};
+Sight sight_of(const PolynomialMap<3>::Place& at, bool plane, const SlidingVector& n) {
+  const auto& [along, across] = at.slopes;
+  const SlidingVector normal = plane ? SlidingVector(along[1], -along[0], 0.0) : SlidingVector(along.cross(across));
+  const double product = n.dot(normal);
+  const double well = std::clamp((std::abs(product) / normal.norm() - seen_badly) / (seen_well - seen_badly), 0.0, 1.0);
+  return {normal / product, well * well * (3.0 - 2.0 * well)};
+}
+
+}  // namespace
+
+struct SlidingPair::Implementation {
+  /// The sums of one point.
+  struct Sums {
+    double weight = 0.0, gap = 0.0;
+    SlidingVector force = SlidingVector::Zero();  ///< ∫ψ ν/(n·ν)
+    SlidingVector pull = SlidingVector::Zero();   ///< ∫ψ g ν/(n·ν) over the facet that is looked from
+  };
+
+  Data data;
+  ContactPatch patch;
+  std::unique_ptr<MultiplierSpace> space;
+  bool plane;
+  mutable MovingSurfaces surfaces;
+  double least_height = std::numeric_limits<double>::infinity();
+  /// Per own facet, in the order of the space's anchors there: which point, or −1.
+  std::vector<std::vector<int>> points_of;
+  std::vector<TurningNormal> normals;  ///< per own facet: into its body
+  // Of the look that is on.
+  mutable Vector looked_at;
+  mutable std::vector<Sums> sums;
+  mutable std::vector<SlidingVector> turning;  ///< N of each own facet
+  mutable std::vector<char> takes_part;        ///< per anchor of the facet that is looked from
+  mutable FacetPoints points;
+  mutable FacetMultipliers functions;
+  mutable Matrix shapes, weighted;
+
+  explicit Implementation(Data of_data)
+      : data(std::move(of_data)),
+        patch{&data.body, {{0, data.facets}}},
+        space(make_multiplier_space(data.multipliers, patch)),
+        plane(data.body.space->dimension == 2),
+        surfaces(data.body, data.facets, data.opposite_facets) {
+    for (const FacetSurface* const surface : {&surfaces.own(), &surfaces.opposite()}) {
+      for (const FacetSurface::Facet& facet : surface->facets()) least_height = std::min(least_height, facet.height);
+    }
+    find_points_of_facets();
+    for (const FacetSurface::Facet& facet : surfaces.own().facets()) {
+      const Vector direction = -facet.area_vector.normalized().head(data.body.space->dimension);
+      normals.emplace_back(*data.body.space, std::vector{facet.number}, direction);
+    }
+    sums.resize(data.points.size());
+    turning.resize(normals.size());
+  }
+
+  void find_points_of_facets() {
+    std::map<Index, int> by_anchor;
+    for (std::size_t i = 0; i < data.points.size(); ++i) {
+      const Multiplier& multiplier = data.points[i].multiplier;
+      by_anchor[multiplier.node >= 0 ? multiplier.node : multiplier.facet] = static_cast<int>(i);
+    }
+    const FacetIntegration whole(data.body);
+    FacetQuadrature quadrature;
+    for (const FacetSurface::Facet& facet : surfaces.own().facets()) {
+      whole.evaluate(facet.number, quadrature);
+      space->evaluate(quadrature, functions);
+      std::vector<int>& here = points_of.emplace_back();
+      for (const Index anchor : functions.anchors) {
+        const auto known = by_anchor.find(anchor);
+        here.push_back(known != by_anchor.end() ? known->second : -1);
+      }
+    }
+  }
+
+  void look_from(int facet, Wanted wanted, const std::vector<char>& left_out, const std::vector<char>& any_depth,
+                 std::vector<SlidingView>& views) const;
+  void integrate(int facet, const FacetSegments& segments, const SlidingVector& n, Wanted wanted,
+                 std::vector<SlidingView>& views) const;
+  void turn_with_facet(int facet, const SlidingVector& n, std::vector<SlidingView>& views) const;
+  void finish(std::size_t point, Wanted wanted, SlidingView& view) const;
+};
+
+/// Once for the points that see no deep overlaps, and once for those that do.
+void SlidingPair::Implementation::look_from(int facet, Wanted wanted, const std::vector<char>& left_out,
+                                            const std::vector<char>& any_depth, std::vector<SlidingView>& views) const {
+  const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
+  for (const bool deep : {false, true}) {
+    takes_part.assign(here.size(), 0);
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      if (here[k] < 0) continue;
+      const auto point = static_cast<std::size_t>(here[k]);
+      const bool is_out = !left_out.empty() && left_out[point] != 0;
+      const bool sees_deep = !any_depth.empty() && any_depth[point] != 0;
+      takes_part[k] = !is_out && sees_deep == deep ? 1 : 0;
+    }
+    if (std::find(takes_part.begin(), takes_part.end(), 1) == takes_part.end()) continue;
+    const SlidingVector n = turning[static_cast<std::size_t>(facet)].normalized();
+    const FacetSegments segments = surfaces.finder().find(facet, n, deep);
+    if (!segments.segments.empty()) integrate(facet, segments, n, wanted, views);
+  }
+}
+
+void SlidingPair::Implementation::integrate(int facet, const FacetSegments& segments, const SlidingVector& n,
+                                            Wanted wanted, std::vector<SlidingView>& views) const {
+  const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
+  const Index number = surfaces.own().facets()[static_cast<std::size_t>(facet)].number, d = plane ? 2 : 3;
+  gather_points(surfaces.map(), number, segments, points);
+  const FacetQuadrature& at = points.quadrature;
+  space->evaluate(at, functions);
+  weighted = functions.values * at.measure.asDiagonal();
+  surfaces.scale_to_reference(number, points.local, weighted);
+  Index begin = 0;
+  for (const SurfaceSegment& segment : segments.segments) {
+    const PolynomialMap<3> map = surfaces.map().map_of(segment.opposite);
+    surfaces.map().displacement(segment.opposite, segment.opposite_local, shapes);
+    const PlaceInBlocks place = locate_facet(*data.body.space, segment.opposite);
+    const Index* const nodes = data.body.space->facets[place.block].cell(place.local);
+    for (Index q = 0; q < segment.weights.size(); ++q) {
+      const PolynomialMap<3>::Place seen = map.evaluate(segment.opposite_local.col(q).data());
+      const auto [normal, part_seen] = sight_of(seen, plane, n);
+      if (part_seen == 0.0) continue;
+      const double gap = n.head(d).dot(at.positions.col(begin + q) - seen.at.head(d));
+      for (std::size_t k = 0; k < here.size(); ++k) {
+        if (takes_part[k] == 0) continue;
+        const auto point = static_cast<std::size_t>(here[k]);
+        const double weight = part_seen * weighted(static_cast<Index>(k), begin + q);
+        Sums& sum = sums[point];
+        sum.weight += weight;
+        sum.gap += weight * gap;
+        sum.force += weight * normal;
+        if (wanted == Wanted::gap) continue;
+        sum.pull += weight * gap * normal;
+        SlidingView& view = views[point];
+        for (Index j = 0; j < at.node_count(); ++j) {
+          const double part = weight * (*at.displacement)(j, begin + q);
+          entry_of(view.own, at.nodes[j], 0.0) += part;
+          entry_of<SlidingVector>(view.row, at.nodes[j], SlidingVector::Zero()) += part * normal;
+        }
+        for (Index j = 0; j < shapes.rows(); ++j) {
+          const double part = weight * shapes(j, q);
+          entry_of(view.opposite, nodes[j], 0.0) += part;
+          entry_of<SlidingVector>(view.row, nodes[j], SlidingVector::Zero()) -= part * normal;
+        }
+      }
+    }
+    begin += segment.weights.size();
+  }
+  if (wanted == Wanted::row) turn_with_facet(facet, n, views);
+}
+
+/// −(∂n/∂x)ᵀ ∫ψ g ν/(n·ν).
+void SlidingPair::Implementation::turn_with_facet(int facet, const SlidingVector& n,
+                                                  std::vector<SlidingView>& views) const {
+  const std::vector<int>& here = points_of[static_cast<std::size_t>(facet)];
+  const double length = turning[static_cast<std::size_t>(facet)].norm();
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    if (takes_part[k] == 0) continue;
+    const auto point = static_cast<std::size_t>(here[k]);
+    SlidingVector& pull = sums[point].pull;
+    const SlidingVector w = (n * n.dot(pull) - pull) / length;
+    normals[static_cast<std::size_t>(facet)].visit_derivative(
+        data.body.space->nodes, looked_at, w, [&](Index node, const SlidingVector& value) {
+          entry_of<SlidingVector>(views[point].row, node, SlidingVector::Zero()) += value;
+        });
+    pull.setZero();
+  }
+}
+
+/// From integrals to means.
+void SlidingPair::Implementation::finish(std::size_t point, Wanted wanted, SlidingView& view) const {
+  const Sums& sum = sums[point];
+  const Point& of = data.points[point];
+  view.faces = sum.weight > least_sliding_cover * of.multiplier.weight;
+  if (!view.faces) {
+    view.own.clear();
+    view.opposite.clear();
+    view.row.clear();
+    return;
+  }
+  const double scale = 1.0 / sum.force.norm();
+  view.gap = sum.gap * scale + of.offset;
+  view.direction = scale * sum.force;
+  if (wanted == Wanted::gap) return;
+  for (auto& [node, value] : view.own) value /= sum.weight;
+  for (auto& [node, value] : view.opposite) value /= sum.weight;
+  for (auto& [node, value] : view.row) value *= scale;
+  sort_by_node(view.own);
+  sort_by_node(view.opposite);
+  sort_by_node(view.row);
+}
+
+SlidingPair::SlidingPair(Data data) : implementation_(std::make_unique<Implementation>(std::move(data))) {}
+
+SlidingPair::~SlidingPair() = default;
+
+const std::vector<SlidingPair::Point>& SlidingPair::points() const {
+  return implementation_->data.points;
+}
+
+const std::vector<Index>& SlidingPair::nodes() const {
+  return implementation_->surfaces.nodes();
+}
+
+double SlidingPair::height() const {
+  return implementation_->least_height;
+}
+
+SlidingVector SlidingPair::normal(std::size_t point, const Vector& displacement) const {
+  return points()[point].normal.at(implementation_->data.body.space->nodes, displacement).normalized();
+}
+
+void SlidingPair::look(const Vector& displacement, Wanted wanted, const std::vector<char>& left_out,
+                       const std::vector<char>& any_depth, std::vector<SlidingView>& views) const {
+  const Implementation& own = *implementation_;
+  own.surfaces.move(displacement);
+  own.looked_at = displacement;
+  for (std::size_t facet = 0; facet < own.normals.size(); ++facet)
+    own.turning[facet] = own.normals[facet].at(own.data.body.space->nodes, displacement);
+  views.resize(points().size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    own.sums[i] = {};
+    SlidingView& view = views[i];
+    view.faces = false;
+    view.gap = 0.0;
+    view.own.clear();
+    view.opposite.clear();
+    view.row.clear();
+  }
+  for (std::size_t facet = 0; facet < own.points_of.size(); ++facet)
+    own.look_from(static_cast<int>(facet), wanted, left_out, any_depth, views);
+  for (std::size_t i = 0; i < views.size(); ++i) own.finish(i, wanted, views[i]);
+}
+
+double SlidingPair::node_gap(Index node, const SlidingVector& direction, const Vector& displacement) const {
+  const Implementation& own = *implementation_;
+  own.surfaces.move(displacement);
+  const double reach = 0.5 * own.surfaces.own().height_at(node);
+  const SegmentFinder::Hit hit = own.surfaces.finder().find_point(own.surfaces.position(node), direction, reach);
+  return hit.facet >= 0 ? hit.gap : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,282 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "ricochet/contact/row_writer.hpp"
+#include "ricochet/contact/sliding/rigid_part.hpp"
+#include "support/case_run.hpp"
+#include "support/two_bodies.hpp"
+
+/// @file Rows of contact between bodies that slide far.
+namespace ricochet {
+namespace {
+
+using test_support::CaseRun;
+
+struct Sled {
+  CellShape shape = CellShape::triangle;
+  std::string multipliers = "p1";
+  int degree = 1;
+};
+
+/// A small box above a larger one; all of its base faces the other one.
+CaseRun sled_of(const Sled& of) {
+  const bool plane = dimension(of.shape) == 2;
+  const int d = plane ? 2 : 3;
+  const std::vector<int> lower = plane ? std::vector{5, 2} : std::vector{4, 4, 2};
+  const std::vector<int> upper = plane ? std::vector{3, 2} : std::vector{2, 2, 2};
+  Vector place = Vector::Constant(d, 0.3);
+  place[d - 1] = 1.01;
+  const Mesh mesh =
+      test_support::make_stack({.lower_shape = of.shape,
+                                .upper_shape = of.shape,
+                                .lower_counts = lower,
+                                .upper_counts = upper,
+                                .upper_map = test_support::affine_map(0.4 * Matrix::Identity(d, d), place)});
+  const std::string name = fmt::format("sled-{}-{}.msh", static_cast<int>(of.shape), of.degree);
+  const std::string last = plane ? "y" : "z";
+  return CaseRun(
+      fmt::format("[mesh]\nfile = \"{}\"\ndegree = {}\n[[material]]\ngroup = \"all\"\ndensity = 1.0\n"
+                  "young = 100.0\npoisson = 0.3\n[[contact]]\ngroup = \"upper.{}0\"\nagainst = "
+                  "\"lower.{}1\"\nmultipliers = \"{}\"\n"
+                  "multipliers_on = \"group\"\nsliding = \"large\"\nunstable_multipliers = \"allow\"\nfriction = 0.1\n"
+                  "[time]\nstep = 1e-3\nend = 1e-3\n",
+                  test_support::write_mesh(name, mesh), of.degree, last, last, of.multipliers));
+}
+
+std::vector<Sled> sleds() {
+  std::vector<Sled> result;
+  for (const CellShape shape :
+       {CellShape::triangle, CellShape::quadrilateral, CellShape::tetrahedron, CellShape::hexahedron}) {
+    for (const std::string multipliers : {"p1", "p0"}) result.push_back({shape, multipliers, 1});
+    result.push_back({shape, "p1", 2});
+  }
+  return result;
+}
+
+std::string name_of_sled(const Sled& of) {
+  return fmt::format("shape {}, {}, degree {}", static_cast<int>(of.shape), of.multipliers, of.degree);
+}
+
+/// Nodes at random, and a turn of both bodies.
+Vector some_slide(const SemidiscreteProblem& problem, unsigned seed, double size, double turn) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> number(-size, size);
+  Vector result(problem.dof_count());
+  const Index d = problem.dimension;
+  Matrix rotation = Matrix::Identity(d, d);
+  rotation.topLeftCorner(2, 2) << std::cos(turn), -std::sin(turn), std::sin(turn), std::cos(turn);
+  for (Index node = 0; node < problem.nodes.cols(); ++node) {
+    Vector at = problem.nodes.col(node);
+    for (Index k = 0; k < d; ++k) at[k] += number(random);
+    result.segment(node * d, d) = rotation * at - problem.nodes.col(node);
+  }
+  return result;
+}
+
+Vector sled_gaps(const SemidiscreteProblem& problem, const Vector& displacement) {
+  Vector result;
+  problem.gaps(displacement, 0.0, result);
+  return result;
+}
+
+ContactRows sled_rows(const SemidiscreteProblem& problem, const Vector& displacement, const StepStart* start) {
+  ContactRows rows = *problem.contact.rows;
+  problem.contact.geometry->update(displacement, 0.0, start, rows);
+  return rows;
+}
+
+struct Balance {
+  double force = 0.0, moment = 0.0;
+};
+/// Of a row, about places X + U.
+Balance balance_of(const SemidiscreteProblem& problem, const ContactRows& rows, Index point,
+                   const Vector& displacement) {
+  const Index d = problem.dimension;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
+  rows.visit_normal(point, [&](Index dof, double value) {
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    place.head(d) = problem.nodes.col(dof / d) + displacement.segment(dof / d * d, d);
+    const Eigen::Vector3d own = value * Eigen::Vector3d::Unit(dof % d);
+    force += own;
+    moment += place.cross(own);
+  });
+  return {force.norm(), moment.norm()};
+}
+
+/// The largest difference of the rows and the derivatives of gaps along a motion, where the upper body is raised.
+double error_of_rows(const SemidiscreteProblem& problem, const std::string& what, double raised) {
+  const Index d = problem.dimension;
+  Vector at = some_slide(problem, 1, 0.002, 0.0);
+  for (Index node = 0; node < problem.nodes.cols(); ++node) {
+    if (problem.nodes(d - 1, node) > 1.001) at[node * d + d - 1] += raised - 0.01;
+  }
+  const Vector direction = some_slide(problem, 2, 0.05, 0.0);
+  const ContactRows rows = sled_rows(problem, at, nullptr);
+  Vector change;
+  rows.normal_motion(direction, change);
+  const double h = 1e-6;
+  const Vector difference =
+      (sled_gaps(problem, at + h * direction) - sled_gaps(problem, at - h * direction)) / (2.0 * h);
+  EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3) << what;
+  return (difference - change).lpNorm<Eigen::Infinity>() / change.lpNorm<Eigen::Infinity>();
+}
+
+/// Up to terms that the gap is a factor of, and that raise with it.
+TEST(SlidingContact, RowsAreTheDerivativesOfGapsThatClose) {
+  for (const Sled& sled : sleds()) {
+    const CaseRun run = sled_of(sled);
+    const double near = error_of_rows(run.problem(), name_of_sled(sled), 0.002),
+                 far = error_of_rows(run.problem(), name_of_sled(sled), 2.0);
+    EXPECT_LT(near, 4e-3) << name_of_sled(sled);
+    EXPECT_GT(far, 3.0 * near) << name_of_sled(sled);
+  }
+}
+
+TEST(SlidingContact, RowsOfAStepMeetBothEnds) {
+  for (const Sled& sled : sleds()) {
+    const CaseRun run = sled_of(sled);
+    const SemidiscreteProblem& problem = run.problem();
+    const Vector first = some_slide(problem, 3, 0.01, 0.1), second = some_slide(problem, 4, 0.01, 0.3);
+    const StepStart start{first, 0.0};
+    const ContactRows rows = sled_rows(problem, second, &start);
+    Vector change;
+    rows.normal_motion(second - first, change);
+    EXPECT_LT((sled_gaps(problem, second) - sled_gaps(problem, first) - change).lpNorm<Eigen::Infinity>(), 1e-13)
+        << name_of_sled(sled);
+    EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3);
+    for (Index i = 0; i < rows.size(); ++i) {
+      const Balance left = balance_of(problem, rows, i, 0.5 * (first + second));
+      EXPECT_LT(left.force, 1e-13) << name_of_sled(sled);
+      EXPECT_LT(left.moment, 1e-13) << name_of_sled(sled);
+    }
+  }
+}
+
+TEST(SlidingContact, RigidMotionsChangeNoGapAndRowsHaveNoResultant) {
+  for (const Sled& sled : sleds()) {
+    const CaseRun run = sled_of(sled);
+    const SemidiscreteProblem& problem = run.problem();
+    const Index d = problem.dimension;
+    const Vector at = some_slide(problem, 5, 0.01, 0.0);
+    Points moved = problem.nodes + at.reshaped(d, problem.nodes.cols());
+    const Vector gap = sled_gaps(problem, at);
+    const ContactRows rows = sled_rows(problem, at, nullptr);
+    for (Index i = 0; i < rows.size(); ++i) {
+      const Balance left = balance_of(problem, rows, i, at);
+      EXPECT_LT(left.force, 1e-13) << name_of_sled(sled);
+      EXPECT_LT(left.moment, 1e-13) << name_of_sled(sled);
+    }
+    Matrix turn = Matrix::Identity(d, d);
+    turn.topLeftCorner(2, 2) << std::cos(2.0), -std::sin(2.0), std::sin(2.0), std::cos(2.0);
+    if (d == 3) turn = Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix() * turn;
+    moved = (turn * moved).eval();
+    moved.colwise() += Vector::LinSpaced(d, 1.0, 3.0);
+    const Vector displacement = Points(moved - problem.nodes).reshaped();
+    EXPECT_LT((sled_gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of_sled(sled);
+    EXPECT_GT(gap.lpNorm<Eigen::Infinity>(), 1e-3);
+  }
+}
+
+/// The force on the upper body is a unit vector for a reaction of 1.
+TEST(SlidingContact, AReactionIsTheForceOnTheBody) {
+  for (const Sled& sled : sleds()) {
+    const CaseRun run = sled_of(sled);
+    const SemidiscreteProblem& problem = run.problem();
+    const Index d = problem.dimension;
+    const ContactRows rows = sled_rows(problem, some_slide(problem, 6, 0.01, 0.4), nullptr);
+    for (Index i = 0; i < rows.size(); ++i) {
+      Vector force = Vector::Zero(d);
+      rows.visit_normal(i, [&](Index dof, double value) {
+        if (problem.nodes(d - 1, dof / d) > 1.001) force[dof % d] += value;
+      });
+      EXPECT_LT((force - rows.normal(i)).norm(), 1e-12) << name_of_sled(sled);
+      EXPECT_LT(std::abs(rows.normal(i).dot(rows.tangents[static_cast<std::size_t>(i)].col(0))), 1e-14);
+    }
+  }
+}
+
+/// Made from the places that the rows tell: with the same bits.
+TEST(SlidingContact, RowsAreRestored) {
+  const CaseRun run = sled_of({CellShape::triangle, "p1", 2});
+  const SemidiscreteProblem& problem = run.problem();
+  const Vector first = some_slide(problem, 3, 0.01, 0.1), second = some_slide(problem, 4, 0.01, 0.2);
+  const StepStart start{first, 0.0};
+  const ContactRows rows = sled_rows(problem, second, &start);
+  const Vector values = problem.contact.geometry->row_values(rows);
+  ASSERT_EQ(values.size(), problem.contact.geometry->row_value_count());
+  sled_rows(problem, first, nullptr);
+  ContactRows again = *problem.contact.rows;
+  problem.contact.geometry->restore(rows.normals, rows.gap, values, again);
+  EXPECT_EQ(Matrix(rows.gap_operator), Matrix(again.gap_operator));
+  EXPECT_EQ(Matrix(rows.tangential_trace), Matrix(again.tangential_trace));
+  EXPECT_EQ(rows.normals, again.normals);
+}
+
+TEST(RowWriter, RowsGetOtherColumns) {
+  SparseRowMatrix matrix(3, 5);
+  matrix.insert(0, 1) = 1.0;
+  matrix.insert(1, 2) = 2.0;
+  matrix.insert(2, 3) = 3.0;
+  matrix.makeCompressed();
+  Matrix expected = matrix;
+  RowWriter writer;
+  std::vector<char> changed(3, 0);
+  writer.set(2, {{0, 5.0}, {4, 6.0}});
+  writer.set(0, {{1, 1.0}});
+  EXPECT_TRUE(writer.write(matrix, changed));
+  expected.row(2) << 5.0, 0.0, 0.0, 0.0, 6.0;
+  EXPECT_EQ(Matrix(matrix), expected);
+  EXPECT_EQ(changed, (std::vector<char>{0, 0, 1}));
+  writer.set(1, {});
+  EXPECT_TRUE(writer.write(matrix, changed));
+  expected.row(1).setZero();
+  EXPECT_EQ(Matrix(matrix), expected);
+  writer.set(2, {{0, 5.0}, {4, 6.0}});
+  EXPECT_FALSE(writer.write(matrix, changed));
+}
+
+TEST(RigidPart, OnlyDeformationIsLeft) {
+  for (const bool plane : {true, false}) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> number(-1.0, 1.0);
+    std::vector<Eigen::Vector3d> places, rigid, motions;
+    for (int k = 0; k < 6; ++k) {
+      const Eigen::Vector3d place(number(random), number(random), plane ? 0.0 : number(random));
+      places.push_back(place);
+      rigid.push_back(Eigen::Vector3d(0.3, -0.2, plane ? 0.0 : 0.5) +
+                      Eigen::Vector3d(plane ? 0.0 : 0.4, plane ? 0.0 : -0.1, 0.7).cross(place));
+      motions.push_back(rigid.back() + Eigen::Vector3d(number(random), number(random), plane ? 0.0 : number(random)));
+    }
+    take_off_rigid_part(places, plane, rigid);
+    take_off_rigid_part(places, plane, motions);
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = force;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      EXPECT_LT(rigid[k].norm(), 1e-15);
+      force += motions[k];
+      moment += places[k].cross(motions[k]);
+      largest = std::max(largest, motions[k].norm());
+    }
+    EXPECT_LT(force.norm(), 1e-14);
+    EXPECT_LT(moment.norm(), 1e-14);
+    EXPECT_GT(largest, 0.1);
+    const Eigen::Vector3d wanted(plane ? 0.0 : 0.3, plane ? 0.0 : -0.7, 0.5);
+    std::vector<Eigen::Vector3d> couple;
+    forces_of_couple(places, plane, wanted, couple);
+    force.setZero();
+    moment.setZero();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      force += couple[k];
+      moment += places[k].cross(couple[k]);
+    }
+    EXPECT_LT(force.norm(), 1e-15);
+    EXPECT_LT((moment - wanted).norm(), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace ricochet
