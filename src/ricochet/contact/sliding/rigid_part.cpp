@@ -30,8 +30,12 @@ Eigen::Vector3d rotation_of(const Places& places, const Eigen::Vector3d& middle,
     if (inertia(2, 2) > 0.0) result[2] = momentum[2] / inertia(2, 2);
     return result;
   }
-  inertia.diagonal().array() += least_inertia * inertia.trace();
-  if (inertia.trace() > 0.0) result = inertia.partialPivLu().solve(momentum);
+  if (!(inertia.trace() > 0.0)) return result;
+  Eigen::Matrix3d definite = inertia;
+  definite.diagonal().array() += least_inertia * inertia.trace();
+  const Eigen::PartialPivLU<Eigen::Matrix3d> solver(definite);
+  // The second round takes back what the first has lost to that.
+  for (int round = 0; round < 2; ++round) result += solver.solve(momentum - inertia * result);
   return result;
 }
 
