@@ -3,7 +3,7 @@
 closed forms. From the repository root, with python3-matplotlib installed:
 
     /usr/bin/python3 cases/pictures.py [puck disc rod bar ball ball-axisymmetric hertz layer incline dragged conveyor oblique ball-spin bowl bars-pair cradle
-        balls ball-block stack tied golf-ball rubber-ball tumbling-block balloon]
+        balls ball-block stack slide tied golf-ball rubber-ball tumbling-block balloon]
 """
 import sys
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from picture_tools import EXACT, run, save
 from pictures_at_finite_strain import balloon, golf_ball, rubber_ball, tumbling_block
-from pictures_of_pairs import ball_block, balls, bars_pair, cradle, stack, tied
+from pictures_of_pairs import ball_block, balls, bars_pair, cradle, slide, stack, tied
 
 
 def puck():
@@ -357,7 +357,7 @@ def hertz_pressure():
 if __name__ == "__main__":
     known = {"puck": puck, "disc": disc, "rod": rod, "bar": bar, "ball": ball, "ball-axisymmetric": ball_axisymmetric, "hertz": hertz_pressure, "layer": layer, "incline": incline, "dragged": dragged,
              "conveyor": conveyor, "oblique": oblique, "ball-spin": ball_spin, "bowl": bowl,
-             "bars-pair": bars_pair, "cradle": cradle, "balls": balls, "ball-block": ball_block, "stack": stack, "tied": tied,
+             "bars-pair": bars_pair, "cradle": cradle, "balls": balls, "ball-block": ball_block, "stack": stack, "slide": slide, "tied": tied,
              "golf-ball": golf_ball, "rubber-ball": rubber_ball, "tumbling-block": tumbling_block, "balloon": balloon}
     for wanted in sys.argv[1:] or known:
         known[wanted]()

@@ -134,3 +134,38 @@ def stack():
     velocity.legend(loc="upper right")
     friction.legend(loc="upper right")
     save(figure, "cases/stack/stack.png")
+
+
+def quarter_swing(start=0.6, bowl=0.25, half=0.2, thick=0.15, gravity=9.81, count=4000):
+    """Times and velocities of a rigid block whose lower corners are on y = bowl x^2, from rest at -start to the bottom."""
+    phase = (np.arange(count) + 0.5) * np.pi / 2 / count
+    x, h = -start * np.cos(phase), 1e-6
+
+    def place(x):
+        turn = np.arctan(2 * bowl * x)
+        chord = bowl * x**2 + bowl * (half * np.cos(turn))**2
+        return np.array([x - 0.5 * thick * np.sin(turn), chord + 0.5 * thick * np.cos(turn), turn])
+
+    rate = (place(x + h) - place(x - h)) / (2 * h)
+    inertia = rate[0]**2 + rate[1]**2 + ((2 * half)**2 + thick**2) / 12 * rate[2]**2
+    speed = np.sqrt(2 * gravity * (place(-start)[1] - place(x)[1]) / inertia)
+    time = np.cumsum(start * np.sin(phase) / speed) * np.pi / 2 / count
+    return time, speed * rate[0]
+
+
+def slide():
+    figure, (velocity, force) = plt.subplots(1, 2, figsize=(11, 3.8))
+    history = run("slide/slide", "slide")
+    time, speed = quarter_swing()
+    half = np.concatenate([time, 2 * time[-1] - time[::-1]]), np.concatenate([speed, speed[::-1]])
+    velocity.plot(np.concatenate([half[0], 2 * time[-1] + half[0]]), np.concatenate([half[1], -half[1]]), label="rigid", **EXACT)
+    velocity.plot(history["time"], history["momentum.block_x"] / 0.06, linewidth=1.2, label="computed")
+    velocity.set(xlabel="time / s", title="block: horizontal velocity / (m/s)")
+    velocity.legend(loc="upper right")
+    history = run("slide/ironing", "ironing")
+    force.plot(history["time"], history["die.force_y"], linewidth=1, label="vertical")
+    force.plot(history["time"], -history["die.force_x"], linewidth=1, label="horizontal, against the motion")
+    force.axvline(1, color="0.6", linewidth=1)
+    force.set(xlabel="time / s (drawn from 1 s on)", title="die: force of the slab / (N/m)")
+    force.legend(loc="center right")
+    save(figure, "cases/slide/slide.png")
