@@ -57,6 +57,8 @@ def documented_columns(dimension, case, points):
         columns += ["integration_error", "newton_rounds"]
     if any("relaxation" in material for material in case["material"]):
         columns += ["viscous_dissipation"]
+    if any(contact.get("sliding") == "large" for contact in case.get("contact", [])):
+        columns += ["re_pairing_work", "unsettled_gap"]
     for number, contact in enumerate(case.get("contact", [])):
         if "against" in contact and not contact.get("tied", False):
             columns += vector_columns(f"pair_force.{number}", dimension)

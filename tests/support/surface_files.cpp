@@ -78,7 +78,7 @@ SurfaceFacets sphere_surface(const Three& centre, double radius, int refinements
 
 void write_binary_stl(const SurfaceFacets& facets, const std::string& file) {
   std::ofstream stream(file, std::ios::binary);
-  stream << std::string(80, ' ');
+  stream << std::string(80, '\0');  // as many programs leave it
   const auto count = static_cast<std::uint32_t>(facets.corners.size());
   stream.write(reinterpret_cast<const char*>(&count), sizeof count);
   for (const Triangle& triangle : facets.corners) {

@@ -8,7 +8,7 @@
 
 namespace ricochet {
 
-std::string why_no_input(const std::string& path) {
+std::string why_no_input(const std::string& path, int header) {
   struct stat about {};
   if (stat(path.c_str(), &about) != 0) return "";
   if (S_ISDIR(about.st_mode)) return "it is a directory";
@@ -16,6 +16,7 @@ std::string why_no_input(const std::string& path) {
   if (!S_ISREG(about.st_mode)) return "";  // of a pipe nothing can be seen without taking it
   std::array<char, 64> head{};
   std::ifstream file(path, std::ios::binary);
+  file.ignore(header);
   if (file.read(head.data(), head.size()) && std::all_of(head.begin(), head.end(), [](char c) { return c == '\0'; }))
     return "it begins with zeros: it is empty, or damaged";
   return "";

@@ -17,8 +17,10 @@ namespace ricochet {
 
 namespace {
 
-std::string contents(const std::string& file) {
-  const std::string why_not = why_no_input(file);
+constexpr int header_of_stl = 80;  ///< bytes of the binary format that mean nothing
+
+std::string contents(const std::string& file, int header = 0) {
+  const std::string why_not = why_no_input(file, header);
   std::ifstream stream(file, std::ios::binary);
   if (!why_not.empty() || !stream)
     throw Error(ErrorKind::file_access,
@@ -142,7 +144,7 @@ SurfaceFacets read_binary(const std::string& file, const std::string& bytes, dou
 
 /// Binary files may begin with "solid", too: their size tells.
 SurfaceFacets read_stl(const std::string& file, double scale) {
-  const std::string bytes = contents(file);
+  const std::string bytes = contents(file, header_of_stl);
   const bool is_binary = bytes.size() == binary_header + binary_triangle * std::size_t{count_of_binary(bytes)};
   const bool begins_as_text = Words::same(std::string_view(bytes).substr(0, 5), "solid");
   SurfaceFacets result = is_binary || !begins_as_text ? read_binary(file, bytes, scale) : read_text(file, bytes, scale);

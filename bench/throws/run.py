@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Random throws of elastic bodies into random obstacles under the default scheme: none may fail, go through or gain energy.
+
+    ./dev bench throws [--cases 1000] [--first 1] [--keep FOLDER]
+
+Runs on all processors (20 minutes for 1,000) and prints a line for every throw that is not as it should be, then a table.
+Throws are those of their numbers, on every machine. Status 1: some are not as they should be.
+"""
+
+import argparse
+import collections
+import concurrent.futures
+import csv
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from random_throw import Throw
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = pathlib.Path(os.environ.get("RICOCHET_PROGRAM") or ROOT / "build" / "ricochet")
+ENERGY, DEPTH = 1e-10, 1e-9  # of the largest energy; of the body, which is of the size 1
+TIME_LIMIT = 900  # seconds
+
+
+def judge(output):
+    """What is wrong with a run that has ended, as texts."""
+    summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
+    with open(output / "history.csv", newline="", encoding="utf-8") as file:
+        rows = csv.DictReader(file)
+        columns = collections.defaultdict(list)
+        for row in rows:
+            for name, value in row.items():
+                columns[name].append(float(value))
+    largest = max(map(abs, columns["total_energy"] + columns["kinetic_energy"]))
+    wrong = []
+    created = summary["energy_budget"]["created_by_method"]
+    if created > ENERGY:
+        wrong.append(f"created {created:.1e} of the energy")
+    residual = max(map(abs, columns["energy_residual"])) / largest
+    if residual > ENERGY:
+        wrong.append(f"the account closes to {residual:.1e} only")
+    depth = max(columns["max_penetration"])
+    if depth > DEPTH:
+        wrong.append(f"a node is {depth:.1e} inside")
+    # All of the boundary is contact boundary: a node inside of the body that an edge reaches between its nodes is none of
+    # these.
+    if any("gone through" in warning for warning in summary["warnings"]):
+        wrong.append("a node has gone through in one step")
+    return wrong, max(columns["active_contacts"]) > 0
+
+
+def throw(seed, folder, keep):
+    made = Throw(seed, folder)
+    case, output = made.file(".toml"), made.file("_out")
+    case.write_text(made.text)
+    try:
+        process = subprocess.run([PROGRAM, "run", case, "-o", output, "--quiet", "--force"], capture_output=True, text=True,
+                                 timeout=TIME_LIMIT, check=False)
+        if process.returncode == 0:
+            wrong, touches = judge(output)
+        else:
+            lines = [line for line in process.stderr.splitlines() if line.startswith("ricochet: ")]
+            wrong, touches = [f"status {process.returncode}: {lines[0] if lines else process.stderr[-300:]}"], False
+    except subprocess.TimeoutExpired:
+        wrong, touches = [f"not done after {TIME_LIMIT} s"], False
+    if not keep or not wrong:
+        shutil.rmtree(output, ignore_errors=True)
+    return made, wrong, touches
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cases", type=int, default=1000)
+    parser.add_argument("--first", type=int, default=1)
+    parser.add_argument("--keep", type=pathlib.Path, help="a folder for the files of the throws")
+    options = parser.parse_args()
+    counts = collections.defaultdict(lambda: [0, 0, 0])
+    bad = 0
+    with tempfile.TemporaryDirectory(prefix="ricochet-throws-") as temporary:
+        folder = options.keep or pathlib.Path(temporary)
+        folder.mkdir(parents=True, exist_ok=True)
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            for made, wrong, touches in pool.map(lambda seed: throw(seed, folder, options.keep is not None),
+                                                 range(options.first, options.first + options.cases)):
+                for kind in {*made.kinds, made.law, f"{made.dimension}D", "all"}:
+                    counts[kind][0] += 1
+                    counts[kind][1] += touches
+                    counts[kind][2] += bool(wrong)
+                if wrong:
+                    bad += 1
+                    print(f"{made.seed}: {made.dimension}D {made.body}, {made.law}, friction {made.friction}, {' and '.join(made.kinds)}: "
+                          f"{'; '.join(wrong)}", flush=True)
+    print("| obstacle, law | throws | that touch | wrong |\n|---|---|---|---|")
+    for kind in sorted(counts, key=lambda name: (name == "all", name)):
+        print("| {} | {} | {} | {} |".format(kind, *counts[kind]))
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
