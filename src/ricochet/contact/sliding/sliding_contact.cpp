@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "ricochet/contact/contact_directions.hpp"
-#include "ricochet/contact/row_writer.hpp"
 #include "ricochet/contact/sliding/rigid_part.hpp"
+#include "ricochet/contact/sliding/sliding_rows.hpp"
 #include "ricochet/fem/displacement_space.hpp"
 
 namespace ricochet {
@@ -19,17 +17,16 @@ using SlidingNode = SlidingContactData::Node;
 
 /// Points up to so many times the motion of a step ahead, and up to this part of a cell, have rows.
 constexpr double ahead_of_sliding = 4.0, always_near = 0.1;
-/// Of a row.
-constexpr double most_correction = 0.25;
 /// Of the model: overlaps that are no rounding.
 constexpr double least_overlap = 1e-12;
-/// Motions of less than so many roundings have no direction.
-constexpr double least_motion = 1e3;
 
 class SlidingContact final : public ContactGeometry {
  public:
   explicit SlidingContact(SlidingContactData data)
-      : data_(std::move(data)), extent_(extent(data_.node_positions)), seen_(data_.pairs.size()) {
+      : data_(std::move(data)),
+        extent_(extent(data_.node_positions)),
+        seen_(data_.pairs.size()),
+        writer_(data_.node_positions) {
     for (const auto& pair : data_.pairs)
       surface_nodes_.insert(surface_nodes_.end(), pair->nodes().begin(), pair->nodes().end());
     std::sort(surface_nodes_.begin(), surface_nodes_.end());
@@ -64,26 +61,16 @@ class SlidingContact final : public ContactGeometry {
     if (is_held_ && start != nullptr) return;
     remember_places(displacement, start, rows);
     at_update_ = displacement;
-    middle_ = start != nullptr ? Vector(0.5 * (start->displacement + displacement)) : displacement;
-    if (start != nullptr) step_ = displacement - start->displacement;
+    is_step_ = start != nullptr;
+    writer_.begin(displacement, start != nullptr ? &start->displacement : nullptr);
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) update_pair(k, displacement, start, rows);
-    changed_.assign(static_cast<std::size_t>(rows.size()), 0);
-    gap_writer_.write(rows.gap_operator, changed_);
-    const Index tangents = dimension() - 1;
-    slip_changed_.assign(static_cast<std::size_t>(rows.size() * tangents), 0);
-    slip_writer_.write(rows.tangential_trace, slip_changed_);
-    ++revision_;
-    for (std::size_t i = 0; i < changed_.size(); ++i) {
-      const auto first = slip_changed_.begin() + static_cast<std::ptrdiff_t>(i) * tangents;
-      if (changed_[i] != 0 || std::any_of(first, first + tangents, [](char c) { return c != 0; }))
-        rows.revision[i] = revision_;
-    }
+    writer_.finish(rows);
     gap_at_update_ = rows.gap;
   }
 
   void begin_step() const override { is_held_ = was_held_ = false; }
   bool hold() const override {
-    if (is_held_ || at_update_.size() == 0) return false;
+    if (is_held_ || !is_step_) return false;
     is_held_ = was_held_ = true;
     return true;
   }
@@ -183,7 +170,7 @@ class SlidingContact final : public ContactGeometry {
       double along_step = 0.0;
       for (const auto& [node, value] : (enters(seen, i) ? seen.entering[i] : seen.middle[i]).row) {
         gap[point] += value.head(d).dot(displacement.segment(node * d, d) - at_update_.segment(node * d, d));
-        along_step += value.head(d).dot(step_.segment(node * d, d));
+        along_step += value.head(d).dot(writer_.step().segment(node * d, d));
       }
       // Seen from the step's end such a point begins inside: to push it out would give energy.
       if (enters(seen, i)) gap[point] -= std::min(gap_at_update_[point] - along_step, 0.0);
@@ -230,7 +217,7 @@ class SlidingContact final : public ContactGeometry {
   [[nodiscard]] double longest_way(const SlidingPair& pair) const {
     double longest = 0.0;
     for (const Index node : pair.nodes())
-      longest = std::max(longest, step_.segment(node * dimension(), dimension()).norm());
+      longest = std::max(longest, writer_.step().segment(node * dimension(), dimension()).norm());
     return longest;
   }
 
@@ -249,22 +236,22 @@ class SlidingContact final : public ContactGeometry {
       seen.left_out[i] = is_far(seen, i) || !seen.gaps[i].faces ? 1 : 0;
       any_near = any_near || seen.left_out[i] == 0;
     }
-    if (any_near) pair.look(middle_, SlidingPair::Wanted::row, seen.left_out, seen.any_depth, seen.middle);
+    if (any_near) pair.look(writer_.middle(), SlidingPair::Wanted::row, seen.left_out, seen.any_depth, seen.middle);
     if (any_near && start != nullptr) look_at_entering(pair, displacement, seen);
     for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
       const double gap_rounding = rows.gap_rounding[number(k, i)];
       if (seen.left_out[i] != 0) {
-        write_plane(pair, i, rows);
+        writer_.write_plane(pair.points()[i], pair.normal(i, writer_.middle()), rows);
       } else if (start == nullptr) {
-        write_view(pair.points()[i], seen.middle[i], rows);
+        writer_.write(pair.points()[i], seen.middle[i], rows);
       } else if (enters(seen, i)) {
         SlidingView& view = seen.entering[i];
-        correct(view, {}, gap_rounding);
-        write_view(pair.points()[i], view, rows);
+        writer_.correct(view, {}, gap_rounding);
+        writer_.write(pair.points()[i], view, rows);
       } else {
         SlidingView& view = seen.middle[i];
-        correct(view, seen.gaps[i].gap - seen.at_start[i].gap, gap_rounding);
-        write_view(pair.points()[i], view, rows);
+        writer_.correct(view, seen.gaps[i].gap - seen.at_start[i].gap, gap_rounding);
+        writer_.write(pair.points()[i], view, rows);
       }
     }
   }
@@ -290,92 +277,6 @@ class SlidingContact final : public ContactGeometry {
     for (const auto& [node, weight] : point.multiplier.trace)
       size = std::max(size, position(node, displacement).lpNorm<1>());
     return 64.0 * std::numeric_limits<double>::epsilon() * size;
-  }
-
-  /// Makes the row's product with the step the change of the gap; where none is known, no positive one. A product that
-  /// is too large could give energy and is mended in any case; one that is too small takes some, and is, up to a part
-  /// of the row.
-  void correct(SlidingView& view, std::optional<double> change, double rounding) const {
-    const Index d = dimension();
-    places_.clear();
-    motions_.clear();
-    double product = 0.0, size = 0.0;
-    for (const auto& [node, value] : view.row) {
-      places_.push_back(position(node, middle_));
-      SlidingVector motion = SlidingVector::Zero();
-      motion.head(d) = step_.segment(node * d, d);
-      product += value.dot(motion);
-      size += value.squaredNorm();
-      motions_.push_back(motion);
-    }
-    const double missing = change.value_or(std::min(product, 0.0)) - product;
-    if (std::abs(missing) <= 0.25 * rounding) return;
-    take_off_rigid_part(places_, d == 2, motions_);
-    double square = 0.0;
-    for (const SlidingVector& motion : motions_) square += motion.squaredNorm();
-    if (!(std::sqrt(square) > least_motion * std::numeric_limits<double>::epsilon() * extent_)) return;
-    const double factor = std::min(missing / square, most_correction * std::sqrt(size / square));
-    for (std::size_t j = 0; j < view.row.size(); ++j) view.row[j].second += factor * motions_[j];
-  }
-
-  void write_view(const SlidingPair::Point& point, const SlidingView& view, ContactRows& rows) const {
-    const Index d = dimension();
-    entries_.clear();
-    for (const auto& [node, value] : view.row) {
-      for (Index j = 0; j < d; ++j) entries_.emplace_back(node * d + j, value[j]);
-    }
-    gap_writer_.set(point.number, entries_);
-    take_directions(point, view.direction, rows);
-    trace_.clear();
-    for (const auto& [node, weight] : view.own) trace_.emplace_back(node, weight);
-    for (const auto& [node, weight] : view.opposite) trace_.emplace_back(node, -weight);
-    std::sort(trace_.begin(), trace_.end());
-    write_slips(point.number, rows);
-  }
-
-  /// A point that is far from touching, or faces nothing.
-  void write_plane(const SlidingPair& pair, std::size_t i, ContactRows& rows) const {
-    const SlidingPair::Point& point = pair.points()[i];
-    const Index d = dimension();
-    const SlidingVector normal = pair.normal(i, middle_);
-    trace_.clear();
-    for (const auto& [node, weight] : point.multiplier.trace) trace_.emplace_back(node, weight);
-    std::sort(trace_.begin(), trace_.end());
-    entries_.clear();
-    for (const auto& [node, weight] : trace_) {
-      for (Index j = 0; j < d; ++j) entries_.emplace_back(node * d + j, weight * normal[j]);
-    }
-    gap_writer_.set(point.number, entries_);
-    take_directions(point, normal, rows);
-    write_slips(point.number, rows);
-  }
-
-  void take_directions(const SlidingPair::Point& point, const SlidingVector& direction, ContactRows& rows) const {
-    const Index d = dimension();
-    const Vector normal = direction.head(d);
-    const ContactTangents tangents = tangents_at(
-        0, normal, [&](Index, int component) { return point.is_free[static_cast<std::size_t>(component)]; });
-    rows.normals.col(point.number) = normal;
-    rows.tangents[static_cast<std::size_t>(point.number)] = tangents.directions;
-    for (Index j = 0; j < d - 1; ++j)
-      rows.slips[static_cast<std::size_t>(point.number * (d - 1) + j)] =
-          tangents.slips[static_cast<std::size_t>(j)] ? 1 : 0;
-  }
-
-  /// t ⊗ τ with the trace in trace_.
-  void write_slips(Index point, const ContactRows& rows) const {
-    const Index d = dimension();
-    for (Index j = 0; j < d - 1; ++j) {
-      const Index row = point * (d - 1) + j;
-      entries_.clear();
-      if (rows.slips[static_cast<std::size_t>(row)] != 0) {
-        const auto tangent = rows.tangents[static_cast<std::size_t>(point)].col(j);
-        for (const auto& [node, weight] : trace_) {
-          for (Index c = 0; c < d; ++c) entries_.emplace_back(node * d + c, weight * tangent[c]);
-        }
-      }
-      slip_writer_.set(row, entries_);
-    }
   }
 
   /// Forces that act at another place than the middle of the step are those of the rows there, with friction as strong
@@ -425,14 +326,12 @@ class SlidingContact final : public ContactGeometry {
   double extent_;
   std::vector<Index> surface_nodes_;  ///< of all pairs, ascending
   mutable std::vector<Seen> seen_;    ///< per pair
-  mutable Vector middle_, step_;
+  mutable SlidingRows writer_;
   mutable Vector at_update_, gap_at_update_;         ///< of the last update
   mutable bool is_held_ = false, was_held_ = false;  ///< the second until the next step begins
-  mutable RowWriter gap_writer_, slip_writer_;
-  mutable RowWriter::Entries entries_, trace_;
-  mutable std::vector<char> changed_, slip_changed_, left_out_;
+  mutable bool is_step_ = false;                     ///< the last update was of a step
+  mutable std::vector<char> left_out_;
   mutable std::vector<SlidingVector> places_, motions_;
-  mutable long revision_ = 0;  ///< of the last update: no two rows that differ have the same
 };
 
 }  // namespace
