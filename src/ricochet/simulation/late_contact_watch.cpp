@@ -25,8 +25,10 @@ LateContactWatch::LateContactWatch(const Body& body, const SemidiscreteProblem& 
     : problem_(problem), pairs_(pairs) {
   const ContactBoundary& contact = problem.contact;
   std::map<int, std::vector<Node>> nodes;
-  for (const KeptNode& kept : kept_nodes(body, contact, pairs, find_connected_bodies(*body.space).of_node))
-    nodes[kept.contact].push_back({kept.entry, allowed * kept.allowance});
+  for (const KeptNode& kept : kept_nodes(body, contact, pairs, find_connected_bodies(*body.space).of_node)) {
+    // Of the far side of a pair that slides no gaps are known.
+    if (kept.entry >= 0) nodes[kept.contact].push_back({kept.entry, allowed * kept.allowance});
+  }
   for (auto& [number, of_contact] : nodes) {
     Contact watched{static_cast<std::size_t>(number), {}, std::move(of_contact)};
     for (Index point = 0; point < contact.size(); ++point) {

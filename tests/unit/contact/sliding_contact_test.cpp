@@ -8,6 +8,7 @@
 #include "ricochet/contact/row_writer.hpp"
 #include "ricochet/contact/sliding/rigid_part.hpp"
 #include "support/case_run.hpp"
+#include "support/sanitized.hpp"
 #include "support/two_bodies.hpp"
 
 /// @file Rows of contact between bodies that slide far.
@@ -48,6 +49,7 @@ CaseRun sled_of(const Sled& of) {
 }
 
 std::vector<Sled> sleds() {
+  if (test::is_sanitized) return {{CellShape::triangle, "p1", 2}, {CellShape::hexahedron, "p0", 1}};
   std::vector<Sled> result;
   for (const CellShape shape :
        {CellShape::triangle, CellShape::quadrilateral, CellShape::tetrahedron, CellShape::hexahedron}) {
