@@ -34,6 +34,15 @@ constexpr double rounding_of_files = 1e-6;
 
 }  // namespace
 
+void refuse_fold(const ContactPair& pair, const PairFacing& facing) {
+  if (facing.agreement >= folded) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("contact group \"{}\": its facets around the node at ({:.6g}) fold so sharply that they "
+                          "have no common direction in which \"{}\" could be met; leave those of one side of the "
+                          "edge out of the group, or give them a contact of their own",
+                          pair.group, fmt::join(facing.edge, ", "), pair.opposite_group));
+}
+
 struct BodyPairing::Implementation {
   const Body& body;
   const ContactPair& pair;
@@ -111,13 +120,7 @@ AnchorDirections BodyPairing::Implementation::find_directions(bool at_facets, Pa
     found.agreement = agreement;
     found.edge = in_mesh(surfaces.position(node));
   }
-  if (found.agreement < folded) {
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("contact group \"{}\": its facets around the node at ({:.6g}) fold so sharply that they "
-                            "have no common direction in which \"{}\" could be met; leave those of one side of the "
-                            "edge out of the group, or give them a contact of their own",
-                            pair.group, fmt::join(found.edge, ", "), pair.opposite_group));
-  }
+  refuse_fold(pair, found);
   // On a flat surface all facets and multipliers have the very same one.
   for (std::size_t k = 0; k < own.facets().size(); ++k) {
     if (!faces(k)) continue;

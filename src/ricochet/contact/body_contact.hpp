@@ -42,6 +42,9 @@ struct PairFacing {
   bool matches = true;        ///< each node faces a node
 };
 
+/// Throws Error(invalid_input) where facets fold so sharply around a node that their normals have no mean.
+void refuse_fold(const ContactPair& pair, const PairFacing& facing);
+
 /// The points of one pair of groups, and the nodes on both sides.
 struct BodyContact {
   struct Node {

@@ -37,6 +37,14 @@ NodeWeights fractions(const std::map<Index, double>& sums, double weight) {
   return result;
 }
 
+FacetsAround facets_around_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
+  FacetsAround result;
+  for (const Index facet : facets) {
+    for (const Index node : facet_nodes(space, {facet})) result[node].push_back(facet);
+  }
+  return result;
+}
+
 std::map<Index, AreaSum> areas_around_nodes(const Body& body, const FacetSurface& surface,
                                             const std::set<Index>* only) {
   std::map<Index, AreaSum> result;

@@ -21,6 +21,10 @@ using NodeWeights = std::vector<std::pair<Index, double>>;
 /// it. Nothing changes at other nodes.
 void take_across_axis(const Body& body, Index node, Eigen::Vector3d& vector);
 
+/// Of the facets (numbered through all blocks), by node of the displacement.
+using FacetsAround = std::map<Index, std::vector<Index>>;
+[[nodiscard]] FacetsAround facets_around_nodes(const DisplacementSpace& space, const std::vector<Index>& facets);
+
 /// Of the facets around a node: the sum of area vectors, out of the body, and of their lengths.
 struct AreaSum {
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();

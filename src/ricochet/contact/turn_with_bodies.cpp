@@ -7,6 +7,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/contact/boundary_patch.hpp"
+#include "ricochet/contact/paired_surfaces.hpp"
 #include "ricochet/contact/turning_pairs.hpp"
 
 namespace ricochet {
@@ -14,16 +15,6 @@ namespace ricochet {
 namespace {
 
 using Patches = std::vector<std::unique_ptr<BoundaryPatch>>;
-using FacetsAround = std::map<Index, std::vector<Index>>;
-
-/// Of the facets, by node.
-FacetsAround facets_around_nodes(const DisplacementSpace& space, const std::vector<Index>& facets) {
-  FacetsAround result;
-  for (const Index facet : facets) {
-    for (const Index node : facet_nodes(space, {facet})) result[node].push_back(facet);
-  }
-  return result;
-}
 
 /// Nodes whose displacement a row of a contact point may depend on, per node: those that some trace reaches, which have
 /// no inertia where contact nodes have none.

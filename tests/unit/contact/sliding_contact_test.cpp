@@ -8,6 +8,7 @@
 #include "ricochet/contact/row_writer.hpp"
 #include "ricochet/contact/sliding/rigid_part.hpp"
 #include "support/case_run.hpp"
+#include "support/pair_rows.hpp"
 #include "support/sanitized.hpp"
 #include "support/two_bodies.hpp"
 
@@ -17,11 +18,7 @@ namespace {
 
 using test_support::CaseRun;
 
-struct Sled {
-  CellShape shape = CellShape::triangle;
-  std::string multipliers = "p1";
-  int degree = 1;
-};
+using Sled = test_support::PairOfBoxes;
 
 /// A small box above a larger one; all of its base faces the other one.
 CaseRun sled_of(const Sled& of) {
@@ -59,10 +56,6 @@ std::vector<Sled> sleds() {
   return result;
 }
 
-std::string name_of_sled(const Sled& of) {
-  return fmt::format("shape {}, {}, degree {}", static_cast<int>(of.shape), of.multipliers, of.degree);
-}
-
 /// Nodes at random, and a turn of both bodies.
 Vector some_slide(const SemidiscreteProblem& problem, unsigned seed, double size, double turn) {
   std::mt19937 random(seed);
@@ -79,34 +72,10 @@ Vector some_slide(const SemidiscreteProblem& problem, unsigned seed, double size
   return result;
 }
 
-Vector sled_gaps(const SemidiscreteProblem& problem, const Vector& displacement) {
-  Vector result;
-  problem.gaps(displacement, 0.0, result);
-  return result;
-}
-
 ContactRows sled_rows(const SemidiscreteProblem& problem, const Vector& displacement, const StepStart* start) {
   ContactRows rows = *problem.contact.rows;
   problem.contact.geometry->update(displacement, 0.0, start, rows);
   return rows;
-}
-
-struct Balance {
-  double force = 0.0, moment = 0.0;
-};
-/// Of a row, about places X + U.
-Balance balance_of(const SemidiscreteProblem& problem, const ContactRows& rows, Index point,
-                   const Vector& displacement) {
-  const Index d = problem.dimension;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
-  rows.visit_normal(point, [&](Index dof, double value) {
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();
-    place.head(d) = problem.nodes.col(dof / d) + displacement.segment(dof / d * d, d);
-    const Eigen::Vector3d own = value * Eigen::Vector3d::Unit(dof % d);
-    force += own;
-    moment += place.cross(own);
-  });
-  return {force.norm(), moment.norm()};
 }
 
 /// The largest difference of the rows and the derivatives of gaps along a motion, where the upper body is raised.
@@ -122,7 +91,7 @@ double error_of_rows(const SemidiscreteProblem& problem, const std::string& what
   rows.normal_motion(direction, change);
   const double h = 1e-6;
   const Vector difference =
-      (sled_gaps(problem, at + h * direction) - sled_gaps(problem, at - h * direction)) / (2.0 * h);
+      (test_support::gaps(problem, at + h * direction) - test_support::gaps(problem, at - h * direction)) / (2.0 * h);
   EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3) << what;
   return (difference - change).lpNorm<Eigen::Infinity>() / change.lpNorm<Eigen::Infinity>();
 }
@@ -131,10 +100,10 @@ double error_of_rows(const SemidiscreteProblem& problem, const std::string& what
 TEST(SlidingContact, RowsAreTheDerivativesOfGapsThatClose) {
   for (const Sled& sled : sleds()) {
     const CaseRun run = sled_of(sled);
-    const double near = error_of_rows(run.problem(), name_of_sled(sled), 0.002),
-                 far = error_of_rows(run.problem(), name_of_sled(sled), 2.0);
-    EXPECT_LT(near, 4e-3) << name_of_sled(sled);
-    EXPECT_GT(far, 3.0 * near) << name_of_sled(sled);
+    const double near = error_of_rows(run.problem(), name_of(sled), 0.002),
+                 far = error_of_rows(run.problem(), name_of(sled), 2.0);
+    EXPECT_LT(near, 4e-3) << name_of(sled);
+    EXPECT_GT(far, 3.0 * near) << name_of(sled);
   }
 }
 
@@ -147,13 +116,15 @@ TEST(SlidingContact, RowsOfAStepMeetBothEnds) {
     const ContactRows rows = sled_rows(problem, second, &start);
     Vector change;
     rows.normal_motion(second - first, change);
-    EXPECT_LT((sled_gaps(problem, second) - sled_gaps(problem, first) - change).lpNorm<Eigen::Infinity>(), 1e-13)
-        << name_of_sled(sled);
+    EXPECT_LT(
+        (test_support::gaps(problem, second) - test_support::gaps(problem, first) - change).lpNorm<Eigen::Infinity>(),
+        1e-13)
+        << name_of(sled);
     EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3);
     for (Index i = 0; i < rows.size(); ++i) {
-      const Balance left = balance_of(problem, rows, i, 0.5 * (first + second));
-      EXPECT_LT(left.force, 1e-13) << name_of_sled(sled);
-      EXPECT_LT(left.moment, 1e-13) << name_of_sled(sled);
+      const test_support::RowBalance left = test_support::balance_of_row(problem, rows, i, 0.5 * (first + second));
+      EXPECT_LT(left.force, 1e-13) << name_of(sled);
+      EXPECT_LT(left.moment, 1e-13) << name_of(sled);
     }
   }
 }
@@ -162,23 +133,16 @@ TEST(SlidingContact, RigidMotionsChangeNoGapAndRowsHaveNoResultant) {
   for (const Sled& sled : sleds()) {
     const CaseRun run = sled_of(sled);
     const SemidiscreteProblem& problem = run.problem();
-    const Index d = problem.dimension;
     const Vector at = some_slide(problem, 5, 0.01, 0.0);
-    Points moved = problem.nodes + at.reshaped(d, problem.nodes.cols());
-    const Vector gap = sled_gaps(problem, at);
+    const Vector gap = test_support::gaps(problem, at);
     const ContactRows rows = sled_rows(problem, at, nullptr);
     for (Index i = 0; i < rows.size(); ++i) {
-      const Balance left = balance_of(problem, rows, i, at);
-      EXPECT_LT(left.force, 1e-13) << name_of_sled(sled);
-      EXPECT_LT(left.moment, 1e-13) << name_of_sled(sled);
+      const test_support::RowBalance left = test_support::balance_of_row(problem, rows, i, at);
+      EXPECT_LT(left.force, 1e-13) << name_of(sled);
+      EXPECT_LT(left.moment, 1e-13) << name_of(sled);
     }
-    Matrix turn = Matrix::Identity(d, d);
-    turn.topLeftCorner(2, 2) << std::cos(2.0), -std::sin(2.0), std::sin(2.0), std::cos(2.0);
-    if (d == 3) turn = Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix() * turn;
-    moved = (turn * moved).eval();
-    moved.colwise() += Vector::LinSpaced(d, 1.0, 3.0);
-    const Vector displacement = Points(moved - problem.nodes).reshaped();
-    EXPECT_LT((sled_gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of_sled(sled);
+    const Vector displacement = test_support::moved_rigidly(problem, at);
+    EXPECT_LT((test_support::gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of(sled);
     EXPECT_GT(gap.lpNorm<Eigen::Infinity>(), 1e-3);
   }
 }
@@ -195,7 +159,7 @@ TEST(SlidingContact, AReactionIsTheForceOnTheBody) {
       rows.visit_normal(i, [&](Index dof, double value) {
         if (problem.nodes(d - 1, dof / d) > 1.001) force[dof % d] += value;
       });
-      EXPECT_LT((force - rows.normal(i)).norm(), 1e-12) << name_of_sled(sled);
+      EXPECT_LT((force - rows.normal(i)).norm(), 1e-12) << name_of(sled);
       EXPECT_LT(std::abs(rows.normal(i).dot(rows.tangents[static_cast<std::size_t>(i)].col(0))), 1e-14);
     }
   }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "support/case_run.hpp"
+#include "support/pair_rows.hpp"
 #include "support/two_bodies.hpp"
 
 /// @file Rows of contact between bodies that turn with them.
@@ -14,11 +15,7 @@ namespace {
 
 using test_support::CaseRun;
 
-struct Stack {
-  CellShape shape = CellShape::triangle;
-  std::string multipliers = "p1";
-  int degree = 1;
-};
+using Stack = test_support::PairOfBoxes;
 
 CaseRun stack_of(const Stack& of) {
   const bool plane = dimension(of.shape) == 2;
@@ -46,10 +43,6 @@ std::vector<Stack> stacks() {
   return result;
 }
 
-std::string name_of(const Stack& of) {
-  return fmt::format("shape {}, {}, degree {}", static_cast<int>(of.shape), of.multipliers, of.degree);
-}
-
 /// Nothing is smooth, and all of it is a motion that keeps cells upright: it turns by 1 and stretches.
 Vector some_motion(const SemidiscreteProblem& problem, unsigned seed, double size) {
   std::mt19937 random(seed);
@@ -64,12 +57,6 @@ Vector some_motion(const SemidiscreteProblem& problem, unsigned seed, double siz
     for (Index k = 0; k < d; ++k) result[node * d + k] = number(random);
     result.segment(node * d, d) += turn * problem.nodes.col(node) - problem.nodes.col(node);
   }
-  return result;
-}
-
-Vector gaps(const SemidiscreteProblem& problem, const Vector& displacement) {
-  Vector result;
-  problem.gaps(displacement, 0.0, result);
   return result;
 }
 
@@ -91,7 +78,8 @@ TEST(TurningPairs, RowsAreTheDerivativesOfGaps) {
     Vector change;
     rows.normal_motion(direction, change);
     const double h = 1e-5;
-    const Vector difference = (gaps(problem, at + h * direction) - gaps(problem, at - h * direction)) / (2.0 * h);
+    const Vector difference =
+        (test_support::gaps(problem, at + h * direction) - test_support::gaps(problem, at - h * direction)) / (2.0 * h);
     EXPECT_LT((difference - change).lpNorm<Eigen::Infinity>(), 1e-8) << name_of(stack);
     EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3);
   }
@@ -107,7 +95,9 @@ TEST(TurningPairs, RowsOfAStepMeetBothEnds) {
     const ContactRows rows = rows_of(problem, second, &start);
     Vector change;
     rows.normal_motion(second - first, change);
-    EXPECT_LT((gaps(problem, second) - gaps(problem, first) - change).lpNorm<Eigen::Infinity>(), 1e-13)
+    EXPECT_LT(
+        (test_support::gaps(problem, second) - test_support::gaps(problem, first) - change).lpNorm<Eigen::Infinity>(),
+        1e-13)
         << name_of(stack);
     EXPECT_GT(change.lpNorm<Eigen::Infinity>(), 1e-3);
   }
@@ -117,30 +107,16 @@ TEST(TurningPairs, RigidMotionsChangeNoGapAndRowsHaveNoResultant) {
   for (const Stack& stack : stacks()) {
     const CaseRun run = stack_of(stack);
     const SemidiscreteProblem& problem = run.problem();
-    const Index d = problem.dimension;
     const Vector at = some_motion(problem, 5, 0.03);
-    Points moved = problem.nodes + at.reshaped(d, problem.nodes.cols());
-    const Vector gap = gaps(problem, at);
+    const Vector gap = test_support::gaps(problem, at);
     const ContactRows rows = rows_of(problem, at, nullptr);
     for (Index i = 0; i < rows.size(); ++i) {
-      Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
-      rows.visit_normal(i, [&](Index dof, double value) {
-        Eigen::Vector3d place = Eigen::Vector3d::Zero();
-        place.head(d) = moved.col(dof / d);
-        const Eigen::Vector3d own = value * Eigen::Vector3d::Unit(dof % d);
-        force += own;
-        moment += place.cross(own);
-      });
-      EXPECT_LT(force.norm(), 1e-14) << name_of(stack);
-      EXPECT_LT(moment.norm(), 1e-14) << name_of(stack);
+      const test_support::RowBalance left = test_support::balance_of_row(problem, rows, i, at);
+      EXPECT_LT(left.force, 1e-14) << name_of(stack);
+      EXPECT_LT(left.moment, 1e-14) << name_of(stack);
     }
-    Matrix turn = Matrix::Identity(d, d);
-    turn.topLeftCorner(2, 2) << std::cos(2.0), -std::sin(2.0), std::sin(2.0), std::cos(2.0);
-    if (d == 3) turn = Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix() * turn;
-    moved = (turn * moved).eval();
-    moved.colwise() += Vector::LinSpaced(d, 1.0, 3.0);
-    const Vector displacement = Points(moved - problem.nodes).reshaped();
-    EXPECT_LT((gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of(stack);
+    const Vector displacement = test_support::moved_rigidly(problem, at);
+    EXPECT_LT((test_support::gaps(problem, displacement) - gap).lpNorm<Eigen::Infinity>(), 1e-13) << name_of(stack);
     EXPECT_GT(gap.lpNorm<Eigen::Infinity>(), 1e-3);
   }
 }

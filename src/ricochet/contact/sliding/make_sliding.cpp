@@ -13,16 +13,6 @@ namespace ricochet {
 
 namespace {
 
-using FacetsAroundNodes = std::map<Index, std::vector<Index>>;
-
-FacetsAroundNodes own_facets_by_node(const Body& body, const std::vector<Index>& facets) {
-  FacetsAroundNodes result;
-  for (const Index facet : facets) {
-    for (const Index node : facet_nodes(*body.space, {facet})) result[node].push_back(facet);
-  }
-  return result;
-}
-
 /// Out of the opposite surface, at the start; facets around an edge, or nodes on an axis, share one.
 class OwnNormals {
  public:
@@ -30,7 +20,7 @@ class OwnNormals {
       : body_(body),
         surface_(body, pair.facets),
         areas_(areas_around_nodes(body, surface_)),
-        around_(own_facets_by_node(body, pair.facets)) {
+        around_(facets_around_nodes(*body.space, pair.facets)) {
     for (const FacetSurface::Facet& facet : surface_.facets())
       of_facet_[facet.number] = -facet.area_vector.normalized();
   }
@@ -53,12 +43,9 @@ class OwnNormals {
   const Body& body_;
   FacetSurface surface_;
   std::map<Index, AreaSum> areas_;
-  FacetsAroundNodes around_;
+  FacetsAround around_;
   std::map<Index, Eigen::Vector3d> of_facet_;
 };
-
-/// Length of the mean of unit normals below which there is no direction.
-constexpr double folded_edge = 0.5;
 
 void check_normals(const Body& body, const ContactPair& pair, const OwnNormals& normals, PairFacing& facing) {
   for (const Index node : facet_nodes(*body.space, pair.facets)) {
@@ -67,13 +54,7 @@ void check_normals(const Body& body, const ContactPair& pair, const OwnNormals& 
     facing.agreement = agreement;
     facing.edge = body.space->nodes.col(node);
   }
-  if (facing.agreement >= folded_edge) return;
-  throw Error(
-      ErrorKind::invalid_input,
-      fmt::format("contact group \"{}\": its facets around the node at ({:.6g}) fold so sharply that they have "
-                  "no common direction in which \"{}\" could be met; leave those of one side of the edge out of "
-                  "the group, or give them a contact of their own",
-                  pair.group, fmt::join(facing.edge, ", "), pair.opposite_group));
+  refuse_fold(pair, facing);
 }
 
 void check_ties(const Body& body, const ContactPair& pair) {
