@@ -163,11 +163,22 @@ void fill_points(const BoundaryPatch& patch, const FreeComponent& is_free, Conta
   }
 }
 
+/// The trace of the points whose directions turn at obstacles that do not move by the forces on them.
+std::shared_ptr<const SparseRowMatrix> turning_trace(const CurvedContactData& data) {
+  std::vector<char> turns(static_cast<std::size_t>(data.trace.rows()), 0);
+  for (const CurvedContactData::Point& point : data.points)
+    turns[static_cast<std::size_t>(point.number)] = data.obstacles[point.obstacle]->free_motion() == nullptr ? 1 : 0;
+  if (std::find(turns.begin(), turns.end(), 1) == turns.end()) return nullptr;
+  auto result = std::make_shared<SparseRowMatrix>(data.trace);
+  result->prune([&](Index row, Index, double) { return turns[static_cast<std::size_t>(row)] != 0; });
+  return result;
+}
+
 /// Points and nodes at curved obstacles; null: there are none.
 std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const Patches& patches,
                                                          const std::vector<ContactPair>& pairs,
-                                                         const FreeComponent& is_free,
-                                                         const ContactBoundary& boundary) {
+                                                         const FreeComponent& is_free, const ContactBoundary& boundary,
+                                                         ContactRows& rows) {
   CurvedContactData data;
   const auto number_of = [&data](const Obstacle* obstacle) {
     const auto known = std::find(data.obstacles.begin(), data.obstacles.end(), obstacle);
@@ -193,6 +204,7 @@ std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const
   data.node_positions = body.space->nodes;
   data.node_normals = boundary.node_normals;
   data.trace = boundary.trace;
+  rows.turning_trace = turning_trace(data);
   return make_curved_contact(std::move(data));
 }
 
@@ -200,7 +212,7 @@ std::unique_ptr<ContactGeometry> follow_curved_obstacles(const Body& body, const
 void follow_motion(const Body& body, const Patches& patches, const std::vector<ContactPair>& pairs,
                    const FreeComponent& is_free, ContactRows& rows, ContactBoundary& boundary) {
   std::vector<std::unique_ptr<ContactGeometry>> parts;
-  parts.push_back(follow_curved_obstacles(body, patches, pairs, is_free, boundary));
+  parts.push_back(follow_curved_obstacles(body, patches, pairs, is_free, boundary, rows));
   parts.push_back(turn_with_bodies(body, pairs, patches, is_free, boundary));
   parts.push_back(follow_sliding(body, pairs, patches, is_free, boundary));
   std::erase(parts, nullptr);

@@ -23,6 +23,9 @@ struct ContactRows {
   /// Of contact between bodies that slide far, where rows reach other nodes as the bodies go: from which places they
   /// were made. Empty: rows have the same entries for the whole run.
   Vector places;
+  /// c, points × nodes, of points whose rows have the entries c ⊗ n and c ⊗ t, those alone and whatever their
+  /// directions are; the rows of all others are empty. Null: no point has directions that turn.
+  std::shared_ptr<const SparseRowMatrix> turning_trace;
 
   [[nodiscard]] Index size() const { return normals.cols(); }
   [[nodiscard]] int dimension() const { return static_cast<int>(normals.rows()); }

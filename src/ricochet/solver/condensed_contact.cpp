@@ -35,6 +35,13 @@ Index CondensedContact::rows_of(Index point) const {
   return has_friction ? problem_.dimension : 1;
 }
 
+/// Columns of E, d for every point, cost a point without friction more than its one row does. They are worth it where
+/// the factor lasts.
+bool CondensedContact::turns(Index point) const {
+  if (rows_->turning_trace == nullptr || !SparseRowMatrix::InnerIterator(*rows_->turning_trace, point)) return false;
+  return rows_of(point) == problem_.dimension || problem_.internal_force->is_linear();
+}
+
 /// Calls enter(row of the point, dof, value) for the entries of H.
 template <class Enter>
 void CondensedContact::visit_rows(Index point, const Enter& enter) const {
@@ -49,12 +56,23 @@ void CondensedContact::start_again_with(const std::vector<Index>& points) {
   revision_.clear();
   taken_up_.clear();
   columns_.clear();
+  turned_.clear();
   if (layer_) layer_->clear();
   condensed_.resize(0, 0);
   contact_.contact_operator.reset();
   contact_.row_offset.assign(1, 0);
   solver_.reset();
   if (!points.empty()) take_up(points);
+}
+
+/// The same for those of E.
+template <class Enter>
+void CondensedContact::visit_columns(Index point, const Enter& enter) const {
+  if (!turns(point)) return visit_rows(point, enter);
+  const Index d = problem_.dimension;
+  for (SparseRowMatrix::InnerIterator entry(*rows_->turning_trace, point); entry; ++entry) {
+    for (Index k = 0; k < d; ++k) enter(k, entry.col() * d + k, entry.value());
+  }
 }
 
 /// Points whose dofs lie close in the elimination tree have nearly the same columns.
@@ -132,17 +150,17 @@ void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
   if (contact_solution_.reaction.size() == 0) contact_solution_.reaction.setZero(contact_.row_offset.back());
 }
 
-/// Hᵀ of some points, one after the other: unknowns × rows.
-SparseMatrix CondensedContact::transposed_rows(const std::vector<Index>& points, const std::vector<int>& number,
-                                               Index unknowns) const {
+/// Eᵀ of some points, one after the other: unknowns × rows.
+SparseMatrix CondensedContact::transposed_columns(const std::vector<Index>& points, const std::vector<int>& number,
+                                                  Index unknowns) const {
   std::vector<Eigen::Triplet<double>> entries;
   Index row = 0;
   for (const Index point : points) {
-    visit_rows(point, [&](Index k, Index dof, double value) {
+    visit_columns(point, [&](Index k, Index dof, double value) {
       const int unknown = number[static_cast<std::size_t>(dof)];
       if (unknown >= 0) entries.emplace_back(unknown, static_cast<int>(row + k), value);
     });
-    row += rows_of(point);
+    row += turns(point) ? problem_.dimension : rows_of(point);
   }
   SparseMatrix transposed(unknowns, row);
   transposed.setFromTriplets(entries.begin(), entries.end());
@@ -152,48 +170,11 @@ SparseMatrix CondensedContact::transposed_rows(const std::vector<Index>& points,
 void CondensedContact::append_columns(const std::vector<Index>& points, Matrix& w) {
   for (const Index point : points) {
     contact_.row_offset.push_back(contact_.row_offset.back() + rows_of(point));
+    turned_.append(*rows_, point, rows_of(point), turns(point));
     revision_.push_back(rows_->revision.empty() ? -1 : rows_->revision[static_cast<std::size_t>(point)]);
   }
-  columns_.append(transposed_rows(points, unknown_, factor_.size()), w);
-  if (layer_) layer_->append(transposed_rows(points, layer_->unknown(), layer_->size()));
-}
-
-/// The rows of the stage: of candidates whose rows are others than the last time, columns and W are made anew.
-void CondensedContact::take_rows(const Stage& stage) {
-  rows_ = stage.rows.get();
-  if (rows_->revision.empty() || candidates_.points().empty()) return;
-  std::vector<char> is_new(static_cast<std::size_t>(contact_.row_offset.back()), 0);
-  bool any = false;
-  for (std::size_t i = 0; i < revision_.size(); ++i) {
-    const long revision = rows_->revision[static_cast<std::size_t>(candidates_.points()[i])];
-    if (revision == revision_[i]) continue;
-    revision_[i] = revision;
-    std::fill(is_new.begin() + contact_.row_offset[i], is_new.begin() + contact_.row_offset[i + 1], char{1});
-    any = true;
-  }
-  if (any) renew_columns(is_new);
-}
-
-void CondensedContact::take_factor() {
-  if (scale_ != factor_.scale()) {
-    scale_ = contact_.reaction_scale = factor_.scale();
-    const std::vector<Index> points = candidates_.points();
-    start_again_with(points);
-  } else if (!candidates_.points().empty()) {
-    renew_columns(std::vector<char>(static_cast<std::size_t>(contact_.row_offset.back()), 1));
-  }
-}
-
-void CondensedContact::renew_columns(const std::vector<char>& is_new) {
-  Matrix w = take_condensed();
-  columns_.renew(transposed_rows(candidates_.points(), unknown_, factor_.size()), is_new, w);
-  if (layer_) layer_->renew(transposed_rows(candidates_.points(), layer_->unknown(), layer_->size()), is_new);
-  append_supported();
-  give_condensed(std::move(w));
-  Snapshot memory;
-  solver_->save(memory, "solver");
-  solver_->analyse(contact_);
-  solver_->load(memory, "solver");
+  columns_.append(transposed_columns(points, unknown_, factor_.size()), w);
+  if (layer_) layer_->append(transposed_columns(points, layer_->unknown(), layer_->size()));
 }
 
 void CondensedContact::append_supported() {
@@ -210,19 +191,9 @@ void CondensedContact::append_supported() {
   supported_.setFromTriplets(entries.begin(), entries.end());
 }
 
-/// Where B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
-/// makes the friction along it zero.
-void CondensedContact::hold_directions_without_trace(Matrix& w) const {
-  for (std::size_t i = 0; i + 1 < contact_.row_offset.size(); ++i) {
-    const Index row = contact_.row_offset[i];
-    for (Index k = row + 1; k < contact_.row_offset[i + 1]; ++k) {
-      if (w(k, k) == 0.0) w(k, k) = w(row, row);
-    }
-  }
-}
-
 void CondensedContact::find_offsets(const Stage& stage, const Vector& y) {
-  columns_.motion(y, contact_.offset);
+  columns_.motion(y, turned_.any() ? of_columns_ : contact_.offset);
+  if (turned_.any()) turned_.turn(of_columns_, contact_.offset);
   if (supported_.nonZeros() > 0) contact_.offset.noalias() += supported_ * stage.prescribed;
   const Index tangents = problem_.dimension - 1;
   for (std::size_t i = 0; i < candidates_.points().size(); ++i) {
@@ -264,7 +235,9 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
     solve_contact();
   }
   asked_ = true;
-  columns_.add_reaction(has_mean ? mean_.mean() : contact_solution_.reaction, y);
+  const Vector& acting = has_mean ? mean_.mean() : contact_solution_.reaction;
+  if (turned_.any()) turned_.turn_back(acting, of_columns_);
+  columns_.add_reaction(turned_.any() ? of_columns_ : acting, y);
   give(stage, solution);
 }
 

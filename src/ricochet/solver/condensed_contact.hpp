@@ -10,6 +10,7 @@
 #include "ricochet/solver/contact_columns.hpp"
 #include "ricochet/solver/contact_layer.hpp"
 #include "ricochet/solver/mean_reaction.hpp"
+#include "ricochet/solver/turned_rows.hpp"
 
 /// @file The contact conditions of a stage, condensed on its candidates for contact.
 ///
@@ -18,6 +19,7 @@
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + W ρ.
 /// Where the stage has a layer, with U = (1 − ℓ/2) V and Z = W − V, V = 2⁻ᵏ H A_c⁻¹ Hᵀ, on
 ///   (y/s, w/σ) = (q/s, p/σ) + Yᵀy + Z ρ̄ + U ρ.
+/// Where directions turn, columns are those of E with H = D E (turned_rows.hpp).
 namespace ricochet {
 
 class CondensedContact {
@@ -53,16 +55,20 @@ class CondensedContact {
 
  private:
   [[nodiscard]] Index rows_of(Index point) const;
+  [[nodiscard]] bool turns(Index point) const;
   template <class Enter>
   void visit_rows(Index point, const Enter& enter) const;
+  template <class Enter>
+  void visit_columns(Index point, const Enter& enter) const;
   void take_rows(const Stage& stage);
   void renew_columns(const std::vector<char>& is_new);
+  void use_condensed(Matrix w);
   void take_up(const std::vector<Index>& points);
   bool choose_candidates(const Stage& stage);
   void start_again_with(const std::vector<Index>& points);
   void sort_by_place(std::vector<Index>& points) const;
-  [[nodiscard]] SparseMatrix transposed_rows(const std::vector<Index>& points, const std::vector<int>& unknown,
-                                             Index unknowns) const;
+  [[nodiscard]] SparseMatrix transposed_columns(const std::vector<Index>& points, const std::vector<int>& unknown,
+                                                Index unknowns) const;
   [[nodiscard]] Matrix take_condensed();
   void give_condensed(Matrix w);
   void use_end_weight(double theta);
@@ -92,12 +98,14 @@ class CondensedContact {
   bool must_ask_ = false;       ///< points have penetrated where none was thought to touch
   bool asked_ = false;          ///< the candidates took part in the last stage
   const ContactRows* rows_;     ///< those of the stage that is being solved
-  std::vector<long> revision_;  ///< of each candidate's rows in the columns; −1: of rows that never change
+  std::vector<long> revision_;  ///< of each candidate's rows in W; −1: of rows that never change
   ContactCandidates candidates_;
   std::vector<Index> taken_up_;  ///< how many candidates there were after each call of take_up
   ContactColumns columns_;
+  TurnedRows turned_;
+  Vector of_columns_;                    ///< per row of E
   std::unique_ptr<ContactLayer> layer_;  ///< null: the stage has none
-  Matrix condensed_;                     ///< YᵀY, where there is a layer; else W is the contact operator itself
+  Matrix condensed_;  ///< of columns, where there is a layer or rows turn; else it is the contact operator itself
   MeanReaction mean_;
   SparseRowMatrix supported_;   ///< H on supported dofs: rows × supports
   Vector coefficient_, bound_;  ///< of friction, per candidate; the bound in units of r

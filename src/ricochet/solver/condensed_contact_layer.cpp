@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/solver/condensed_contact.hpp"
@@ -8,22 +10,90 @@
 
 namespace ricochet {
 
-/// YᵀY of the candidates so far.
+/// The rows of the stage: of candidates whose rows are others than the last time, W is made anew, and columns where
+/// rows do more than turn.
+void CondensedContact::take_rows(const Stage& stage) {
+  rows_ = stage.rows.get();
+  if (rows_->revision.empty() || candidates_.points().empty()) return;
+  std::vector<char> is_new(static_cast<std::size_t>(turned_.size()), 0);
+  bool any = false, have_columns = true;
+  for (std::size_t i = 0; i < revision_.size(); ++i) {
+    const long revision = rows_->revision[static_cast<std::size_t>(candidates_.points()[i])];
+    if (revision == revision_[i]) continue;
+    revision_[i] = revision;
+    any = true;
+    turned_.take(*rows_, candidates_.points()[i], i);
+    if (turned_.turns(i)) continue;
+    have_columns = false;
+    std::fill(is_new.begin() + turned_.first(i), is_new.begin() + turned_.first(i + 1), char{1});
+  }
+  if (!any) return;
+  if (have_columns) {
+    use_condensed(take_condensed());
+  } else {
+    renew_columns(is_new);
+  }
+}
+
+void CondensedContact::take_factor() {
+  if (scale_ != factor_.scale()) {
+    scale_ = contact_.reaction_scale = factor_.scale();
+    const std::vector<Index> points = candidates_.points();
+    start_again_with(points);
+  } else if (!candidates_.points().empty()) {
+    renew_columns(std::vector<char>(static_cast<std::size_t>(turned_.size()), 1));
+  }
+}
+
+void CondensedContact::renew_columns(const std::vector<char>& is_new) {
+  Matrix w = take_condensed();
+  columns_.renew(transposed_columns(candidates_.points(), unknown_, factor_.size()), is_new, w);
+  if (layer_) layer_->renew(transposed_columns(candidates_.points(), layer_->unknown(), layer_->size()), is_new);
+  use_condensed(std::move(w));
+}
+
+/// For other rows of the same candidates: the contact solver starts where it was.
+void CondensedContact::use_condensed(Matrix w) {
+  append_supported();
+  give_condensed(std::move(w));
+  Snapshot memory;
+  solver_->save(memory, "solver");
+  solver_->analyse(contact_);
+  solver_->load(memory, "solver");
+}
+
+/// Where B_T has no trace in a direction (a support holds the body there), any positive diagonal keeps W definite and
+/// makes the friction along it zero.
+void CondensedContact::hold_directions_without_trace(Matrix& w) const {
+  for (std::size_t i = 0; i + 1 < contact_.row_offset.size(); ++i) {
+    const Index row = contact_.row_offset[i];
+    for (Index k = row + 1; k < contact_.row_offset[i + 1]; ++k) {
+      if (w(k, k) == 0.0) w(k, k) = w(row, row);
+    }
+  }
+}
+
+/// YᵀY of the candidates so far, on rows of E.
 Matrix CondensedContact::take_condensed() {
-  if (layer_) return std::move(condensed_);
+  if (layer_ || turned_.any()) return std::move(condensed_);
   return contact_.contact_operator != nullptr ? *contact_.contact_operator->dense() : Matrix();
 }
 
 /// The operator of the contact problem, from YᵀY of all candidates.
 void CondensedContact::give_condensed(Matrix w) {
+  if (turned_.any()) {
+    condensed_ = std::move(w);
+    w = turned_.product(condensed_);
+  }
   if (!layer_) {
     hold_directions_without_trace(w);
     contact_.contact_operator = make_dense_operator(std::move(w));
     return;
   }
-  const Matrix layer = layer_->compliance() / scale_;
+  Matrix layer = layer_->compliance() / scale_;
+  if (turned_.any()) layer = turned_.product(layer);
   mean_.prepare((1.0 - 0.5 * layer_->weight()) * layer, w - layer, contact_.row_offset, layer_->mean());
-  condensed_ = std::move(w);
+  if (!turned_.any()) condensed_ = std::move(w);
   use_end_weight(mean_.theta());
 }
 

@@ -1,0 +1,98 @@
+#include "ricochet/solver/turned_rows.hpp"
+
+#include <cmath>
+
+namespace ricochet {
+
+void TurnedRows::append(const ContactRows& rows, Index point, Index row_count, bool turns) {
+  directions_.emplace_back();
+  row_.push_back(row_.back() + row_count);
+  first_.push_back(first_.back() + (turns ? rows.dimension() : row_count));
+  if (!turns) return;
+  any_ = true;
+  directions_.back().resize(row_count, rows.dimension());
+  take(rows, point, directions_.size() - 1);
+}
+
+void TurnedRows::clear() {
+  directions_.clear();
+  row_.assign(1, 0);
+  first_.assign(1, 0);
+  any_ = false;
+}
+
+/// From the entries at the node with the largest part in the trace: rows may be known by their values alone.
+void TurnedRows::take(const ContactRows& rows, Index point, std::size_t i) {
+  if (!turns(i)) return;
+  const Index d = rows.dimension();
+  Index place = 0, largest = 0;
+  double part = 0.0;
+  for (SparseRowMatrix::InnerIterator entry(*rows.turning_trace, point); entry; ++entry, ++place) {
+    if (std::abs(entry.value()) <= std::abs(part)) continue;
+    part = entry.value();
+    largest = place;
+  }
+  const auto read = [&](const SparseRowMatrix& matrix, Index row, Index direction) {
+    const double* const values = matrix.valuePtr() + matrix.outerIndexPtr()[row] + largest * d;
+    for (Index k = 0; k < d; ++k) directions_[i](direction, k) = values[k] / part;
+  };
+  read(rows.gap_operator, point, 0);
+  for (Index j = 1; j < directions_[i].rows(); ++j) read(rows.tangential_trace, point * (d - 1) + j - 1, j);
+}
+
+Matrix TurnedRows::product(const Matrix& k) const {
+  Matrix half(k.rows(), row_.back());  // K Dᵀ, above the diagonal
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const auto from = k.block(0, first_[i], first_[i + 1], first_[i + 1] - first_[i]);
+    auto to = half.block(0, row_[i], first_[i + 1], row_[i + 1] - row_[i]);
+    if (turns(i)) {
+      to = from.lazyProduct(directions_[i].transpose());
+    } else {
+      to = from;
+    }
+  }
+  Matrix result(row_.back(), row_.back());
+  for (std::size_t j = 0; j < directions_.size(); ++j) {
+    for (Index column = row_[j]; column < row_[j + 1]; ++column) {
+      for (std::size_t i = 0; i <= j; ++i) {
+        const auto from = half.col(column).segment(first_[i], first_[i + 1] - first_[i]);
+        auto to = result.col(column).segment(row_[i], row_[i + 1] - row_[i]);
+        if (turns(i)) {
+          to = directions_[i].lazyProduct(from);
+        } else {
+          to = from;
+        }
+      }
+    }
+  }
+  result.triangularView<Eigen::StrictlyLower>() = result.transpose();
+  return result;
+}
+
+void TurnedRows::turn(const Vector& v, Vector& result) const {
+  result.resize(row_.back());
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const auto from = v.segment(first_[i], first_[i + 1] - first_[i]);
+    auto to = result.segment(row_[i], row_[i + 1] - row_[i]);
+    if (turns(i)) {
+      to = directions_[i].lazyProduct(from);
+    } else {
+      to = from;
+    }
+  }
+}
+
+void TurnedRows::turn_back(const Vector& r, Vector& result) const {
+  result.resize(first_.back());
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const auto from = r.segment(row_[i], row_[i + 1] - row_[i]);
+    auto to = result.segment(first_[i], first_[i + 1] - first_[i]);
+    if (turns(i)) {
+      to = directions_[i].transpose().lazyProduct(from);
+    } else {
+      to = from;
+    }
+  }
+}
+
+}  // namespace ricochet
