@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -309,10 +310,21 @@ void restart_without_blas_threads(char** argv) {
   execv("/proc/self/exe", argv);
 }
 
+/// Matrices of contact points come and go in every round of a step. Memory that is given back to the system each time,
+/// and comes back as pages of zeros, costs as much as the products.
+void keep_memory() {
+#ifdef __GLIBC__
+  constexpr int kept = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, kept);
+  mallopt(M_TRIM_THRESHOLD, kept);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   restart_without_blas_threads(argv);
+  keep_memory();
   ricochet::program::open_closed_streams();
   return run_program(argc, argv);
 }
