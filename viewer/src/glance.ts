@@ -115,7 +115,7 @@ export function penetrationFinding(j: Judgement): Finding {
   return { what, grade: relative < 1e-5 ? "good" : relative < 0.01 ? "fair" : "poor", words: size, short: share, detail };
 }
 
-const turnsTooFar = (j: Judgement): boolean => j.rotation > j.rotation_limit;
+const turnsTooFar = (j: Judgement): boolean => j.rotation_limit !== null && j.rotation > j.rotation_limit;
 
 /** What turns after the last impact does not change what the impacts came to. */
 export const turnsInImpacts = (j: Judgement): boolean => turnsTooFar(j) && !j.rotation_after_impacts;
@@ -124,10 +124,12 @@ export function rotationFinding(j: Judgement): Finding {
   const what = "Rotation";
   if (!finite(j.rotation)) return unbounded(what);
   const strain = 1 - Math.cos(Math.min(j.rotation, Math.PI));
-  const detail = `largest of a cell; small strain takes a rotation θ for a strain of 1 − cos θ, here ${number(strain, 2)}, that is not there`;
+  const detail = j.rotation_limit === null
+    ? "largest of a cell; the laws of finite strain hold for any rotation"
+    : `largest of a cell; small strain takes a rotation θ for a strain of 1 − cos θ, here ${number(strain, 2)}, that is not there`;
   const short = `${number(j.rotation, 2)} rad`;
   if (!turnsTooFar(j)) return { what, grade: "good", words: short, short, detail };
-  if (j.rotation_after_impacts) return { what, grade: "fair", words: `${short}, but within ${number(j.rotation_limit)} rad until the last impact had ended`, short, detail: `${detail}; what the impacts came to is not affected` };
+  if (j.rotation_after_impacts) return { what, grade: "fair", words: `${short}, but within ${number(j.rotation_limit!)} rad until the last impact had ended`, short, detail: `${detail}; what the impacts came to is not affected` };
   return { what, grade: "poor", words: `${short}: small strain does not hold (a strain of ${percent(strain)} is not there)`, short, detail };
 }
 
@@ -175,7 +177,7 @@ export function conclusion(runs: Run[]): string {
   const turned = runs.filter((run) => turnsInImpacts(run.data.judgement));
   if (turned.length > 0) {
     const names = turned.length === runs.length ? "all of these runs" : turned.map((run) => run.name).join(", ");
-    return `No recommendation: in ${names} cells turn by more than ${number(turned[0].data.judgement.rotation_limit)} rad, and small strain does not hold.`;
+    return `No recommendation: in ${names} cells turn by more than ${number(turned[0].data.judgement.rotation_limit!)} rad, and small strain does not hold.`;
   }
   const points = { good: 0, none: 0, fair: 1, poor: 3 };
   const scores = all.map((each) => each.reduce((sum, { grade }) => sum + points[grade], 0));

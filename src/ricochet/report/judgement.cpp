@@ -192,8 +192,9 @@ Judgement judge(const RunData& run) {
   judge_penetration(run, result);
   const bool turned = !broken_at(run, {"max_rotation"});
   result.rotation = turned ? largest_magnitude(run.column("max_rotation")) : std::numeric_limits<double>::quiet_NaN();
+  result.rotation_limit = run.summary.largest_rotation();
   result.rotation_after_impacts =
-      result.rotation > run.summary.largest_rotation() && run.summary.small_strain_holds_in_impacts();
+      result.rotation > result.rotation_limit && run.summary.small_strain_holds_in_impacts();
   return result;
 }
 

@@ -91,7 +91,7 @@ Json to_json(const Judgement& j) {
           {"unwatched_penetration", j.unwatched_penetration},
           {"contact_beyond_rim", j.contact_beyond_rim},
           {"rotation", to_json(j.rotation)},
-          {"rotation_limit", rotation_limit},
+          {"rotation_limit", std::isfinite(j.rotation_limit) ? to_json(j.rotation_limit) : Json(nullptr)},
           {"rotation_after_impacts", j.rotation_after_impacts}};
 }
 

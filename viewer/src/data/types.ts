@@ -44,7 +44,8 @@ export interface Judgement {
   /** The largest of a cell, in rad. */
   rotation: number;
   /** In rad: above it small strain no longer holds. */
-  rotation_limit: number;
+  /** Above it small strain does not hold; null: the laws hold for any rotation. */
+  rotation_limit: number | null;
   /** Whether cells turn too far for small strain only after the last impact. */
   rotation_after_impacts: boolean;
 }
