@@ -29,7 +29,8 @@ ImpactRecorder make_recorder(CaseRun& run) {
 
 std::vector<RigidMotionState> motion_of(const CaseRun& run) {
   const ConnectedBodies bodies = find_connected_bodies(run.model().space);
-  return RigidBodies(run.problem(), bodies.of_node, bodies.count).motion(run.state().velocity);
+  return RigidBodies(run.problem(), bodies.of_node, bodies.count)
+      .motion(run.state().velocity, run.state().displacement);
 }
 
 std::vector<Impact> impacts_of(CaseRun& run) {

@@ -28,6 +28,15 @@ HistoryWriter open_history(const std::string& path, const std::vector<std::strin
   return snapshot != nullptr ? HistoryWriter(path, *snapshot, name) : HistoryWriter(path, columns);
 }
 
+/// Of those of the mesh, and of the rigid bodies that move freely.
+std::vector<std::string> names_of_all_bodies(const Case& input, const Model& model) {
+  std::vector<std::string> names = names_of_bodies(model.mesh, find_connected_bodies(model.space));
+  for (std::size_t i = 0; i < input.obstacles.size(); ++i) {
+    if (model.obstacles[i]->free_motion() != nullptr) names.push_back(input.obstacles[i].name);
+  }
+  return names;
+}
+
 ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, const State& state) {
   ConnectedBodies bodies = find_connected_bodies(model.space);
   std::vector<double> separation = wave_crossing_times(model.body, bodies);
@@ -108,7 +117,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot, "history")),
       checks_(input, model, scheme, state, recorder_.columns(), snapshot),
       model_(model),
-      body_names_(names_of_bodies(model.mesh, find_connected_bodies(model.space))),
+      body_names_(names_of_all_bodies(input, model)),
       impacts_(make_impact_recorder(model, scheme, state)),
       peak_stress_(model.body, step_work(model.body, factor_entries)),
       penetration_(make_penetration_watch(input, model)),

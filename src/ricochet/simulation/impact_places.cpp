@@ -49,8 +49,10 @@ void ImpactRecorder::find_places(const std::vector<ContactPair>& pairs) {
   }
   for (Index point = 0; point < contact.size(); ++point) {
     const int own = own_body(point);
-    if (!contact.between_bodies(point))
-      add_part(point, own, -1, pairs[static_cast<std::size_t>(pair_of(point))].obstacle_name, 1.0);
+    if (!contact.between_bodies(point)) {
+      const int free = free_body_of(point);
+      add_part(point, own, free, free < 0 ? pairs[static_cast<std::size_t>(pair_of(point))].obstacle_name : "", 1.0);
+    }
     for (const auto& [body, part] : opposite[static_cast<std::size_t>(point)]) {
       if (order.is_first(own, body)) {
         add_part(point, own, body, "", part);
@@ -59,6 +61,17 @@ void ImpactRecorder::find_places(const std::vector<ContactPair>& pairs) {
       }
     }
   }
+}
+
+/// The number of the rigid body that moves freely at this point; −1: none.
+int ImpactRecorder::free_body_of(Index point) const {
+  const Obstacle* const obstacle = problem_.obstacle_of_point(point);
+  if (obstacle == nullptr || obstacle->free_motion() == nullptr) return -1;
+  const std::size_t before = rigid_.bodies().size() - problem_.free_bodies.size();
+  for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k) {
+    if (problem_.free_bodies[k].get() == obstacle->free_motion()) return static_cast<int>(before + k);
+  }
+  return -1;
 }
 
 void ImpactRecorder::add_part(Index point, int body, int other, const std::string& obstacle, double part) {

@@ -48,8 +48,8 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
     : problem_(problem),
       scheme_(scheme),
       rigid_(problem, std::move(body_of_node), static_cast<int>(separation.size())),
-      separation_(std::move(separation)),
-      finite_strain_(!problem.internal_force->is_linear()) {
+      separation_(std::move(separation)) {
+  separation_.resize(rigid_.bodies().size(), 0.0);
   find_places(pairs);
   open_.assign(places_.size(), Interval{});
   for (std::size_t place = 0; place < places_.size(); ++place) open_[place].place = static_cast<double>(place);
@@ -57,7 +57,7 @@ ImpactRecorder::ImpactRecorder(const SemidiscreteProblem& problem, const Scheme&
   current_.resize(places_.size());
   find_forces(state.forces, state.obstacle_increment, previous_);
   take_velocity(state, velocity_before_);
-  if (finite_strain_) displacement_before_ = state.displacement;
+  displacement_before_ = state.displacement;
 }
 
 /// The velocity that momenta are accounted for with.
@@ -141,15 +141,14 @@ void ImpactRecorder::enter_step(const State& state, double method_energy) {
   std::swap(previous_, current_);
   method_before_ = method_energy_;
   take_velocity(state, velocity_before_);
-  if (finite_strain_) displacement_before_ = state.displacement;
+  displacement_before_ = state.displacement;
 }
 
 void ImpactRecorder::enter_place(std::size_t place, double instant) {
   Interval& interval = open_[place];
   const Acting acting = acting_in(place);
   const bool touched = interval.phase == touching;
-  if (acting.any() != touched && motion_ == nullptr)
-    motion_ = &rigid_.motion(velocity_before_, finite_strain_ ? &displacement_before_ : nullptr);
+  if (acting.any() != touched && motion_ == nullptr) motion_ = &rigid_.motion(velocity_before_, displacement_before_);
   if (!acting.any()) {
     if (touched) let_go(interval);
     return;

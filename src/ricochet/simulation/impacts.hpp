@@ -20,6 +20,8 @@
 /// momenta to rounding where a multiplier faces two bodies, too. The first of two bodies is that of the `group` of
 /// their first contact, as the case names it.
 ///
+/// A rigid body that moves freely is the other of two bodies, after those of the mesh.
+///
 /// Over the ring of an axisymmetric body what acts across its axis cancels: forces and impulses are those along it.
 ///
 /// It begins half a step before the first instant with a force and ends half a step after the last one. `before` and
@@ -33,8 +35,8 @@ class ImpactRecorder {
   /// Impacts that are kept; later ones are counted.
   static constexpr std::size_t most_impacts = 1000;
 
-  /// Opens on a starting state. `pairs`: those of the problem's contact boundary; `separation`: per body, how long
-  /// contact must be lost for an impact to have ended.
+  /// Opens on a starting state. `pairs`: those of the problem's contact boundary; `separation`: per body of the mesh,
+  /// how long contact must be lost for an impact to have ended.
   ImpactRecorder(const SemidiscreteProblem& problem, const Scheme& scheme, const State& state,
                  const std::vector<ContactPair>& pairs, std::vector<int> body_of_node, std::vector<double> separation);
   void save(Snapshot& snapshot, const std::string& name) const;
@@ -114,6 +116,7 @@ class ImpactRecorder {
   };
   class BodyOrder;
   void find_places(const std::vector<ContactPair>& pairs);
+  [[nodiscard]] int free_body_of(Index point) const;
   void add_part(Index point, int body, int other, const std::string& obstacle, double part);
   void find_forces(const StepForces& acting, const ObstacleMotion& travel, std::vector<Force>& forces) const;
   void find_other_forces();
@@ -152,8 +155,7 @@ class ImpactRecorder {
   double first_step_ = 0.0;                           ///< length, or that of its first part
   double method_before_ = 0.0, method_energy_ = 0.0;  ///< at the beginning and the end of a step
   Vector velocity_before_;                            ///< at the beginning of a step
-  bool finite_strain_;
-  Vector displacement_before_;  ///< likewise, at finite strain
+  Vector displacement_before_;                        ///< likewise
   Vector scratch_;
   const std::vector<RigidMotionState>* motion_ = nullptr;  ///< of velocity_before_, once it was asked for
 };

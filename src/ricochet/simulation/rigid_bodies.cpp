@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "ricochet/simulation/held_bodies.hpp"
 
@@ -26,6 +27,30 @@ RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> bo
   } else {
     measure();
   }
+  add_free_bodies();
+}
+
+void RigidBodies::add_free_bodies() {
+  const int d = problem_.dimension;
+  for (const auto& body : problem_.free_bodies) {
+    const FreeMotion::Inertia& inertia = body->inertia();
+    RigidBody& added = bodies_.emplace_back();
+    added.mass = inertia.mass;
+    added.centre.head(d) = inertia.centre;
+    if (d == 2) {
+      added.inertia(2, 2) = inertia.moments[0];
+    } else {
+      const Eigen::Matrix3d axes = inertia.principal.size() > 0 ? Eigen::Matrix3d(inertia.principal)
+                                                                : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+      added.inertia = axes * Eigen::Vector3d(inertia.moments).asDiagonal() * axes.transpose();
+    }
+    const std::vector<Index>& dofs = problem_.supports.dofs();
+    const Index first = body->centre_node() * d, rotations = body->gyration().size();
+    const auto held =
+        std::count_if(dofs.begin(), dofs.end(), [&](Index dof) { return dof >= first && dof < first + d + rotations; });
+    added.held = held == d + rotations;
+  }
+  motion_.resize(bodies_.size());
 }
 
 void RigidBodies::find_held() {
@@ -121,14 +146,14 @@ void RigidBodies::measure_at(const Vector& displacement) {
     position_.segment(node * d, d) = problem_.nodes.col(node) + displacement.segment(node * d, d) - origin_[b].head(d);
   }
   problem_.mass.multiply(position_, weighted_);
-  centre_.assign(bodies_.size(), Eigen::Vector3d::Zero());
-  inertia_.assign(bodies_.size(), Eigen::Matrix3d::Zero());
+  centre_.assign(origin_.size(), Eigen::Vector3d::Zero());
+  inertia_.assign(origin_.size(), Eigen::Matrix3d::Zero());
   for (Index node = 0; node < problem_.cell_node_count(); ++node) {
     const auto b = static_cast<std::size_t>(body_of_node(node));
     centre_[b].head(d) += weighted_.segment(node * d, d);
     inertia_[b].topLeftCorner(d, d) += position_.segment(node * d, d) * weighted_.segment(node * d, d).transpose();
   }
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+  for (std::size_t b = 0; b < origin_.size(); ++b) {
     centre_[b] /= bodies_[b].mass;
     const Eigen::Matrix3d about =
         0.5 * (inertia_[b] + inertia_[b].transpose()) - bodies_[b].mass * centre_[b] * centre_[b].transpose();
@@ -136,23 +161,24 @@ void RigidBodies::measure_at(const Vector& displacement) {
   }
 }
 
-const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity, const Vector* displacement) {
+const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity, const Vector& displacement) {
   const int d = problem_.dimension;
-  if (displacement != nullptr) measure_at(*displacement);
+  const bool at_places = !problem_.internal_force->is_linear();
+  if (at_places) measure_at(displacement);
   problem_.mass.multiply(velocity, momentum_);
   for (RigidMotionState& state : motion_) state = {};
   for (Index node = 0; node < problem_.cell_node_count(); ++node) {
     const auto b = static_cast<std::size_t>(body_of_node(node));
     Eigen::Vector3d own = Eigen::Vector3d::Zero(), from_centre = arm(node) + origin_[b] - bodies_[b].centre;
     own.head(d) = momentum_.segment(node * d, d);
-    if (displacement != nullptr) from_centre.head(d) = position_.segment(node * d, d) - centre_[b].head(d);
+    if (at_places) from_centre.head(d) = position_.segment(node * d, d) - centre_[b].head(d);
     motion_[b].velocity += own;
     motion_[b].spin += from_centre.cross(own);
     motion_[b].kinetic_energy += 0.5 * momentum_.segment(node * d, d).dot(velocity.segment(node * d, d));
   }
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+  for (std::size_t b = 0; b < origin_.size(); ++b) {
     const RigidBody& body = bodies_[b];
-    const Eigen::Matrix3d& inertia = displacement != nullptr ? inertia_[b] : body.inertia;
+    const Eigen::Matrix3d& inertia = at_places ? inertia_[b] : body.inertia;
     if (problem_.axisymmetric) motion_[b].velocity[0] = 0.0;
     const Eigen::Vector3d angular_momentum = problem_.axisymmetric ? Eigen::Vector3d::Zero() : motion_[b].spin;
     motion_[b].velocity /= body.mass;
@@ -163,6 +189,14 @@ const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity,
     }
     motion_[b].rigid_kinetic_energy =
         0.5 * (body.mass * motion_[b].velocity.squaredNorm() + motion_[b].spin.dot(angular_momentum));
+  }
+  for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k) {
+    const FreeMotion& body = *problem_.free_bodies[k];
+    RigidMotionState& state = motion_[origin_.size() + k];
+    const auto own = velocity.segment(body.centre_node() * d, 2 * d);
+    state.velocity.head(d) = own.head(d);
+    state.spin.tail(body.gyration().size()) = body.spin(displacement, velocity);
+    state.kinetic_energy = state.rigid_kinetic_energy = 0.5 * body.inertia().mass * own.squaredNorm();
   }
   return motion_;
 }

@@ -6,6 +6,7 @@
 #include "ricochet/simulation/rigid_body.hpp"
 
 /// @file The bodies of a mesh as rigid bodies: what their mass matrix says of mass, centre, inertia and mean motion.
+/// After them come the rigid bodies that move by the forces on them.
 namespace ricochet {
 
 class RigidBodies {
@@ -15,15 +16,15 @@ class RigidBodies {
 
   [[nodiscard]] const std::vector<RigidBody>& bodies() const { return bodies_; }
   [[nodiscard]] int body_of_node(Index node) const { return body_of_node_[static_cast<std::size_t>(node)]; }
-  /// Of all bodies with this velocity. One product with M and one pass; allocates nothing after the first time. The
-  /// reference stays valid until the next call.
-  /// Spins are about the places of the reference, or, where a displacement is given, about those of the bodies there.
-  [[nodiscard]] const std::vector<RigidMotionState>& motion(const Vector& velocity,
-                                                            const Vector* displacement = nullptr);
+  /// Of all bodies with this velocity at this displacement. One product with M and one pass; allocates nothing after
+  /// the first time. The reference stays valid until the next call.
+  /// Spins of the mesh's bodies are about the places of the reference, or, at finite strain, about where they are.
+  [[nodiscard]] const std::vector<RigidMotionState>& motion(const Vector& velocity, const Vector& displacement);
 
  private:
   [[nodiscard]] Eigen::Vector3d arm(Index node) const;
   void find_held();
+  void add_free_bodies();
   void measure();
   void measure_at(const Vector& displacement);
   void measure_round_axis();
