@@ -21,6 +21,7 @@ class GroundSprings final : public InternalForce {
   [[nodiscard]] std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const override {
     return bodies_->near(nodes);
   }
+  void add_ground_force(const Vector& displacement, Vector& force) const override { add(displacement, force); }
   [[nodiscard]] const ViscousForce* viscous() const override { return bodies_->viscous(); }
   [[nodiscard]] bool is_linear() const override { return bodies_->is_linear(); }
   using InternalForce::tangent;

@@ -36,6 +36,8 @@ class InternalForce {
   /// The part of it that is of the cells at some nodes (per node, 1: wanted): their forces, and the energy of these
   /// cells alone. Only where the force is not linear.
   [[nodiscard]] virtual std::shared_ptr<const InternalForce> near(const std::vector<char>& nodes) const;
+  /// Adds what of it acts from the ground, no stress: the force of springs at a displacement, as evaluate() has it.
+  virtual void add_ground_force(const Vector& /*displacement*/, Vector& /*force*/) const {}
   /// What relaxes beside it (viscous_force.hpp), which is in nothing here; null where nothing does.
   [[nodiscard]] virtual const ViscousForce* viscous() const { return nullptr; }
   /// The force is a linear function of U: the tangent is the same everywhere. Who relies on that asks (require_linear).

@@ -34,6 +34,9 @@ MomentumAccount::MomentumAccount(const SemidiscreteProblem& problem, const Schem
   take_positions(state.displacement);
   previous_ = resultant(state.forces);
   algorithmic_ = algorithmic(state);
+  force_.setZero(problem.dof_count());
+  problem.internal_force->add_ground_force(Vector::Ones(problem.dof_count()), force_);
+  has_springs_ = !force_.isZero(0.0);
 }
 
 void MomentumAccount::take_positions(const Vector& displacement) {
@@ -167,6 +170,17 @@ SpaceVector MomentumAccount::held_torque(const FreeMotion& body, const StepForce
   return body.torque(force_);
 }
 
+/// Of rigid bodies to the ground: linear in the displacement, whose mean over the step is that of its ends.
+MomentumAccount::Sum MomentumAccount::of_springs() {
+  force_.setZero(problem_.dof_count());
+  problem_.internal_force->add_ground_force(mean_, force_);
+  force_ = -force_;
+  Sum sum;
+  sum.total = of_nodes(force_);
+  sum.size = sum.total.force.norm();
+  return sum;
+}
+
 void MomentumAccount::add_impulse(double weight, const Resultant& resultant) {
   if (problem_.axisymmetric) {
     impulse_.force[1] += weight * resultant.force[1];
@@ -184,6 +198,7 @@ void MomentumAccount::enter_step(const State& state) {
   const Resultant load_before = constant_load_;
   bool at_both_ends = false;
   if (places_change()) {
+    if (has_springs_) mean_ = 0.5 * (before_ + state.displacement);
     const Vector* const place = scheme_.place_of_forces();
     at_both_ends = place != nullptr && rule_.previous_weight != 0.0;
     if (place != nullptr) {
@@ -200,6 +215,7 @@ void MomentumAccount::enter_step(const State& state) {
   } else {
     enter({constant_load_, constant_load_.force.norm()}, 1.0);
   }
+  if (has_springs_) enter(of_springs(), 1.0);
   const Sum current = resultant(state.forces);
   if (rule_.previous_weight != 0.0) enter(previous_, rule_.previous_weight);
   enter(current, rule_.current_weight);

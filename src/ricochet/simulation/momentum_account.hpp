@@ -48,6 +48,7 @@ class MomentumAccount {
   [[nodiscard]] SpaceVector held_torque(const FreeMotion& body, const StepForces& forces);
   [[nodiscard]] bool places_change() const { return finite_strain_ || !problem_.free_bodies.empty(); }
   [[nodiscard]] Sum resultant(const StepForces& forces);
+  [[nodiscard]] Sum of_springs();
   [[nodiscard]] Resultant algorithmic(const State& state);
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;
   void take_positions(const Vector& displacement);
@@ -60,6 +61,8 @@ class MomentumAccount {
   bool finite_strain_;
   Points positions_;  ///< of the nodes, that moments are taken with
   Vector before_;     ///< displacement at the start of the step, at finite strain
+  bool has_springs_ = false;
+  Vector mean_;  ///< displacement of the step, where there are springs
   Resultant constant_load_;
   Sum previous_;
   Resultant algorithmic_;                                         ///< of M a, Scheme::momentum_acceleration
