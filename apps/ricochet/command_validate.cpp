@@ -139,7 +139,7 @@ int validate(const ValidateArguments& arguments) {
   // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.
   const bool starts = start_seconds <= longest_start;
   if (starts) session.start();
-  fmt::print("{}: valid: {}, {}, {}, {}, {}\n", case_file, counted(model.space.node_count(), "node"),
+  fmt::print("{}: valid: {}, {}, {}, {}, {}\n", case_file, counted(model.space.cell_node_count(), "node"),
              counted(model.mesh.cell_count(), "cell"), counted(model.problem.contact.size(), "contact point"),
              counted(model.problem.supports.size(), "supported dof"),
              input.time.adaptive ? steps_text(input.time) : counted(step_count(input.time), "step"));

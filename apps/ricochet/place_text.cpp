@@ -1,6 +1,7 @@
 #include "place_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <limits>
 
@@ -10,10 +11,12 @@ namespace ricochet::program {
 
 namespace {
 
-/// Positions of all nodes at t = 0, but for what a static equilibrium adds.
+/// Positions of the nodes of cells at t = 0, but for what a static equilibrium adds.
 Points starting_positions(const Model& model) {
   const Points& nodes = model.space.nodes;
-  return nodes + Eigen::Map<const Points>(model.initial.displacement.data(), nodes.rows(), nodes.cols());
+  const Points positions =
+      nodes + Eigen::Map<const Points>(model.initial.displacement.data(), nodes.rows(), nodes.cols());
+  return positions.leftCols(model.space.cell_node_count());
 }
 
 }  // namespace
@@ -51,6 +54,13 @@ void print_place(const Case& input, const Model& model) {
                model.initial.static_equilibrium ? ", before its static equilibrium," : "",
                gap_text(nearest, model.obstacles[k]->gap_rounding(positions.col(at))), input.obstacles[k].name,
                vector_text(positions.col(at), size));
+    if (const FreeMotion* const body = model.obstacles[k]->free_motion(); body != nullptr) {
+      const FreeMotion::Inertia& inertia = body->inertia();
+      fmt::print("    it moves freely, with the mass {:.6g} about {} and the {} {:.6g}\n", inertia.mass,
+                 vector_text(inertia.centre, size, 6),
+                 inertia.moments.size() > 1 ? "principal moments of inertia" : "moment of inertia",
+                 fmt::join(inertia.moments, ", "));
+    }
   }
 }
 

@@ -158,7 +158,7 @@ std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector
 NearestNode nearest_node(const DisplacementSpace& space, const Vector& point) {
   NearestNode nearest;
   double best = std::numeric_limits<double>::infinity();
-  for (Index i = 0; i < space.node_count(); ++i) {
+  for (Index i = 0; i < space.cell_node_count(); ++i) {
     const double distance = (space.nodes.col(i) - point).squaredNorm();
     const auto number = [&](Index node) { return space.number[static_cast<std::size_t>(node)]; };
     if (distance < best || (distance == best && number(i) < number(nearest.node))) {

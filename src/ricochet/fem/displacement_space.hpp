@@ -22,7 +22,11 @@ struct DisplacementSpace {
   /// Pairs of nodes of different cells that belong to one body, since one of them is tied to the other.
   std::vector<std::pair<Index, Index>> glued = {};
 
+  /// The last nodes, which are of no cell: those of rigid bodies (contact/free_motion.hpp).
+  Index nodes_without_cells = 0;
+
   [[nodiscard]] Index node_count() const { return nodes.cols(); }
+  [[nodiscard]] Index cell_node_count() const { return nodes.cols() - nodes_without_cells; }
   [[nodiscard]] Index dof_count() const { return nodes.cols() * dimension; }
 };
 
@@ -43,7 +47,7 @@ struct DisplacementSpace {
 /// The nodes of the given facets (numbered through all blocks), ascending, each once.
 [[nodiscard]] std::vector<Index> facet_nodes(const DisplacementSpace& space, const std::vector<Index>& facets);
 
-/// Node nearest to a point (the lowest number for people on ties) and its distance.
+/// Node of cells nearest to a point (the lowest number for people on ties) and its distance.
 struct NearestNode {
   Index node = 0;
   double distance = 0.0;

@@ -22,6 +22,25 @@ void for_each_free_body(const Case& input, const Model& model, const Visit& visi
   }
 }
 
+/// A static start has one equilibrium: contact alone holds no rigid body there.
+void require_ground(const Case& input, const ObstacleSection& section, const std::string& key, Index dimension) {
+  const std::vector<std::string> motions{"x", "y", "z", "rotation"};
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    const bool is_rotation = k == 3;
+    if (!is_rotation && static_cast<Index>(k) >= dimension) continue;
+    const bool has_spring =
+        is_rotation ? section.rotation_spring > 0.0 : k < section.spring.size() && section.spring[k] > 0.0;
+    const bool is_held = std::find(section.hold.begin(), section.hold.end(), motions[k]) != section.hold.end();
+    if (has_spring || is_held) continue;
+    refuse(
+        input, key,
+        fmt::format("initial.displacement = \"static\" needs what holds \"{}\" against {}, as contact alone holds no "
+                    "rigid body in a static start: give it a {}, however weak, or name \"{}\" in \"hold\"",
+                    section.name, is_rotation ? "rotation" : "motion along " + motions[k],
+                    is_rotation ? "rotation_spring (in two dimensions)" : "spring", motions[k]));
+  }
+}
+
 /// Mass, centre and principal moments, given or of the shape.
 FreeMotion::Inertia inertia_of(const Case& input, const ObstacleSection& section, const ObstacleShape& shape,
                                int dimension) {
@@ -83,6 +102,7 @@ void add_free_bodies(const Case& input, Model& model) {
     Points& nodes = model.space.nodes;
     const Index first = nodes.cols();
     nodes.conservativeResize(d, first + 2);
+    model.space.nodes_without_cells += 2;
     for (Index node = first; node < first + 2; ++node) {
       nodes.col(node) = inertia.centre;
       model.space.number.push_back(node);
@@ -105,6 +125,7 @@ void hold_free_bodies(const Case& input, Model& model) {
       for (Index k = 0; axis == 3 && k < d; ++k) model.problem.supports.add(body.rotation_node() * d + k, still);
     }
     if (d == 2) model.problem.supports.add(body.rotation_node() * d + 1, still);  // of a rotation there is but one
+    if (input.initial.static_equilibrium) require_ground(input, section, key, d);
   });
 }
 

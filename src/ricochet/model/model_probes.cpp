@@ -85,7 +85,7 @@ class ProbeMaker {
     };
     std::vector<Found> found;
     double nearest = std::numeric_limits<double>::infinity();
-    for (Index node = 0; node < model_.space.node_count(); ++node) {
+    for (Index node = 0; node < model_.space.cell_node_count(); ++node) {
       const Vector arm = model_.space.nodes.col(node) - from;
       const double along = std::clamp(arm.dot(direction), 0.0, length);
       const double distance = (arm - along * direction).norm();

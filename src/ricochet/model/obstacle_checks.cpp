@@ -48,9 +48,11 @@ void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& 
   const double radius = pair.obstacle->least_radius();
   if (!std::isfinite(radius)) return;
   const int d = model.mesh.dimension;
-  const SpaceVector path = pair.obstacle->translation(input.time.step);
+  SpaceVector path = pair.obstacle->translation(input.time.step);
+  if (const FreeMotion* const body = pair.obstacle->free_motion(); body != nullptr)
+    path = input.time.step * model.initial.velocity.segment(body->centre_node() * d, d);
   double longest = 0.0;
-  for (Index node = 0; node < model.space.node_count(); ++node) {
+  for (Index node = 0; node < model.space.cell_node_count(); ++node) {
     const SpaceVector moved = input.time.step * model.initial.velocity.segment(node * d, d) - path;
     longest = std::max(longest, moved.stableNorm());
   }
@@ -66,7 +68,7 @@ void refuse_lost_digits(const Case& input, const ContactPair& pair, const Model&
   const double body = extent(model.space.nodes);
   const SpaceVector path = pair.obstacle->translation(input.time.end);
   double rounding = 0.0;
-  for (Index node = 0; node < model.space.node_count(); ++node)
+  for (Index node = 0; node < model.space.cell_node_count(); ++node)
     rounding = std::max(rounding, pair.obstacle->gap_rounding(model.space.nodes.col(node)));
   rounding += 8.0 * std::numeric_limits<double>::epsilon() * path.lpNorm<1>();
   if (rounding <= least_precision * body) return;

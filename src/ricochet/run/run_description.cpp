@@ -63,7 +63,7 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.all_steps = step_count(input.time);
   summary.dimension = model.mesh.dimension;
   summary.degree = model.space.degree;
-  summary.nodes = model.space.node_count();
+  summary.nodes = model.space.cell_node_count();
   summary.cells = model.mesh.cell_count();
   summary.dofs = model.space.dof_count();
   summary.contact_points = model.problem.contact.size();
