@@ -62,7 +62,7 @@ class Surface final : public ObstacleShape {
                  d == 3 ? Matrix(inertia) : Matrix(inertia.bottomRightCorner(1, 1))};
   }
   void fit(const ContactScale& scale) override {
-    if (!given_radius_) radius_ = part_of_spacing * scale.spacing;
+    if (!given_radius_) radius_ = std::min(part_of_spacing * scale.spacing, surface_.width_of_smooth());
   }
   [[nodiscard]] std::string remarks() const override {
     return radius_ > 0.0 ? fmt::format("its edges are rounded over a radius of {:.3g}", radius_)
@@ -176,7 +176,9 @@ std::vector<Key> surface_keys() {
        .range = nonnegative,
        .doc =
            "Gaps and normals are means over the facets that are so near, which rounds edges; 0: edges are sharp, and "
-           "normals jump there. Absent: a quarter of the largest distance between nodes of the contacts with it."},
+           "normals jump there. Absent: a quarter of the largest distance between nodes of the contacts with it, and "
+           "of a "
+           "surface that bends by no more than 30 degrees at any edge no more than the width of its facets."},
       obstacle_side_key("Where bodies are: \"outside\" of what the surface encloses, or \"inside\"; then it must be "
                         "closed.")};
 }
@@ -186,6 +188,11 @@ void tell_of(const RigidSurface& surface, const std::string& file) {
   if (surface.was_turned_round())
     log::warning(fmt::format("{}: the surface was inside out, its normals pointing inwards; all {}s were turned round",
                              file, noun));
+  if (surface.joined_count() > 0)
+    log::info(
+        fmt::format("{}: {} corners at borders lie within a millionth of its size of others: they are taken for "
+                    "one, and the border there is closed",
+                    file, surface.joined_count()));
   if (surface.flat_count() > 0)
     log::info(fmt::format("{}: {} {}s without {} touch nothing but by their neighbours", file, surface.flat_count(),
                           noun, surface.in_space() ? "an area" : "a length"));

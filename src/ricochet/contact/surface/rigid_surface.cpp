@@ -10,6 +10,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/contact/closest_point.hpp"
+#include "ricochet/mesh/disjoint_sets.hpp"
 
 namespace ricochet {
 
@@ -31,6 +32,14 @@ RigidSurface::RigidSurface(const SurfaceFacets& facets, const std::string& name)
   join_corners(facets);
   find_normals(name);
   find_edges(name);
+  if (!is_closed() && join_borders()) {
+    flat_count_ = border_count_ = 0;
+    bent_width_ = bent_count_ = 0.0;
+    least_cosine_ = 1.0;
+    edges_.clear();
+    find_normals(name);
+    find_edges(name);
+  }
   if (is_closed() && volume() < 0.0) turn_round();
   std::vector<BoxTree::Box> boxes(facets_.size());
   for (std::size_t i = 0; i < facets_.size(); ++i) {
@@ -56,6 +65,36 @@ void RigidSurface::join_corners(const SurfaceFacets& facets) {
   }
   if (in_space_) return;
   for (std::array<int, 3>& facet : facets_) facet[2] = facet[1];
+}
+
+/// Those of borders that numbers with seven digits may have parted.
+bool RigidSurface::join_borders() {
+  constexpr double near = 1e-6;  // of the surface
+  BoxTree::Box all;
+  std::vector<int> order;
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    all.extend(corners_[i]);
+    if (corner_normals_[i].is_border) order.push_back(static_cast<int>(i));
+  }
+  const double reach = near * all.diagonal().norm();
+  // Along a direction in which few corners of a surface that people make are level.
+  const Three direction = Three(0.6182, 0.5432, 0.5681).normalized();
+  const auto at = [&](int corner) -> const Three& { return corners_[static_cast<std::size_t>(corner)]; };
+  const auto height = [&](int corner) { return direction.dot(at(corner)); };
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return std::pair(height(a), a) < std::pair(height(b), b); });
+  DisjointSets sets(static_cast<Index>(corners_.size()));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (std::size_t j = i + 1; j < order.size() && height(order[j]) - height(order[i]) <= reach; ++j) {
+      if (sets.root(order[i]) == sets.root(order[j]) || (at(order[i]) - at(order[j])).norm() > reach) continue;
+      sets.join(order[i], order[j]);
+      ++joined_count_;
+    }
+  }
+  for (std::array<int, 3>& facet : facets_) {
+    for (int& corner : facet) corner = static_cast<int>(sets.root(corner));
+  }
+  return joined_count_ > 0;
 }
 
 void RigidSurface::find_normals(const std::string& name) {
@@ -154,6 +193,7 @@ void RigidSurface::find_edges(const std::string& name) {
     }
     if (edge.normal.norm() > 0.0) edge.normal.normalize();
     edge.is_border = here.size() == 1;
+    if (!edge.is_border) look_at_bend(here);
     if (edge.is_border) {
       if (border_count_++ == 0) border_place_ = middle_of(here[0]);
       corner_normals_[static_cast<std::size_t>(here[0].low)].is_border = true;
@@ -163,6 +203,32 @@ void RigidSurface::find_edges(const std::string& name) {
     edges_.push_back(edge);
   }
   if (in_space_) find_corner_normals();
+}
+
+/// How wide the facets at edges that bend are, and how much the sharpest does.
+void RigidSurface::look_at_bend(std::span<const Side> sides) {
+  const auto facet_of = [&](int k) { return static_cast<std::size_t>(sides[static_cast<std::size_t>(k)].facet); };
+  const double cosine = normals_[facet_of(0)].dot(normals_[facet_of(1)]);
+  constexpr double flat = 1e-12;
+  if (cosine > 1.0 - flat || normals_[facet_of(0)].isZero(0.0) || normals_[facet_of(1)].isZero(0.0)) return;
+  least_cosine_ = std::min(least_cosine_, cosine);
+  for (const int k : {0, 1}) {
+    const Three a = corner(facet_of(k), 1) - corner(facet_of(k), 0);
+    if (in_space_) {
+      const double edge =
+          (corners_[static_cast<std::size_t>(sides[0].high)] - corners_[static_cast<std::size_t>(sides[0].low)]).norm();
+      bent_width_ += a.cross(corner(facet_of(k), 2) - corner(facet_of(k), 0)).norm() / edge;
+    } else {
+      bent_width_ += a.norm();
+    }
+    bent_count_ += 1.0;
+  }
+}
+
+double RigidSurface::width_of_smooth() const {
+  constexpr double sharp = 0.866;  // 30 degrees
+  const bool is_smooth = bent_count_ > 0.0 && least_cosine_ > sharp;
+  return is_smooth ? bent_width_ / bent_count_ : std::numeric_limits<double>::infinity();
 }
 
 /// Those of the facets, weighted by their angles.

@@ -44,6 +44,11 @@ class RigidSurface {
   [[nodiscard]] long border_count() const { return border_count_; }
   [[nodiscard]] const Three& border_place() const { return border_place_; }
   [[nodiscard]] bool was_turned_round() const { return turned_round_; }
+  /// Corners of borders that lay nearer to another than a millionth of the surface, and are one with it.
+  [[nodiscard]] long joined_count() const { return joined_count_; }
+  /// Of a surface that bends smoothly, by no more than 30 degrees at any edge: the mean width of its facets across the
+  /// edges. Infinite: it has sharper ones, or is flat.
+  [[nodiscard]] double width_of_smooth() const;
   /// Of those without area.
   [[nodiscard]] long flat_count() const { return flat_count_; }
   [[nodiscard]] const std::vector<Three>& corners() const { return corners_; }
@@ -76,6 +81,8 @@ class RigidSurface {
   [[nodiscard]] std::vector<Side> sorted_sides() const;
   void find_edges(const std::string& name);
   void check_edge(std::span<const Side> sides, const std::string& name) const;
+  [[nodiscard]] bool join_borders();
+  void look_at_bend(std::span<const Side> sides);
   void find_corner_normals();
   void turn_round();
   [[nodiscard]] Three middle_of(const Side& side) const;
@@ -94,7 +101,8 @@ class RigidSurface {
   std::vector<Edge> edges_;
   std::vector<std::array<int, 3>> edge_of_;  ///< of each facet: between corners 0 and 1, 1 and 2, 2 and 0
   std::vector<Edge> corner_normals_;
-  long border_count_ = 0, flat_count_ = 0;
+  long border_count_ = 0, flat_count_ = 0, joined_count_ = 0;
+  double bent_width_ = 0.0, bent_count_ = 0.0, least_cosine_ = 1.0;
   Three border_place_ = Three::Zero();
   bool turned_round_ = false;
   BoxTree tree_;
