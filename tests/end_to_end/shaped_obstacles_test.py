@@ -34,6 +34,26 @@ def box_stl(low, high, turned=()):
     return text + "endsolid block\n"
 
 
+def ball_stl(centre, radius, sectors):
+    """Text of an STL of a ball in `sectors` segments round and half as many from pole to pole; its corners rounded as
+    seven digits do."""
+    def corner(i, j):
+        polar, round_ = math.pi * i / (sectors // 2), 2.0 * math.pi * j / sectors
+        direction = (math.sin(polar) * math.cos(round_), math.sin(polar) * math.sin(round_), math.cos(polar))
+        return [float(numpy.float32(c + radius * d)) for c, d in zip(centre, direction)]
+    text = "solid ball\n"
+    for i in range(sectors // 2):
+        for j in range(sectors):
+            square = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
+            # At the poles two corners are one.
+            triangles = [square[:3]] * (i + 1 < sectors // 2) + [[square[0], square[2], square[3]]] * (i > 0)
+            for triangle in triangles:
+                text += "facet normal 0 0 0\nouter loop\n"
+                text += "".join("vertex {:.9g} {:.9g} {:.9g}\n".format(*at) for at in triangle)
+                text += "endloop\nendfacet\n"
+    return text + "endsolid ball\n"
+
+
 SQUARE = """SetFactory("OpenCASCADE");
 Rectangle(1) = {0, 0, 0, 1.0, 0.5};
 Mesh.MeshSizeMax = 0.125;
@@ -92,6 +112,20 @@ class SameSurface(Blocks):
         self.assertGreater(max(plane["contact_force_z"]), 1.0)
         for other in (implicit, surface):
             self.agree(plane, other, ("kinetic_energy", "momentum_x", "momentum_z", "friction_work"), 1e-9)
+
+    def test_a_ball_of_triangles(self):
+        """It comes nearer to the sphere with the square of the triangles' size."""
+        case = lambda obstacle: self.in_space(obstacle).replace("end = 0.4", "end = 0.15")
+        texts = [case('type = "sphere"\ncentre = [0.5, 0.4, -1.05]\nradius = 1.0')]
+        for sectors in (60, 120):
+            (self.folder / f"ball{sectors}.stl").write_text(ball_stl((0.5, 0.4, -1.05), 1.0, sectors))
+            texts.append(case(f'type = "surface"\nfile = "ball{sectors}.stl"'))
+        exact, coarse, fine = self.histories(*texts)
+        self.assertGreater(max(exact["contact_force_z"]), 1.0)
+        off = [abs(numpy.array(exact["momentum_z"]) - other["momentum_z"]).max() / max(map(abs, exact["momentum_z"]))
+               for other in (coarse, fine)]
+        self.assertLess(off[1], 2e-3)
+        self.assertGreater(off[0] / off[1], 2.5)
 
     def test_a_bowl(self):
         """As a circle, an expression and polygons, which come nearer with their number of sides."""
@@ -152,19 +186,28 @@ class Motion(Blocks):
 
 
 class Passages(Blocks):
-    """A thin plate that a body goes through in a step: no end of a step shows it."""
+    """A thin plate that a body would go through in a step: no end of a step shows it."""
 
-    def outcome(self, step, top):
+    def outcome(self, step, top, group="bottom"):
         (self.folder / "plate.txt").write_text(f"-3 -0.4\n4 -0.4\n4 {top}\n-3 {top}\n-3 -0.4\n")
         text = block_on('type = "surface"\nfile = "plate.txt"\nedge_radius = 0.002', self.folder, space=False,
-                        drive=initial_velocity(0.0, -2.0), step=step, end=0.5)
+                        drive=initial_velocity(0.0, -2.0), step=step, end=0.5, group=group)
         output = self.folder / f"out{step}"
         process = run("run", self.write("case.toml", text), "-o", output, "--force")
         self.assertEqual(process.returncode, 0, process.stderr)
         return process, json.loads((output / "summary.json").read_text())["unwatched_penetration"]
 
-    def test_a_long_step_goes_through_and_is_told(self):
+    def test_a_long_step_is_taken_in_parts(self):
         process, found = self.outcome(0.07, -0.39)
+        self.assertIn("is taken in parts, as a node went through an obstacle", process.stderr)
+        self.assertNotIn("gone through", process.stderr)
+        self.assertEqual(found["found"], [])
+        history = History(self.folder / "out0.07" / "history.csv")
+        self.assertGreater(max(history["contact_force_y"]), 0.0)
+        self.assertLess(max(map(abs, history["energy_residual"])), 1e-11 * history.largest_energy())
+
+    def test_nodes_beside_the_contact_go_through_and_are_told(self):
+        process, found = self.outcome(0.07, -0.39, group="top")
         self.assertIn('has gone through obstacle "floor" within one step', process.stderr)
         self.assertIn("PASSED THROUGH WITHIN ONE STEP", process.stdout)
         self.assertEqual([entry["passed_through"] for entry in found["found"]], [True])

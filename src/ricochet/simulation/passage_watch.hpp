@@ -24,6 +24,8 @@ class PassageWatch {
 
   /// Allocates nothing after the first time.
   void look(const State& state);
+  /// Whether a node goes through between the last look and this state at a time: nothing is remembered of it.
+  [[nodiscard]] bool any_passes(const State& state, double time) const;
   /// Of each obstacle, with the depth that it went through.
   [[nodiscard]] const std::vector<DeepestPoint>& passages() const { return passages_; }
 
@@ -34,6 +36,7 @@ class PassageWatch {
     Vector gaps;
   };
   void look_at(std::size_t obstacle, const State& state);
+  [[nodiscard]] SpaceVector place_of(Index node, const State& state) const;
 
   const SemidiscreteProblem& problem_;
   std::vector<Index> nodes_;

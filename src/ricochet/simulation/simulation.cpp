@@ -51,6 +51,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   scheme_.start(problem_, state_, *this);
   complete_tied();
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_);
+  guard_passages();
 }
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
@@ -81,6 +82,7 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
   if (scheme_.step() != length_of(first)) scheme_.change_step(problem_, length_of(first));
   current_ = &levels_.at(first);
   account_ = std::make_unique<EnergyAccount>(problem_, scheme_, state_, snapshot, "account");
+  guard_passages();
 }
 
 void Simulation::save(Snapshot& snapshot) const {
@@ -150,9 +152,45 @@ const StageSolution& Simulation::solve(std::size_t number) {
   return solution;
 }
 
+/// Nodes of contact groups against the obstacles that they touch, where these have another side.
+void Simulation::guard_passages() {
+  const ContactBoundary& contact = problem_.contact;
+  std::map<const Obstacle*, std::vector<Index>> nodes;
+  for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
+    const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[i])];
+    if (obstacle != nullptr && !obstacle->shape().is_flat()) nodes[obstacle].push_back(contact.nodes[i]);
+  }
+  // In the order of the case: where they lie in memory is none.
+  for (const Obstacle* const obstacle : problem_.obstacles) {
+    const auto found = nodes.find(obstacle);
+    if (found == nodes.end()) continue;
+    guards_.emplace_back(problem_, std::move(found->second), std::vector{obstacle});
+    nodes.erase(found);
+  }
+  for (PassageWatch& guard : guards_) guard.look(state_);
+}
+
+/// No node goes through an obstacle in a step that can be shorter.
+void Simulation::take_step(bool is_shortest) {
+  goes_through_ = false;
+  const bool is_guarded = !guards_.empty() && !is_shortest;
+  if (is_guarded) unguarded_ = state_;
+  solve_step();
+  const double end = state_.time + scheme_.step();
+  const auto passes = [&](const PassageWatch& guard) { return guard.any_passes(state_, end); };
+  if (!is_guarded || !problem_.ranks->any(std::any_of(guards_.begin(), guards_.end(), passes))) return;
+  state_ = unguarded_;
+  goes_through_ = true;
+  throw Error(
+      ErrorKind::not_converged,
+      fmt::format("step {} (t = {:.9g}, step size {:.3g}): a node goes through an obstacle within the step; try "
+                  "a smaller time.step",
+                  state_.step + 1, end, scheme_.step()));
+}
+
 /// Leaves step and time as they were. Where no solution was found the fault may be that of operators that are of
 /// another place: those of the tangent at the start of the step are tried, too.
-void Simulation::take_step() {
+void Simulation::solve_step() {
   try {
     attempt_step();
     return;
@@ -203,7 +241,7 @@ double Simulation::take_controlled_step() {
   while (true) {
     use_level(control_->level());
     try {
-      take_step();
+      take_step(control_->level() == control_->deepest());
     } catch (const Error& problem) {
       if (problem.kind() != ErrorKind::not_converged || !control_->shorten()) throw;
       continue;
@@ -229,13 +267,17 @@ double Simulation::length_of(int level) const {
 void Simulation::end_part(const std::function<void(const State&)>& each_part) {
   complete_tied();
   account_->enter_step(increment_, state_);
+  for (PassageWatch& guard : guards_) guard.look(state_);
   if (each_part) each_part(state_);
 }
 
 /// Parts are of the lengths h 2^-k. After each the longest is tried that fits into what is left.
 void Simulation::take_step_in_parts(const std::function<void(const State&)>& each_part) {
+  const char* const reason = goes_through_ ? "a node went through an obstacle" : "Newton's method found no solution";
   const State start = state_;
   const EnergyAccount account = *account_;
+  std::vector<FreeMotion> bodies;
+  for (const auto& body : problem_.free_bodies) bodies.push_back(*body);
   constexpr long whole = 1L << deepest_cut;
   const auto fits = [](long done, int level) {
     return done % (whole >> level) == 0 && done + (whole >> level) <= whole;
@@ -244,7 +286,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
   for (long done = 0; done < whole;) {
     use_level(level);
     try {
-      take_step();
+      take_step(level == deepest_cut);
     } catch (const Error& problem) {
       if (problem.kind() == ErrorKind::not_converged && level < deepest_cut) {
         ++level;
@@ -252,6 +294,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
       }
       state_ = start;
       account_ = std::make_unique<EnergyAccount>(account);
+      for (std::size_t k = 0; k < bodies.size(); ++k) *problem_.free_bodies[k] = bodies[k];
       use_level(0);
       throw;
     }
@@ -262,8 +305,7 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
   }
   use_level(0);
   if (cut_steps_++ == 0)
-    log::info(
-        fmt::format("step {} is taken in parts, as Newton's method found no solution for all of it", state_.step + 1));
+    log::info(fmt::format("step {} is taken in parts, as {} in all of it", state_.step + 1, reason));
 }
 
 void Simulation::advance(const std::function<void(const State&)>& each_part) {
@@ -274,9 +316,9 @@ void Simulation::advance(const std::function<void(const State&)>& each_part) {
     energy = take_controlled_step();
   } else {
     try {
-      take_step();
+      take_step(!scheme_.changes_step());
     } catch (const Error& problem) {
-      const bool may_cut = !problem_.internal_force->is_linear() && scheme_.changes_step();
+      const bool may_cut = (goes_through_ || !problem_.internal_force->is_linear()) && scheme_.changes_step();
       if (problem.kind() != ErrorKind::not_converged || !may_cut) throw;
       take_step_in_parts(each_part);
       in_parts = true;

@@ -8,6 +8,7 @@
 
 #include "ricochet/scheme/scheme.hpp"
 #include "ricochet/simulation/energy_account.hpp"
+#include "ricochet/simulation/passage_watch.hpp"
 #include "ricochet/simulation/starting_state.hpp"
 #include "ricochet/simulation/step_control.hpp"
 #include "ricochet/solver/step_solver.hpp"
@@ -63,7 +64,9 @@ class Simulation : private StageSolve {
   };
   Level& make_level(int level, const StepSolverOptions& options);
   void use_level(int level);
-  void take_step();
+  void guard_passages();
+  void take_step(bool is_shortest);
+  void solve_step();
   void attempt_step();
   void take_step_in_parts(const std::function<void(const State&)>& each_part);
   [[nodiscard]] double length_of(int level) const;
@@ -88,7 +91,10 @@ class Simulation : private StageSolve {
   std::optional<StepControl> control_;
   double whole_step_;  ///< without control
   long cut_steps_ = 0;
-  State before_;  ///< an attempt, with control
+  std::vector<PassageWatch> guards_;  ///< of contact nodes, each for the obstacle that they touch
+  State unguarded_;                   ///< the start of a step, where there are guards
+  bool goes_through_ = false;         ///< the last attempt was refused for that
+  State before_;                      ///< an attempt, with control
   std::unique_ptr<EnergyAccount> account_;
   int iterations_ = 0;     ///< of the contact solver in this step
   int newton_rounds_ = 0;  ///< in all attempts and parts of this step
