@@ -126,7 +126,11 @@ class CurvedContact final : public ContactGeometry {
   void restore(const Points& normals, const Vector& gap, const Vector& row_values, ContactRows& rows) const override {
     ++revision_;
     rows.gap = gap;
-    for (const CurvedContactData::Point& point : data_.points) write_rows(point, normals.col(point.number), rows);
+    for (const CurvedContactData::Point& point : data_.points) {
+      write_rows(point, normals.col(point.number), rows);
+      if (data_.obstacles[point.obstacle]->free_motion() != nullptr)
+        rows.revision[static_cast<std::size_t>(point.number)] = revision_;
+    }
     Index at = 0;
     visit_body_entries(rows, [&](double* values) {
       for (Index k = 0; k < 2 * dimension(); ++k) values[k] = row_values[at++];

@@ -94,14 +94,17 @@ void CondensedContact::sort_by_place(std::vector<Index>& points) const {
   points = std::move(sorted);
 }
 
-void CondensedContact::take_up(const std::vector<Index>& points) {
+void CondensedContact::take_up(std::vector<Index> points) {
+  sort_by_place(points);
+  add_candidates(points);
+}
+
+void CondensedContact::add_candidates(const std::vector<Index>& points) {
   Vector start = solver_ != nullptr ? contact_solution_.reaction : Vector();
-  std::vector<Index> added = points;
-  sort_by_place(added);
-  candidates_.take_up(added);
+  candidates_.take_up(points);
   taken_up_.push_back(static_cast<Index>(candidates_.points().size()));
   Matrix w = take_condensed();
-  append_columns(added, w);
+  append_columns(points, w);
   append_supported();
   const auto count = static_cast<Index>(candidates_.points().size());
   coefficient_.resize(count);
@@ -141,7 +144,7 @@ void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
   start_again_with({});
   for (const Index end : snapshot.integers(name + ".taken_up", 1, count)) {
     const auto begin = static_cast<Index>(candidates_.points().size());
-    if (end > begin) take_up({points.begin() + begin, points.begin() + end});
+    if (end > begin) add_candidates({points.begin() + begin, points.begin() + end});
   }
   candidates_.load_history(snapshot, name);
   if (solver_ == nullptr) return;

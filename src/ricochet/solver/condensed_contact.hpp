@@ -63,7 +63,8 @@ class CondensedContact {
   void take_rows(const Stage& stage);
   void renew_columns(const std::vector<char>& is_new);
   void use_condensed(Matrix w);
-  void take_up(const std::vector<Index>& points);
+  void take_up(std::vector<Index> points);
+  void add_candidates(const std::vector<Index>& points);
   bool choose_candidates(const Stage& stage);
   void start_again_with(const std::vector<Index>& points);
   void sort_by_place(std::vector<Index>& points) const;

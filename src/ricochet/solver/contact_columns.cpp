@@ -69,20 +69,6 @@ void ContactColumns::find_path(Block& block, const SparseMatrix& transposed, Ind
   block.columns.resize(block.path.rows(), block.columns.cols());
 }
 
-bool ContactColumns::is_on_path(const Block& block, const SparseMatrix& transposed, Index begin) const {
-  const auto& first = block.path.first;
-  for (Index row = begin; row < begin + block.columns.cols(); ++row) {
-    for (SparseMatrix::InnerIterator entry(transposed, row); entry; ++entry) {
-      const Index place = factor_.place(entry.row());
-      const auto above = std::upper_bound(first.begin(), first.end(), place);
-      if (above == first.begin()) return false;
-      const auto k = static_cast<std::size_t>(above - first.begin()) - 1;
-      if (place - first[k] >= block.path.offsets[k + 1] - block.path.offsets[k]) return false;
-    }
-  }
-  return true;
-}
-
 void ContactColumns::append_block(const SparseMatrix& transposed, Index begin, Index end) {
   Block block;
   block.row = row_count_;
@@ -99,7 +85,7 @@ void ContactColumns::renew(const SparseMatrix& transposed, const std::vector<cha
     Block& block = blocks_[i];
     const auto begin = is_new.begin() + block.row;
     if (std::find(begin, begin + block.columns.cols(), 1) == begin + block.columns.cols()) continue;
-    if (!is_on_path(block, transposed, block.row)) find_path(block, transposed, block.row);
+    find_path(block, transposed, block.row);
     fill(block, transposed, block.row);
     renewed[i] = 1;
   }

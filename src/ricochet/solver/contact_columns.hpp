@@ -23,8 +23,9 @@ class ContactColumns {
   /// and columns of YᵀY, symmetric to the bit. Columns that lie close in the tree should follow each other.
   void append(const SparseMatrix& transposed, Matrix& w);
 
-  /// Makes columns anew where rows of H are others, with paths of their own where they reach other dofs: `transposed`
-  /// holds all rows, `is_new` marks those that changed. `w` is that of all rows.
+  /// Makes columns anew where rows of H are others, which may reach other dofs: `transposed` holds all rows, `is_new`
+  /// marks those that changed. `w` is that of all rows. Paths are those of the rows that are there now, whatever was
+  /// before: the bits of products depend on them.
   void renew(const SparseMatrix& transposed, const std::vector<char>& is_new, Matrix& w);
 
   /// Yᵀ y, per row.
@@ -44,7 +45,6 @@ class ContactColumns {
   void append_block(const SparseMatrix& transposed, Index begin, Index end);
   void fill(Block& block, const SparseMatrix& transposed, Index begin) const;
   void find_path(Block& block, const SparseMatrix& transposed, Index begin) const;
-  [[nodiscard]] bool is_on_path(const Block& block, const SparseMatrix& transposed, Index begin) const;
   static void add_product(const Block& left, const Block& right, Matrix& w);
 
   const SparseCholesky& factor_;

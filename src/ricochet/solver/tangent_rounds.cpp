@@ -25,12 +25,15 @@ constexpr int patience_of_pairs = 25;
 /// that turn with large surfaces keep it.
 constexpr int patient_rounds = 40, patience_of_rounding = 5;
 constexpr double rounding_left = 100.0;
+/// And what may be left before a step fails: at bodies that turn freely gaps are rounded with all that moves them.
+constexpr double most_rounding_left = 1000.0;
 
 }  // namespace
 
 void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
   int iterations = solution.iterations, last_progress = 0, last_start = 0;
   double least = std::numeric_limits<double>::infinity();
+  linearized_at_.setZero(problem_.dof_count());  // before the first round nothing has moved
   for (int round = 0;; ++round) {
     const LinearizationError left = linearization_error(problem_, solution, stage, gap_);
     // What settles by itself does so to the rounding of the gaps.
@@ -40,23 +43,25 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
       least = error;
       last_progress = round;
     }
+    const bool is_last = round == most_rounds || round - last_progress > patience_of_rounds;
     if (round >= patient_rounds && round - last_progress >= patience_of_rounding &&
-        error <= rounding_left * stage.gap_offset_rounding.maxCoeff())
+        error <= (is_last ? most_rounding_left : rounding_left) * stage.gap_offset_rounding.maxCoeff())
       break;
     // What faces what changes from round to round: it is held, and the next round solves what is then linear.
     const bool is_stuck = round - last_progress > patience_of_pairs || !std::isfinite(error) || round == most_rounds;
     if (is_stuck && problem_.contact.geometry->hold()) {
       least = std::numeric_limits<double>::infinity();
-      last_progress = round;
+      last_progress = last_start = round;
+      acceleration_.restart();
       linearize_contact(problem_, linearized_at_, stage);
       solver.solve(stage, solution);
       iterations += solution.iterations;
       continue;
     }
-    if (round == most_rounds || round - last_progress > patience_of_rounds || !std::isfinite(error)) {
+    if (is_last || !std::isfinite(error)) {
       throw Error(ErrorKind::not_converged,
-                  fmt::format("the contact forces on curved obstacles, which turn with the surface, did not settle in "
-                              "{} rounds ({:.3g} is left of the gaps)",
+                  fmt::format("the contact forces, which turn with what the bodies touch, did not settle in {} rounds "
+                              "({:.3g} is left of the gaps)",
                               round, least));
     }
     if (round == plain_rounds || round - std::max(last_progress, last_start) > patience_of_acceleration) {

@@ -24,6 +24,8 @@ void LaggedRows::start(const State& state) {
   if (lagged_ == nullptr) {
     lagged_ = std::make_shared<ContactRows>(*state.forces.rows);
     read_only_ = lagged_;
+    // Numbers of another count.
+    std::fill(lagged_->revision.begin(), lagged_->revision.end(), ++revision_);
   }
   if (known->second.size() != row_value_count(*lagged_))
     Snapshot::refuse(memory_of_rows, "has a length that is none of this problem's");
