@@ -21,7 +21,9 @@ Key against_key() {
   Key key = group_key("boundary facets", "boundary");
   key.name = "against";
   key.required = false;
-  key.doc = "Group of boundary facets of another body, or several: what `group` may touch, in place of an obstacle.";
+  key.doc =
+      "Group of boundary facets of another body, or several: what `group` may touch, in place of an obstacle. "
+      "`group` itself with `sliding = \"large\"`: a surface that touches itself.";
   return key;
 }
 

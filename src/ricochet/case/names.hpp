@@ -22,7 +22,7 @@ namespace ricochet {
   for (std::string& name : names_of(HistoryRecorder::standard_columns(3))) names.push_back(std::move(name));
   for (std::string& name : names_of(HistoryRecorder::finite_strain_columns())) names.push_back(std::move(name));
   for (std::string& name : names_of(HistoryRecorder::relaxation_columns())) names.push_back(std::move(name));
-  for (std::string& name : names_of(HistoryRecorder::sliding_columns())) names.push_back(std::move(name));
+  for (std::string& name : names_of(HistoryRecorder::sliding_columns(true))) names.push_back(std::move(name));
   return names;
 }
 

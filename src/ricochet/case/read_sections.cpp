@@ -99,12 +99,16 @@ ContactSection read_contact(const SectionReader& reader, Case& result) {
                                    "covered in part and by others in every step; take \"p1\", or \"p0\" "
                                    "with a displacement of degree 2",
                                    contact.multipliers));
-  if (reader.is_usable("against") && contact.against == contact.group) {
+  if (reader.is_usable("against") && contact.against == contact.group && !contact.slides_far) {
     reader.add_problem("against",
-                       fmt::format("\"against\" is \"{}\", the group itself: a surface does not touch itself "
-                                   "here; name a group of another body",
+                       fmt::format("\"against\" is \"{}\", the group itself: a surface touches itself with sliding = "
+                                   "\"large\" alone; set that, or name a group of another body",
                                    contact.against));
   }
+  if (contact.slides_far && contact.against == contact.group && reader.is_given("multipliers_on"))
+    reader.add_problem("multipliers_on",
+                       "a surface that touches itself has no sides: which of its points carry the conditions is chosen "
+                       "where it does; leave \"multipliers_on\" out");
   contact.allow_unstable_multipliers = reader.text("unstable_multipliers") == "allow";
   return contact;
 }

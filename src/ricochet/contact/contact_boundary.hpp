@@ -53,6 +53,8 @@ struct ContactPair {
   [[nodiscard]] bool between_bodies() const { return obstacle == nullptr; }
   /// Between bodies, and with contact points.
   [[nodiscard]] bool has_two_sides() const { return between_bodies() && !tied; }
+  /// A surface that may touch itself.
+  [[nodiscard]] bool is_self() const { return slides_far && facets == opposite_facets; }
   /// The two groups in the order of the case.
   [[nodiscard]] const std::string& first_group() const { return exchanged ? opposite_group : group; }
   [[nodiscard]] const std::string& second_group() const { return exchanged ? group : opposite_group; }
@@ -96,6 +98,7 @@ struct ContactBoundary {
   /// motion.
   std::vector<char> slides_far;
   std::vector<Index> reachable_nodes;  ///< of both surfaces of these
+  bool touches_itself = false;         ///< some of these have one surface, of which points may be left out
   double out_of_sight = 0.0;           ///< the gap of such a point where it faces nothing
   std::vector<Index> opposite_node;  ///< per ContactPair, one of the opposite surface of a pair that slides far, or −1
 

@@ -39,8 +39,14 @@ class CombinedGeometry final : public ContactGeometry {
   void end_step() const override {
     for (const auto& part : parts_) part->end_step();
   }
+  [[nodiscard]] bool was_held() const override {
+    return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->was_held(); });
+  }
   void allow_overlap(Vector& gap) const override {
     for (const auto& part : parts_) part->allow_overlap(gap);
+  }
+  void leave_out(std::vector<char>& eligible) const override {
+    for (const auto& part : parts_) part->leave_out(eligible);
   }
   void add_couples(const Vector& place, const ContactRows& rows, const Vector& normal, const Vector& tangential,
                    Vector& force) const override {

@@ -36,9 +36,13 @@ class ContactGeometry {
   /// step is done, rows stay as they are and gaps are linear. False: there is nothing to hold, or it is held already.
   virtual bool hold() const { return false; }
   virtual void end_step() const {}
+  /// The step that was solved last was held.
+  [[nodiscard]] virtual bool was_held() const { return false; }
   /// To the gaps of a step's end: what points were inside of the other body where it began. Steps that were held leave
   /// that, and to push it out would give energy; it may only not grow.
   virtual void allow_overlap(Vector& /*gap*/) const {}
+  /// Sets to 0 what points take no part since the last update: others carry the conditions where they are.
+  virtual void leave_out(std::vector<char>& /*eligible*/) const {}
   /// Adds what the forces of reactions are at a place beyond those of the rows, where rows are those of a step: couples
   /// that take back their moment about that place, on the nodes of bodies that touch each other, and on rigid bodies
   /// that move freely. Nothing at other obstacles. `tangential` may be empty.

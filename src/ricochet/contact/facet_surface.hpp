@@ -28,7 +28,7 @@ class FacetSurface {
     Three area_vector{0, 0, 0};  ///< ∫ N of them, out of the body: a length in two dimensions, an area in three
     Three centre{0, 0, 0};       ///< the mean of its vertices
     double size = 0.0;           ///< the longest distance between corners
-    double height = 0.0;         ///< of the cell behind it
+    double height = 0.0;         ///< of the cell behind it, or what take_heights() says
   };
 
   /// `facets`: numbered through all blocks, ascending. They are seen where they are displaced by `shift` (d; empty: not
@@ -40,6 +40,11 @@ class FacetSurface {
   /// Takes the pieces to where the nodes of the mesh are now; sizes and heights stay those of the start. Allocates
   /// nothing.
   void move(const Points& nodes);
+
+  /// How deep what is behind each of the facets is, where more is known than the height of its cell.
+  void take_heights(const std::vector<double>& heights) {
+    for (std::size_t k = 0; k < facets_.size(); ++k) facets_[k].height = heights[k];
+  }
 
   [[nodiscard]] const std::vector<Facet>& facets() const { return facets_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }

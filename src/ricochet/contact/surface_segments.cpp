@@ -85,6 +85,10 @@ struct SegmentFinder::Cut {
 
 namespace {
 
+bool is_among(const std::vector<int>& places, int facet) {
+  return std::binary_search(places.begin(), places.end(), facet);
+}
+
 /// The range of a box along a unit vector.
 bool overlaps(const BoxTree::Box& box, const Three& along, double from, double to) {
   const double centre = along.dot(box.center()), half = along.cwiseAbs().dot(0.5 * box.sizes());
@@ -120,6 +124,7 @@ void SegmentFinder::cut_piece(const View& view, int number, bool any_depth, std:
   opposite_.tree().visit(may_face, [&](int other) {
     const FacetSurface::Piece& candidate = opposite_.pieces()[static_cast<std::size_t>(other)];
     if (view.direction.dot(candidate.normal) < edge_on || piece.normal.dot(candidate.normal) >= 0.0) return;
+    if (!unseen_.empty() && is_among(unseen_[static_cast<std::size_t>(piece.facet)], candidate.facet)) return;
     Cut cut{number, other, own, view.flatten(candidate), {}, 0.0};
     cut.common = common_part(own, cut.opposite, view.plane);
     if (cut.common.count == 0) return;
@@ -212,8 +217,8 @@ FacetSegments SegmentFinder::find(int facet, const Three& direction, bool any_de
   return result;
 }
 
-SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& direction, double reach,
-                                             double beyond) const {
+SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& direction, double reach, double beyond,
+                                             const std::vector<int>& unseen) const {
   const View view(static_cast<int>(own_.shift().size()), direction);
   const PlanePoint at = view.seen(point);
   const double height = direction.dot(point);
@@ -226,7 +231,7 @@ SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& di
   };
   opposite_.tree().visit(may_face, [&](int number) {
     const FacetSurface::Piece& piece = opposite_.pieces()[static_cast<std::size_t>(number)];
-    if (direction.dot(piece.normal) < edge_on) return;
+    if (direction.dot(piece.normal) < edge_on || is_among(unseen, piece.facet)) return;
     const SeenPiece flat = view.flatten(piece);
     const double gap = height - flat.height_at(at);
     if (gap < -reach || !flat.covers(at, view.plane, beyond)) return;
@@ -244,6 +249,28 @@ SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& di
   map_.positions(best.facet, best.local, position);
   best.gap = height - direction.head(axes.rows()).dot(position.col(0) + opposite_.shift());
   return best;
+}
+
+double SegmentFinder::thickness_behind(int facet) const {
+  const FacetSurface::Facet& own = own_.facets()[static_cast<std::size_t>(facet)];
+  const Three direction = -own.area_vector.normalized();
+  const View view(static_cast<int>(own_.shift().size()), direction);
+  const PlanePoint at = view.seen(own.centre);
+  const double height = direction.dot(own.centre);
+  const auto may_face = [&](const BoxTree::Box& box) {
+    const double rim = on_rim * box.sizes().maxCoeff();
+    return overlaps(box, view.first, at[0] - rim, at[0] + rim) &&
+           (view.plane || overlaps(box, view.second, at[1] - rim, at[1] + rim));
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  opposite_.tree().visit(may_face, [&](int number) {
+    const FacetSurface::Piece& piece = opposite_.pieces()[static_cast<std::size_t>(number)];
+    if (direction.dot(piece.normal) < edge_on) return;
+    const SeenPiece flat = view.flatten(piece);
+    const double behind = flat.height_at(at) - height;
+    if (behind > 0.0 && flat.covers(at, view.plane, on_rim)) nearest = std::min(nearest, behind);
+  });
+  return nearest;
 }
 
 }  // namespace ricochet

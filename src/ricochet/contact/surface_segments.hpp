@@ -35,6 +35,10 @@ class SegmentFinder {
   /// Keeps references. `own` and `opposite` may belong to one body.
   SegmentFinder(const FacetMap& map, const FacetSurface& own, const FacetSurface& opposite, int degree);
 
+  /// Of each own facet, the opposite ones that it does not see, by their places in facets(), ascending: those near it,
+  /// where both surfaces are one.
+  void leave_out(std::vector<std::vector<int>> unseen) { unseen_ = std::move(unseen); }
+
   /// `facet`: place in own.facets(). `direction`: unit, out of the opposite surface. Pieces that are seen nearly
   /// edge-on, or do not face each other, count for nothing, and so do those that lie inside of each other by more than
   /// half of the height of the cells behind them: a line that passes through a thin body meets its far side there. Of
@@ -50,9 +54,12 @@ class SegmentFinder {
     double gap = 0.0;  ///< along the direction
   };
   /// `reach`: how far it may be inside of the opposite surface. `beyond`: how far off the surface's rim, in sizes of a
-  /// facet, which is continued there.
+  /// facet, which is continued there. `unseen`: opposite facets that it does not see, by place, ascending.
   [[nodiscard]] Hit find_point(const Eigen::Vector3d& point, const Eigen::Vector3d& direction, double reach,
-                               double beyond = on_rim) const;
+                               double beyond = on_rim, const std::vector<int>& unseen = {}) const;
+  /// How thick the body behind an own facet is: from its centre against its normal to the nearest opposite piece.
+  /// Infinite: there is none.
+  [[nodiscard]] double thickness_behind(int facet) const;
 
  private:
   struct View;
@@ -64,6 +71,7 @@ class SegmentFinder {
   const FacetMap& map_;
   const FacetSurface &own_, &opposite_;
   QuadratureRule interval_, triangle_;
+  std::vector<std::vector<int>> unseen_;  ///< empty: every facet sees all
 };
 
 }  // namespace ricochet

@@ -108,13 +108,14 @@ ContactPair body_pair(const Case& input, std::size_t number, const Model& model)
   std::vector<Index> common;
   std::set_intersection(pair.facets.begin(), pair.facets.end(), pair.opposite_facets.begin(),
                         pair.opposite_facets.end(), std::back_inserter(common));
-  if (!common.empty()) {
+  if (!common.empty() && !pair.is_self()) {
     refuse(input, key + "against",
            fmt::format("groups \"{}\" and \"{}\" share {}: the same facets cannot be on both sides of a contact; name "
                        "facets of one body in each",
                        section.group, section.against, counted(common.size(), "facet")));
   }
   if (pair.slides_far) check_sliding_bodies(input, key, model, pair);
+  if (pair.is_self()) return pair;
   const bool is_chosen = section.multipliers_on == "automatic";
   const SideChoice choice =
       is_chosen ? choose_side(model.body, pair) : SideChoice{section.multipliers_on == "against", ""};
@@ -180,7 +181,13 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
     log::info(fmt::format("{} overlap by up to {:.3g} at {}, as meshes: there they are taken to touch",
                           names_of_pair(pair), -facing.smallest_gap, counted(facing.closed, "contact point")));
   }
-  if (facing.agreement < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node) {
+  const bool has_edge = facing.agreement < sharp_edge && anchor_of(pair.multipliers) == MultiplierAnchor::node;
+  if (has_edge && pair.slides_far) {
+    log::info(
+        fmt::format("{}: facets of \"{}\" meet at edges, the sharpest at {}, where a contact point is the mean of both "
+                    "sides: where an edge itself presses, the mesh there should be fine",
+                    names_of_pair(pair), pair.group, place_text(facing.edge)));
+  } else if (has_edge) {
     log::warning(
         fmt::format("{}: facets of \"{}\" meet at an edge at {}, where the direction of contact is the mean of their "
                     "normals; give the facets of each side of the edge a contact of their own",

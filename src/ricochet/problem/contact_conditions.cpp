@@ -36,6 +36,12 @@ void take_rows(const SemidiscreteProblem& problem, const Vector& displacement, d
   problem.contact.geometry->update(displacement, time, start, own_rows(problem, stage));
 }
 
+/// Every point, but for those whose place others stand for.
+void take_eligible(const SemidiscreteProblem& problem, Stage& stage) {
+  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
+  if (problem.contact.follows_motion()) problem.contact.geometry->leave_out(stage.eligible);
+}
+
 /// Gaps where a step ends, or at an instant.
 void take_gaps(const SemidiscreteProblem& problem, const Vector& displacement, double time, bool of_step, Vector& gap) {
   problem.gaps(displacement, time, gap);
@@ -71,7 +77,7 @@ void require_no_penetration(const SemidiscreteProblem& problem, const Vector& ba
   take_gaps(problem, base, time, start != nullptr, stage.gap_offset);
   stage.gap_offset_rounding = stage.rows->gap_rounding;
   stage.gap_factor = 1.0;
-  stage.eligible.assign(static_cast<std::size_t>(problem.contact.size()), 1);
+  take_eligible(problem, stage);
   if (!problem.contact.follows_motion()) return;
   if (!stage.motion) stage.motion.emplace();
   ContactMotion& motion = *stage.motion;
@@ -91,10 +97,10 @@ void require_no_approach(const SemidiscreteProblem& problem, const Vector& displ
   // A displacement is the sum of its increments, and this condition on velocities takes back nothing of their rounding:
   // a point that slides or rests drifts by a unit of it per step.
   problem.trace_rounding(displacement, stage.gap_offset_rounding);
-  stage.eligible.resize(static_cast<std::size_t>(problem.contact.size()));
+  take_eligible(problem, stage);
   for (Index i = 0; i < problem.contact.size(); ++i) {
     const bool touches = stage.gap_offset[i] <= stage.rows->gap_rounding[i] + stage.gap_offset_rounding[i];
-    stage.eligible[static_cast<std::size_t>(i)] = touches ? 1 : 0;
+    if (!touches) stage.eligible[static_cast<std::size_t>(i)] = 0;
   }
   problem.trace_rounding(velocity, stage.gap_offset);
   stage.gap_offset_rounding = stage.gap_offset_rounding / step + stage.gap_offset;
@@ -115,6 +121,7 @@ void linearize_contact(const SemidiscreteProblem& problem, const Vector& increme
   motion.solution = motion.displacement + stage.gap_factor * increment;
   const StepStart start{motion.start, motion.start_time};
   take_rows(problem, motion.solution, motion.time, motion.start.size() > 0 ? &start : nullptr, stage);
+  take_eligible(problem, stage);
   take_gaps(problem, motion.solution, motion.time, motion.start.size() > 0, stage.gap_offset);
   stage.rows->normal_motion(increment, motion.gap_change);
   stage.gap_offset -= stage.gap_factor * motion.gap_change;

@@ -68,8 +68,10 @@ Columns HistoryRecorder::relaxation_columns() {
   return {"viscous_dissipation"};
 }
 
-Columns HistoryRecorder::sliding_columns() {
-  return {"re_pairing_work", {"unsettled_gap", Reduction::maximum}};
+Columns HistoryRecorder::sliding_columns(bool touches_itself) {
+  Columns columns = {"re_pairing_work", {"unsettled_gap", Reduction::maximum}};
+  if (touches_itself) columns.emplace_back("left_out_points");
+  return columns;
 }
 
 Columns HistoryRecorder::columns_of(const SemidiscreteProblem& problem,
@@ -83,7 +85,7 @@ Columns HistoryRecorder::columns_of(const SemidiscreteProblem& problem,
     for (const Column& column : relaxation_columns()) columns.push_back(column);
   }
   if (problem.contact.has_sliding_pairs()) {
-    for (const Column& column : sliding_columns()) columns.push_back(column);
+    for (const Column& column : sliding_columns(problem.contact.touches_itself)) columns.push_back(column);
   }
   for (const auto& sensor : sensors) {
     for (const Column& column : sensor->columns()) columns.push_back(column);
@@ -153,9 +155,16 @@ const std::vector<double>& HistoryRecorder::row(const State& state, EnergyAccoun
   }
   if (problem_.internal_force->viscous() != nullptr) row_.push_back(works.viscous_dissipation);
   if (problem_.contact.has_sliding_pairs()) row_.insert(row_.end(), {works.re_pairing, account.unsettled_gap()});
+  if (problem_.contact.touches_itself) row_.push_back(left_out_points());
   for (const auto& sensor : sensors_) sensor->observe(observation, row_);
   problem_.ranks->reduce(row_, reductions_);
   return row_;
+}
+
+double HistoryRecorder::left_out_points() {
+  takes_part_.assign(static_cast<std::size_t>(problem_.contact.size()), 1);
+  problem_.contact.geometry->leave_out(takes_part_);
+  return static_cast<double>(std::count(takes_part_.begin(), takes_part_.end(), 0));
 }
 
 void HistoryRecorder::add_contact_force(const State& state) {

@@ -66,7 +66,7 @@ class HistoryRecorder {
   [[nodiscard]] static Columns standard_columns(int dimension);
   [[nodiscard]] static Columns finite_strain_columns();
   [[nodiscard]] static Columns relaxation_columns();
-  [[nodiscard]] static Columns sliding_columns();
+  [[nodiscard]] static Columns sliding_columns(bool touches_itself);
   /// The row of a state. The reference stays valid until the next call.
   [[nodiscard]] const std::vector<double>& row(const State& state, EnergyAccount& account);
 
@@ -74,6 +74,7 @@ class HistoryRecorder {
   void weigh_nodes();
   void weigh_positions();
   void place_free_bodies(const State& state);
+  [[nodiscard]] double left_out_points();
   void add_contact_force(const State& state);
   void add_momentum(const State& state, const Vector& velocity);
   void sum_of_bodies(const Vector& values);
@@ -89,6 +90,7 @@ class HistoryRecorder {
   std::vector<std::string> columns_;
   std::vector<Reduction> reductions_;
   std::vector<double> row_;
+  std::vector<char> takes_part_;
   /// Momentum and angular momentum are Σ node_weight_ p and Σ node_arm_ × p over the nodes. Where M = m ⊗ I, as it is
   /// for a density, p is the velocity, and these are m 1 and m x of the reference positions x: no product with M. Else
   /// p is M V, and these are 1 and x. At finite strain x are the positions of the state.

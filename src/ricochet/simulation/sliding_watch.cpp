@@ -45,7 +45,7 @@ double SlidingWatch::slip_of(Index point, const State& state) const {
 /// A held step leaves a gap, or an overlap, at a point that carries a force.
 void SlidingWatch::look_at_sliding_pairs(const State& state) {
   constexpr double settled = 1e-9;
-  if (has_told_ || state.step == 0) return;
+  if (has_told_ || state.step == 0 || !problem_.contact.geometry->was_held()) return;
   problem_.gaps(state.displacement, state.time, gap_);
   for (const Index point : far_points_) {
     if (!(state.forces.normal_reaction[point] > 0.0) || std::abs(gap_[point]) <= settled * size_ ||

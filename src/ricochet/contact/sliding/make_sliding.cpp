@@ -173,6 +173,7 @@ std::unique_ptr<ContactGeometry> follow_sliding(const Body& body, const std::vec
     const int number = patch->first_pair();
     const ContactPair& pair = pairs[static_cast<std::size_t>(number)];
     boundary.opposite_node[static_cast<std::size_t>(number)] = facet_nodes(*body.space, pair.opposite_facets).front();
+    boundary.touches_itself = boundary.touches_itself || pair.is_self();
     const OwnNormals normals(body, pair);
     for (std::size_t entry = 0; entry < boundary.nodes.size(); ++entry) {
       if (boundary.node_pair[entry] != number) continue;

@@ -1,6 +1,7 @@
 #include "ricochet/contact/sliding/moving_surfaces.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ricochet {
 
@@ -12,6 +13,10 @@ int degree_on_segments(const Body& body) {
                                      [](const CellBlock& block) { return block.shape != CellShape::quadrilateral; });
   return (simplices ? 2 : 4) * body.space->degree;
 }
+
+/// Of the thickness at the start: as thin a body that is squeezed may become. What is seen inside of it to half of that
+/// is no far side.
+constexpr double squeezed = 0.5;
 
 /// The mesh of the displacement: isoparametric, whatever the geometry's degree is.
 Mesh mesh_of(const DisplacementSpace& space) {
@@ -46,6 +51,44 @@ MovingSurfaces::MovingSurfaces(const Body& body, const std::vector<Index>& facet
   all.insert(all.end(), opposite_facets.begin(), opposite_facets.end());
   nodes_ = facet_nodes(*body.space, all);
   moved_by_.setZero(body.space->dof_count());
+}
+
+void MovingSurfaces::see_itself() {
+  const DisplacementSpace& space = *body_.space;
+  std::vector<std::vector<Index>> nodes_of;
+  std::map<Index, std::vector<int>> at_node;
+  for (const FacetSurface::Facet& facet : own_.facets()) {
+    nodes_of.push_back(facet_nodes(space, {facet.number}));
+    for (const Index node : nodes_of.back()) at_node[node].push_back(static_cast<int>(nodes_of.size()) - 1);
+  }
+  const auto widen = [&](const std::vector<int>& facets) {
+    std::vector<int> result;
+    for (const int facet : facets) {
+      for (const Index node : nodes_of[static_cast<std::size_t>(facet)])
+        result.insert(result.end(), at_node[node].begin(), at_node[node].end());
+    }
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  };
+  std::vector<std::vector<int>> unseen;
+  std::vector<double> depths;
+  for (int facet = 0; facet < static_cast<int>(nodes_of.size()); ++facet) {
+    unseen.push_back(widen(widen({facet})));
+    const double height = own_.facets()[static_cast<std::size_t>(facet)].height;
+    const double through = finder_.thickness_behind(facet);
+    depths.push_back(std::isfinite(through) ? squeezed * through : height);
+  }
+  for (const auto& [node, facets] : at_node) unseen_from_[node] = widen(facets);
+  finder_.leave_out(std::move(unseen));
+  own_.take_heights(depths);
+  opposite_.take_heights(depths);
+}
+
+const std::vector<int>& MovingSurfaces::unseen_from(Index node) const {
+  static const std::vector<int> none;
+  const auto known = unseen_from_.find(node);
+  return known != unseen_from_.end() ? known->second : none;
 }
 
 void MovingSurfaces::move(const Vector& displacement) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <vector>
+
 #include "ricochet/contact/facet_surface.hpp"
 #include "ricochet/contact/surface_segments.hpp"
 
@@ -15,6 +18,9 @@ class MovingSurfaces {
   /// To X + U. Does nothing where they are there already.
   void move(const Vector& displacement);
 
+  /// Where both surfaces are one: facets do not see those within two rings around them, and those behind the body.
+  void see_itself();
+
   [[nodiscard]] const FacetMap& map() const { return map_; }
   [[nodiscard]] const FacetSurface& own() const { return own_; }
   [[nodiscard]] const FacetSurface& opposite() const { return opposite_; }
@@ -22,6 +28,8 @@ class MovingSurfaces {
   /// Of both, ascending.
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
   [[nodiscard]] Eigen::Vector3d position(Index node) const;
+  /// Facets of the opposite surface that a node of the own one does not see, by place; none where there are two.
+  [[nodiscard]] const std::vector<int>& unseen_from(Index node) const;
   /// Multiplies values, one per column, by areas of the reference configuration over those where the surface is.
   void scale_to_reference(Index facet, const Points& local, Matrix& values) const;
 
@@ -33,6 +41,7 @@ class MovingSurfaces {
   FacetSurface own_, opposite_;
   SegmentFinder finder_;
   std::vector<Index> nodes_;
+  std::map<Index, std::vector<int>> unseen_from_;  ///< a node; empty where there are two surfaces
   Vector moved_by_;
 };
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "ricochet/contact/sliding/chosen_points.hpp"
 #include "ricochet/contact/sliding/rigid_part.hpp"
 #include "ricochet/contact/sliding/sliding_rows.hpp"
 #include "ricochet/fem/displacement_space.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 using Views = std::vector<SlidingView>;
 using SlidingNode = SlidingContactData::Node;
+using Choice = ChosenPoints::Choice;
 
 /// Points up to so many times the motion of a step ahead, and up to this part of a cell, have rows.
 constexpr double ahead_of_sliding = 4.0, always_near = 0.1;
@@ -27,8 +30,11 @@ class SlidingContact final : public ContactGeometry {
         extent_(extent(data_.node_positions)),
         seen_(data_.pairs.size()),
         writer_(data_.node_positions) {
-    for (const auto& pair : data_.pairs)
-      surface_nodes_.insert(surface_nodes_.end(), pair->nodes().begin(), pair->nodes().end());
+    for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
+      const SlidingPair& pair = *data_.pairs[k];
+      surface_nodes_.insert(surface_nodes_.end(), pair.nodes().begin(), pair.nodes().end());
+      if (pair.is_self()) seen_[k].chosen.emplace(pair, data_.node_positions.cols(), pair.degree());
+    }
     std::sort(surface_nodes_.begin(), surface_nodes_.end());
     surface_nodes_.erase(std::unique(surface_nodes_.begin(), surface_nodes_.end()), surface_nodes_.end());
   }
@@ -39,6 +45,8 @@ class SlidingContact final : public ContactGeometry {
         take_held_gaps(k, displacement, gap);
         continue;
       }
+      // Forces may move points farther in the step than was known when the rows were made.
+      if (is_step_ && seen_[k].has_start) find_far(k, longest_way(*data_.pairs[k], displacement, seen_[k].start_at));
       look_at_gaps(k, displacement);
       for (std::size_t i = 0; i < data_.pairs[k]->points().size(); ++i) gap[number(k, i)] = gap_of(seen_[k], i);
     }
@@ -59,12 +67,12 @@ class SlidingContact final : public ContactGeometry {
 
   void update(const Vector& displacement, double, const StepStart* start, ContactRows& rows) const override {
     if (is_held_ && start != nullptr) return;
-    remember_places(displacement, start, rows);
     at_update_ = displacement;
     is_step_ = start != nullptr;
     writer_.begin(displacement, start != nullptr ? &start->displacement : nullptr);
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) update_pair(k, displacement, start, rows);
     writer_.finish(rows);
+    remember(displacement, start, rows);
     gap_at_update_ = rows.gap;
   }
 
@@ -75,13 +83,26 @@ class SlidingContact final : public ContactGeometry {
     return true;
   }
   void end_step() const override { is_held_ = false; }
+  [[nodiscard]] bool was_held() const override { return was_held_; }
 
   void allow_overlap(Vector& gap) const override {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
       const Seen& seen = seen_[k];
       for (std::size_t i = 0; i < seen.at_start.size(); ++i) {
         const double before = seen.at_start[i].faces ? seen.at_start[i].gap : 0.0;
-        if (before < -least_overlap * extent_ && !is_far(seen, i)) gap[number(k, i)] -= before;
+        // Held gaps of those that enter have it in them.
+        const bool has_it = is_held_ && enters(seen, i);
+        if (before < -least_overlap * extent_ && !is_far(seen, i) && !has_it) gap[number(k, i)] -= before;
+      }
+    }
+  }
+
+  void leave_out(std::vector<char>& eligible) const override {
+    for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
+      if (!seen_[k].chosen) continue;
+      const std::vector<Choice>& choices = seen_[k].chosen->choices();
+      for (std::size_t i = 0; i < choices.size(); ++i) {
+        if (choices[i] == Choice::left_out) eligible[static_cast<std::size_t>(number(k, i))] = 0;
       }
     }
   }
@@ -92,9 +113,11 @@ class SlidingContact final : public ContactGeometry {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) add_couples_of(k, place, rows, normal, tangential, force);
   }
 
-  /// The places that rows were made at: those of a step's start come after those of its end.
+  /// The places that rows were made at, those of a step's start after those of its end, and which points were chosen.
   [[nodiscard]] Index row_value_count() const override {
-    return 1 + 2 * dimension() * static_cast<Index>(surface_nodes_.size());
+    Index points = 0;
+    for (const Seen& seen : seen_) points += seen.chosen ? static_cast<Index>(seen.chosen->choices().size()) : 0;
+    return 1 + 2 * dimension() * static_cast<Index>(surface_nodes_.size()) + points;
   }
   [[nodiscard]] Vector row_values(const ContactRows& rows) const override {
     return rows.places.size() > 0 ? rows.places : Vector(Vector::Zero(row_value_count()));
@@ -106,6 +129,13 @@ class SlidingContact final : public ContactGeometry {
       const Index at = 1 + static_cast<Index>(i) * d;
       end.segment(surface_nodes_[i] * d, d) = row_values.segment(at, d);
       before.segment(surface_nodes_[i] * d, d) = row_values.segment(at + count, d);
+    }
+    Index at = 1 + 2 * count;
+    for (Seen& seen : seen_) {
+      if (!seen.chosen) continue;
+      std::vector<Choice> choices(seen.chosen->choices().size());
+      for (Choice& choice : choices) choice = static_cast<Choice>(std::lround(std::clamp(row_values[at++], 0.0, 2.0)));
+      seen.chosen->restore(std::move(choices));
     }
     const StepStart start{before, 0.0};
     update(end, 0.0, row_values[0] != 0.0 ? &start : nullptr, rows);
@@ -119,6 +149,7 @@ class SlidingContact final : public ContactGeometry {
     std::vector<char> any_depth;  ///< points that face something where the step begins
     std::vector<char> far;        ///< points that do not move so far in the step: their gaps are those of its start
     std::vector<char> left_out;   ///< of a look at rows
+    std::optional<ChosenPoints> chosen;  ///< where the pair touches itself
     bool has_start = false, has_gaps = false;
   };
 
@@ -148,7 +179,7 @@ class SlidingContact final : public ContactGeometry {
     return result;
   }
 
-  void remember_places(const Vector& displacement, const StepStart* start, ContactRows& rows) const {
+  void remember(const Vector& displacement, const StepStart* start, ContactRows& rows) const {
     const Index d = dimension(), count = d * static_cast<Index>(surface_nodes_.size());
     rows.places.setZero(row_value_count());
     rows.places[0] = start != nullptr ? 1.0 : 0.0;
@@ -156,6 +187,11 @@ class SlidingContact final : public ContactGeometry {
       const Index at = 1 + static_cast<Index>(i) * d;
       rows.places.segment(at, d) = displacement.segment(surface_nodes_[i] * d, d);
       if (start != nullptr) rows.places.segment(at + count, d) = start->displacement.segment(surface_nodes_[i] * d, d);
+    }
+    Index at = 1 + 2 * count;
+    for (const Seen& seen : seen_) {
+      if (!seen.chosen) continue;
+      for (const Choice choice : seen.chosen->choices()) rows.places[at++] = static_cast<double>(choice);
     }
   }
 
@@ -197,14 +233,14 @@ class SlidingContact final : public ContactGeometry {
     seen.has_gaps = false;
   }
 
-  /// Which points are farther from touching than the step may take them.
-  void find_far(std::size_t k, bool is_step) const {
+  /// Which points are farther from touching than a step in which nodes go so far may take them. Infinite: none.
+  void find_far(std::size_t k, double way) const {
     const SlidingPair& pair = *data_.pairs[k];
     Seen& seen = seen_[k];
     std::vector<char>& far = left_out_;
     far.assign(pair.points().size(), 0);
-    if (is_step) {
-      const double reach = ahead_of_sliding * longest_way(pair) + always_near * pair.height();
+    if (std::isfinite(way)) {
+      const double reach = ahead_of_sliding * way + always_near * pair.height();
       for (std::size_t i = 0; i < far.size(); ++i)
         far[i] = seen.at_start[i].faces && seen.at_start[i].gap > reach ? 1 : 0;
     }
@@ -213,19 +249,26 @@ class SlidingContact final : public ContactGeometry {
     seen.has_gaps = false;
   }
 
-  /// The longest way that a node of the pair goes in the step.
-  [[nodiscard]] double longest_way(const SlidingPair& pair) const {
+  /// The longest way that a node of the pair goes between two displacements.
+  [[nodiscard]] double longest_way(const SlidingPair& pair, const Vector& to, const Vector& from) const {
     double longest = 0.0;
+    const Index d = dimension();
     for (const Index node : pair.nodes())
-      longest = std::max(longest, writer_.step().segment(node * dimension(), dimension()).norm());
+      longest = std::max(longest, (to.segment(node * d, d) - from.segment(node * d, d)).norm());
     return longest;
   }
 
   void update_pair(std::size_t k, const Vector& displacement, const StepStart* start, ContactRows& rows) const {
     const SlidingPair& pair = *data_.pairs[k];
     Seen& seen = seen_[k];
-    if (start != nullptr) look_at_start(k, start->displacement);
-    find_far(k, start != nullptr);
+    if (start != nullptr) {
+      look_at_start(k, start->displacement);
+      find_far(k, longest_way(pair, displacement, start->displacement));
+    } else {
+      seen.any_depth.clear();
+      seen.has_start = seen.has_gaps = false;
+      find_far(k, std::numeric_limits<double>::infinity());
+    }
     look_at_gaps(k, displacement);
     seen.left_out.assign(seen.gaps.size(), 0);
     bool any_near = false;
@@ -238,6 +281,7 @@ class SlidingContact final : public ContactGeometry {
     }
     if (any_near) pair.look(writer_.middle(), SlidingPair::Wanted::row, seen.left_out, seen.any_depth, seen.middle);
     if (any_near && start != nullptr) look_at_entering(pair, displacement, seen);
+    if (seen.chosen) choose(start != nullptr, seen);
     for (std::size_t i = 0; i < seen.gaps.size(); ++i) {
       const double gap_rounding = rows.gap_rounding[number(k, i)];
       if (seen.left_out[i] != 0) {
@@ -254,6 +298,15 @@ class SlidingContact final : public ContactGeometry {
         writer_.write(pair.points()[i], view, rows);
       }
     }
+  }
+
+  /// Among the points that may touch in the step.
+  void choose(bool is_step, Seen& seen) const {
+    views_.assign(seen.gaps.size(), nullptr);
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      if (seen.left_out[i] == 0) views_[i] = is_step && enters(seen, i) ? &seen.entering[i] : &seen.middle[i];
+    }
+    seen.chosen->choose(views_);
   }
 
   /// Points that face nothing where the step begins, or in its middle, but where it ends.
@@ -331,6 +384,7 @@ class SlidingContact final : public ContactGeometry {
   mutable bool is_held_ = false, was_held_ = false;  ///< the second until the next step begins
   mutable bool is_step_ = false;                     ///< the last update was of a step
   mutable std::vector<char> left_out_;
+  mutable std::vector<const SlidingView*> views_;
   mutable std::vector<SlidingVector> places_, motions_;
 };
 

@@ -81,6 +81,7 @@ struct SlidingPair::Implementation {
     for (const FacetSurface* const surface : {&surfaces.own(), &surfaces.opposite()}) {
       for (const FacetSurface::Facet& facet : surface->facets()) least_height = std::min(least_height, facet.height);
     }
+    if (data.is_self()) surfaces.see_itself();
     find_points_of_facets();
     for (const FacetSurface::Facet& facet : surfaces.own().facets()) {
       const Vector direction = -facet.area_vector.normalized().head(data.body.space->dimension);
@@ -127,7 +128,7 @@ void SlidingPair::Implementation::look_from(int facet, Wanted wanted, const std:
       if (here[k] < 0) continue;
       const auto point = static_cast<std::size_t>(here[k]);
       const bool is_out = !left_out.empty() && left_out[point] != 0;
-      const bool sees_deep = !any_depth.empty() && any_depth[point] != 0;
+      const bool sees_deep = !data.is_self() && !any_depth.empty() && any_depth[point] != 0;
       takes_part[k] = !is_out && sees_deep == deep ? 1 : 0;
     }
     if (std::find(takes_part.begin(), takes_part.end(), 1) == takes_part.end()) continue;
@@ -234,6 +235,14 @@ const std::vector<SlidingPair::Point>& SlidingPair::points() const {
   return implementation_->data.points;
 }
 
+bool SlidingPair::is_self() const {
+  return implementation_->data.is_self();
+}
+
+int SlidingPair::degree() const {
+  return implementation_->data.body.space->degree;
+}
+
 const std::vector<Index>& SlidingPair::nodes() const {
   return implementation_->surfaces.nodes();
 }
@@ -272,7 +281,8 @@ double SlidingPair::node_gap(Index node, const SlidingVector& direction, const V
   const Implementation& own = *implementation_;
   own.surfaces.move(displacement);
   const double reach = 0.5 * own.surfaces.own().height_at(node);
-  const SegmentFinder::Hit hit = own.surfaces.finder().find_point(own.surfaces.position(node), direction, reach);
+  const SegmentFinder::Hit hit = own.surfaces.finder().find_point(
+      own.surfaces.position(node), direction, reach, SegmentFinder::on_rim, own.surfaces.unseen_from(node));
   return hit.facet >= 0 ? hit.gap : std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -58,7 +58,9 @@ class SlidingPair {
     std::string multipliers;  ///< the space's name
     std::vector<Index> facets, opposite_facets;
     std::vector<Point> points;
-    bool self = false;  ///< both are one surface: facets do not see those near them
+
+    /// Both are one surface, whose facets do not see those within two rings around them.
+    [[nodiscard]] bool is_self() const { return facets == opposite_facets; }
   };
 
   /// Keeps what the body points to.
@@ -68,6 +70,9 @@ class SlidingPair {
   SlidingPair& operator=(const SlidingPair&) = delete;
 
   [[nodiscard]] const std::vector<Point>& points() const;
+  [[nodiscard]] bool is_self() const;
+  /// Of the displacement.
+  [[nodiscard]] int degree() const;
   /// Of both surfaces, ascending.
   [[nodiscard]] const std::vector<Index>& nodes() const;
   /// The least height of the cells behind the facets.
@@ -77,7 +82,9 @@ class SlidingPair {
 
   enum class Wanted { gap, row };
   /// What the points see, of those that are not left out (empty: all): `views` has one for each. Overlaps deeper than
-  /// half a cell are none, but for points of `any_depth` (empty: none).
+  /// half a cell are none, but for points of `any_depth` (empty: none). Where
+  /// both surfaces are one, overlaps deeper than a quarter of the body's thickness at the start are none, for every
+  /// point.
   void look(const Vector& displacement, Wanted wanted, const std::vector<char>& left_out,
             const std::vector<char>& any_depth, std::vector<SlidingView>& views) const;
 

@@ -50,7 +50,11 @@ class PointSensor final : public Sensor {
     for (const auto& [point, weight] : points_) force += weight * contact_force(state.forces, point);
     const SpaceVector normal = problem_.node_normal(probe_.contact_node, state.displacement, state.time);
     const double normal_force = normal.dot(force);
-    if (has_gap_) row.push_back(part * observation.gap[probe_.contact_node]);
+    if (has_gap_) {
+      // Where bodies slide far it may face nothing now.
+      const double gap = observation.gap[probe_.contact_node];
+      row.push_back(part * (std::isnan(gap) ? problem_.contact.out_of_sight : gap));
+    }
     for (const double value : {part * observation.pressure[probe_.contact_node], normal_force}) row.push_back(value);
     force -= normal_force * normal;
     append(force, row);
