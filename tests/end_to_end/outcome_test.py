@@ -170,8 +170,11 @@ end = 0.001
         self.assertIn(f"restitution {impact['restitution']:.4g}", self.expect_status(0, run("info", carried)).stdout)
 
     def test_a_body_that_begins_inside_has_no_restitution(self):
-        """Being pushed out would make one of 30 and more."""
-        folder = self.simulate(DISC, "inside", {"mesh.move": "[0.0, -1.0]", "time.end": 0.2}, options=("--quiet", "--force"))
+        """Being pushed out would make any. Deeper ones are refused, with the place."""
+        deep = self.expect_status(2, run("run", DISC, "-o", self.folder / "deep", "--set", "mesh.move=[0.0, -1.0]"))
+        self.assertIn('inside of obstacle "foundation", the deepest by 0.999 at (0, -0.999)', deep.stderr)
+        folder = self.simulate(DISC, "inside", {"mesh.move": "[0.0, -0.00102]", "time.end": 0.2, "load.gravity": "[0.0, 0.0]",
+                                                "initial.velocity": "[0.0, 0.0]"}, options=("--quiet", "--force"))
         impact = summary(folder)["impacts"][0]
         self.assertTrue(impact["from_inside"])
         self.assertTrue(impact["ended"])

@@ -27,20 +27,23 @@ std::string names_of_pair(const ContactPair& pair) {
   return fmt::format("contact groups \"{}\" and \"{}\"", pair.group, pair.opposite_group);
 }
 
-/// The contact points of a pair with a gap below zero by more than rounding.
+/// Of the mesh: what facets that stand for curved surfaces may put bodies into obstacles by.
+constexpr double off_by_facets = 1e-3;
+
+/// The contact points of a pair with a gap below zero by more than rounding, or by more than a given depth.
 struct Overlap {
   Index inside = 0;
   double deepest = 0.0;  ///< positive
   Vector place;          ///< of the deepest, in the mesh
 };
 
-Overlap find_overlap(const Model& model, std::size_t number, const Vector& gap) {
+Overlap find_overlap(const Model& model, std::size_t number, const Vector& gap, double depth = 0.0) {
   const ContactBoundary& contact = model.problem.contact;
   Overlap result;
   Index deepest = -1;
   for (Index i = 0; i < contact.size(); ++i) {
     if (contact.pair[static_cast<std::size_t>(i)] != static_cast<int>(number)) continue;
-    if (!(gap[i] < -contact.rows->gap_rounding[i])) continue;
+    if (!(gap[i] < -std::max(depth, contact.rows->gap_rounding[i]))) continue;
     ++result.inside;
     if (deepest < 0 || gap[i] < gap[deepest]) deepest = i;
   }
@@ -202,13 +205,34 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
   }
 }
 
+namespace {
+
+void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::size_t number, const Vector& gap) {
+  const ContactPair& pair = model.contact_pairs[number];
+  const Overlap overlap = find_overlap(model, number, gap, off_by_facets * extent(model.mesh.nodes));
+  if (overlap.inside == 0) return;
+  refuse(input, fmt::format("contact.{}.group", number),
+         fmt::format("at the start {} of group \"{}\" {} inside of obstacle \"{}\", the deepest by {:.3g} at {}, and "
+                     "would be pushed out at once, which creates energy; move one of them away, look on which side of "
+                     "the obstacle the body lies (a plane's normal points out of it, other shapes have a \"side\"), or "
+                     "start from initial.displacement = \"static\"",
+                     counted(overlap.inside, "contact point"), pair.group, overlap.inside == 1 ? "is" : "are",
+                     pair.obstacle_name, overlap.deepest, place_text(overlap.place)));
+}
+
+}  // namespace
+
 void check_body_overlaps(const Case& input, const Model& model) {
   if (model.initial.static_equilibrium) return;  // a press fit: the static start pushes the bodies apart
   Vector gap;
   model.problem.gaps(model.initial.displacement, 0.0, gap);
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
-    if (!pair.between_bodies() || pair.tied) continue;
+    if (pair.tied) continue;
+    if (!pair.between_bodies()) {
+      refuse_overlap_with_obstacle(input, model, number, gap);
+      continue;
+    }
     const Overlap overlap = find_overlap(model, number, gap);
     if (overlap.inside == 0) continue;
     refuse(

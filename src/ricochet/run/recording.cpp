@@ -145,6 +145,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
 
 void Recording::enter_part(const State& state, EnergyAccount& account) {
   checks_.enter_part(state);
+  penetration_.look_at_part(state);
   impacts_.enter_step(state, account.of_method(state));
 }
 

@@ -29,6 +29,8 @@ class PenetrationWatch {
   /// After every step, and of the starting state. Warns, once, of each obstacle, contact and pair of bodies. Allocates
   /// nothing where there is nothing to tell.
   void look(const State& state);
+  /// After every part of a step that is taken in several, before that: a node may go round an edge within the whole.
+  void look_at_part(const State& state) { passages_.look(state); }
   /// Of the last state, besides: at bodies even if none has moved far.
   void look_at_end(const State& state);
 

@@ -181,17 +181,16 @@ void find_support_reaction(const SemidiscreteProblem& problem, State& state) {
 
 namespace {
 
-/// A body that starts inside its obstacle is pushed out at once, which creates energy: rarely what was meant.
+/// What is deeper is refused (model_bodies.cpp).
 void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
   const PointsInside inside = points_inside(problem, state.displacement);
   const auto& points = inside.points;
   if (points.empty()) return;
-  log::warning(fmt::format(
-      "at the start {} of {} {} inside their obstacle, the deepest by {:.3g}: they are "
-      "pushed out at once, which creates energy; check where the obstacle is and on which side of it the body (a "
-      "plane's normal points out of it, a sphere has a side), or start from initial.displacement = \"static\"",
-      points.size(), counted(problem.contact.size(), "contact point"), points.size() == 1 ? "is" : "are",
-      inside.deepest));
+  log::warning(
+      fmt::format("at the start {} of {} {} inside of an obstacle, the deepest by {:.3g}, as where facets stand "
+                  "for a curved surface: they are pushed out at once, which creates energy; move the body away by that",
+                  points.size(), counted(problem.contact.size(), "contact point"), points.size() == 1 ? "is" : "are",
+                  inside.deepest));
 }
 
 }  // namespace

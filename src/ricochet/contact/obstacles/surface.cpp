@@ -38,8 +38,12 @@ Three in_three(const SpaceVector& point) {
 /// the radius, and without one, it is the exact distance.
 class Surface final : public ObstacleShape {
  public:
-  Surface(RigidSurface surface, double side, std::optional<double> radius, std::string checksum)
-      : surface_(std::move(surface)), side_(side), given_radius_(radius), checksum_(std::move(checksum)) {
+  Surface(RigidSurface surface, double side, std::optional<double> radius, std::string checksum, std::string file)
+      : surface_(std::move(surface)),
+        side_(side),
+        given_radius_(radius),
+        checksum_(std::move(checksum)),
+        file_(std::move(file)) {
     if (given_radius_) radius_ = *given_radius_;
   }
 
@@ -63,6 +67,23 @@ class Surface final : public ObstacleShape {
   }
   void fit(const ContactScale& scale) override {
     if (!given_radius_) radius_ = std::min(part_of_spacing * scale.spacing, surface_.width_of_smooth());
+    if (!surface_.is_closed()) return;
+    // Ascending, without the third in the plane.
+    Three sides = surface_.box().sizes();
+    std::sort(sides.begin(), sides.end());
+    const double width = surface_.in_space() ? sides[1] : sides[2], least = surface_.in_space() ? sides[0] : sides[1];
+    if (width < scale.spacing) {
+      log::warning(
+          fmt::format("{}: the surface is no more than {:.3g} wide, and nodes that may touch it are {:.3g} apart: "
+                      "it can go in between them unseen; take smaller cells there",
+                      file_, width, scale.spacing));
+    }
+    if (given_radius_ && 2.0 * radius_ > least) {
+      log::warning(
+          fmt::format("{}: edges are rounded over {:.3g}, more than half of what the surface is thick, {:.3g}: "
+                      "gaps are off by a part of that; take a smaller edge_radius",
+                      file_, radius_, least));
+    }
   }
   [[nodiscard]] std::string remarks() const override {
     return radius_ > 0.0 ? fmt::format("its edges are rounded over a radius of {:.3g}", radius_)
@@ -113,6 +134,7 @@ class Surface final : public ObstacleShape {
   std::optional<double> given_radius_;
   double radius_ = 0.0;
   std::string checksum_;
+  std::string file_;  ///< for messages
 };
 
 /// Of facets that are near; where they are too many, corners in one cell of a grid become one.
@@ -228,7 +250,7 @@ ObstacleRegistration surface_obstacle() {
     if (parameters.has("edge_radius")) radius = parameters.number("edge_radius");
     Checksum sum;
     for (const Three& corner : surface.corners()) sum.add(corner.data(), 3);
-    return std::make_unique<Surface>(std::move(surface), side, radius, sum.text());
+    return std::make_unique<Surface>(std::move(surface), side, radius, sum.text(), file);
   };
   return {"surface", make, surface_keys()};
 }
