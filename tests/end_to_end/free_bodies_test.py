@@ -1,5 +1,6 @@
 """Rigid bodies that move by the forces on them: momenta, energy, closed forms, and runs that are resumed."""
 
+import json
 import math
 import unittest
 
@@ -82,6 +83,40 @@ class ClosedForms(Bodies):
         self.assertEqual(max(map(abs, history["floor.displacement_x"])), 0.0)
         self.assertEqual(max(map(abs, history["floor.rotation_z"])), 0.0)
         self.assertAlmostEqual(history["floor.displacement_y"][-1], 0.25, delta=1e-12)
+
+
+class Impacts(Bodies):
+    def test_the_restitution_is_that_of_two_bodies(self):
+        """A ball of the block's mass: velocities of both before and after, and their momenta."""
+        text = self.case('type = "sphere"\ncentre = [0.5, 0.75]\nradius = 0.2\nmass = 0.5\nvelocity = [0.0, -0.5]', end=0.5,
+                         friction=0.0)
+        results = self.simulate(self.write("case.toml", text))
+        summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual([body["name"] for body in summary["bodies"]][-1], "floor")
+        self.assertAlmostEqual(summary["bodies"][-1]["mass"], 0.5, delta=1e-15)
+        impact = summary["impacts"][0]
+        self.assertAlmostEqual(impact["normal_velocity_before"], -0.5, delta=1e-6)
+        self.assertGreater(impact["restitution"], 0.2)
+        self.assertLess(impact["restitution"], 1.0)
+
+    def test_springs_are_in_the_balance_of_momentum(self):
+        text = self.case('type = "sphere"\ncentre = [9.0, 9.0]\nradius = 0.3\nmass = 2.0\nvelocity = [1.0, 0.5]\n'
+                         "spring = [50.0, 20.0]\nspin = 2.0\nrotation_spring = 4.0")
+        process = run("run", self.write("case.toml", text), "-o", self.folder / "out", "--quiet")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertNotIn("balance of", process.stderr)
+
+    def test_its_nodes_are_none_of_the_mesh(self):
+        text = self.case('type = "sphere"\ncentre = [0.5, 0.82]\nradius = 0.3\ndensity = 2.0')
+        said = self.expect_status(0, run("validate", self.write("case.toml", text))).stdout
+        self.assertIn('the mesh is 0.02479 away from obstacle "floor"', said)
+        self.assertIn("it moves freely, with the mass 0.565487 about (0.5, 0.82)", said)
+
+    def test_a_static_start_needs_what_holds_it(self):
+        text = self.case('type = "sphere"\ncentre = [0.5, 0.82]\nradius = 0.3\ndensity = 2.0',
+                         more='[initial]\ndisplacement = "static"\n')
+        said = self.expect_status(2, run("run", self.write("case.toml", text), "-o", self.folder / "out")).stderr
+        self.assertIn('needs what holds "floor" against motion along x', said)
 
 
 class Runs(Bodies):

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/input_file.hpp"
+#include "ricochet/base/log.hpp"
 
 namespace ricochet {
 
@@ -118,11 +120,14 @@ std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension
                 fmt::format("cannot read the motion \"{}\": {}", file, why_not.empty() ? "no such file" : why_not));
   const std::size_t still = static_cast<std::size_t>(dimension) + 1, turning = dimension == 2 ? 4 : 7;
   std::vector<double> times, numbers, values;
-  std::string line;
+  std::string line, names;
   std::size_t columns = 0;
   for (std::size_t number = 1; std::getline(stream, line); ++number) {
     if (!read_numbers(line, numbers)) {
-      if (times.empty() && number == 1) continue;  // names of columns
+      if (times.empty() && number == 1) {
+        names = line;
+        continue;
+      }
       refuse_line(file, number, "this line has something else than finite numbers, separated by commas or spaces");
     }
     if (numbers.empty()) continue;
@@ -140,6 +145,17 @@ std::unique_ptr<ObstaclePath> read_path(const std::string& file, Index dimension
     values.insert(values.end(), numbers.begin() + 1, numbers.end());
   }
   if (times.empty()) throw Error(ErrorKind::invalid_input, fmt::format("{}: the motion has no numbers", file));
+  // The last number of four is an angle in the plane, and a length is not meant to be one.
+  const bool has_angle = dimension == 2 && columns == turning;
+  const std::string last = names.substr(names.find_last_of(",; \t") + 1);
+  const std::array lengths{"z", "uz", "u_z", "dz", "Z", "UZ", "U_Z", "DZ"};
+  if (has_angle && std::find(lengths.begin(), lengths.end(), last) != lengths.end())
+    refuse_line(
+        file, 1,
+        fmt::format("the fourth column is called \"{}\", and in two dimensions it is the rotation in rad; leave "
+                    "it out, or call it \"rotation\"",
+                    last));
+  if (has_angle) log::info(fmt::format("{}: time, two displacements and the rotation in rad in each line", file));
   const auto rows = static_cast<Index>(columns) - 1, count = static_cast<Index>(times.size());
   return std::make_unique<TablePath>(std::move(times), Eigen::Map<const Points>(values.data(), rows, count), dimension);
 }

@@ -46,7 +46,7 @@ void warn_of_sharp_obstacle(const ContactPair& pair, const DisplacementSpace& sp
 /// A body that is on the other side after a step has not touched.
 void warn_of_long_step(const Case& input, const ContactPair& pair, const Model& model) {
   const double radius = pair.obstacle->least_radius();
-  if (!std::isfinite(radius)) return;
+  if (!std::isfinite(radius) || radius <= 0.0) return;
   const int d = model.mesh.dimension;
   SpaceVector path = pair.obstacle->translation(input.time.step);
   if (const FreeMotion* const body = pair.obstacle->free_motion(); body != nullptr)
