@@ -36,8 +36,8 @@ class ContactGeometry {
   /// step is done, rows stay as they are and gaps are linear. False: there is nothing to hold, or it is held already.
   virtual bool hold() const { return false; }
   virtual void end_step() const {}
-  /// The step that was solved last was held.
-  [[nodiscard]] virtual bool was_held() const { return false; }
+  /// Some step of the run so far was held.
+  [[nodiscard]] virtual bool has_held() const { return false; }
   /// To the gaps of a step's end: what points were inside of the other body where it began. Steps that were held leave
   /// that, and to push it out would give energy; it may only not grow.
   virtual void allow_overlap(Vector& /*gap*/) const {}

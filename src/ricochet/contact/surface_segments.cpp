@@ -14,8 +14,6 @@ using Three = Eigen::Vector3d;
 
 /// Cosine of the angle to the direction below which a piece is seen edge-on.
 constexpr double edge_on = 0.1;
-/// Of the height of the cells behind two pieces.
-constexpr double deepest_overlap = 0.5;
 /// Of a piece's area: parts that are smaller are rounding.
 constexpr double sliver = 1e-13;
 /// Of a piece's area: parts that face several pieces at once.

@@ -24,6 +24,9 @@ struct FacetSegments {
   [[nodiscard]] bool is_whole() const { return covered > 1.0 - 1e-8; }
 };
 
+/// Of the height of what is behind two pieces: overlaps that are deeper are none.
+constexpr double deepest_overlap = 0.5;
+
 /// Cuts facets of one surface by those of another, seen along one direction.
 ///
 /// Both are cut in the plane perpendicular to the direction: intervals in two dimensions, polygons of triangles in

@@ -29,9 +29,10 @@ double depth_of_passage(const ObstacleShape& shape, const SpaceVector& before, d
 }  // namespace
 
 PassageWatch::PassageWatch(const SemidiscreteProblem& problem, std::vector<Index> nodes,
-                           const std::vector<const Obstacle*>& obstacles)
+                           const std::vector<const Obstacle*>& obstacles, Of of)
     : problem_(problem),
       nodes_(std::move(nodes)),
+      of_(of),
       obstacles_(obstacles),
       seen_(obstacles.size()),
       passages_(obstacles.size()) {}
@@ -77,7 +78,13 @@ void PassageWatch::look_at(std::size_t obstacle, const State& state) {
 
 SpaceVector PassageWatch::place_of(Index node, const State& state) const {
   const Index d = problem_.dimension;
-  return problem_.nodes.col(node) + state.displacement.segment(node * d, d);
+  const auto at = [&](Index one) -> SpaceVector {
+    return problem_.nodes.col(one) + state.displacement.segment(one * d, d);
+  };
+  if (of_ == Of::nodes) return at(node);
+  SpaceVector result = SpaceVector::Zero(d);
+  problem_.contact.visit_own_nodes(node, [&](Index one, double weight) { result += weight * at(one); });
+  return result;
 }
 
 bool PassageWatch::any_passes(const State& state, double time) const {

@@ -16,9 +16,10 @@ namespace ricochet {
 /// changes by no more than the node moves, most nodes are not looked at in most steps.
 class PassageWatch {
  public:
-  /// Keeps a reference to the problem. `nodes`: ascending.
+  enum class Of { nodes, contact_points };
+  /// Keeps a reference to the problem. `nodes`: ascending, or contact points.
   PassageWatch(const SemidiscreteProblem& problem, std::vector<Index> nodes,
-               const std::vector<const Obstacle*>& obstacles);
+               const std::vector<const Obstacle*>& obstacles, Of of = Of::nodes);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
@@ -40,6 +41,7 @@ class PassageWatch {
 
   const SemidiscreteProblem& problem_;
   std::vector<Index> nodes_;
+  Of of_;
   std::vector<const Obstacle*> obstacles_;
   std::vector<Seen> seen_;
   std::vector<DeepestPoint> passages_;

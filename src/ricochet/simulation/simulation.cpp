@@ -152,10 +152,14 @@ const StageSolution& Simulation::solve(std::size_t number) {
   return solution;
 }
 
-/// Nodes of contact groups against the obstacles that they touch, where these have another side.
+/// Nodes of contact groups, and contact points, against the obstacles that they touch, where these have another side.
 void Simulation::guard_passages() {
   const ContactBoundary& contact = problem_.contact;
-  std::map<const Obstacle*, std::vector<Index>> nodes;
+  std::map<const Obstacle*, std::vector<Index>> nodes, points;
+  for (Index point = 0; point < contact.size(); ++point) {
+    const Obstacle* const obstacle = problem_.obstacle_of_point(point);
+    if (obstacle != nullptr && !obstacle->shape().is_flat()) points[obstacle].push_back(point);
+  }
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
     const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[i])];
     if (obstacle != nullptr && !obstacle->shape().is_flat()) nodes[obstacle].push_back(contact.nodes[i]);
@@ -166,6 +170,8 @@ void Simulation::guard_passages() {
     if (found == nodes.end()) continue;
     guards_.emplace_back(problem_, std::move(found->second), std::vector{obstacle});
     nodes.erase(found);
+    guards_.emplace_back(problem_, std::move(points[obstacle]), std::vector{obstacle},
+                         PassageWatch::Of::contact_points);
   }
   for (PassageWatch& guard : guards_) guard.look(state_);
 }
@@ -273,7 +279,9 @@ void Simulation::end_part(const std::function<void(const State&)>& each_part) {
 
 /// Parts are of the lengths h 2^-k. After each the longest is tried that fits into what is left.
 void Simulation::take_step_in_parts(const std::function<void(const State&)>& each_part) {
-  const char* const reason = goes_through_ ? "a node went through an obstacle" : "Newton's method found no solution";
+  const char* const reason = goes_through_                          ? "a node went through an obstacle"
+                             : problem_.internal_force->is_linear() ? "the contact forces did not settle"
+                                                                    : "Newton's method found no solution";
   const State start = state_;
   const EnergyAccount account = *account_;
   std::vector<FreeMotion> bodies;
@@ -318,7 +326,8 @@ void Simulation::advance(const std::function<void(const State&)>& each_part) {
     try {
       take_step(!scheme_.changes_step());
     } catch (const Error& problem) {
-      const bool may_cut = (goes_through_ || !problem_.internal_force->is_linear()) && scheme_.changes_step();
+      const bool is_nonlinear = !problem_.internal_force->is_linear() || problem_.contact.follows_motion();
+      const bool may_cut = is_nonlinear && scheme_.changes_step();
       if (problem.kind() != ErrorKind::not_converged || !may_cut) throw;
       take_step_in_parts(each_part);
       in_parts = true;

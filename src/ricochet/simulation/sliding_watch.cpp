@@ -45,7 +45,8 @@ double SlidingWatch::slip_of(Index point, const State& state) const {
 /// A held step leaves a gap, or an overlap, at a point that carries a force.
 void SlidingWatch::look_at_sliding_pairs(const State& state) {
   constexpr double settled = 1e-9;
-  if (has_told_ || state.step == 0 || !problem_.contact.geometry->was_held()) return;
+  tell_of_held(state);
+  if (has_told_ || state.step == 0 || !problem_.contact.geometry->has_held()) return;
   problem_.gaps(state.displacement, state.time, gap_);
   for (const Index point : far_points_) {
     if (!(state.forces.normal_reaction[point] > 0.0) || std::abs(gap_[point]) <= settled * size_ ||
@@ -62,6 +63,19 @@ void SlidingWatch::look_at_sliding_pairs(const State& state) {
     has_told_ = true;
     return;
   }
+}
+
+/// Of the first one, whatever it leaves.
+void SlidingWatch::tell_of_held(const State& state) {
+  if (has_told_held_ || !problem_.contact.geometry->has_held()) return;
+  has_told_held_ = true;
+  log::warning(
+      fmt::format("at t = {:.6g} what faces what of bodies that slide far changed from one round of a step to the "
+                  "next, and was held: "
+                  "forces of such steps give no energy, but have a moment, which the angular momentum of free bodies "
+                  "shows; smaller "
+                  "facets at edges and corners, and a smaller time.step, avoid it",
+                  state.time));
 }
 
 void SlidingWatch::look(const State& state) {
@@ -129,12 +143,14 @@ void SlidingWatch::save(Snapshot& snapshot, const std::string& name) const {
         largest.time_beyond, static_cast<double>(largest.point), largest.is_beyond ? 1.0 : 0.0;
   }
   snapshot.save(name, numbers);
-  snapshot.save(name + ".has_told", std::int64_t{has_told_ ? 1 : 0});
+  snapshot.save(name + ".has_told", std::int64_t{has_told_ ? 1 : 0} + std::int64_t{has_told_held_ ? 2 : 0});
 }
 
 void SlidingWatch::load(const Snapshot& snapshot, const std::string& name) {
   const Vector& numbers = snapshot.reals(name, 7 * static_cast<Index>(largest_.size()));
-  has_told_ = snapshot.integer(name + ".has_told") != 0;
+  const std::int64_t told = snapshot.integer(name + ".has_told");
+  has_told_ = (told & 1) != 0;
+  has_told_held_ = (told & 2) != 0;
   for (std::size_t i = 0; i < largest_.size(); ++i) {
     const auto of = numbers.segment<7>(7 * static_cast<Index>(i));
     const bool fits = of.allFinite() && of[5] >= -1.0 && of[5] < static_cast<double>(problem_.contact.size()) &&

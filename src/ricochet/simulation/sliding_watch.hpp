@@ -38,6 +38,7 @@ class SlidingWatch {
   [[nodiscard]] std::vector<double> place_of(Index point) const;
   void tell(const Largest& largest) const;
   void look_at_sliding_pairs(const State& state);
+  void tell_of_held(const State& state);
 
   const SemidiscreteProblem& problem_;
   const std::vector<ContactPair>& pairs_;
@@ -47,7 +48,7 @@ class SlidingWatch {
   std::vector<Largest> largest_;
   std::vector<Index> far_points_;  ///< of pairs that slide far
   double size_ = 0.0;              ///< of the model
-  bool has_told_ = false;
+  bool has_told_ = false, has_told_held_ = false;
   Vector gap_;
 };
 

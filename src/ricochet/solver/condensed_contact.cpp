@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "ricochet/base/error.hpp"
@@ -134,6 +135,7 @@ void CondensedContact::add_candidates(const std::vector<Index>& points) {
 void CondensedContact::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".candidates", candidates_.points());
   snapshot.save(name + ".taken_up", taken_up_);
+  snapshot.save(name + ".scale", scale_);
   candidates_.save_history(snapshot, name);
   if (solver_ != nullptr) solver_->save(snapshot, name + ".solver");
 }
@@ -149,6 +151,10 @@ void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
   candidates_.load_history(snapshot, name);
   if (solver_ == nullptr) return;
   solver_->load(snapshot, name + ".solver");
+  const double saved = snapshot.real(name + ".scale");
+  if (!(std::isnormal(saved) && saved > 0.0)) Snapshot::refuse(name + ".scale", "is no positive number");
+  if (saved != scale_ && solver_->warm_start().size() > 0)
+    solver_->set_warm_start(Vector(scale_ / saved * solver_->warm_start()));
   contact_solution_.reaction = solver_->warm_start();
   if (contact_solution_.reaction.size() == 0) contact_solution_.reaction.setZero(contact_.row_offset.back());
 }

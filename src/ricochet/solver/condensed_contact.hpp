@@ -37,7 +37,7 @@ class CondensedContact {
   /// and the stage must be solved again. Completes the solution by m where the stage has a layer.
   bool take_up_penetrating(const Stage& stage, const Vector& increment, StageSolution& solution);
 
-  /// The factor has been made anew: so are columns and W.
+  /// The factor has been made anew: so are columns and W, by the rows of the next stage.
   void take_factor();
 
   /// The candidates with the order in which they came, which decides the bits of W, and the contact solver's warm
@@ -61,6 +61,7 @@ class CondensedContact {
   template <class Enter>
   void visit_columns(Index point, const Enter& enter) const;
   void take_rows(const Stage& stage);
+  void take_scale(double scale);
   void renew_columns(const std::vector<char>& is_new);
   void use_condensed(Matrix w);
   void take_up(std::vector<Index> points);
@@ -96,8 +97,9 @@ class CondensedContact {
   double scale_;
   bool friction_;
   bool all_points_;
-  bool must_ask_ = false;       ///< points have penetrated where none was thought to touch
-  bool asked_ = false;          ///< the candidates took part in the last stage
+  bool must_ask_ = false;  ///< points have penetrated where none was thought to touch
+  bool asked_ = false;     ///< the candidates took part in the last stage
+  bool has_new_factor_ = false;
   const ContactRows* rows_;     ///< those of the stage that is being solved
   std::vector<long> revision_;  ///< of each candidate's rows in W; −1: of rows that never change
   ContactCandidates candidates_;

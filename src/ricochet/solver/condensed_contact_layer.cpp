@@ -14,10 +14,13 @@ namespace ricochet {
 /// rows do more than turn.
 void CondensedContact::take_rows(const Stage& stage) {
   rows_ = stage.rows.get();
-  if (rows_->revision.empty() || candidates_.points().empty()) return;
-  std::vector<char> is_new(static_cast<std::size_t>(turned_.size()), 0);
-  bool any = false, have_columns = true;
-  for (std::size_t i = 0; i < revision_.size(); ++i) {
+  const bool all_new = has_new_factor_;
+  has_new_factor_ = false;
+  if (all_new) take_scale(factor_.scale());
+  if (candidates_.points().empty()) return;
+  std::vector<char> is_new(static_cast<std::size_t>(turned_.size()), all_new ? 1 : 0);
+  bool any = all_new, have_columns = !all_new;
+  for (std::size_t i = 0; i < revision_.size() && !rows_->revision.empty(); ++i) {
     const long revision = rows_->revision[static_cast<std::size_t>(candidates_.points()[i])];
     if (revision == revision_[i]) continue;
     revision_[i] = revision;
@@ -36,13 +39,18 @@ void CondensedContact::take_rows(const Stage& stage) {
 }
 
 void CondensedContact::take_factor() {
-  if (scale_ != factor_.scale()) {
-    scale_ = contact_.reaction_scale = factor_.scale();
-    const std::vector<Index> points = candidates_.points();
-    start_again_with(points);
-  } else if (!candidates_.points().empty()) {
-    renew_columns(std::vector<char>(static_cast<std::size_t>(turned_.size()), 1));
-  }
+  has_new_factor_ = true;
+}
+
+/// Powers of two: nothing is rounded.
+void CondensedContact::take_scale(double scale) {
+  const double ratio = scale / scale_;
+  scale_ = contact_.reaction_scale = scale;
+  if (ratio == 1.0 || solver_ == nullptr) return;
+  bound_ *= ratio;
+  contact_.friction_bound = bound_;
+  contact_solution_.reaction *= ratio;
+  if (solver_->warm_start().size() > 0) solver_->set_warm_start(Vector(ratio * solver_->warm_start()));
 }
 
 void CondensedContact::renew_columns(const std::vector<char>& is_new) {

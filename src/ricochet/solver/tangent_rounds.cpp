@@ -25,8 +25,10 @@ constexpr int patience_of_pairs = 25;
 /// that turn with large surfaces keep it.
 constexpr int patient_rounds = 40, patience_of_rounding = 5;
 constexpr double rounding_left = 100.0;
-/// And what may be left before a step fails: at bodies that turn freely gaps are rounded with all that moves them.
-constexpr double most_rounding_left = 1000.0;
+/// And what may be left before a step fails: gaps are rounded with all that moves the points, and in narrow corners
+/// more than once.
+constexpr double most_rounding_left = 1e4;
+constexpr int last_rounds = 60;
 
 }  // namespace
 
@@ -44,9 +46,9 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
       last_progress = round;
     }
     const bool is_last = round == most_rounds || round - last_progress > patience_of_rounds;
-    if (round >= patient_rounds && round - last_progress >= patience_of_rounding &&
-        error <= (is_last ? most_rounding_left : rounding_left) * stage.gap_offset_rounding.maxCoeff())
-      break;
+    const double of_rounding = error / stage.gap_offset_rounding.maxCoeff();
+    if (round >= patient_rounds && round - last_progress >= patience_of_rounding && of_rounding <= rounding_left) break;
+    if (round >= last_rounds && of_rounding <= most_rounding_left) break;
     // What faces what changes from round to round: it is held, and the next round solves what is then linear.
     const bool is_stuck = round - last_progress > patience_of_pairs || !std::isfinite(error) || round == most_rounds;
     if (is_stuck && problem_.contact.geometry->hold()) {

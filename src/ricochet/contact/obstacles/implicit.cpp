@@ -19,6 +19,8 @@ constexpr double digits_of_slopes = 4e-12;
 /// Of searches for the nearest point. Near the surface they take two to four rounds; those that end before they settle
 /// are far away, where nothing depends on digits.
 constexpr int most_rounds = 60;
+/// Halvings of a step that comes no nearer.
+constexpr int most_cuts = 30;
 constexpr double least_part = 1e-6;  ///< of a way along the surface
 
 /// Where an expression φ(x, y, z) is zero; φ > 0 where bodies may be. The nearest point y of a position x is found by
@@ -97,8 +99,10 @@ class Implicit final : public ObstacleShape {
       const double square = slope.gradient.squaredNorm();
       constexpr double least_slope = 1e-2;
       if (!(std::sqrt(square) * step_of_size * size_ > least_slope * slope.variation)) refuse(at);
-      const SpaceVector step = (slope.value / square) * slope.gradient;
+      SpaceVector step = (slope.value / square) * slope.gradient;
       if (step.norm() <= eight_roundings(at.lpNorm<1>() + size_)) return true;
+      // Where the slope is little, as in the middle of a thin body, the way is much too long.
+      for (int cut = 0; cut < most_cuts && !(std::abs(value_at(at - step)) < std::abs(slope.value)); ++cut) step *= 0.5;
       at -= step;
     }
     return false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ricochet {
 
@@ -80,9 +81,18 @@ void MovingSurfaces::see_itself() {
     depths.push_back(std::isfinite(through) ? squeezed * through : height);
   }
   for (const auto& [node, facets] : at_node) unseen_from_[node] = widen(facets);
+  facets_at_ = std::move(at_node);
   finder_.leave_out(std::move(unseen));
   own_.take_heights(depths);
   opposite_.take_heights(depths);
+}
+
+double MovingSurfaces::depth_at(Index node) const {
+  const auto around = facets_at_.find(node);
+  if (around == facets_at_.end()) return own_.height_at(node);
+  double least = std::numeric_limits<double>::infinity();
+  for (const int facet : around->second) least = std::min(least, own_.facets()[static_cast<std::size_t>(facet)].height);
+  return least;
 }
 
 const std::vector<int>& MovingSurfaces::unseen_from(Index node) const {

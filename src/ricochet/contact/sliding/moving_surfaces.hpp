@@ -28,6 +28,8 @@ class MovingSurfaces {
   /// Of both, ascending.
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
   [[nodiscard]] Eigen::Vector3d position(Index node) const;
+  /// The least height of what is behind the facets around a node of the own surface.
+  [[nodiscard]] double depth_at(Index node) const;
   /// Facets of the opposite surface that a node of the own one does not see, by place; none where there are two.
   [[nodiscard]] const std::vector<int>& unseen_from(Index node) const;
   /// Multiplies values, one per column, by areas of the reference configuration over those where the surface is.
@@ -41,6 +43,7 @@ class MovingSurfaces {
   FacetSurface own_, opposite_;
   SegmentFinder finder_;
   std::vector<Index> nodes_;
+  std::map<Index, std::vector<int>> facets_at_;    ///< a node; empty where there are two surfaces
   std::map<Index, std::vector<int>> unseen_from_;  ///< a node; empty where there are two surfaces
   Vector moved_by_;
 };

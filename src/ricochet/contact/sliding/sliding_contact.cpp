@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "ricochet/contact/sliding/chosen_points.hpp"
-#include "ricochet/contact/sliding/rigid_part.hpp"
+#include "ricochet/contact/sliding/sliding_couples.hpp"
 #include "ricochet/contact/sliding/sliding_rows.hpp"
 #include "ricochet/fem/displacement_space.hpp"
 
@@ -29,7 +29,8 @@ class SlidingContact final : public ContactGeometry {
       : data_(std::move(data)),
         extent_(extent(data_.node_positions)),
         seen_(data_.pairs.size()),
-        writer_(data_.node_positions) {
+        writer_(data_.node_positions),
+        couples_(data_.node_positions) {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
       const SlidingPair& pair = *data_.pairs[k];
       surface_nodes_.insert(surface_nodes_.end(), pair.nodes().begin(), pair.nodes().end());
@@ -67,6 +68,7 @@ class SlidingContact final : public ContactGeometry {
 
   void update(const Vector& displacement, double, const StepStart* start, ContactRows& rows) const override {
     if (is_held_ && start != nullptr) return;
+    take_choices(rows.places);
     at_update_ = displacement;
     is_step_ = start != nullptr;
     writer_.begin(displacement, start != nullptr ? &start->displacement : nullptr);
@@ -76,14 +78,20 @@ class SlidingContact final : public ContactGeometry {
     gap_at_update_ = rows.gap;
   }
 
-  void begin_step() const override { is_held_ = was_held_ = false; }
+  void begin_step() const override {
+    is_held_ = was_held_ = false;
+    is_step_ = false;
+  }
   bool hold() const override {
     if (is_held_ || !is_step_) return false;
-    is_held_ = was_held_ = true;
+    is_held_ = was_held_ = has_held_ = true;
     return true;
   }
-  void end_step() const override { is_held_ = false; }
-  [[nodiscard]] bool was_held() const override { return was_held_; }
+  void end_step() const override {
+    is_held_ = false;
+    if (is_step_ && !has_told_) warn_of_long_step();
+  }
+  [[nodiscard]] bool has_held() const override { return has_held_; }
 
   void allow_overlap(Vector& gap) const override {
     for (std::size_t k = 0; k < data_.pairs.size(); ++k) {
@@ -130,13 +138,7 @@ class SlidingContact final : public ContactGeometry {
       end.segment(surface_nodes_[i] * d, d) = row_values.segment(at, d);
       before.segment(surface_nodes_[i] * d, d) = row_values.segment(at + count, d);
     }
-    Index at = 1 + 2 * count;
-    for (Seen& seen : seen_) {
-      if (!seen.chosen) continue;
-      std::vector<Choice> choices(seen.chosen->choices().size());
-      for (Choice& choice : choices) choice = static_cast<Choice>(std::lround(std::clamp(row_values[at++], 0.0, 2.0)));
-      seen.chosen->restore(std::move(choices));
-    }
+    rows.places = row_values;
     const StepStart start{before, 0.0};
     update(end, 0.0, row_values[0] != 0.0 ? &start : nullptr, rows);
   }
@@ -177,6 +179,17 @@ class SlidingContact final : public ContactGeometry {
     SlidingVector result = SlidingVector::Zero();
     result.head(d) = data_.node_positions.col(node) + displacement.segment(node * d, d);
     return result;
+  }
+
+  /// The choice goes on from that of the rows, whoever has asked for others in between.
+  void take_choices(const Vector& places) const {
+    Index at = 1 + 2 * dimension() * static_cast<Index>(surface_nodes_.size());
+    for (Seen& seen : seen_) {
+      if (!seen.chosen || places.size() == 0) continue;
+      std::vector<Choice> choices(seen.chosen->choices().size());
+      for (Choice& choice : choices) choice = static_cast<Choice>(std::lround(std::clamp(places[at++], 0.0, 2.0)));
+      seen.chosen->restore(std::move(choices));
+    }
   }
 
   void remember(const Vector& displacement, const StepStart* start, ContactRows& rows) const {
@@ -247,6 +260,10 @@ class SlidingContact final : public ContactGeometry {
     if (far == seen.far) return;
     seen.far = far;
     seen.has_gaps = false;
+  }
+
+  void warn_of_long_step() const {
+    for (const auto& pair : data_.pairs) has_told_ = has_told_ || warn_of_blind_step(*pair, writer_.step());
   }
 
   /// The longest way that a node of the pair goes between two displacements.
@@ -332,13 +349,11 @@ class SlidingContact final : public ContactGeometry {
     return 64.0 * std::numeric_limits<double>::epsilon() * size;
   }
 
-  /// Forces that act at another place than the middle of the step are those of the rows there, with friction as strong
-  /// and along the same tangents, and a couple that takes back its moment across the gap.
   void add_couples_of(std::size_t k, const Vector& place, const ContactRows& rows, const Vector& normal,
                       const Vector& tangential, Vector& force) const {
     const SlidingPair& pair = *data_.pairs[k];
     Seen& seen = seen_[k];
-    const Index d = dimension(), tangents = d - 1;
+    const Index tangents = dimension() - 1;
     left_out_.assign(pair.points().size(), 0);
     bool any = false;
     for (std::size_t i = 0; i < left_out_.size(); ++i) {
@@ -350,28 +365,9 @@ class SlidingContact final : public ContactGeometry {
     }
     if (!any) return;
     pair.look(place, SlidingPair::Wanted::row, left_out_, seen.any_depth, seen.other);
-    const auto add = [&](Index node, const SlidingVector& value) { force.segment(node * d, d) += value.head(d); };
     for (std::size_t i = 0; i < left_out_.size(); ++i) {
-      const SlidingView& view = seen.other[i];
-      if (left_out_[i] != 0 || !view.faces) continue;
-      const Index point = number(k, i);
-      for (const auto& [node, value] : view.row) add(node, normal[point] * value);
-      rows.visit_normal(point, [&](Index dof, double value) { force[dof] -= value * normal[point]; });
-      if (tangential.size() == 0) continue;
-      SlidingVector friction = SlidingVector::Zero(), across = SlidingVector::Zero();
-      friction.head(d) = rows.force(point, normal, tangential) - normal[point] * rows.normal(point);
-      const auto act = [&](Index node, double weight) {
-        add(node, weight * friction);
-        across += weight * position(node, place);
-      };
-      for (const auto& [node, weight] : view.own) act(node, weight);
-      for (const auto& [node, weight] : view.opposite) act(node, -weight);
-      places_.clear();
-      for (const auto& [node, weight] : view.own) places_.push_back(position(node, place));
-      forces_of_couple(places_, d == 2, -across.cross(friction), motions_);
-      for (std::size_t j = 0; j < motions_.size(); ++j) add(view.own[j].first, motions_[j]);
-      for (Index row = point * tangents; row < (point + 1) * tangents; ++row)
-        rows.visit_tangential(row, [&](Index dof, double value) { force[dof] += value * tangential[row]; });
+      if (left_out_[i] == 0 && seen.other[i].faces)
+        couples_.add(number(k, i), seen.other[i], place, rows, normal, tangential, force);
     }
   }
 
@@ -382,10 +378,12 @@ class SlidingContact final : public ContactGeometry {
   mutable SlidingRows writer_;
   mutable Vector at_update_, gap_at_update_;         ///< of the last update
   mutable bool is_held_ = false, was_held_ = false;  ///< the second until the next step begins
+  mutable bool has_held_ = false;                    ///< in the run so far
   mutable bool is_step_ = false;                     ///< the last update was of a step
+  mutable bool has_told_ = false;                    ///< of steps that are too long to see what passes
   mutable std::vector<char> left_out_;
   mutable std::vector<const SlidingView*> views_;
-  mutable std::vector<SlidingVector> places_, motions_;
+  mutable SlidingCouples couples_;
 };
 
 }  // namespace

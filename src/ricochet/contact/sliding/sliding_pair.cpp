@@ -1,9 +1,12 @@
 #include "ricochet/contact/sliding/sliding_pair.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <map>
 
+#include "ricochet/base/log.hpp"
 #include "ricochet/contact/pair_integration.hpp"
 #include "ricochet/contact/sliding/moving_surfaces.hpp"
 
@@ -239,6 +242,17 @@ bool SlidingPair::is_self() const {
   return implementation_->data.is_self();
 }
 
+double SlidingPair::sight() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const FacetSurface::Facet& facet : implementation_->surfaces.own().facets())
+    least = std::min(least, deepest_overlap * facet.height);
+  return least;
+}
+
+int SlidingPair::dimension() const {
+  return implementation_->data.body.space->dimension;
+}
+
 int SlidingPair::degree() const {
   return implementation_->data.body.space->degree;
 }
@@ -280,10 +294,27 @@ void SlidingPair::look(const Vector& displacement, Wanted wanted, const std::vec
 double SlidingPair::node_gap(Index node, const SlidingVector& direction, const Vector& displacement) const {
   const Implementation& own = *implementation_;
   own.surfaces.move(displacement);
-  const double reach = 0.5 * own.surfaces.own().height_at(node);
+  const double reach = deepest_overlap * own.surfaces.depth_at(node);
   const SegmentFinder::Hit hit = own.surfaces.finder().find_point(
       own.surfaces.position(node), direction, reach, SegmentFinder::on_rim, own.surfaces.unseen_from(node));
   return hit.facet >= 0 ? hit.gap : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool warn_of_blind_step(const SlidingPair& pair, const Vector& step) {
+  if (!pair.is_self()) return false;
+  const Index d = pair.dimension();
+  Vector mean = Vector::Zero(d);
+  for (const Index node : pair.nodes()) mean += step.segment(node * d, d);
+  mean /= static_cast<double>(pair.nodes().size());
+  double longest = 0.0;
+  for (const Index node : pair.nodes()) longest = std::max(longest, (step.segment(node * d, d) - mean).norm());
+  if (2.0 * longest <= pair.sight()) return false;
+  log::warning(fmt::format(
+      "a surface that may touch itself moves in a step by up to {:.3g} to either side of its mean motion, and "
+      "sees no more than {:.3g} deep into itself: its parts may pass through each other unseen; take a "
+      "time.step that is {:.2g} times smaller",
+      longest, pair.sight(), 2.0 * longest / pair.sight()));
+  return true;
 }
 
 }  // namespace ricochet

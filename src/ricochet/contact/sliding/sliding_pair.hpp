@@ -71,8 +71,11 @@ class SlidingPair {
 
   [[nodiscard]] const std::vector<Point>& points() const;
   [[nodiscard]] bool is_self() const;
+  /// Where both surfaces are one: how deep the place that sees least sees into itself.
+  [[nodiscard]] double sight() const;
   /// Of the displacement.
   [[nodiscard]] int degree() const;
+  [[nodiscard]] int dimension() const;
   /// Of both surfaces, ascending.
   [[nodiscard]] const std::vector<Index>& nodes() const;
   /// The least height of the cells behind the facets.
@@ -95,5 +98,9 @@ class SlidingPair {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// Of a surface that touches itself: parts that come nearer by more in a step (displacements of all nodes) than it sees
+/// into itself may pass through each other unseen. Warns, and is true, where they may.
+bool warn_of_blind_step(const SlidingPair& pair, const Vector& step);
 
 }  // namespace ricochet
