@@ -18,7 +18,7 @@ using test_support::ThrownBody;
 ThrownBody flat_block() {
   return {"block", 3, 2,
           test_support::mesh_geometry("block2",
-                                      "Box(1)={0,0,0.03,1,1,0.5}; Physical Volume(\"body\")={1};"
+                                      "Box(1)={0,0,0.13,1,1,0.5}; Physical Volume(\"body\")={1};"
                                       "Physical Surface(\"contact\")={5};",
                                       1.0, 1)};
 }
@@ -51,7 +51,7 @@ TEST(ModelWarnings, OfInertiaThatIsHeapedUp) {
     return ThrownBody{name, 3, 1,
                       test_support::mesh_geometry(
                           name,
-                          "Box(1)={0,0,0.03,3,0.1,0.1}; Box(2)={-0.3,-0.1,-0.07,0.3,0.3,0.3};"
+                          "Box(1)={0,0,0.23,3,0.1,0.1}; Box(2)={-0.3,-0.1,0.13,0.3,0.3,0.3};"
                           "BooleanUnion(3)={Volume{1};Delete;}{Volume{2};Delete;}; Physical Volume(\"body\")={3};"
                           "Physical Surface(\"contact\")=Surface In BoundingBox" +
                               contact + ";",
