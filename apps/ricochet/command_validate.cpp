@@ -134,6 +134,7 @@ int validate(const ValidateArguments& arguments) {
   }
   const Model& model = session.model();
   check_expected_quantities(input, model);
+  refuse_bodies_inside_obstacles(input, model);
   session.scheme().analyse(model.problem);
   const double start_seconds = estimate(input, model.problem, session.scheme());
   // The start of a run, thrown away: some things do not go together, and some operators cannot be factorized.

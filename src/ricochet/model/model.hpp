@@ -40,6 +40,11 @@ struct Model {
   Model& operator=(const Model&) = delete;
 };
 
+/// Throws Error(invalid_input) where contact points begin deeper inside of an obstacle than facets may be off a curved
+/// surface: to push them out creates energy. Not where the start is a static one. For programs that run cases as they
+/// are; a model may begin anywhere.
+void refuse_bodies_inside_obstacles(const Case& input, const Model& model);
+
 /// The scheme that [time] asks for.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const TimeSection& time);
 /// What it says of adaptive steps; none where all are of one length.

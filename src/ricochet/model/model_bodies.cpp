@@ -205,6 +205,26 @@ void check_facing(const Case& input, std::size_t number, const Model& model) {
   }
 }
 
+void check_body_overlaps(const Case& input, const Model& model) {
+  if (model.initial.static_equilibrium) return;  // a press fit: the static start pushes the bodies apart
+  Vector gap;
+  model.problem.gaps(model.initial.displacement, 0.0, gap);
+  for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
+    const ContactPair& pair = model.contact_pairs[number];
+    if (!pair.between_bodies() || pair.tied) continue;
+    const Overlap overlap = find_overlap(model, number, gap);
+    if (overlap.inside == 0) continue;
+    refuse(
+        input, fmt::format("contact.{}.group", number),
+        fmt::format("{} overlap at the start: {} inside of the other body, the deepest by {:.3g} at {}, and would be "
+                    "pushed out at once, which creates energy; move the bodies apart, set initial_gap = \"closed\" "
+                    "where surfaces that touch overlap since their facets are flat, or set initial.displacement = "
+                    "\"static\" for a press fit",
+                    names_of_pair(pair), counted(overlap.inside, "contact point is", "contact points are"),
+                    overlap.deepest, place_text(overlap.place)));
+  }
+}
+
 namespace {
 
 void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::size_t number, const Vector& gap) {
@@ -222,27 +242,12 @@ void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::si
 
 }  // namespace
 
-void check_body_overlaps(const Case& input, const Model& model) {
-  if (model.initial.static_equilibrium) return;  // a press fit: the static start pushes the bodies apart
+void refuse_bodies_inside_obstacles(const Case& input, const Model& model) {
+  if (model.initial.static_equilibrium) return;
   Vector gap;
   model.problem.gaps(model.initial.displacement, 0.0, gap);
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
-    const ContactPair& pair = model.contact_pairs[number];
-    if (pair.tied) continue;
-    if (!pair.between_bodies()) {
-      refuse_overlap_with_obstacle(input, model, number, gap);
-      continue;
-    }
-    const Overlap overlap = find_overlap(model, number, gap);
-    if (overlap.inside == 0) continue;
-    refuse(
-        input, fmt::format("contact.{}.group", number),
-        fmt::format("{} overlap at the start: {} inside of the other body, the deepest by {:.3g} at {}, and would be "
-                    "pushed out at once, which creates energy; move the bodies apart, set initial_gap = \"closed\" "
-                    "where surfaces that touch overlap since their facets are flat, or set initial.displacement = "
-                    "\"static\" for a press fit",
-                    names_of_pair(pair), counted(overlap.inside, "contact point is", "contact points are"),
-                    overlap.deepest, place_text(overlap.place)));
+    if (!model.contact_pairs[number].between_bodies()) refuse_overlap_with_obstacle(input, model, number, gap);
   }
 }
 

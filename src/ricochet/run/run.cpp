@@ -245,6 +245,7 @@ void Run::begin_simulation() {
   if (snapshot_) {
     session_.resume(*snapshot_);
   } else {
+    refuse_bodies_inside_obstacles(session_.input(), session_.model());
     session_.start();
   }
 }
