@@ -215,13 +215,9 @@ FacetSegments SegmentFinder::find(int facet, const Three& direction, bool any_de
   return result;
 }
 
-SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& direction, double reach, double beyond,
-                                             const std::vector<int>& unseen) const {
-  const View view(static_cast<int>(own_.shift().size()), direction);
-  const PlanePoint at = view.seen(point);
-  const double height = direction.dot(point);
-  Hit best;
-  int best_piece = -1;
+/// Calls visit(number, piece, as it is seen) for opposite pieces near a place of the plane, but for those seen edge-on.
+template <class Visit>
+void SegmentFinder::visit_pieces_at(const View& view, const PlanePoint& at, double beyond, const Visit& visit) const {
   const auto may_face = [&](const BoxTree::Box& box) {
     const double rim = beyond * box.sizes().maxCoeff();
     return overlaps(box, view.first, at[0] - rim, at[0] + rim) &&
@@ -229,10 +225,20 @@ SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& di
   };
   opposite_.tree().visit(may_face, [&](int number) {
     const FacetSurface::Piece& piece = opposite_.pieces()[static_cast<std::size_t>(number)];
-    if (direction.dot(piece.normal) < edge_on || is_among(unseen, piece.facet)) return;
-    const SeenPiece flat = view.flatten(piece);
+    if (view.direction.dot(piece.normal) >= edge_on) visit(number, piece, view.flatten(piece));
+  });
+}
+
+SegmentFinder::Hit SegmentFinder::find_point(const Three& point, const Three& direction, double reach, double beyond,
+                                             const std::vector<int>& unseen) const {
+  const View view(static_cast<int>(own_.shift().size()), direction);
+  const PlanePoint at = view.seen(point);
+  const double height = direction.dot(point);
+  Hit best;
+  int best_piece = -1;
+  visit_pieces_at(view, at, beyond, [&](int number, const FacetSurface::Piece& piece, const SeenPiece& flat) {
     const double gap = height - flat.height_at(at);
-    if (gap < -reach || !flat.covers(at, view.plane, beyond)) return;
+    if (gap < -reach || is_among(unseen, piece.facet) || !flat.covers(at, view.plane, beyond)) return;
     const bool is_nearer = best_piece < 0 || std::abs(gap) < std::abs(best.gap) ||
                            (std::abs(gap) == std::abs(best.gap) && number < best_piece);
     if (!is_nearer) return;
@@ -255,16 +261,8 @@ double SegmentFinder::thickness_behind(int facet) const {
   const View view(static_cast<int>(own_.shift().size()), direction);
   const PlanePoint at = view.seen(own.centre);
   const double height = direction.dot(own.centre);
-  const auto may_face = [&](const BoxTree::Box& box) {
-    const double rim = on_rim * box.sizes().maxCoeff();
-    return overlaps(box, view.first, at[0] - rim, at[0] + rim) &&
-           (view.plane || overlaps(box, view.second, at[1] - rim, at[1] + rim));
-  };
   double nearest = std::numeric_limits<double>::infinity();
-  opposite_.tree().visit(may_face, [&](int number) {
-    const FacetSurface::Piece& piece = opposite_.pieces()[static_cast<std::size_t>(number)];
-    if (direction.dot(piece.normal) < edge_on) return;
-    const SeenPiece flat = view.flatten(piece);
+  visit_pieces_at(view, at, on_rim, [&](int, const FacetSurface::Piece&, const SeenPiece& flat) {
     const double behind = flat.height_at(at) - height;
     if (behind > 0.0 && flat.covers(at, view.plane, on_rim)) nearest = std::min(nearest, behind);
   });

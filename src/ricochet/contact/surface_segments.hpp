@@ -67,6 +67,8 @@ class SegmentFinder {
  private:
   struct View;
   struct Cut;
+  template <class Visit>
+  void visit_pieces_at(const View& view, const Eigen::Vector2d& at, double beyond, const Visit& visit) const;
   void cut_piece(const View& view, int piece, bool any_depth, std::vector<Cut>& cuts) const;
   void add_points(const View& view, const std::vector<Cut>& cuts, std::vector<SurfaceSegment>& segments) const;
   [[nodiscard]] bool find_coordinates(Index facet, const Points& axes, SurfaceSegment& segment) const;

@@ -152,13 +152,17 @@ const StageSolution& Simulation::solve(std::size_t number) {
   return solution;
 }
 
-/// Nodes of contact groups, and contact points, against the obstacles that they touch, where these have another side.
+/// Nodes of contact groups, and contact points that are elsewhere, against the obstacles that they touch, where these
+/// have another side.
 void Simulation::guard_passages() {
   const ContactBoundary& contact = problem_.contact;
   std::map<const Obstacle*, std::vector<Index>> nodes, points;
   for (Index point = 0; point < contact.size(); ++point) {
     const Obstacle* const obstacle = problem_.obstacle_of_point(point);
-    if (obstacle != nullptr && !obstacle->shape().is_flat()) points[obstacle].push_back(point);
+    if (obstacle == nullptr || obstacle->shape().is_flat()) continue;
+    int seen = 0;
+    contact.visit_own_nodes(point, [&seen](Index, double) { ++seen; });
+    if (seen > 1) points[obstacle].push_back(point);
   }
   for (std::size_t i = 0; i < contact.nodes.size(); ++i) {
     const Obstacle* const obstacle = problem_.obstacles[static_cast<std::size_t>(contact.node_pair[i])];
@@ -170,8 +174,8 @@ void Simulation::guard_passages() {
     if (found == nodes.end()) continue;
     guards_.emplace_back(problem_, std::move(found->second), std::vector{obstacle});
     nodes.erase(found);
-    guards_.emplace_back(problem_, std::move(points[obstacle]), std::vector{obstacle},
-                         PassageWatch::Of::contact_points);
+    if (std::vector<Index>& others = points[obstacle]; !others.empty())
+      guards_.emplace_back(problem_, std::move(others), std::vector{obstacle}, PassageWatch::Of::contact_points);
   }
   for (PassageWatch& guard : guards_) guard.look(state_);
 }

@@ -153,8 +153,7 @@ void CondensedContact::load(const Snapshot& snapshot, const std::string& name) {
   solver_->load(snapshot, name + ".solver");
   const double saved = snapshot.real(name + ".scale");
   if (!(std::isnormal(saved) && saved > 0.0)) Snapshot::refuse(name + ".scale", "is no positive number");
-  if (saved != scale_ && solver_->warm_start().size() > 0)
-    solver_->set_warm_start(Vector(scale_ / saved * solver_->warm_start()));
+  scale_warm_start(scale_ / saved);
   contact_solution_.reaction = solver_->warm_start();
   if (contact_solution_.reaction.size() == 0) contact_solution_.reaction.setZero(contact_.row_offset.back());
 }

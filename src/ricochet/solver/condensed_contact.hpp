@@ -62,6 +62,7 @@ class CondensedContact {
   void visit_columns(Index point, const Enter& enter) const;
   void take_rows(const Stage& stage);
   void take_scale(double scale);
+  void scale_warm_start(double ratio);
   void renew_columns(const std::vector<char>& is_new);
   void use_condensed(Matrix w);
   void take_up(std::vector<Index> points);

@@ -17,7 +17,7 @@ void CondensedContact::take_rows(const Stage& stage) {
   const bool all_new = has_new_factor_;
   has_new_factor_ = false;
   if (all_new) take_scale(factor_.scale());
-  if (candidates_.points().empty()) return;
+  if (candidates_.points().empty() || (rows_->revision.empty() && !all_new)) return;
   std::vector<char> is_new(static_cast<std::size_t>(turned_.size()), all_new ? 1 : 0);
   bool any = all_new, have_columns = !all_new;
   for (std::size_t i = 0; i < revision_.size() && !rows_->revision.empty(); ++i) {
@@ -50,7 +50,11 @@ void CondensedContact::take_scale(double scale) {
   bound_ *= ratio;
   contact_.friction_bound = bound_;
   contact_solution_.reaction *= ratio;
-  if (solver_->warm_start().size() > 0) solver_->set_warm_start(Vector(ratio * solver_->warm_start()));
+  scale_warm_start(ratio);
+}
+
+void CondensedContact::scale_warm_start(double ratio) {
+  if (ratio != 1.0 && solver_->warm_start().size() > 0) solver_->set_warm_start(Vector(ratio * solver_->warm_start()));
 }
 
 void CondensedContact::renew_columns(const std::vector<char>& is_new) {

@@ -40,6 +40,18 @@ void TurnedRows::take(const ContactRows& rows, Index point, std::size_t i) {
   for (Index j = 1; j < directions_[i].rows(); ++j) read(rows.tangential_trace, point * (d - 1) + j - 1, j);
 }
 
+/// D v of one point, from the rows of E into those of H.
+template <class From, class To>
+void TurnedRows::turn_point(std::size_t i, const From& v, To& result) const {
+  const auto from = v.segment(first_[i], first_[i + 1] - first_[i]);
+  auto to = result.segment(row_[i], row_[i + 1] - row_[i]);
+  if (turns(i)) {
+    to = directions_[i].lazyProduct(from);
+  } else {
+    to = from;
+  }
+}
+
 Matrix TurnedRows::product(const Matrix& k) const {
   Matrix half(k.rows(), row_.back());  // K Dᵀ, above the diagonal
   for (std::size_t i = 0; i < directions_.size(); ++i) {
@@ -54,15 +66,8 @@ Matrix TurnedRows::product(const Matrix& k) const {
   Matrix result(row_.back(), row_.back());
   for (std::size_t j = 0; j < directions_.size(); ++j) {
     for (Index column = row_[j]; column < row_[j + 1]; ++column) {
-      for (std::size_t i = 0; i <= j; ++i) {
-        const auto from = half.col(column).segment(first_[i], first_[i + 1] - first_[i]);
-        auto to = result.col(column).segment(row_[i], row_[i + 1] - row_[i]);
-        if (turns(i)) {
-          to = directions_[i].lazyProduct(from);
-        } else {
-          to = from;
-        }
-      }
+      auto to = result.col(column);
+      for (std::size_t i = 0; i <= j; ++i) turn_point(i, half.col(column), to);
     }
   }
   result.triangularView<Eigen::StrictlyLower>() = result.transpose();
@@ -71,15 +76,7 @@ Matrix TurnedRows::product(const Matrix& k) const {
 
 void TurnedRows::turn(const Vector& v, Vector& result) const {
   result.resize(row_.back());
-  for (std::size_t i = 0; i < directions_.size(); ++i) {
-    const auto from = v.segment(first_[i], first_[i + 1] - first_[i]);
-    auto to = result.segment(row_[i], row_[i + 1] - row_[i]);
-    if (turns(i)) {
-      to = directions_[i].lazyProduct(from);
-    } else {
-      to = from;
-    }
-  }
+  for (std::size_t i = 0; i < directions_.size(); ++i) turn_point(i, v, result);
 }
 
 void TurnedRows::turn_back(const Vector& r, Vector& result) const {

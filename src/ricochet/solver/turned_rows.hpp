@@ -32,6 +32,9 @@ class TurnedRows {
   void turn_back(const Vector& r, Vector& result) const;
 
  private:
+  template <class From, class To>
+  void turn_point(std::size_t i, const From& v, To& result) const;
+
   using Directions = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
 
   std::vector<Directions> directions_;  ///< rows × d; empty: 1

@@ -199,8 +199,7 @@ std::vector<Key> surface_keys() {
        .doc =
            "Gaps and normals are means over the facets that are so near, which rounds edges; 0: edges are sharp, and "
            "normals jump there. Absent: a quarter of the largest distance between nodes of the contacts with it, and "
-           "of a "
-           "surface that bends by no more than 30 degrees at any edge no more than the width of its facets."},
+           "of a surface that bends by no more than 30 degrees at any edge no more than the width of its facets."},
       obstacle_side_key("Where bodies are: \"outside\" of what the surface encloses, or \"inside\"; then it must be "
                         "closed.")};
 }

@@ -174,12 +174,6 @@ class SlidingContact final : public ContactGeometry {
   [[nodiscard]] SlidingVector normal_at(const SlidingNode& node, const Vector& displacement) const {
     return node.normal.at(data_.node_positions, displacement).normalized();
   }
-  [[nodiscard]] SlidingVector position(Index node, const Vector& displacement) const {
-    const Index d = dimension();
-    SlidingVector result = SlidingVector::Zero();
-    result.head(d) = data_.node_positions.col(node) + displacement.segment(node * d, d);
-    return result;
-  }
 
   /// The choice goes on from that of the rows, whoever has asked for others in between.
   void take_choices(const Vector& places) const {
@@ -345,7 +339,7 @@ class SlidingContact final : public ContactGeometry {
   [[nodiscard]] double rounding(const SlidingPair::Point& point, const Vector& displacement) const {
     double size = extent_;
     for (const auto& [node, weight] : point.multiplier.trace)
-      size = std::max(size, position(node, displacement).lpNorm<1>());
+      size = std::max(size, place_of(data_.node_positions, node, displacement).lpNorm<1>());
     return 64.0 * std::numeric_limits<double>::epsilon() * size;
   }
 

@@ -4,13 +4,6 @@
 
 namespace ricochet {
 
-SlidingVector SlidingCouples::position(Index node, const Vector& displacement) const {
-  const Index d = nodes_.rows();
-  SlidingVector result = SlidingVector::Zero();
-  result.head(d) = nodes_.col(node) + displacement.segment(node * d, d);
-  return result;
-}
-
 void SlidingCouples::add(Index point, const SlidingView& view, const Vector& place, const ContactRows& rows,
                          const Vector& normal, const Vector& tangential, Vector& force) {
   const Index d = nodes_.rows(), tangents = d - 1;
@@ -22,12 +15,12 @@ void SlidingCouples::add(Index point, const SlidingView& view, const Vector& pla
   friction.head(d) = rows.force(point, normal, tangential) - normal[point] * rows.normal(point);
   const auto act = [&](Index node, double weight) {
     add(node, weight * friction);
-    across += weight * position(node, place);
+    across += weight * place_of(nodes_, node, place);
   };
   for (const auto& [node, weight] : view.own) act(node, weight);
   for (const auto& [node, weight] : view.opposite) act(node, -weight);
   places_.clear();
-  for (const auto& [node, weight] : view.own) places_.push_back(position(node, place));
+  for (const auto& [node, weight] : view.own) places_.push_back(place_of(nodes_, node, place));
   forces_of_couple(places_, d == 2, -across.cross(friction), motions_);
   for (std::size_t j = 0; j < motions_.size(); ++j) add(view.own[j].first, motions_[j]);
   for (Index row = point * tangents; row < (point + 1) * tangents; ++row)

@@ -20,8 +20,6 @@ class SlidingCouples {
            const Vector& tangential, Vector& force);
 
  private:
-  [[nodiscard]] SlidingVector position(Index node, const Vector& displacement) const;
-
   const Points& nodes_;
   std::vector<SlidingVector> places_, motions_;
 };

@@ -61,8 +61,10 @@ struct SlidingPair::Implementation {
   ContactPatch patch;
   std::unique_ptr<MultiplierSpace> space;
   bool plane;
+  bool is_self;
   mutable MovingSurfaces surfaces;
   double least_height = std::numeric_limits<double>::infinity();
+  double sight = least_height;  ///< see SlidingPair::sight()
   /// Per own facet, in the order of the space's anchors there: which point, or −1.
   std::vector<std::vector<int>> points_of;
   std::vector<TurningNormal> normals;  ///< per own facet: into its body
@@ -80,11 +82,14 @@ struct SlidingPair::Implementation {
         patch{&data.body, {{0, data.facets}}},
         space(make_multiplier_space(data.multipliers, patch)),
         plane(data.body.space->dimension == 2),
+        is_self(data.is_self()),
         surfaces(data.body, data.facets, data.opposite_facets) {
     for (const FacetSurface* const surface : {&surfaces.own(), &surfaces.opposite()}) {
       for (const FacetSurface::Facet& facet : surface->facets()) least_height = std::min(least_height, facet.height);
     }
-    if (data.is_self()) surfaces.see_itself();
+    if (is_self) surfaces.see_itself();
+    for (const FacetSurface::Facet& facet : surfaces.own().facets())
+      sight = std::min(sight, deepest_overlap * facet.height);
     find_points_of_facets();
     for (const FacetSurface::Facet& facet : surfaces.own().facets()) {
       const Vector direction = -facet.area_vector.normalized().head(data.body.space->dimension);
@@ -131,7 +136,7 @@ void SlidingPair::Implementation::look_from(int facet, Wanted wanted, const std:
       if (here[k] < 0) continue;
       const auto point = static_cast<std::size_t>(here[k]);
       const bool is_out = !left_out.empty() && left_out[point] != 0;
-      const bool sees_deep = !data.is_self() && !any_depth.empty() && any_depth[point] != 0;
+      const bool sees_deep = !is_self && !any_depth.empty() && any_depth[point] != 0;
       takes_part[k] = !is_out && sees_deep == deep ? 1 : 0;
     }
     if (std::find(takes_part.begin(), takes_part.end(), 1) == takes_part.end()) continue;
@@ -239,14 +244,11 @@ const std::vector<SlidingPair::Point>& SlidingPair::points() const {
 }
 
 bool SlidingPair::is_self() const {
-  return implementation_->data.is_self();
+  return implementation_->is_self;
 }
 
 double SlidingPair::sight() const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const FacetSurface::Facet& facet : implementation_->surfaces.own().facets())
-    least = std::min(least, deepest_overlap * facet.height);
-  return least;
+  return implementation_->sight;
 }
 
 int SlidingPair::dimension() const {
@@ -303,7 +305,7 @@ double SlidingPair::node_gap(Index node, const SlidingVector& direction, const V
 bool warn_of_blind_step(const SlidingPair& pair, const Vector& step) {
   if (!pair.is_self()) return false;
   const Index d = pair.dimension();
-  Vector mean = Vector::Zero(d);
+  SpaceVector mean = SpaceVector::Zero(d);
   for (const Index node : pair.nodes()) mean += step.segment(node * d, d);
   mean /= static_cast<double>(pair.nodes().size());
   double longest = 0.0;

@@ -32,6 +32,14 @@ namespace ricochet {
 /// Three coordinates, the third 0 in two dimensions.
 using SlidingVector = Eigen::Vector3d;
 
+/// Where a node is; `nodes`: reference positions, d × count.
+[[nodiscard]] inline SlidingVector place_of(const Points& nodes, Index node, const Vector& displacement) {
+  const Index d = nodes.rows();
+  SlidingVector result = SlidingVector::Zero();
+  result.head(d) = nodes.col(node) + displacement.segment(node * d, d);
+  return result;
+}
+
 /// What a contact point sees at one displacement.
 struct SlidingView {
   using Weights = std::vector<std::pair<Index, double>>;
@@ -85,9 +93,8 @@ class SlidingPair {
 
   enum class Wanted { gap, row };
   /// What the points see, of those that are not left out (empty: all): `views` has one for each. Overlaps deeper than
-  /// half a cell are none, but for points of `any_depth` (empty: none). Where
-  /// both surfaces are one, overlaps deeper than a quarter of the body's thickness at the start are none, for every
-  /// point.
+  /// half a cell are none, but for points of `any_depth` (empty: none). Where both surfaces are one, overlaps deeper
+  /// than a quarter of the body's thickness at the start are none, for every point.
   void look(const Vector& displacement, Wanted wanted, const std::vector<char>& left_out,
             const std::vector<char>& any_depth, std::vector<SlidingView>& views) const;
 

@@ -33,10 +33,6 @@ RigidSurface::RigidSurface(const SurfaceFacets& facets, const std::string& name)
   find_normals(name);
   find_edges(name);
   if (!is_closed() && join_borders()) {
-    flat_count_ = border_count_ = 0;
-    bent_width_ = bent_count_ = 0.0;
-    least_cosine_ = 1.0;
-    edges_.clear();
     find_normals(name);
     find_edges(name);
   }
@@ -99,6 +95,7 @@ bool RigidSurface::join_borders() {
 
 void RigidSurface::find_normals(const std::string& name) {
   normals_.resize(facets_.size());
+  flat_count_ = 0;
   for (std::size_t i = 0; i < facets_.size(); ++i) {
     const Three a = corner(i, 1) - corner(i, 0);
     const Three normal = in_space_ ? Three(a.cross(corner(i, 2) - corner(i, 0))) : Three(-a[1], a[0], 0.0);
@@ -179,7 +176,11 @@ std::vector<RigidSurface::Side> RigidSurface::sorted_sides() const {
 
 void RigidSurface::find_edges(const std::string& name) {
   const std::vector<Side> sides = sorted_sides();
+  edges_.clear();
   edge_of_.assign(facets_.size(), {-1, -1, -1});
+  border_count_ = 0;
+  bent_width_ = bent_count_ = 0.0;
+  least_cosine_ = 1.0;
   corner_normals_.assign(corners_.size(), {});
   for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
     while (last < sides.size() && sides[last].low == sides[first].low && sides[last].high == sides[first].high) ++last;
@@ -193,8 +194,9 @@ void RigidSurface::find_edges(const std::string& name) {
     }
     if (edge.normal.norm() > 0.0) edge.normal.normalize();
     edge.is_border = here.size() == 1;
-    if (!edge.is_border) look_at_bend(here);
-    if (edge.is_border) {
+    if (!edge.is_border) {
+      look_at_bend(here);
+    } else {
       if (border_count_++ == 0) border_place_ = middle_of(here[0]);
       corner_normals_[static_cast<std::size_t>(here[0].low)].is_border = true;
       corner_normals_[static_cast<std::size_t>(here[0].high)].is_border = true;
