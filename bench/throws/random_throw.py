@@ -13,6 +13,7 @@ BODIES = {
 }
 KINDS = {2: ["plane", "sphere", "bowl", "implicit", "surface", "free sphere"],
          3: ["plane", "sphere", "bowl", "cylinder", "bore", "torus", "implicit", "surface", "ground", "free sphere", "free surface"]}
+DEEPEST_FALL = 2  # body lengths
 
 
 def numbers(values):
@@ -47,16 +48,23 @@ class Throw:
             f'Mesh.MeshSizeMin = {self.size};\nPhysical {what}("body") = {{1}};\nPhysical {sides}("skin") = {boundary};\n')
 
     def material_and_time(self):
-        """Impacts of up to a tenth of the wave speed, and steps of up to ten crossings of a cell, or a tenth of the body."""
+        """Impacts of up to a tenth of the wave speed, after a fall, too; steps of up to ten crossings of a cell, or a tenth of the body."""
         random, speed = self.random, self.random.uniform(0.3, 3)
-        young = max(10**random.uniform(1.5, 3.5), 100 * speed**2)
-        step = min(random.choice([0.5, 1, 3, 10]) * self.size / math.sqrt(young), 0.1 / speed)
+        young = 10**random.uniform(1.5, 3.5)
+        crossings = random.choice([0.5, 1, 3, 10])
         velocity = [random.uniform(-0.5, 0.5) * speed for _ in range(self.dimension - 1)] + [-speed]
-        gravity = [0.0] * (self.dimension - 1) + [-random.choice([0, 5.0])]
+        weight = random.choice([0, 5.0])
+        fastest = math.sqrt(speed**2 + 2 * weight * DEEPEST_FALL)
+        young = max(young, 100 * fastest**2)
+        step = min(crossings * self.size / math.sqrt(young), 0.1 / fastest)
+        end = max(40 * step, min(1.2, 300 * step))
+        if weight > 0:
+            end = min(end, (fastest - speed) / weight)
+        gravity = [0.0] * (self.dimension - 1) + [-weight]
         return (f'[mesh]\nfile = "{self.file(".geo").name}"\n[[material]]\ngroup = "body"\nlaw = "{self.law}"\ndensity = 1.0\n'
                 f'young = {young:.9g}\npoisson = {random.choice([0.0, 0.3, 0.4])}\n[load]\ngravity = {numbers(gravity)}\n'
                 f'[initial]\nvelocity = {numbers(velocity)}\n[mass]\ntype = "equivalent"\n'
-                f'[time]\nstep = {step:.9g}\nend = {max(40 * step, min(1.2, 300 * step)):.9g}\n')
+                f'[time]\nstep = {step:.9g}\nend = {end:.9g}\n')
 
     def formulas(self, most):
         random = self.random

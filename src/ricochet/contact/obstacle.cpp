@@ -63,11 +63,12 @@ SpaceVector normal_of_step(const PlacedObstacle& start, const SpaceVector& from,
   if (!end.pose_.turns() && !start.pose_.turns()) return shape.normal_of_step(seen_before, seen_after);
   const Pose::Rotation first = rotation_of(start.pose_, to.size()), last = rotation_of(end.pose_, to.size());
   const SpaceVector at_start = first * shape.normal(seen_before), at_end = last * shape.normal(seen_after);
-  const SpaceVector own = (first + last) * shape.normal(0.5 * (seen_before + seen_after));
+  const SpaceVector middle = shape.gradient(0.5 * (seen_before + seen_after));
+  const SpaceVector own = middle.norm() * ((first + last) * middle).normalized();
   const SpaceVector way = to - from - motion_at(start.pose_, end.pose_, 0.5 * (from + to));
   const double change = shape.gap(seen_after) - shape.gap(seen_before);
   const double rounding = start.gap_rounding(from) + end.gap_rounding(to);
-  return corrected_normal(own.normalized(), way, change, rounding, at_start, at_end);
+  return corrected_normal(own, way, change, rounding, at_start, at_end);
 }
 
 Obstacle::Obstacle(std::unique_ptr<ObstacleShape> shape, std::unique_ptr<const ObstaclePath> path, double spin,

@@ -62,20 +62,21 @@ SpaceVector ObstacleShape::normal_at_middle(const SpaceVector& from, const Space
   return normal_far_round(to - from, gap(to) - gap(from), start, end);
 }
 
-SpaceVector corrected_normal(SpaceVector normal, const SpaceVector& way, double change, double rounding,
+SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& way, double change, double rounding,
                              const SpaceVector& at_start, const SpaceVector& at_end) {
-  const double square = way.squaredNorm(), missing = change - normal.dot(way);
-  if (square > 0.0 && std::abs(missing) > rounding) {
-    normal += missing / square * way;
-    const double length = normal.norm();
-    if (!(length > 0.0)) return normal_far_round(way, change, at_start, at_end);
-    normal /= length;
-  }
+  const double square = way.squaredNorm(), missing = change - gradient.dot(way);
+  // Beside rounding not at once: iterations in which a point that hardly moves is now on this side, now on that would
+  // find one normal, then another.
+  const double part = std::clamp(std::abs(missing) / rounding - 1.0, 0.0, 1.0);
+  if (square > 0.0 && part > 0.0) gradient += part * missing / square * way;
+  const double length = gradient.norm();
+  if (!(length > 0.0)) return normal_far_round(way, change, at_start, at_end);
+  const SpaceVector normal = gradient / length;
   return agree(normal, at_end) && agree(normal, at_start) ? normal : normal_far_round(way, change, at_start, at_end);
 }
 
 SpaceVector ObstacleShape::normal_of_step(const SpaceVector& from, const SpaceVector& to) const {
-  return corrected_normal(normal(0.5 * (from + to)), to - from, gap(to) - gap(from),
+  return corrected_normal(gradient(0.5 * (from + to)), to - from, gap(to) - gap(from),
                           gap_rounding(from) + gap_rounding(to), normal(from), normal(to));
 }
 

@@ -40,14 +40,17 @@ class ObstacleShape {
   [[nodiscard]] virtual double gap(const SpaceVector& position) const = 0;
   /// Unit normal towards bodies: the direction of the derivative of the gap.
   [[nodiscard]] virtual SpaceVector normal(const SpaceVector& position) const = 0;
+  /// ∇gap. Override it where it is no unit vector, as where edges are rounded by means.
+  [[nodiscard]] virtual SpaceVector gradient(const SpaceVector& position) const { return normal(position); }
   /// A unit normal of the step from one position to another: with some a > 0
   ///   n·(to − from) = a (gap(to) − gap(from)),
-  /// so that a force along it works on a body that slides no more than a plane's does. With n the normal at the middle,
-  /// the direction of
-  ///   n + (gap(to) − gap(from) − n·(to − from)) (to − from)/|to − from|²
-  /// (the discrete gradient of O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467), and n itself where the bracket is
-  /// rounding. A step that goes so far round that it leans by more than 60° from the normals at the ends gets the last,
-  /// or where that would give energy the direction across the step that is nearest to it.
+  /// so that a force along it works on a body that slides no more than a plane's does. With d = ∇gap at the middle, the
+  /// direction of
+  ///   d + (gap(to) − gap(from) − d·(to − from)) (to − from)/|to − from|²
+  /// (the discrete gradient of O. Gonzalez, J. Nonlinear Sci. 6 (1996) 449–467), and of d itself where the bracket is
+  /// rounding, with a part of the correction up to twice that. A step that goes so far round that it leans by more than
+  /// 60° from the normals at the ends gets the last, or where that would give energy the direction across the step that
+  /// is nearest to it.
   /// Override it where the normal at the middle has this property (`normal_at_middle`).
   [[nodiscard]] virtual SpaceVector normal_of_step(const SpaceVector& from, const SpaceVector& to) const;
   /// Size of the rounding error of `gap` at this position: gaps no larger than this are zero.
@@ -112,10 +115,11 @@ void check_direction(const ParameterCheck& place, const Parameters& values, cons
 /// Throws Error(invalid_input) where a vector has two components: "a cylinder is in space; in two dimensions …".
 void require_space(const Parameters& parameters, const std::string& key, const std::string& what,
                    const std::string& instead);
-/// A unit normal corrected along a way so that it knows what the gap changes by on it: that of
-///   n + (change − n·way) way/|way|²,
-/// n where the bracket is rounding; of a step that goes far round see ObstacleShape::normal_of_step.
-[[nodiscard]] SpaceVector corrected_normal(SpaceVector normal, const SpaceVector& way, double change, double rounding,
+/// The direction of a gradient of the gap, corrected along a way so that it knows what the gap changes by on it:
+///   gradient + (change − gradient·way) way/|way|²,
+/// that of the gradient where the bracket is rounding, with a part of the correction up to twice that; of a step that
+/// goes far round see ObstacleShape::normal_of_step.
+[[nodiscard]] SpaceVector corrected_normal(SpaceVector gradient, const SpaceVector& way, double change, double rounding,
                                            const SpaceVector& at_start, const SpaceVector& at_end);
 /// Eight roundings of a number of this size.
 [[nodiscard]] inline double eight_roundings(double size) {

@@ -49,7 +49,11 @@ class Surface final : public ObstacleShape {
 
   [[nodiscard]] double gap(const SpaceVector& position) const override { return look(in_three(position)).gap; }
   [[nodiscard]] SpaceVector normal(const SpaceVector& position) const override {
-    return look(in_three(position)).normal.head(position.size());
+    const Three unit = look(in_three(position)).gradient.normalized();
+    return unit.head(position.size());
+  }
+  [[nodiscard]] SpaceVector gradient(const SpaceVector& position) const override {
+    return look(in_three(position)).gradient.head(position.size());
   }
   [[nodiscard]] double gap_rounding(const SpaceVector& position) const override {
     const BoxTree::Box box = surface_.box();
@@ -95,7 +99,7 @@ class Surface final : public ObstacleShape {
  private:
   struct Look {
     double gap;
-    Three normal;
+    Three gradient;
   };
   [[nodiscard]] Look look(const Three& at) const {
     const RigidSurface::Foot foot = surface_.nearest(at);
@@ -109,11 +113,10 @@ class Surface final : public ObstacleShape {
     const double part = t * t * (3.0 - 2.0 * t), slope = 12.0 * t * (1.0 - t) / radius_;
     const double height = side_ * mean.value;
     const double away = exact.gap < 0.0 ? -1.0 : 1.0;
-    const Three turned =
-        (1.0 - part) * side_ * mean.gradient + part * exact.normal + slope * away * (exact.gap - height) * exact.normal;
-    const double length = turned.norm();
-    if (!(length > least_length)) return exact;
-    return {(1.0 - part) * height + part * exact.gap, turned / length};
+    const Three turned = (1.0 - part) * side_ * mean.gradient + part * exact.gradient +
+                         slope * away * (exact.gap - height) * exact.gradient;
+    if (!(turned.norm() > least_length)) return exact;
+    return {(1.0 - part) * height + part * exact.gap, turned};
   }
   /// The distance and its derivative: towards the point, or that of the edge where the two are too near to tell. Beyond
   /// a border nothing is behind the surface.

@@ -112,7 +112,7 @@ class FiniteLayer {
   NewtonProgress progress_;
   EnergySecant sigma_;
   std::unique_ptr<VelocityCorrection> velocity_correction_;
-  bool corrects_velocity_ = false;
+  bool corrects_velocity_ = false, has_told_of_snap_ = false;
   EndContact contact_;
   LaggedRows lagged_;    ///< where rows follow the motion
   Reactions reactions_;  ///< of the round before in this step, if there was one

@@ -14,7 +14,10 @@ namespace ricochet {
 /// that makes or loses energy is none of this scheme: Error(not_converged).
 bool FiniteLayer::is_balanced(double step, const State& state, const Round& round, bool near) {
   if (!near) return false;  // what is missing is not known
-  constexpr double most = 1e-8, most_corrected = 1e-6, most_created = 1e-11;
+  constexpr double most = 1e-8, most_corrected = 1e-6, most_snapped = 1e-4, most_created = 1e-11;
+  // Shorter parts of a step would lack as much: contact nodes, which have no inertia, snap to another equilibrium, and
+  // what that sets free is the motion's.
+  const bool is_short = step <= whole_step_ / 64.0;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
   const bool is_exact = std::abs(lacking_) <= tolerance() * size;
   const bool is_vain = std::abs(lacking_) > 0.5 * lacked_;
@@ -32,12 +35,19 @@ bool FiniteLayer::is_balanced(double step, const State& state, const Round& roun
   if (!converged_) return false;
   if (!is_exact && !is_last) return false;
   const bool is_done = is_exact || lacked_ <= near_rounding * size ||
-                       (lacked_ <= most_corrected * size && correct_velocity(step, state));
+                       (lacked_ <= (is_short ? most_snapped : most_corrected) * size && correct_velocity(step, state));
   if (end_weight_ * dissipation_ < -most_created * size) {
     throw Error(ErrorKind::not_converged,
                 fmt::format("contact nodes have more than one place of equilibrium at the start of the step, and would "
                             "go to one of more energy ({:.2g} of it)",
                             -end_weight_ * dissipation_ / size));
+  }
+  if (is_done && corrects_velocity_ && lacked_ > most_corrected * size && !has_told_of_snap_) {
+    has_told_of_snap_ = true;
+    log::info(
+        fmt::format("step {}: contact nodes snap to another place of equilibrium, and what that sets free, {:.2g} of "
+                    "the energy, becomes motion (said once)",
+                    state.step + 1, lacked_ / size));
   }
   if (is_done || lacked_ <= part_ * most * size) return true;
   throw Error(
