@@ -220,7 +220,6 @@ TEST_F(RigidSurfaces, HaveNormalsAlongTheDerivativeOfTheGap) {
       slope[i] = (surface.gap(ahead) - surface.gap(behind)) / (2.0 * h);
     }
     EXPECT_LT((slope.normalized() - surface.normal(at)).norm(), 1e-4) << at.transpose() << ": " << gap;
-    // Near sharp ends of the mean its second derivative is large.
     EXPECT_LT((slope - surface.gradient(at)).norm(), 1e-4) << at.transpose() << ": " << gap;
     ++looked_at;
   }
