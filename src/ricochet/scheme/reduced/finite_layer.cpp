@@ -21,8 +21,6 @@ constexpr double weak_energy_tolerance = 1e-14;
 constexpr double least_part = 0.1;
 /// σ is looked for from corrections of this part of the increment on: before, places are not worth it.
 constexpr double near_solution = 1e-2;
-/// Rounds after which pairs of facets that change all the time are held.
-constexpr int patience_of_pairs = 80;
 
 double on_contact(const SemidiscreteProblem& problem, const Vector& a, const Vector& b) {
   double sum = 0.0;
@@ -303,28 +301,6 @@ void FiniteLayer::finish(const SemidiscreteProblem& problem, double step, State&
   corrections_.contact_work = end_weight_ * work_at_end_ - (mean_nodal_.dot(increment) - obstacle_work_);
 }
 
-/// From now on, until the step is done. False: there is nothing to hold, or it is held already.
-bool FiniteLayer::hold_pairs(const SemidiscreteProblem& problem) {
-  if (!problem.contact.follows_motion() || !problem.contact.geometry->hold()) return false;
-  progress_.restart();
-  acceleration_.restart();
-  return true;
-}
-
-void FiniteLayer::heed(const SemidiscreteProblem& problem, NewtonProgress::Advice advice, const Round& round,
-                       StageSolve& stages) {
-  // What faces what may change from round to round.
-  const bool is_stuck = advice == NewtonProgress::Advice::failed ||
-                        (advice == NewtonProgress::Advice::renew && progress_.rounds() > patience_of_pairs);
-  if (is_stuck && hold_pairs(problem)) return;
-  if (advice == NewtonProgress::Advice::failed) throw progress_.failure(round.correction);
-  if (advice != NewtonProgress::Advice::renew) return;
-  stages.renew(middle_, end_);
-  progress_.count_renewal();
-  progress_.restart();
-  acceleration_.restart();
-}
-
 /// The linear stage of a round.
 const StageSolution& FiniteLayer::solve_round(const SemidiscreteProblem& problem, ReactionMean mean, double step,
                                               const State& state, StageSolve& stages) {
@@ -342,20 +318,6 @@ const StageSolution& FiniteLayer::solve_round(const SemidiscreteProblem& problem
   const StageSolution& solution = stages.solve(number);
   if (lagged_.exact() != nullptr) stage.rows = lagged_.exact();
   return solution;
-}
-
-void FiniteLayer::halve_where_inverted(const SemidiscreteProblem& problem, double step, const State& state, bool near) {
-  constexpr int most_halvings = 5;
-  for (int halving = 0;; ++halving) {
-    try {
-      evaluate(problem, step, state, near);
-      return;
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::not_converged || halving == most_halvings) throw;
-    }
-    middle_ = 0.5 * (middle_ + last_middle_);
-    end_ = 0.5 * (end_ + last_end_);
-  }
 }
 
 void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean, double step, State& state,

@@ -16,7 +16,7 @@ bool FiniteLayer::is_balanced(double step, const State& state, const Round& roun
   if (!near) return false;  // what is missing is not known
   constexpr double most = 1e-8, most_corrected = 1e-6, most_snapped = 1e-4, most_created = 1e-11;
   // Shorter parts of a step would lack as much: contact nodes, which have no inertia, snap to another equilibrium, and
-  // what that sets free is the motion's.
+  // the motion has what that sets free or takes.
   const bool is_short = step <= whole_step_ / 64.0;
   const double size = std::max(kinetic_start_, kinetic_) + energy_start_ + energy_;
   const bool is_exact = std::abs(lacking_) <= tolerance() * size;
@@ -45,8 +45,8 @@ bool FiniteLayer::is_balanced(double step, const State& state, const Round& roun
   if (is_done && corrects_velocity_ && lacked_ > most_corrected * size && !has_told_of_snap_) {
     has_told_of_snap_ = true;
     log::info(
-        fmt::format("step {}: contact nodes snap to another place of equilibrium, and what that sets free, {:.2g} of "
-                    "the energy, becomes motion (said once)",
+        fmt::format("step {}: contact nodes snap to another place of equilibrium; velocities make up for the {:.2g} of "
+                    "the energy that this sets free or takes (said once)",
                     state.step + 1, lacked_ / size));
   }
   if (is_done || lacked_ <= part_ * most * size) return true;
