@@ -6,9 +6,9 @@
 
 #include "commands.hpp"
 #include "drawing.hpp"
-#include "reading_runs.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/report/figure.hpp"
+#include "ricochet/report/reading_runs.hpp"
 #include "ricochet/study/line_labels.hpp"
 #include "ricochet/study/study_figure.hpp"
 #include "ricochet/study/study_table.hpp"

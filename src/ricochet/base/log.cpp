@@ -30,6 +30,11 @@ spdlog::logger& logger() {
   return *instance;
 }
 
+Sink& other_sink() {
+  static Sink sink;
+  return sink;
+}
+
 std::vector<std::string>*& collected_warnings() {
   static std::vector<std::string>* list = nullptr;
   return list;
@@ -58,7 +63,17 @@ spdlog::level::level_enum spdlog_level(Level level) {
   return spdlog::level::info;
 }
 
+void say(Level level, const std::string& message) {
+  if (!enabled(level)) return;
+  if (other_sink()) return other_sink()(level, message);
+  logger().log(spdlog_level(level), "{}", message);
+}
+
 }  // namespace
+
+void set_sink(Sink sink) {
+  other_sink() = std::move(sink);
+}
 
 Level parse_level(std::string_view name) {
   for (const auto& [text, level] : level_names) {
@@ -76,17 +91,17 @@ bool enabled(Level level) {
 }
 
 void debug(const std::string& message) {
-  logger().debug("{}", message);
+  say(Level::debug, message);
 }
 void info(const std::string& message) {
-  logger().info("{}", message);
+  say(Level::info, message);
 }
 void warning(const std::string& message) {
   if (collected_warnings() != nullptr) collected_warnings()->push_back(message);
-  logger().warn("{}", with_run_name(message));
+  say(Level::warning, with_run_name(message));
 }
 void error(const std::string& message) {
-  logger().error("{}", with_run_name(message));
+  say(Level::error, with_run_name(message));
 }
 
 void set_run_name(std::string name) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,11 @@ void debug(const std::string& message);
 void info(const std::string& message);
 void warning(const std::string& message);
 void error(const std::string& message);
+
+/// Takes messages in place of standard error, on the thread that says them; those below the level are not shown to it.
+/// An empty one: standard error again. It must not throw.
+using Sink = std::function<void(Level, const std::string&)>;
+void set_sink(Sink sink);
 
 /// While it lives, warnings of the whole process are appended to a list besides being said; of several the last one
 /// made. Sessions that run on two threads at the same time mix theirs.

@@ -72,6 +72,7 @@ struct ObstacleSection {
   std::vector<Expression> rotation;  ///< of t, in rad: one number in 2D, a vector in 3D; empty: none
   std::vector<double> about;         ///< empty: its own centre
   std::string table;                 ///< a file of displacements and rotations; empty: none
+  bool is_steered = false;           ///< a program changes its motion as the run goes on (Session)
   // Of a rigid body that moves by the forces on it, whose `velocity` is that at the start:
   std::optional<double> mass, density;
   std::vector<double> inertia, centre_of_mass;  ///< empty: those of its shape

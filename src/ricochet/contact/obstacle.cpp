@@ -85,6 +85,11 @@ Obstacle::Obstacle(std::unique_ptr<ObstacleShape> shape, std::unique_ptr<const O
                 "rotation_rate");
 }
 
+void Obstacle::set_steered(std::unique_ptr<SteeredPath> path) {
+  steered_ = path.get();
+  path_ = std::move(path);
+}
+
 SpaceVector Obstacle::translation(double time) const {
   if (path_ == nullptr) return SpaceVector::Zero(about_.size());
   if (path_->is_uniform()) return time * path_->velocity();

@@ -56,6 +56,9 @@ class Obstacle {
   /// Moves by the forces on it: `place` of a step then says where it is. Null: its path says it.
   [[nodiscard]] FreeMotion* free_motion() const { return free_.get(); }
   void set_free(std::shared_ptr<FreeMotion> motion) { free_ = std::move(motion); }
+  /// Its motion, where a program sets it; else null.
+  [[nodiscard]] SteeredPath* steered_path() const { return steered_; }
+  void set_steered(std::unique_ptr<SteeredPath> path);
   /// Where it is at a time and a displacement of the problem.
   [[nodiscard]] PlacedObstacle at(double time, const Vector& displacement) const {
     return {*shape_, free_ != nullptr ? free_->pose(displacement) : pose(time)};
@@ -99,6 +102,7 @@ class Obstacle {
 
   std::unique_ptr<ObstacleShape> shape_;
   std::unique_ptr<const ObstaclePath> path_;
+  SteeredPath* steered_ = nullptr;  ///< path_, where it is one
   std::shared_ptr<FreeMotion> free_;
   double spin_;
   SpaceVector axis_;   ///< of the spin, in 3D

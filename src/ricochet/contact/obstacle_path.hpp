@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/base/expression.hpp"
+#include "ricochet/base/snapshot.hpp"
 #include "ricochet/base/space_vector.hpp"
 
 /// @file How a rigid obstacle moves where its motion is given.
@@ -24,6 +25,38 @@ class ObstaclePath {
   [[nodiscard]] virtual SpaceVector velocity() const { return {}; }
   /// Of the file that it comes from; empty: none.
   [[nodiscard]] virtual std::string checksum() const { return {}; }
+};
+
+/// A path that a program steers: from an instant on it has other rates, from where it is then.
+class SteeredPath final : public ObstaclePath {
+ public:
+  /// `before`: its path until it is steered; null: at rest.
+  SteeredPath(std::unique_ptr<const ObstaclePath> before, Index dimension);
+
+  /// From this instant on, not before the last one that was set. `rotation_rate`: of θ; empty: none. Throws
+  /// Error(invalid_input) where sizes do not fit, where it is not finite, or for a rate where the path does not turn.
+  void steer(double time, const SpaceVector& velocity, const SpaceVector& rotation_rate);
+
+  [[nodiscard]] SpaceVector displacement(double time) const override;
+  [[nodiscard]] SpaceVector rotation(double time) const override;
+  [[nodiscard]] bool turns() const override { return before_ != nullptr && before_->turns(); }
+  [[nodiscard]] std::string checksum() const override { return before_ != nullptr ? before_->checksum() : ""; }
+
+  void save(Snapshot& snapshot, const std::string& name) const;
+  /// Throws Error(invalid_input) where it does not fit.
+  void load(const Snapshot& snapshot, const std::string& name);
+
+ private:
+  /// Where it was at an instant, and how fast it goes from there.
+  struct Leg {
+    double start = 0.0;
+    SpaceVector displacement, rotation, velocity, rotation_rate;
+  };
+  [[nodiscard]] const Leg* leg_at(double time) const;
+
+  std::unique_ptr<const ObstaclePath> before_;
+  Index dimension_, rotations_;  ///< numbers of u and of θ
+  std::vector<Leg> legs_;        ///< the last ones, in their order
 };
 
 /// Null where it is zero: such an obstacle rests.

@@ -264,15 +264,26 @@ void Hdf5Reader::check_table(const Dataset& set, Index rows, Index columns) cons
   check_stored(set, rows * std::max<Index>(columns, 1), H5Tget_size(set.type));
 }
 
-void Hdf5Reader::table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
-                       std::vector<float>& values) const {
+template <class Number>
+void Hdf5Reader::read_table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
+                            std::int64_t type, std::vector<Number>& values) const {
   const Hdf5Handle object(H5Oopen_by_addr(file_, group.address), H5Oclose);
   if (object < 0 || H5Iget_type(object) != H5I_GROUP) fail(group.name, "cannot be opened: the file is damaged");
   const Dataset set(*this, object, name, group.name + "/" + name);
   check_table(set, rows, columns);
   values.resize(static_cast<std::size_t>(rows * std::max<Index>(columns, 1)));
-  if (!values.empty() && H5Dread(set.set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+  if (!values.empty() && H5Dread(set.set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     fail(set.name, "cannot be read: the file is damaged");
+}
+
+void Hdf5Reader::table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
+                       std::vector<float>& values) const {
+  read_table(group, name, rows, columns, H5T_NATIVE_FLOAT, values);
+}
+
+void Hdf5Reader::table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
+                       std::vector<double>& values) const {
+  read_table(group, name, rows, columns, H5T_NATIVE_DOUBLE, values);
 }
 
 std::vector<Hdf5Member> Hdf5Reader::members(const std::string& group) const {

@@ -53,6 +53,9 @@ class Hdf5Reader {
   /// adds to the groups above.
   void table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
              std::vector<float>& values) const;
+  /// The same in double precision.
+  void table(const Hdf5Member& group, const std::string& name, Index rows, Index columns,
+             std::vector<double>& values) const;
   /// What is in a group, by name.
   [[nodiscard]] std::vector<Hdf5Member> members(const std::string& group) const;
   [[nodiscard]] Matrix real_table(const std::string& name, Index rows, Index columns) const;
@@ -73,6 +76,9 @@ class Hdf5Reader {
   void check_numbers(const Dataset& set) const;
   [[nodiscard]] std::pair<Index, Index> extents(const Dataset& set) const;
   void check_table(const Dataset& set, Index rows, Index columns) const;
+  template <class Number>
+  void read_table(const Hdf5Member& group, const std::string& name, Index rows, Index columns, std::int64_t type,
+                  std::vector<Number>& values) const;
   [[nodiscard]] Vector numbers(const Dataset& set, std::int64_t expected_size) const;
 
   std::string path_;

@@ -127,10 +127,19 @@ const XdmfField* ResultsReader::find_field(const std::string& name) const {
   return found == frames_.fields.end() ? nullptr : &*found;
 }
 
-void ResultsReader::read(Index frame, const XdmfField& field, std::vector<float>& values) const {
+template <class Number>
+void ResultsReader::read_numbers(Index frame, const XdmfField& field, std::vector<Number>& values) const {
   file_->reader.table(file_->frames[static_cast<std::size_t>(frame)], field.name,
                       field.on_nodes ? nodes_.cols() : cell_count(), field.components > 1 ? field.components : 0,
                       values);
+}
+
+void ResultsReader::read(Index frame, const XdmfField& field, std::vector<float>& values) const {
+  read_numbers(frame, field, values);
+}
+
+void ResultsReader::read(Index frame, const XdmfField& field, std::vector<double>& values) const {
+  read_numbers(frame, field, values);
 }
 
 }  // namespace ricochet

@@ -30,8 +30,12 @@ class ResultsReader {
   [[nodiscard]] const XdmfField* find_field(const std::string& name) const;
   /// The values of a field in a frame, row by row. Throws Error(invalid_input) where they are not there.
   void read(Index frame, const XdmfField& field, std::vector<float>& values) const;
+  void read(Index frame, const XdmfField& field, std::vector<double>& values) const;
 
  private:
+  template <class Number>
+  void read_numbers(Index frame, const XdmfField& field, std::vector<Number>& values) const;
+
   struct File;  ///< and the frames in it
   std::unique_ptr<File> file_;
   int dimension_, degree_;

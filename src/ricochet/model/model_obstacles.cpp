@@ -48,8 +48,13 @@ std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection
     Vector about = as_vector(section.about);
     if (about.size() == 0)
       about = shape->centre().size() > 0 ? Vector(shape->centre()) : Vector(Vector::Zero(dimension));
-    return std::make_unique<Obstacle>(std::move(shape), make_path(input, section, dimension), section.rotation_rate,
-                                      about, input.time.step);
+    std::unique_ptr<const ObstaclePath> path = make_path(input, section, dimension);
+    if (!section.is_steered)
+      return std::make_unique<Obstacle>(std::move(shape), std::move(path), section.rotation_rate, about,
+                                        input.time.step);
+    auto made = std::make_unique<Obstacle>(std::move(shape), nullptr, section.rotation_rate, about, input.time.step);
+    made->set_steered(std::make_unique<SteeredPath>(std::move(path), dimension));
+    return made;
   } catch (const Error& problem) {
     if (problem.kind() != ErrorKind::invalid_input) throw;
     const std::string place = input.where(key).text();

@@ -54,6 +54,11 @@ class Recording {
   void record(const State& state, EnergyAccount& account);
   /// Before that: of every part of a step that was cut, or once.
   void enter_part(const State& state, EnergyAccount& account);
+  /// An impulse per dof that acted between two steps.
+  void enter_impulse(const State& state, const Vector& impulse) {
+    checks_.enter_impulse(state, impulse);
+    impacts_.enter_impulse(state);
+  }
   /// Of the last state, what record() has left out: the end of a run is always in its results.
   void record_end(const State& state, EnergyAccount& account);
   /// What is needed to go on; the files are on the disk then.

@@ -124,11 +124,12 @@ void Run::find_checkpoint() {
                              : steps_ < static_cast<long>(snapshot_->integer("state.step")))
       refuse_earlier_end(reached);
     require_same_files(options_.output_directory, *snapshot_);
-    if (!options_.resume_load && snapshot_->has(Session::load_name)) {
+    if (!options_.resume_load && Session::is_steered(*snapshot_)) {
       throw Error(
           ErrorKind::invalid_input,
-          fmt::format("{}: cannot be resumed here: a program loads this run as it goes (Session::set_load), and "
-                      "without it the last load would stay; resume it with that program",
+          fmt::format("{}: cannot be resumed here: a program loads this run or moves its obstacles as it goes "
+                      "(Session::set_load, set_obstacle_velocity), and without it the last load and motion would "
+                      "stay; resume it with that program",
                       options_.output_directory));
     }
   } else if (!checkpoint_files(options_.output_directory).empty()) {
@@ -176,7 +177,8 @@ void Run::begin_session() {
   begin_simulation();
   times_.add_start(timer.seconds(), session_.simulation().methods());
   summary_ = describe_run(input_, session_.model(), session_.scheme(), session_.simulation());
-  summary_.case_path = std::filesystem::absolute(input_.path).lexically_normal().string();
+  const std::string& kept_at = options_.case_path.empty() ? input_.path : options_.case_path;
+  summary_.case_path = std::filesystem::absolute(kept_at).lexically_normal().string();
   summary_.settings = options_.settings;
   stopping_points_.emplace();  // the steps are near
   if (snapshot_) {
@@ -248,6 +250,10 @@ void Run::begin_simulation() {
     refuse_bodies_inside_obstacles(session_.input(), session_.model());
     session_.start();
   }
+}
+
+void Run::enter_impulse(const Vector& impulse) {
+  recording_->enter_impulse(session_.state(), impulse);
 }
 
 bool Run::take_step() {

@@ -33,6 +33,8 @@ class Run {
   void begin();
   /// The run that was to be resumed has come to its end before: there is no state.
   [[nodiscard]] bool is_complete_already() const { return has_nothing_to_do_; }
+  /// A program has changed the velocity, by an impulse per dof.
+  void enter_impulse(const Vector& impulse);
   /// One step, recorded. False: the end, a failure, or a signal.
   bool take_step();
   /// The summary; throws the error that ended the steps.

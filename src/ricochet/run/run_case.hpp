@@ -21,14 +21,16 @@ struct RunOptions {
   bool quiet = false;  ///< no progress
   /// Go on with the run that is in the directory, from its last checkpoint; from the beginning where it has none.
   bool resume = false;
-  /// A run that a program loads as it goes (Session::set_load) may go on, with the last load until that sets it again;
-  /// run_case refuses it.
+  /// A run that a program loads as it goes (Session::set_load), or whose obstacles it moves, may go on with the last
+  /// load and motion until it sets them again; run_case refuses it.
   bool resume_load = true;
   /// Asked after every step: not zero, the number of the signal that is to end the run with a checkpoint.
   std::function<int()> stop_signal = {};
   /// Steps whose contact problems are written as FCLib files, see io/contact_export.hpp.
   std::vector<StepRange> export_contact = {};
   std::string export_contact_to = {};  ///< their directory; empty: contact/ in the output directory
+  /// Where the case is kept, for --resume; empty: where it was read.
+  std::string case_path = {};
   /// What --set has changed in the case, for a --resume that is not told again.
   std::vector<std::string> settings = {};
 };

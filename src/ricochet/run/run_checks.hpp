@@ -19,6 +19,7 @@ class RunChecks {
 
   /// After every step, and after the parts of one that was cut.
   void enter_part(const State& state) { momentum_.enter_step(state); }
+  void enter_impulse(const State& state, const Vector& impulse) { momentum_.enter_impulse(state, impulse); }
   /// A row of history.csv. Warns the first time that an account does not balance, or throws Error(not_converged) where
   /// the case asks for that.
   void watch(const std::vector<double>& row, const State& state);

@@ -1,5 +1,7 @@
 #include "ricochet/run/session.hpp"
 
+#include <fmt/format.h>
+
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/read_case.hpp"
@@ -21,7 +23,8 @@ Session::Session(const std::string& path, const std::vector<std::string>& change
   input_ = read_case(path, changes);
 }
 
-Session::Session(Case input) : input_(std::move(input)) {}
+Session::Session(Case input, std::vector<std::string> remarks)
+    : input_(std::move(input)), warnings_(std::move(remarks)) {}
 
 Session::~Session() = default;
 
@@ -53,9 +56,16 @@ void Session::resume(const Snapshot& snapshot) {
   if (simulation_ != nullptr) refuse_use("it has started and cannot take up another state");
   const log::CollectWarnings collect(warnings_);
   require_same_case(input_, snapshot, "this state");
+  if (snapshot.has(steered_name)) {
+    for (const std::string& name : snapshot.texts(steered_name)) steer_from_start(section_of_obstacle(name));
+  }
   if (const std::string difference = compare_model(input_, model(), snapshot); !difference.empty())
     log::warning(difference);
   if (snapshot.has(load_name)) set_load(snapshot.reals(load_name));
+  if (snapshot.has(steered_name)) {
+    for (const std::string& name : snapshot.texts(steered_name))
+      steered_path(name).load(snapshot, "session.motion." + name);
+  }
   simulation_ = std::make_unique<Simulation>(model().problem, scheme(), snapshot, step_solver_options(input_),
                                              step_control_options(input_.time));
 }
@@ -64,24 +74,106 @@ void Session::save(Snapshot& snapshot) {
   simulation().save(snapshot);
   save_identity(input_, model(), snapshot);
   if (load_ != nullptr) snapshot.save(load_name, *load_);
+  Snapshot::Texts steered;
+  for (const ObstacleSection& obstacle : input_.obstacles) {
+    if (!obstacle.is_steered) continue;
+    steered.push_back(obstacle.name);
+    steered_path(obstacle.name).save(snapshot, "session.motion." + obstacle.name);
+  }
+  if (!steered.empty()) snapshot.save(steered_name, std::move(steered));
+}
+
+bool Session::is_complete_already() const {
+  return run_ != nullptr && run_->is_complete_already();
 }
 
 Simulation& Session::simulation() {
-  if (run_ != nullptr && run_->is_complete_already()) refuse_use("the run is complete: there is no state to look at");
+  if (is_complete_already()) refuse_use("the run is complete: there is no state to look at");
   start();
   return *simulation_;
 }
 
+namespace {
+
+void check_values(const SemidiscreteProblem& problem, const Vector& values, const char* what) {
+  if (values.size() != problem.dof_count()) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("session: a {} has a number for each of the {} dofs of the problem, not {}", what,
+                            problem.dof_count(), values.size()));
+  }
+  if (!values.allFinite())
+    throw Error(ErrorKind::invalid_input, fmt::format("session: a {} has numbers that are not finite", what));
+}
+
+}  // namespace
+
 void Session::set_load(const Vector& force) {
   Model& built = model();
-  if (force.size() != built.problem.dof_count())
-    throw Error(ErrorKind::invalid_input, "session: a load needs a force for each dof of the problem");
-  if (!force.allFinite()) throw Error(ErrorKind::invalid_input, "session: a load has forces that are not finite");
+  check_values(built.problem, force, "load");
   if (load_ == nullptr) {
     load_ = std::make_shared<Vector>();
     built.problem.loads.add_general([load = load_](double, Vector& sum) { sum += *load; });
   }
   *load_ = force;
+}
+
+void Session::set_velocity(const Vector& velocity) {
+  const log::CollectWarnings collect(warnings_);
+  Simulation& running = simulation();
+  check_values(problem(), velocity, "velocity");
+  const Vector impulse = running.set_velocity(velocity);
+  if (run_ == nullptr) return;
+  run_->enter_impulse(impulse);
+  if (state().forces.acting_normal().size() > 0 && state().forces.acting_normal().maxCoeff() > 0.0) {
+    log::warning(fmt::format(
+        "t = {:.9g}: the velocity was set while contact forces act: the restitution of this impact counts that, too",
+        time()));
+  }
+}
+
+ObstacleSection& Session::section_of_obstacle(const std::string& obstacle) {
+  std::string names;
+  for (ObstacleSection& section : input_.obstacles) {
+    if (section.name == obstacle) return section;
+    names += (names.empty() ? "" : ", ") + section.name;
+  }
+  throw Error(ErrorKind::invalid_input, fmt::format("session: there is no obstacle \"{}\" in this case; there is {}",
+                                                    obstacle, names.empty() ? "none" : names));
+}
+
+/// How an obstacle moves decides how the problem is built: it is built again where that has been done.
+void Session::steer_from_start(ObstacleSection& section) {
+  if (section.is_steered) return;
+  if (section.is_free()) {
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("session: obstacle \"{}\" moves by the forces on it: give it a force in the case, or set a "
+                            "load on its nodes",
+                            section.name));
+  }
+  if (run_ != nullptr || simulation_ != nullptr)
+    refuse_use(
+        fmt::format("the velocity of obstacle \"{}\" must first be set before the session starts: before "
+                    "start(), write_to() and any look at its state; zero will do",
+                    section.name));
+  section.is_steered = true;
+  model_.reset();
+  if (const std::shared_ptr<Vector> load = std::move(load_)) set_load(*load);
+}
+
+SteeredPath& Session::steered_path(const std::string& obstacle) {
+  const auto index = static_cast<std::size_t>(&section_of_obstacle(obstacle) - input_.obstacles.data());
+  return *model().obstacles[index]->steered_path();
+}
+
+void Session::set_obstacle_velocity(const std::string& obstacle, const Vector& velocity, const Vector& rotation_rate) {
+  const log::CollectWarnings collect(warnings_);
+  steer_from_start(section_of_obstacle(obstacle));
+  if (is_complete_already()) refuse_use("the run is complete: there are no steps to come");
+  try {
+    steered_path(obstacle).steer(simulation_ != nullptr ? time() : 0.0, velocity, rotation_rate);
+  } catch (const Error& problem) {
+    throw Error(problem.kind(), fmt::format("session: obstacle \"{}\": {}", obstacle, problem.what()));
+  }
 }
 
 bool Session::at_end() {

@@ -26,12 +26,17 @@ class Run;
 /// What does not fit together (a step after finish(), write_to after steps) throws Error(usage).
 class Session {
  public:
-  /// In snapshots: what set_load has set.
-  static constexpr const char* load_name = "session.load";
+  /// In snapshots: what set_load has set, and the names of the obstacles that are steered.
+  static constexpr const char *load_name = "session.load", *steered_name = "session.steered";
+  /// Whether a program has changed loads or motions on the way, so that the case alone does not say how it goes on.
+  [[nodiscard]] static bool is_steered(const Snapshot& snapshot) {
+    return snapshot.has(load_name) || snapshot.has(steered_name);
+  }
 
   /// Reads a case file, with changes as --set makes them. Throws Error as read_case does.
   explicit Session(const std::string& path, const std::vector<std::string>& changes = {});
-  explicit Session(Case input);
+  /// Of a case that was read: `remarks` are the warnings that reading it said.
+  explicit Session(Case input, std::vector<std::string> remarks = {});
   ~Session();
   Session(const Session&) = delete;  // its parts keep references to each other
   Session& operator=(const Session&) = delete;
@@ -66,6 +71,16 @@ class Session {
   /// account as load_work. Throws Error(invalid_input) for another length and for what is not finite.
   void set_load(const Vector& force);
 
+  /// Another velocity from now on (per dof, of all nodes), as an impulse M (V − V_before) at once would give: load_work
+  /// contains the work of that. Dofs that a support prescribes, and tied ones, keep to what they follow. Throws as
+  /// set_load does.
+  void set_velocity(const Vector& velocity);
+  /// From now on this obstacle moves with a constant velocity (d numbers) and a constant rate of its rotation vector
+  /// (1 or 3 numbers, only where the case gives it a rotation; empty: none), from where it is. The first call for an
+  /// obstacle comes before start(), write_to() and any look at the state. Throws Error(usage) where it comes too late,
+  /// and Error(invalid_input) where there is no such obstacle, it moves by the forces on it, or the numbers do not fit.
+  void set_obstacle_velocity(const std::string& obstacle, const Vector& velocity, const Vector& rotation_rate = {});
+
   /// One step. False, and nothing done: the run is at its end. Throws Error(not_converged); the state is then that
   /// before the step. A session that writes says false there, and where a signal stopped it; finish() then says why.
   bool step();
@@ -76,12 +91,18 @@ class Session {
   /// With `resume` among the options it goes on with the run that is there; where that is complete, only finish() has
   /// something to say. Throws Error as run_case does.
   void write_to(RunOptions options);
+  /// The run that write_to was to go on with had come to its end before: there is no state to look at.
+  [[nodiscard]] bool is_complete_already() const;
   /// Ends what write_to has begun: the summary, with the expectations of the case. Before the last step the run is an
   /// interrupted one, with a checkpoint that --resume goes on from. No step can follow. Throws the error
   /// that has ended the steps, if one has.
   RunSummary finish();
 
  private:
+  [[nodiscard]] ObstacleSection& section_of_obstacle(const std::string& obstacle);
+  void steer_from_start(ObstacleSection& section);
+  [[nodiscard]] SteeredPath& steered_path(const std::string& obstacle);
+
   friend class Run;  // a run that goes on takes up the warnings that were said before
 
   Case input_;

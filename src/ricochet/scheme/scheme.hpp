@@ -115,6 +115,10 @@ class Scheme {
   /// so that a step that fails leaves it as it was.
   virtual void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) = 0;
 
+  /// Between two steps an impulse has changed the velocity of the body, by these values per dof: zero where a support
+  /// prescribes it.
+  virtual void change_velocity(State& state, const Vector& change) const { state.velocity += change; }
+
   /// Displacement and velocity at which the scheme accounts for energy: the state's where energy_instant() is 0.
   virtual void energy_state(const State& state, Vector& displacement, Vector& velocity) const;
   /// The internal force at that displacement, where the state has it: then the elastic energy needs no product with K.

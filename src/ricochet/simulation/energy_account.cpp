@@ -126,6 +126,17 @@ void EnergyAccount::change_step(const State& state, const std::function<void()>&
   works_.numerical_dissipation -= algorithmic(state) - before;
 }
 
+void EnergyAccount::enter_impulse(const State& state, const std::function<void()>& change) {
+  const auto energy = [&] {
+    algorithmic_.reset();
+    const Energies now = energies(state);
+    return now.total() + now.algorithmic;
+  };
+  const double before = energy();
+  change();
+  works_.load += energy() - before;
+}
+
 /// Rows of the history and what watches the method ask for the same.
 double EnergyAccount::algorithmic(const State& state) {
   if (!algorithmic_) algorithmic_ = scheme_.algorithmic_energy(problem_, state);

@@ -49,6 +49,9 @@ class EnergyAccount {
   /// Calls `change`, which gives the scheme's next step another length and with it the state another algorithmic
   /// energy: the difference is numerical dissipation.
   void change_step(const State& state, const std::function<void()>& change);
+  /// Calls `change`, which gives the body another velocity between two steps: the difference of energy is work of
+  /// loads.
+  void enter_impulse(const State& state, const std::function<void()>& change);
   /// Energies at the scheme's own instant.
   [[nodiscard]] Energies energies(const State& state);
   [[nodiscard]] const Works& works() const { return works_; }

@@ -117,6 +117,10 @@ void ImpactRecorder::find_other_forces() {
   }
 }
 
+void ImpactRecorder::enter_impulse(const State& state) {
+  take_velocity(state, velocity_before_);
+}
+
 ImpactRecorder::Acting ImpactRecorder::acting_in(std::size_t place) const {
   Acting acting;
   const Force &previous = previous_[place], &current = current_[place];

@@ -48,6 +48,8 @@ class ImpactRecorder {
   /// Enters a step with the forces at its end (in the state), and what the discretization of time has put into the
   /// bodies since the start (EnergyAccount::of_method). Allocates nothing.
   void enter_step(const State& state, double method_energy);
+  /// The body has another velocity from here on. Of an impact that goes on the restitution then counts that, too.
+  void enter_impulse(const State& state);
   /// By their begin.
   [[nodiscard]] std::vector<Impact> impacts() const;
   /// Those beyond most_impacts, which only have been counted.

@@ -190,6 +190,13 @@ void MomentumAccount::add_impulse(double weight, const Resultant& resultant) {
   impulse_.moment += weight * resultant.moment;
 }
 
+void MomentumAccount::enter_impulse(const State& state, const Vector& impulse) {
+  if (places_change()) take_positions(state.displacement);
+  const Resultant sum = of_nodes(impulse);
+  add_impulse(1.0, sum);
+  size_ += sum.force.norm();
+}
+
 void MomentumAccount::enter_step(const State& state) {
   const auto enter = [this](const Sum& sum, double weight) {
     add_impulse(scheme_.step() * weight, sum.total);

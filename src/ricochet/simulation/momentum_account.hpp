@@ -31,6 +31,8 @@ class MomentumAccount {
 
   /// Enters a step with the forces at its end (in the state).
   void enter_step(const State& state);
+  /// Enters an impulse per dof that acts between two steps, where the body is then.
+  void enter_impulse(const State& state, const Vector& impulse);
   /// Since the start.
   [[nodiscard]] const Resultant& impulse() const { return impulse_; }
   /// Σ of the sizes of all impulses, of each kind of force by itself: what their sum is rounded to.

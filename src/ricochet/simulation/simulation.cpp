@@ -264,6 +264,15 @@ double Simulation::take_controlled_step() {
 }
 
 /// Of no use to the equations: for those who look at the state.
+Vector Simulation::set_velocity(const Vector& velocity) {
+  Vector change = velocity - state_.velocity, impulse;
+  for (const Index dof : problem_.supports.dofs()) change[dof] = 0.0;
+  if (problem_.tied != nullptr) problem_.tied->complete(change, problem_.dimension);
+  account_->enter_impulse(state_, [&] { scheme_.change_velocity(state_, change); });
+  problem_.mass.multiply(change, impulse);
+  return impulse;
+}
+
 void Simulation::complete_tied() {
   if (problem_.tied == nullptr) return;
   for (Vector* const values : {&state_.displacement, &state_.velocity, &state_.acceleration})

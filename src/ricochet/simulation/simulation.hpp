@@ -35,6 +35,10 @@ class Simulation : private StageSolve {
   /// `each_part` is called after the step, and after each of its parts.
   void advance(const std::function<void(const State&)>& each_part = {});
 
+  /// Gives the body another velocity (per dof) from here on, as an impulse at once would: what the loads' work then
+  /// contains. Returns the impulse, per dof. Prescribed and tied dofs keep to what they follow.
+  Vector set_velocity(const Vector& velocity);
+
   /// Shows the contact problems of the next steps, and their solutions, to the observer; none if it is empty.
   void observe_contact(const ContactObserver& observer);
 

@@ -73,7 +73,7 @@ ChildProcess RunPool::start(std::size_t i) {
   if (problem) throw Error(ErrorKind::file_access, fmt::format("{}: cannot be made: {}", directory, problem.message()));
   record_outcome(directory, 0, "");
   ChildProcess child;
-  child.arguments = {"/proc/self/exe", "run", run_at(i).case_path, "-o", directory};
+  child.arguments = {options_.program, "run", run_at(i).case_path, "-o", directory};
   for (const std::string& setting : run_at(i).settings) {
     child.arguments.emplace_back("--set");
     child.arguments.push_back(setting);

@@ -22,6 +22,7 @@ struct RunPoolOptions {
   bool quiet = false;    ///< no progress
   /// Asked all the time: not 0, the number of the signal that is to end the runs.
   std::function<int()> stop_signal = {};
+  std::string program = "/proc/self/exe";  ///< its command `run` runs a case
 };
 
 /// Runs those that are still to be run, as next_action says, and records in the directories how they have ended.

@@ -84,7 +84,7 @@ Study prepare_study(const std::string& directory, const StudyPlan& plan, const S
 int run_study(const Study& study, const StudyOptions& options) {
   std::vector<PooledRun> runs;
   for (const StudyRun& run : study.runs) runs.push_back({study.plan.case_path, run.planned.settings, study.path(run)});
-  return run_pool(runs, {options.jobs, options.threads, options.quiet, options.stop_signal}, [&] {
+  return run_pool(runs, {options.jobs, options.threads, options.quiet, options.stop_signal, options.program}, [&] {
     // Until there are new ones: what the old tables say will not be so any more.
     for (const char* file : {"study.csv", "study.md"}) {
       std::error_code ignored;

@@ -10,11 +10,12 @@
 namespace ricochet {
 
 struct StudyOptions {
-  std::size_t jobs = 1;  ///< runs at a time
-  int threads = 1;       ///< of each
-  bool resume = false;   ///< go on with the study that is in the directory, also with more runs
-  bool force = false;    ///< start anew over a study that is there
-  bool quiet = false;    ///< no progress
+  std::size_t jobs = 1;                    ///< runs at a time
+  int threads = 1;                         ///< of each
+  bool resume = false;                     ///< go on with the study that is in the directory, also with more runs
+  bool force = false;                      ///< start anew over a study that is there
+  bool quiet = false;                      ///< no progress
+  std::string program = "/proc/self/exe";  ///< its command `run` runs a case
   /// Asked all the time: not 0, the number of the signal that is to end the study.
   std::function<int()> stop_signal = {};
 };

@@ -53,6 +53,12 @@ void CentralScheme::advance(const SemidiscreteProblem& problem, State& state, St
   equations_.take_forces(problem, stage, solution, h, state.velocity, 1.0, state);
 }
 
+/// The velocity is that of the step ahead.
+void CentralScheme::change_velocity(State& state, const Vector& change) const {
+  state.velocity += change;
+  state.memory.at(increment_ahead) += step() * change;
+}
+
 void CentralScheme::energy_state(const State& state, Vector& displacement, Vector& velocity) const {
   const Vector& ahead = state.memory.at(increment_ahead);
   displacement = state.displacement + 0.5 * ahead;

@@ -26,6 +26,7 @@ class CentralScheme : public Scheme {
   /// U¹ = U⁰ + hV⁰ + (h²/2)A⁰: the source asks for U¹ = U⁰ + hV⁰ + h z(h) with z → 0.
   void start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) override;
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override;
+  void change_velocity(State& state, const Vector& change) const override;
   void energy_state(const State& state, Vector& displacement, Vector& velocity) const override;
   [[nodiscard]] double algorithmic_energy(const SemidiscreteProblem& problem, const State& state) const override;
 

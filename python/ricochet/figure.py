@@ -1,6 +1,7 @@
-"""Draws the figure that `ricochet plot` describes: figure.py FORMAT OUTPUT < DESCRIPTION. Needs matplotlib.
+"""Draws the figures that the program and the Python package describe. Needs matplotlib.
 
-Ends with status 3 where matplotlib is missing. The same description gives the same bytes.
+As a script: figure.py FORMAT OUTPUT < DESCRIPTION. It ends with status 3 where matplotlib is missing. The same
+description gives the same bytes.
 """
 
 import json
@@ -9,12 +10,13 @@ import sys
 
 try:
     import matplotlib
-
-    matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.lines import Line2D
     from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator, ScalarFormatter
 except ImportError as problem:
+    if __name__ != "__main__":
+        raise
     print(problem)
     sys.exit(3)
 
@@ -26,14 +28,12 @@ COLOURS = ["#c8460a", "#0068b0", "#00785a", "#a8519a", "#8a6d00", "#2a8fbf", "#6
 PATTERNS = ["-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (7, 2, 1.5, 2)), (0, (7, 2, 1.5, 2, 1.5, 2)), (0, (12, 3)), (0, (3, 3)), (0, (1.5, 4))]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 
-# Settings that a user has for other figures change nothing.
-matplotlib.rcdefaults()
-plt.rcParams.update({
+STYLE = {
     "font.size": 9, "axes.titlesize": 9, "legend.fontsize": 8, "font.family": "DejaVu Sans",
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.alpha": 0.3, "grid.linewidth": 0.5,
     "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6, "svg.hashsalt": "ricochet",
     "pdf.fonttype": 42, "savefig.dpi": 200, "agg.path.chunksize": 10000, "path.simplify": False,
-})
+}
 
 
 def widths(panel):
@@ -266,7 +266,8 @@ def overlap(axes, renderer):
 
 def spread_ticks(figure, grid):
     """What has no room side by side is left out, or stands aslant where it is a word."""
-    renderer = figure.canvas.get_renderer()
+    canvas = figure.canvas if hasattr(figure.canvas, "get_renderer") else FigureCanvasAgg(figure)
+    renderer = canvas.get_renderer()
     for bins in (3, 2):
         figure.draw_without_rendering()
         crowded = [axes for axes in grid.flat if axes.axison and overlap(axes, renderer)]
@@ -279,8 +280,15 @@ def spread_ticks(figure, grid):
             break
 
 
-def main(form, output):
-    description = json.load(sys.stdin)
+def draw(description):
+    """The figure of a description (a dictionary). Settings that a user has for other figures change nothing, and stay."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        plt.rcParams.update(STYLE)
+        return draw_panels(description)
+
+
+def draw_panels(description):
     panels = description["panels"]
     columns = len(panels) if len(panels) <= 3 else 2
     rows = -(-len(panels) // columns)
@@ -305,6 +313,14 @@ def main(form, output):
                 axes.set_xlim(*description["time"])
     add_head(figure, handles, labels, description["title"], width, height, not description["height"])
     spread_ticks(figure, grid)
+    return figure
+
+
+def main(form, output):
+    matplotlib.use("Agg")
+    matplotlib.rcdefaults()
+    plt.rcParams.update(STYLE)
+    figure = draw_panels(json.load(sys.stdin))
     # What a file says about itself must not change from day to day.
     metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[form]
     figure.savefig(output, format=form, metadata=metadata)

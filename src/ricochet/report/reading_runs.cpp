@@ -1,4 +1,4 @@
-#include "reading_runs.hpp"
+#include "ricochet/report/reading_runs.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/io/run_directory.hpp"
 
-namespace ricochet::program {
+namespace ricochet {
 
 void read_with_patience(const std::vector<std::string>& directories, const std::function<void()>& read) {
   constexpr int most_attempts = 5;
@@ -27,4 +27,4 @@ void read_with_patience(const std::vector<std::string>& directories, const std::
   }
 }
 
-}  // namespace ricochet::program
+}  // namespace ricochet

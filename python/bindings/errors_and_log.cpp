@@ -1,0 +1,49 @@
+#include <exception>
+
+#include "bindings.hpp"
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+
+namespace ricochet::python {
+
+namespace {
+
+/// A function of the package, by module and name. The module is loaded: the package has loaded this one.
+py::object function(const char* module, const char* name) {
+  return py::module_::import(module).attr(name);
+}
+
+void translate(std::exception_ptr pointer) {
+  try {
+    if (pointer) std::rethrow_exception(pointer);
+  } catch (const Error& problem) {
+    const py::object raised = function("ricochet.errors", "from_core")(problem.exit_status(), problem.what());
+    PyErr_SetObject(py::type::of(raised).ptr(), raised.ptr());
+  }
+}
+
+void hand_to_python(log::Level level, const std::string& message) {
+  if (Py_IsInitialized() == 0) return;
+  const py::gil_scoped_acquire lock;
+  try {
+    function("ricochet.messages", "from_core")(static_cast<int>(level), message);
+  } catch (py::error_already_set& problem) {
+    problem.discard_as_unraisable("a message of Ricochet");
+  }
+}
+
+}  // namespace
+
+void bind_errors(py::module_&) {
+  py::register_exception_translator(translate);
+}
+
+void bind_log(py::module_& module) {
+  log::set_sink(hand_to_python);
+  module.def(
+      "set_log_level", [](const std::string& level) { log::set_level(log::parse_level(level)); }, py::arg("level"));
+  // What Python knows is gone before what the library keeps.
+  py::module_::import("atexit").attr("register")(py::cpp_function([] { log::set_sink({}); }));
+}
+
+}  // namespace ricochet::python

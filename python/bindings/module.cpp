@@ -1,0 +1,66 @@
+#include <csignal>
+
+#include "bindings.hpp"
+#include "ricochet/base/parallel.hpp"
+#include "ricochet/base/timer.hpp"
+#include "ricochet/version.hpp"
+
+namespace ricochet::python {
+
+namespace {
+
+/// Seconds between looks at Python's signals.
+constexpr double signal_interval = 0.05;
+
+}  // namespace
+
+int SignalCheck::operator()() {
+  static const Timer clock;
+  const double now = clock.seconds();
+  if (!raised_ && now - last_asked_ > signal_interval) {
+    last_asked_ = now;
+    const py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) raised_.emplace();
+  }
+  return raised_ ? SIGINT : 0;
+}
+
+void SignalCheck::raise() {
+  if (!raised_) return;
+  const py::error_already_set raised = std::move(*raised_);
+  raised_.reset();
+  throw raised;
+}
+
+py::tuple parts_of(SparseMatrix matrix) {
+  matrix.makeCompressed();
+  auto* kept = new SparseMatrix(std::move(matrix));
+  const py::capsule owner(kept, [](void* object) { delete static_cast<SparseMatrix*>(object); });
+  const auto entries = static_cast<py::ssize_t>(kept->nonZeros());
+  return py::make_tuple(py::array_t<double>(std::vector<py::ssize_t>{entries}, kept->valuePtr(), owner),
+                        py::array_t<int>(std::vector<py::ssize_t>{entries}, kept->innerIndexPtr(), owner),
+                        py::array_t<int>(std::vector<py::ssize_t>{kept->cols() + 1}, kept->outerIndexPtr(), owner),
+                        kept->cols());
+}
+
+SparseMatrix sparse_matrix(const Numbers& data, const Indices& indices, const Indices& starts, Index size) {
+  return Eigen::Map<const SparseMatrix>(size, size, data.size(), starts.data(), indices.data(), data.data());
+}
+
+}  // namespace ricochet::python
+
+PYBIND11_MODULE(_core, module) {
+  using namespace ricochet::python;
+  module.doc() = "The library of Ricochet, for the package ricochet.";
+  module.attr("version") = ricochet::version;
+  bind_errors(module);
+  bind_log(module);
+  bind_case(module);
+  bind_session(module);
+  bind_results(module);
+  bind_contact(module);
+  bind_mass(module);
+  bind_study(module);
+  module.def("set_thread_count", &ricochet::set_thread_count, py::arg("count"));
+  module.def("thread_count", &ricochet::thread_count);
+}

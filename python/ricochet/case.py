@@ -1,0 +1,187 @@
+"""Cases: from a file, or made in Python from dictionaries, with the same checks and messages."""
+
+import math
+import os
+from collections.abc import Mapping
+
+import numpy
+
+from . import _core, places
+from .errors import InputError, UsageError
+from .mesh import Mesh
+
+# Keys that name files. In a dictionary they are relative to the folder in which Python works.
+FILE_KEYS = ("file", "table")
+
+
+def toml_value(value, path):
+    """A value as TOML writes it."""
+    if isinstance(value, (bool, numpy.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, numpy.integer)):
+        return str(int(value))
+    if isinstance(value, (float, numpy.floating)):
+        number = float(value)
+        return repr(number) if math.isfinite(number) else {math.inf: "inf", -math.inf: "-inf"}.get(number, "nan")
+    if isinstance(value, (str, os.PathLike)):
+        return toml_text(os.fspath(value))
+    if isinstance(value, numpy.ndarray):
+        value = value.tolist()
+        if not isinstance(value, list):
+            return toml_value(value, path)
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(toml_value(entry, path) for entry in value) + "]"
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{toml_key(key)} = {toml_value(entry, path)}" for key, entry in value.items()) + " }"
+    raise InputError(f"{places.entry(path)}: a value of type {type(value).__name__} cannot be in a case; numbers, texts, "
+                     "booleans, lists, arrays and dictionaries can")
+
+
+def toml_text(text):
+    escapes = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+    return '"' + "".join(escapes.get(c, c if c.isprintable() else f"\\U{ord(c):08x}") for c in text) + '"'
+
+
+def toml_key(key):
+    if not isinstance(key, str):
+        raise InputError(f"the key {key!r} of a case is no text")
+    return key if key and all(c.isascii() and (c.isalnum() or c in "-_") for c in key) else toml_text(key)
+
+
+def is_list_of_tables(value):
+    return isinstance(value, (list, tuple)) and len(value) > 0 and all(isinstance(entry, Mapping) for entry in value)
+
+
+class Writer:
+    """Writes nested dictionaries as TOML, a line per entry, and remembers which."""
+
+    def __init__(self):
+        self.lines, self.entries = [], []
+
+    def line(self, text, path):
+        self.lines.append(text)
+        self.entries.append(path)
+
+    def table(self, name, table, path):
+        simple = {key: value for key, value in table.items() if not isinstance(value, Mapping) and not is_list_of_tables(value)}
+        for key, value in simple.items():
+            self.line(f"{toml_key(key)} = {toml_value(value, path + (key,))}", path + (key,))
+        for key, value in table.items():
+            below = name + (toml_key(key),)
+            if isinstance(value, Mapping):
+                self.line(f"[{'.'.join(below)}]", path + (key,))
+                self.table(below, value, path + (key,))
+            elif is_list_of_tables(value):
+                for number, entry in enumerate(value):
+                    self.line(f"[[{'.'.join(below)}]]", path + (key, number))
+                    self.table(below, entry, path + (key, number))
+
+
+def with_whole_paths(table, folder):
+    """The same with paths of files that hold in any folder."""
+    result = {}
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            value = with_whole_paths(value, folder)
+        elif is_list_of_tables(value):
+            value = [with_whole_paths(entry, folder) for entry in value]
+        elif key in FILE_KEYS and isinstance(value, (str, os.PathLike)):
+            value = os.path.join(folder, os.fspath(value))
+        result[key] = value
+    return result
+
+
+def change_texts(changes):
+    """Changes of a case ({"time.step": 1e-4}, or texts as --set takes them) as the program has them."""
+    if changes is None:
+        return []
+    if isinstance(changes, str):
+        raise UsageError(f'changes are a dictionary, {{"time.step": 1e-4}}, or a list of texts; not the text {changes!r}')
+    if not isinstance(changes, Mapping):
+        return [str(change) for change in changes]
+    return [f"{key}={toml_value(value, (key,))}" for key, value in changes.items()]
+
+
+class Case:
+    """What is to be simulated.
+
+    `source` is the path of a case file or a dictionary of its sections. `mesh`: the body, in place of a file. `changes`:
+    values by key path, as --set takes them: {"time.step": 1e-4, "contact.0.friction": 0.2}. The case is checked as a whole;
+    InputError has every problem that was found.
+    """
+
+    def __init__(self, source, changes=None, *, mesh=None):
+        if isinstance(source, Case):
+            if mesh is None:
+                mesh = source.mesh
+            changes = source.changes + change_texts(changes)
+            source = source.path if source.dictionary is None else source.dictionary
+        self.changes = change_texts(changes)
+        self.mesh, self.dictionary, self.text, self._lines = mesh, None, None, None
+        if isinstance(source, Mapping):
+            self._read_dictionary(source)
+        elif isinstance(source, (str, os.PathLike)):
+            if mesh is not None:
+                raise UsageError("a case from a file names its mesh; give `mesh` with a dictionary, or change mesh.file")
+            self._core, self.warnings = _core.read_case(os.fspath(source), self.changes)
+        else:
+            raise UsageError(f"a case is a path or a dictionary, not a {type(source).__name__}")
+
+    def _read_dictionary(self, source):
+        table = with_whole_paths(source, os.getcwd())
+        if self.mesh is not None:
+            if not isinstance(self.mesh, Mesh):
+                raise UsageError("mesh: a ricochet.Mesh is needed; Mesh.from_meshio and Mesh.from_gmsh make one")
+            section = dict(table.get("mesh", {}))
+            if "file" in section:
+                raise UsageError('case["mesh"]["file"]: the mesh is given already, as `mesh`')
+            table["mesh"] = {"file": self.mesh.path, **section}
+        self.dictionary = source
+        self._table = table
+        writer = Writer()
+        writer.line("# A case of a program in Python.", ())  # what is said of the whole case stands here
+        writer.table((), table, ())
+        self._lines = places.Lines(writer.entries)
+        self.text = "\n".join(writer.lines) + "\n"
+        self._core, self.warnings = _core.read_case_text(self.text, self._lines.name, self.changes)
+
+    @property
+    def path(self):
+        """Of its file; of a dictionary, the name that messages have for it."""
+        return self._core.path
+
+    @property
+    def title(self):
+        return self._core.title
+
+    @property
+    def values(self):
+        """All values that hold, defaults and changes included, as texts by key path."""
+        return self._core.values
+
+    def write(self, folder, name="case.toml"):
+        """Writes the case, and a mesh that was given as arrays, into a folder. Returns the path of the case file."""
+        os.makedirs(folder, exist_ok=True)
+        path = os.path.join(folder, name)
+        if self.text is None:
+            raise UsageError(f"{self.path} is a file already")
+        text = self.text
+        if self.mesh is not None:
+            own = os.path.splitext(name)[0] + ".msh"
+            self.mesh.write(os.path.join(folder, own))
+            text = text.replace(f"file = {toml_text(self.mesh.path)}", f"file = {toml_text(own)}", 1)
+        with open(path + ".part", "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(path + ".part", path)
+        return path
+
+    def check(self):
+        """Reads the mesh and builds the problem, as a run would. Returns the warnings."""
+        from .session import Session
+
+        session = Session(self)
+        session.build()
+        return list(session.warnings)
+
+    def __repr__(self):
+        return f"<Case {self.title or self.path!r}>"

@@ -1,0 +1,68 @@
+"""Exceptions. Their texts say what is wrong, where (file:line:column, or the entry of a dictionary), and what to do."""
+
+import re
+from typing import List, NamedTuple
+
+from . import places
+
+
+class Place(NamedTuple):
+    """Where something stands in a file. Columns count from 1."""
+
+    file: str
+    line: int
+    column: int
+
+
+class Error(Exception):
+    """What a user can meet. `exit_status` is that of the program for the same problem."""
+
+    exit_status = 1
+
+    def __init__(self, message):
+        super().__init__(message)
+        self.message = message
+
+    @property
+    def places(self) -> List[Place]:
+        """The places in files that the message names."""
+        found = re.finditer(r"^(.*?\.[A-Za-z0-9]+):(\d+):(\d+): ", self.message, re.MULTILINE)
+        return [Place(match.group(1), int(match.group(2)), int(match.group(3))) for match in found]
+
+
+class UsageError(Error, ValueError):
+    """Wrong use of a function: what does not fit together."""
+
+    exit_status = 1
+
+
+class InputError(Error, ValueError):
+    """A case, a mesh or a file of results that is not valid."""
+
+    exit_status = 2
+
+
+class NotConvergedError(Error, ArithmeticError):
+    """A step found no solution. The state is that before the step."""
+
+    exit_status = 3
+
+
+class FileAccessError(Error, OSError):
+    """A file cannot be read or written."""
+
+    exit_status = 4
+
+
+class ExpectationError(Error):
+    """A run is complete, but an [[expect]] entry of its case does not hold."""
+
+    exit_status = 5
+
+
+KINDS = {kind.exit_status: kind for kind in (UsageError, InputError, NotConvergedError, FileAccessError, ExpectationError)}
+
+
+def from_core(status, message):
+    """The exception for an error of the library."""
+    return KINDS.get(status, Error)(places.translate(message))

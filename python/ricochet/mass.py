@@ -1,0 +1,40 @@
+"""Mass matrices alone: among others those without inertia on contact nodes."""
+
+from typing import Any, NamedTuple
+
+import numpy
+
+from . import _core
+from .errors import InputError
+from .sparse import csc, parts
+
+
+class BuiltMass(NamedTuple):
+    """`matrix`: nodes x nodes, scipy.sparse.csc_matrix. `construction`: the one that was taken, and `reason` why, where there
+    was a choice."""
+
+    matrix: Any
+    construction: str
+    reason: str
+
+
+def names():
+    """What `type` can be; those that work cell by cell need a Session (Session.mass)."""
+    return _core.mass_names()
+
+
+def build(consistent, points, contact_nodes, type="equivalent", **parameters):
+    """Distributes a consistent mass matrix anew.
+
+    `consistent`: the integrals of density times products of shape functions, nodes x nodes, of scipy.sparse. `points`:
+    nodes x dimension. `contact_nodes`: numbers from 0. `parameters`: the keys that the type has in a case file.
+    """
+    points = numpy.asarray(points, dtype=float)
+    data, indices, starts, size = parts(consistent, "the consistent mass")
+    if points.ndim != 2 or len(points) != size or points.shape[1] not in (2, 3):
+        raise InputError(f"mass: points are an array of {size} x 2 or 3, not of shape {points.shape}")
+    nodes = numpy.unique(numpy.asarray(contact_nodes, dtype=numpy.int64).reshape(-1))
+    if nodes.size and (nodes[0] < 0 or nodes[-1] >= size):
+        raise InputError(f"mass: contact node {nodes[-1] if nodes[0] >= 0 else nodes[0]} is none of the {size} nodes")
+    construction, reason, built = _core.build_mass(type, data, indices, starts, size, points, nodes.tolist(), parameters)
+    return BuiltMass(csc(built), construction, reason)

@@ -1,0 +1,69 @@
+"""How a run shows itself in a notebook: what came out, its warnings, and a picture."""
+
+import base64
+import html
+import io
+
+from .messages import logger
+
+
+def rows_of(run):
+    """(what, value) of the answers that users look for."""
+    summary = run.summary
+    yield "status", run.status + (f": {summary['message']}" if summary["message"] else "")
+    yield "scheme, mass", f"{summary['scheme']}, {summary['mass']}"
+    yield "size", f"{summary['nodes']} nodes, {summary['contact_points']} contact points, {summary['steps']} steps"
+    energy = summary["extrema"].get("total_energy")
+    if energy:
+        yield "total energy", f"{energy['first']:.6g} at the start, {energy['last']:.6g} at the end"
+    for number, impact in enumerate(run.impacts[:3]):
+        restitution = impact["restitution"]
+        if restitution is None:
+            restitution = "none" + (f" ({impact['why_no_restitution']})" if impact["why_no_restitution"] else "")
+        else:
+            restitution = f"{restitution:.4g}" + (" (inexact)" if impact["restitution_inexact"] else "")
+        yield f"impact {number + 1}", (f"t = {impact['begin']:.4g}, for {impact['duration']:.4g}; restitution {restitution}; largest "
+                                       f"force {impact['largest_force']:.4g}")
+    if len(run.impacts) > 3:
+        yield "", f"and {len(run.impacts) - 3} impacts more: run.impacts"
+    peak = summary.get("peak_stress")
+    if peak:
+        place = ", ".join(f"{x:.4g}" for x in peak["place"])
+        yield "largest von Mises stress", f"{peak['von_mises']:.4g} at t = {peak['time']:.4g}, place ({place})"
+    for entry in run._broken_expectations():
+        yield "expectation", run._text_of(entry)
+
+
+def image_of(run):
+    """The body at the frame of the largest stress, as a PNG in base64; None where there is nothing to be shown."""
+    try:
+        import matplotlib
+        from matplotlib import pyplot
+    except ImportError:
+        return None
+    if len(run.frames) == 0:
+        return None
+    peak = run.summary.get("peak_stress")
+    frame = run.frames[int(abs(run.frames.times - peak["time"]).argmin())] if peak else run.frames[-1]
+    field = "von_mises" if "von_mises" in run.fields else "displacement"
+    with matplotlib.rc_context():
+        drawn = frame.plot(field)
+        file = io.BytesIO()
+        drawn.savefig(file, format="png", dpi=80)
+        pyplot.close(drawn)
+    return base64.b64encode(file.getvalue()).decode()
+
+
+def page_of(run):
+    rows = "".join(f"<tr><td style='text-align:left'>{html.escape(what)}</td><td style='text-align:left'>{html.escape(str(value))}</td></tr>"
+                   for what, value in rows_of(run))
+    warnings = "".join(f"<li>{html.escape(text)}</li>" for text in run.warnings)
+    try:
+        image = image_of(run)
+    except Exception as problem:  # what was to be shown is in the table
+        logger.warning("no picture of %s: %s", run.directory, problem)
+        image = None
+    picture = f"<img alt='the body' src='data:image/png;base64,{image}'>" if image else ""
+    return (f"<div><b>{html.escape(run.summary['title'] or run.directory)}</b><table>{rows}</table>"
+            + (f"<details open><summary>{len(run.warnings)} warnings</summary><ul>{warnings}</ul></details>" if warnings else "")
+            + picture + "</div>")

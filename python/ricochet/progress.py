@@ -1,0 +1,89 @@
+"""How far a run is: on a terminal a line, in a notebook a bar, elsewhere nothing."""
+
+import sys
+import time
+from contextlib import contextmanager
+
+from . import _core  # noqa: F401  (the package is loaded through it)
+
+
+def in_notebook():
+    shell = sys.modules.get("IPython")
+    if shell is None or shell.get_ipython() is None:
+        return False
+    return type(shell.get_ipython()).__name__ == "ZMQInteractiveShell"
+
+
+def duration(seconds):
+    if seconds < 60:
+        return f"{seconds:.0f} s"
+    minutes = int(seconds / 60)
+    return f"{minutes} min {int(seconds) % 60:02d} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+class Progress:
+    """Of a session, from where it is."""
+
+    def __init__(self, session):
+        self.session, self.began, self.start = session, time.monotonic(), None
+        self.open = False
+
+    def line(self, step, at):
+        done = min(1.0, at / self.session.end) if self.session.end > 0 else 1.0
+        if self.start is None:
+            self.start = done
+        seconds = time.monotonic() - self.began
+        part = done - self.start
+        left = f", {duration(seconds * (1 - done) / part)} left" if part > 0.02 and seconds > 1 else ""
+        return done, f"step {step}, t = {at:.4g} of {self.session.end:.4g}{left}"
+
+    def __call__(self, step, at):
+        self.show(*self.line(step, at))
+
+    def show(self, done, text):
+        bar = "#" * int(20 * done)
+        sys.stderr.write(f"\r[{bar:<20}] {100 * done:3.0f} %  {text}\x1b[K")
+        sys.stderr.flush()
+        self.open = True
+
+    def close(self):
+        if self.open:
+            self(self.session.step_number, self.session.time)
+            sys.stderr.write("\n")
+            sys.stderr.flush()
+
+
+class NotebookProgress(Progress):
+    def __init__(self, session):
+        super().__init__(session)
+        self.display = None
+
+    def show(self, done, text):
+        from IPython.display import HTML, display
+
+        page = HTML(f'<progress value="{done:.4f}" max="1" style="width: 20em"></progress> {100 * done:.0f} %, {text}')
+        if self.display is None:
+            self.display = display(page, display_id=True)
+        else:
+            self.display.update(page)
+        self.open = True
+
+    def close(self):
+        if self.open:
+            self(self.session.step_number, self.session.time)
+
+
+@contextmanager
+def progress_of(wanted, session):
+    """What Session.run calls with step and time, or None."""
+    notebook = in_notebook()
+    if wanted is None:
+        wanted = notebook or (sys.stderr is not None and sys.stderr.isatty())
+    if not wanted or session.is_complete_already:
+        yield None
+        return
+    shown = NotebookProgress(session) if notebook else Progress(session)
+    try:
+        yield shown
+    finally:
+        shown.close()

@@ -1,0 +1,311 @@
+"""Runs that are finished or going on, read from their directories."""
+
+import difflib
+import json
+import os
+from collections.abc import Mapping
+from typing import NamedTuple, Optional, Tuple
+
+import numpy
+
+from . import _core
+from .errors import ExpectationError, InputError, UsageError
+from .messages import logger
+
+
+class Maximum(NamedTuple):
+    """The largest value of a field, its time, and its place in the undeformed body: of a cell the centre. `among` says what
+    was looked at: "every state" that the run has looked at, or "frames"."""
+
+    value: float
+    time: float
+    place: Optional[Tuple[float, ...]]
+    among: str
+
+
+class History(Mapping):
+    """The columns of a run's history, and of its probes that have rows of their own, as numpy arrays without copies."""
+
+    def __init__(self, data):
+        self._data, self._names = data, list(data.column_names)
+
+    def _check(self, name):
+        if name in self._names:
+            return
+        near = difflib.get_close_matches(str(name), self._names, 3) or self._names
+        raise KeyError(f'there is no column "{name}" in the history; there is {", ".join(near)}')
+
+    def __getitem__(self, name):
+        self._check(name)
+        return self._data.column(name)
+
+    def times_of(self, name):
+        """The times of a column's rows: those of probes with an interval of their own are fewer, or more."""
+        self._check(name)
+        return self._data.times_of(name)
+
+    def __iter__(self):
+        return iter(self._names)
+
+    def __len__(self):
+        return len(self._names)
+
+    def to_pandas(self):
+        """A pandas.DataFrame of the columns of history.csv, by time."""
+        import pandas
+
+        times = self["time"]
+        same = {name: self[name] for name in self if len(self[name]) == len(times) and name != "time"}
+        return pandas.DataFrame(same, index=pandas.Index(times, name="time"))
+
+    def __repr__(self):
+        return f"<History of {len(self['time'])} rows: {', '.join(self._names)}>"
+
+
+class Frame(Mapping):
+    """The fields at one time: frame["von_mises"] is a numpy array, of points (points x components) or of cells."""
+
+    def __init__(self, run, number):
+        self._run, self.number, self.time = run, number, run._data.frame_times[number]
+
+    def __getitem__(self, name):
+        if name not in self._run.fields:
+            near = difflib.get_close_matches(str(name), self._run.fields, 3) or self._run.fields
+            raise KeyError(f'there is no field "{name}"; there is {", ".join(near)}')
+        return self._run._data.read_field(self.number, name)
+
+    def __iter__(self):
+        return iter(self._run.fields)
+
+    def __len__(self):
+        return len(self._run.fields)
+
+    @property
+    def points(self):
+        """Places of the points in the undeformed body, points x dimension."""
+        return self._run.points
+
+    @property
+    def positions(self):
+        """Where the points are, points x dimension."""
+        return self.points + self["displacement"][:, :self._run.dimension]
+
+    @property
+    def cells(self):
+        """(kind, cells x points) of each block, with meshio's names and VTK's order."""
+        return self._run.cells
+
+    def to_meshio(self):
+        """A meshio.Mesh of this frame."""
+        import meshio
+
+        run = self._run
+        points = numpy.zeros((len(run.points), 3))
+        points[:, :run.dimension] = run.points
+        at_points = {name: self[name] for name in run.fields if run.is_on_points(name)}
+        borders = numpy.cumsum([len(nodes) for _, nodes in self.cells])[:-1]
+        at_cells = {name: numpy.split(self[name], borders) for name in run.fields if not run.is_on_points(name)}
+        return meshio.Mesh(points, list(self.cells), point_data=at_points, cell_data=at_cells)
+
+    def plot(self, field="von_mises", **options):
+        """A matplotlib figure of the body as it is now, coloured by a field; see ricochet.picture."""
+        from .pictures import picture
+
+        return picture(self, field, **options)
+
+    def __repr__(self):
+        return f"<Frame {self.number} at t = {self.time:.6g}: {', '.join(self._run.fields)}>"
+
+
+class Frames:
+    """All frames, as a sequence."""
+
+    def __init__(self, run):
+        self._run = run
+
+    def __len__(self):
+        return len(self._run._data.frame_times)
+
+    def __getitem__(self, number):
+        if isinstance(number, slice):
+            return [Frame(self._run, k) for k in range(*number.indices(len(self)))]
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"frame {number}: the run has {len(self)} frames")
+        return Frame(self._run, int(number) % len(self))
+
+    @property
+    def times(self):
+        return numpy.array(self._run._data.frame_times)
+
+    def __repr__(self):
+        return f"<{len(self)} frames>"
+
+
+class Run:
+    """What a run has left in its directory so far."""
+
+    def __init__(self, directory):
+        self.directory = os.fspath(directory)
+        self.reload()
+
+    def reload(self):
+        """Reads again what a run that goes on has written meanwhile. Arrays that were taken before stay what they are."""
+        self._data = _core.read_run(self.directory)
+        self.summary = json.loads(self._data.summary_json)
+        self.history = History(self._data)
+        return self
+
+    @property
+    def status(self):
+        """"done", "running", "failed" or "interrupted"."""
+        return self.summary["status"]
+
+    @property
+    def time(self):
+        """The times of the history's rows."""
+        return self.history["time"]
+
+    @property
+    def warnings(self):
+        return list(self.summary["warnings"]) + list(self._data.notes)
+
+    @property
+    def dimension(self):
+        return self._data.dimension
+
+    @property
+    def fields(self):
+        """Names of the fields in the frames."""
+        return [name for name, _, _ in self._data.fields]
+
+    def is_on_points(self, field):
+        """Whether a field has values on points; else on cells."""
+        return next(on_points for name, on_points, _ in self._data.fields if name == field)
+
+    @property
+    def points(self):
+        """Places of the points in the undeformed body, points x dimension."""
+        return self._data.points[:, :self.dimension]
+
+    @property
+    def cells(self):
+        """(kind, cells x points) of each block, with meshio's names and VTK's order."""
+        return self._data.cells
+
+    @property
+    def contact_facets(self):
+        """The contact boundary, as cells has it."""
+        return self._data.contact_facets
+
+    @property
+    def frames(self):
+        return Frames(self)
+
+    def frame(self, t=None, *, number=None):
+        """The frame nearest to a time, or by its number (-1: the last)."""
+        frames = self.frames
+        if len(frames) == 0:
+            raise InputError(f"{self.directory}: the run has written no fields (output.fields_every)")
+        if (t is None) == (number is None):
+            raise UsageError("frame: give a time or a number")
+        if number is not None:
+            return frames[number]
+        times = frames.times
+        if not numpy.isfinite(t) or t < times[0] - 1e-9 * abs(times[-1]) or t > times[-1] * (1 + 1e-9):
+            raise UsageError(f"frame: the time {t} is outside of the frames, from {times[0]:.9g} to {times[-1]:.9g}")
+        return frames[int(numpy.abs(times - t).argmin())]
+
+    def maximum(self, name):
+        """The largest value of a field, with its time and place, or of a column of the history, with its time. The von Mises
+        stress is that of all states that the run has looked at; other fields are known in the frames only, and of vectors
+        the lengths are compared."""
+        if name == "von_mises" and self.summary.get("peak_stress"):
+            peak = self.summary["peak_stress"]
+            return Maximum(peak["von_mises"], peak["time"], tuple(peak["place"]), "every state" if peak["states_looked_at"] ==
+                           peak["states"] else f"{peak['states_looked_at']} of {peak['states']} states")
+        if name in self.fields:
+            return self._largest_in_frames(name)
+        values = self.history[name]
+        at = int(numpy.nanargmax(values))
+        return Maximum(float(values[at]), float(self.history.times_of(name)[at]), None, "rows of the history")
+
+    def _largest_in_frames(self, name):
+        best = None
+        for frame in self.frames:
+            values = frame[name]
+            if values.ndim == 2:
+                if values.shape[1] > 3:
+                    raise UsageError(f'maximum: the field "{name}" is a tensor; take one of its components from the frames')
+                values = numpy.linalg.norm(values, axis=1)
+            if values.size == 0 or numpy.isnan(values).all():
+                continue
+            at = int(numpy.nanargmax(values))
+            if best is None or values[at] > best[0]:
+                best = (float(values[at]), frame.time, at)
+        if best is None:
+            raise InputError(f'{self.directory}: the field "{name}" has no value in any frame')
+        place = self.points[best[2]] if self.is_on_points(name) else self._centre(best[2])
+        return Maximum(best[0], best[1], tuple(float(x) for x in place), "frames")
+
+    def _centre(self, cell):
+        corners = {"triangle": 3, "quad": 4, "tetra": 4, "hexahedron": 8}
+        for kind, nodes in self.cells:
+            if cell < len(nodes):
+                own = nodes[cell][:corners[kind.rstrip("0123456789")]]
+                return self.points[own].mean(axis=0)
+            cell -= len(nodes)
+        raise IndexError(cell)
+
+    @property
+    def impacts(self):
+        """A dictionary for each impact: begin, duration, restitution, largest_force, normal_velocity_before, ..."""
+        return self.summary["impacts"]
+
+    @property
+    def expectations(self):
+        """A dictionary for each [[expect]] entry: quantity, value, wanted, checked, holds, note."""
+        return self.summary["expectations"]
+
+    def _broken_expectations(self):
+        return [entry for entry in self.expectations if entry["checked"] and not entry["holds"]]
+
+    def _warn_of_expectations(self):
+        for entry in self._broken_expectations():
+            logger.warning("%s", self._text_of(entry))
+
+    def _text_of(self, entry):
+        found = entry["note"] or f"found {entry['value']:.9g}"
+        return f"{entry['location']}: expected {entry['name'] or entry['quantity']} to be {entry['wanted']}, {found}"
+
+    def check(self):
+        """Raises ExpectationError where an [[expect]] entry that applies does not hold; NotConvergedError where the run has
+        failed. Returns this run."""
+        broken = self._broken_expectations()
+        if broken:
+            raise ExpectationError("\n".join(self._text_of(entry) for entry in broken))
+        return self
+
+    def plot(self, *what, **options):
+        """A matplotlib figure of this run; see ricochet.plot."""
+        from .figures import plot
+
+        return plot([self], *what, **options)
+
+    def report(self, path=None):
+        """Writes the report for a browser, one file; its path. Without `path`: report.html in the directory."""
+        from .figures import write_report
+
+        return write_report([self], path or os.path.join(self.directory, "report.html"))
+
+    def __repr__(self):
+        return f"<Run {self.directory}: {self.status}, {self.summary['steps']} steps to t = {self.time[-1]:.6g}>"
+
+    def _repr_html_(self):
+        from .page import page_of
+
+        return page_of(self)
+
+
+def open(directory):
+    """The Run in a directory, finished or going on."""
+    return Run(directory)

@@ -1,0 +1,121 @@
+"""A case that is open, step by step; and whole runs."""
+
+import os
+
+from . import _core
+from .case import Case
+from .errors import Error, UsageError
+from .progress import progress_of
+from .results import Run
+from .sparse import csc
+
+
+class Session(_core.Session):
+    """A case that is open: step it, look at its state, change what acts, save and take up states.
+
+        session = ricochet.Session("case.toml", {"time.step": 1e-4})
+        while session.time < session.end:
+            session.step()
+            print(session.time, session.displacement[:, 1].min())
+
+    `source`, `changes` and `mesh` are those of Case. Arrays of the state (displacement, velocity, acceleration, reactions,
+    friction_reactions) are views without copies: they always show the present state, and cannot be written to; copy what is
+    to be kept. Their rows are nodes in the order of `points`; `node_numbers` are the numbers of the mesh.
+
+    A session that writes (write_to) is closed with finish(), or as a context:
+
+        with ricochet.Session("case.toml") as session:
+            session.write_to("out/a")
+            session.run()
+    """
+
+    def __init__(self, source, changes=None, *, mesh=None):
+        self.case = source if isinstance(source, Case) and changes is None and mesh is None else Case(source, changes, mesh=mesh)
+        super().__init__(self.case._core, list(self.case.warnings))
+        self.directory = None
+        self._summary = None
+
+    def run(self, each=None, *, progress=None):
+        """Takes all steps that are left. `each` is called with this session after every one, and ends them where it returns
+        False; what it raises ends them, too. `progress`: None: where somebody looks; True, False."""
+        call = None if each is None else lambda: each(self)
+        with progress_of(progress, self) as show:
+            self._run(call, show)
+        return self
+
+    def write_to(self, directory, *, force=False, resume=False, export_contact=""):
+        """From here on the session writes what a run writes (history, fields, checkpoints, summary) into a directory.
+        `force`: over a run that is there. `resume`: goes on with it. `export_contact`: steps whose contact problems are
+        written as FCLib's files ("1:10")."""
+        directory = os.fspath(directory)
+        kept = self.case.text is not None
+        case_path = os.path.join(directory, "case.toml") if kept else ""
+        self._write_to(directory, force, resume, True, export_contact, case_path, self.case.changes)
+        if kept and not self.is_complete_already:
+            self.case.write(directory)
+        self.directory = directory
+
+    def finish(self):
+        """Ends what write_to has begun, and returns the Run. Before the last step the run is an interrupted one, with a
+        checkpoint to go on from."""
+        if self._summary is None:
+            self._summary = self._finish()
+        return Run(self.directory)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, problem, trace):
+        if self.directory is None or self._summary is not None or not self.writes:
+            return
+        try:
+            self.finish()
+        except Error:
+            if kind is None:
+                raise
+
+    def save(self, path=None):
+        """The state, and what has been set, as bytes from which a session of the same case goes on with the same bits; with
+        `path`, written to that file, too."""
+        saved = self._save()
+        if path is not None:
+            with open(os.fspath(path) + ".part", "wb") as file:
+                file.write(saved)
+            os.replace(os.fspath(path) + ".part", path)
+        return saved
+
+    def resume(self, saved):
+        """Before the first step: goes on from what save() gave, bytes or the path of a file."""
+        if not isinstance(saved, (bytes, bytearray, memoryview)):
+            with open(saved, "rb") as file:
+                saved = file.read()
+        self._resume(bytes(saved))
+
+    @property
+    def mass(self):
+        """The mass matrix M, dofs x dofs, as a scipy.sparse.csc_matrix: dof k of node i is i * dimension + k."""
+        return csc(self.mass_parts)
+
+    def stiffness(self, *, at_state=False):
+        """The tangent of the internal force at zero displacement, or at that of the state, as mass has it."""
+        return csc(self.stiffness_parts(at_state))
+
+    def __repr__(self):
+        return f"<Session of {self.case!r}>"
+
+
+def run(source, directory, changes=None, *, mesh=None, each=None, force=False, resume=False, export_contact="", progress=None):
+    """Runs a case into a directory, as `ricochet run` does, and returns the Run.
+
+    `source`, `changes`, `mesh`: see Case. `each`, `progress`: see Session.run. `force`, `resume`, `export_contact`: see
+    Session.write_to. Ctrl-C, and an exception in `each`, leave an interrupted run with a checkpoint, which `resume` goes on
+    from. Expectations of the case that do not hold are warnings; Run.check() raises them.
+    """
+    if directory is None:
+        raise UsageError("run: the directory of the results is needed")
+    with Session(source, changes, mesh=mesh) as session:
+        session.write_to(directory, force=force, resume=resume, export_contact=export_contact)
+        session.run(each, progress=progress)
+        finished = session.finish()
+    finished._warn_of_expectations()
+    return finished

@@ -1,0 +1,114 @@
+"""Studies: one case with other values, several runs at a time, and their table."""
+
+import html
+import os
+from collections.abc import Mapping
+
+import numpy
+
+from . import _core
+from .case import Case, change_texts, toml_value
+from .errors import UsageError
+from .program import program
+
+
+class Study(Mapping):
+    """The table of a study: study["restitution"] is a column as a numpy array. `notes` say what the columns mean and why runs
+    failed; `warnings` are those of the runs."""
+
+    def __init__(self, directory, parts):
+        self.directory = directory
+        self.columns, self.rows, self.notes, self.warnings, self.done = parts
+
+    def __getitem__(self, name):
+        if name not in self.columns:
+            raise KeyError(f'there is no column "{name}" in the table; there is {", ".join(self.columns)}')
+        at = self.columns.index(name)
+        values = [row[at] for row in self.rows]
+        if all(value is None or isinstance(value, (int, float)) for value in values):
+            return numpy.array([numpy.nan if value is None else value for value in values])
+        return numpy.array(["" if value is None else str(value) for value in values])
+
+    def __iter__(self):
+        return iter(self.columns)
+
+    def __len__(self):
+        return len(self.columns)
+
+    @property
+    def runs(self):
+        """The runs that can be read, in the order of the rows."""
+        from .results import Run
+
+        return [Run(os.path.join(self.directory, "runs", str(name))) for name in self["run"]
+                if _core.holds_run(os.path.join(self.directory, "runs", str(name)))]
+
+    def to_pandas(self):
+        import pandas
+
+        return pandas.DataFrame(self.rows, columns=self.columns)
+
+    @property
+    def table(self):
+        """A pandas.DataFrame where pandas is there; else this study, whose columns are numpy arrays."""
+        try:
+            return self.to_pandas()
+        except ImportError:
+            return self
+
+    def plot(self, *what, **options):
+        """A figure of the study; see ricochet.plot."""
+        from .figures import plot
+
+        return plot([self], *what, **options)
+
+    def __repr__(self):
+        return f"<Study {self.directory}: {self.done} of {len(self.rows)} runs done; {', '.join(self.columns)}>"
+
+    def _repr_html_(self):
+        head = "".join(f"<th>{html.escape(name)}</th>" for name in self.columns)
+        cell = lambda value: "" if value is None else f"{value:.5g}" if isinstance(value, float) else html.escape(str(value))
+        rows = "".join("<tr>" + "".join(f"<td>{cell(value)}</td>" for value in row) + "</tr>" for row in self.rows)
+        return f"<table><tr>{head}</tr>{rows}</table>"
+
+
+def axis_of(key, values):
+    """A key (or several that change together, as a tuple) and its values, as the library has them."""
+    keys = [key] if isinstance(key, str) else list(key)
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise UsageError(f"study: the values of {key} are a list, not {values!r}")
+    rows = [[value] if isinstance(key, str) else list(value) for value in values]
+    for row in rows:
+        if len(row) != len(keys):
+            raise UsageError(f"study: {', '.join(keys)} change together: each of their values is a tuple of {len(keys)}, not {row!r}")
+    return keys, [["-" if value is None else toml_value(value, (key,)) for key, value in zip(keys, row)] for row in rows]
+
+
+def study(source, vary, directory, changes=None, *, mesh=None, jobs=0, threads=1, quantities=(), exact=None, reference="", compare=(),
+          order="", resume=False, force=False):
+    """Runs all combinations of values of a case, some at a time, each in a process of its own, and returns the Study.
+
+    `vary`: {"time.step": [1e-3, 5e-4], ("mesh.file", "time.step"): [("a.msh", 1e-3), ("b.msh", 5e-4)]}; None stands for the value
+    that the case has. `jobs`: runs at a time; 0: as many as there are cores for. `quantities`, `exact`, `reference`, `compare`,
+    `order`: what the table says besides, as the options of `ricochet study`. `resume` goes on with the study in the directory,
+    also with more values; `force` starts anew.
+    """
+    directory = os.fspath(directory)
+    case = source if isinstance(source, Case) and changes is None and mesh is None else Case(source, changes, mesh=mesh)
+    axes = [axis_of(key, values) for key, values in vary.items()]
+    if case.text is None:
+        path = os.path.abspath(case.path)
+    else:
+        path = os.path.join(os.path.abspath(directory), "case.toml")
+        # A study that is there and is to stay keeps its case; the library refuses what comes now.
+        if resume or force or not (_core.holds_study(directory) or _core.holds_run(directory)):
+            case.write(directory)
+    questions = {"quantities": list(quantities), "exact": list((exact or {}).items()), "reference": reference, "compare": list(compare),
+                 "order": order}
+    parts = _core.conduct_study(directory, path, change_texts(case.changes), axes, questions, jobs, threads, resume, force, program())
+    return Study(directory, parts)
+
+
+def open_study(directory):
+    """The Study in a directory, as far as its runs are."""
+    return Study(os.fspath(directory), _core.read_study(os.fspath(directory)))
