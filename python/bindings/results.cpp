@@ -21,6 +21,7 @@ RunData read_run(const std::string& directory) {
   const py::gil_scoped_release unlocked;
   std::vector<RunData> runs;
   read_with_patience({directory}, [&] { runs = read_runs({directory}, true); });
+  if (runs.front().results != nullptr) runs.front().results->release();
   return std::move(runs.front());
 }
 
@@ -45,6 +46,7 @@ py::array read_field(const RunData& run, Index frame, const std::string& name) {
   {
     const py::gil_scoped_release unlocked;
     results.read(frame, field, values);
+    run.results->release();
   }
   const Index rows = field.on_nodes ? results.nodes().cols() : results.cell_count();
   return give(std::move(values), rows, field.components > 1 ? field.components : 0);

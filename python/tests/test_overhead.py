@@ -12,6 +12,7 @@ CASE = {
     "obstacle": {"floor": {"type": "plane", "point": [0, 0], "normal": [0, 1]}},
     "contact": [{"group": "bottom", "obstacle": "floor"}],
     "mass": {"type": "lumped"},
+    "initial": {"velocity": [0.1, -0.2]},
     "time": {"step": 1e-3, "end": 1e3, "scheme": "newmark", "preset": "trapezoidal"},
 }
 

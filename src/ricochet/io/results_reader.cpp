@@ -1,9 +1,11 @@
 #include "ricochet/io/results_reader.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/hdf5/hdf5_file.hpp"
@@ -13,9 +15,28 @@
 namespace ricochet {
 
 struct ResultsReader::File {
-  explicit File(const std::string& path) : reader(path), frames(reader.members("/frames")) {}
-  Hdf5Reader reader;
+  explicit File(const std::string& path) : path(path), reader(path), frames(reader->members("/frames")) {
+    identify(identity);
+  }
+
+  const Hdf5Reader& open() {
+    if (reader) return *reader;
+    struct stat now {};
+    reader.emplace(path);
+    if (identify(now); now.st_dev != identity.st_dev || now.st_ino != identity.st_ino)
+      reader->fail("/frames", "another run has been written since this one was read: read it again");
+    return *reader;
+  }
+
+  std::string path;
+  std::optional<Hdf5Reader> reader;
   std::vector<Hdf5Member> frames;  ///< looked up at once: a run may go on adding to them
+  struct stat identity {};
+
+ private:
+  void identify(struct stat& file) const {
+    if (stat(path.c_str(), &file) != 0) file = {};
+  }
 };
 
 namespace {
@@ -99,7 +120,7 @@ ResultsReader::ResultsReader(const std::string& directory, int dimension, int de
   lock.acquire(FileLock::Kind::shared, longest_wait_of_a_reader);
   frames_ = read_xdmf_frames(directory + "/results.xdmf");
   file_ = std::make_unique<File>(directory + "/results.h5");
-  const Hdf5Reader& file = file_->reader;
+  const Hdf5Reader& file = file_->open();
   if (file_->frames.size() < frames_.times.size()) {
     file.fail("/frames",
               fmt::format("has {} frames where results.xdmf has {}", file_->frames.size(), frames_.times.size()));
@@ -115,6 +136,10 @@ ResultsReader::ResultsReader(const std::string& directory, int dimension, int de
 
 ResultsReader::~ResultsReader() = default;
 
+void ResultsReader::release() {
+  file_->reader.reset();
+}
+
 Index ResultsReader::cell_count() const {
   Index count = 0;
   for (const CellBlock& block : cells_) count += block.size();
@@ -129,7 +154,7 @@ const XdmfField* ResultsReader::find_field(const std::string& name) const {
 
 template <class Number>
 void ResultsReader::read_numbers(Index frame, const XdmfField& field, std::vector<Number>& values) const {
-  file_->reader.table(file_->frames[static_cast<std::size_t>(frame)], field.name,
+  file_->open().table(file_->frames[static_cast<std::size_t>(frame)], field.name,
                       field.on_nodes ? nodes_.cols() : cell_count(), field.components > 1 ? field.components : 0,
                       values);
 }

@@ -20,6 +20,10 @@ class ResultsReader {
   ResultsReader(const ResultsReader&) = delete;
   ResultsReader& operator=(const ResultsReader&) = delete;
 
+  /// Closes the file until something is read again: a process that has a file open to read cannot write to it. What is
+  /// read later throws Error(invalid_input) where another file is in its place by then.
+  void release();
+
   [[nodiscard]] const Points& nodes() const { return nodes_; }  ///< 3 × nodes
   [[nodiscard]] const std::vector<CellBlock>& cells() const { return cells_; }
   [[nodiscard]] const std::vector<CellBlock>& contact_facets() const { return contact_facets_; }  ///< empty: none

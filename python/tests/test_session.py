@@ -1,0 +1,191 @@
+"""Sessions: steps, what they show, what is changed on the way, and how they end."""
+
+import logging
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy
+import pytest
+
+import ricochet as rc
+
+SHORT = {"time.end": 1e-4}
+
+
+def test_views_cannot_be_written_and_outlive_the_session(puck):
+    session = rc.Session(puck, SHORT)
+    view = session.displacement
+    with pytest.raises(ValueError):
+        view[0, 0] = 1.0
+    session.step()
+    del session
+    assert numpy.isfinite(view).all()
+
+
+def test_matrices_give_the_energies(puck):
+    session = rc.Session(puck, SHORT)
+    session.run()
+    v, u = session.velocity.reshape(-1), session.displacement.reshape(-1)
+    energies = session.energies
+    assert 0.5 * v @ (session.mass @ v) == pytest.approx(energies["kinetic_energy"], rel=1e-12)
+    assert 0.5 * u @ (session.stiffness() @ u) == pytest.approx(energies["elastic_energy"], rel=1e-6, abs=1e-14)
+
+
+def test_reactions_are_the_force_of_the_history(puck, tmp_path):
+    with rc.Session(puck, {"time.end": 6e-4}) as session:
+        session.write_to(tmp_path / "out")
+        seen = []
+        session.run(lambda s: seen.append(s.contact_force.sum(axis=0)))
+    run = rc.open(tmp_path / "out")
+    forces = numpy.array(seen)
+    assert forces[:, 1].max() > 0
+    assert forces[:, 1] == pytest.approx(run.history["contact_force_y"][1:], rel=1e-12, abs=1e-12)
+
+
+def test_loads_velocities_and_obstacles_can_be_changed(puck):
+    still = {"initial.velocity": [0.0, 0.0], **SHORT}
+    session = rc.Session(puck, still)
+    mass = session.mass.sum() / session.dimension
+    session.set_velocity([0.0, 2.0])
+    assert session.energies["load_work"] == pytest.approx(0.5 * session.velocity.reshape(-1) @ session.mass @ session.velocity.reshape(-1))
+    assert session.energies["load_work"] == pytest.approx(2.0 * mass, rel=0.05)
+    session.run()
+    assert session.displacement[:, 1].mean() == pytest.approx(2.0 * session.time, rel=1e-2)
+
+    wall = rc.Session(puck, {"initial.velocity": [0.0, 0.0], "time.end": 1e-3})
+    wall.set_obstacle_velocity("wall", [0.0, 0.0])
+    wall.set_obstacle_velocity("wall", [0.0, 0.5])
+    wall.run()
+    assert wall.energies["obstacle_work"] > 0
+    assert abs(wall.energies["energy_residual"]) < 1e-10
+    with pytest.raises(rc.UsageError, match="before the session starts"):
+        late = rc.Session(puck, SHORT)
+        late.step()
+        late.set_obstacle_velocity("wall", [0.0, 0.5])
+    with pytest.raises(rc.InputError, match="there is no obstacle"):
+        rc.Session(puck).set_obstacle_velocity("wal", [0.0, 0.5])
+
+    pulled = rc.Session(puck, still)
+    force = numpy.zeros_like(pulled.points)
+    force[:, 0] = 1.0
+    pulled.set_load(force)
+    pulled.run()
+    assert pulled.energies["load_work"] > 0
+    with pytest.raises(rc.InputError, match="nodes x"):
+        pulled.set_load(numpy.zeros(7))
+    with pytest.raises(rc.InputError, match="not finite"):
+        pulled.set_load([numpy.nan, 0.0])
+
+
+def test_goes_on_from_bytes_and_files(puck, tmp_path):
+    whole = rc.Session(puck, SHORT)
+    for _ in range(40):
+        whole.step()
+    saved = whole.save(tmp_path / "state.ckpt")
+    whole.run()
+    for source in (saved, tmp_path / "state.ckpt"):
+        other = rc.Session(puck, SHORT)
+        other.resume(source)
+        assert other.step_number == 40
+        other.run()
+        assert (other.displacement == whole.displacement).all()
+    with pytest.raises(rc.InputError):
+        rc.Session(puck, SHORT).resume(saved[:-10])
+    with pytest.raises(rc.InputError, match="friction"):
+        rc.Session(puck, {"contact.0.friction": 0.1, **SHORT}).resume(saved)
+
+
+def test_errors_in_callbacks_end_the_run_cleanly(puck, tmp_path):
+    class Mine(Exception):
+        pass
+
+    def each(session):
+        if session.step_number == 30:
+            raise Mine("thirty")
+
+    with pytest.raises(Mine, match="thirty"):
+        rc.run(puck, tmp_path / "out", SHORT, each=each)
+    run = rc.open(tmp_path / "out")
+    assert run.status == "interrupted" and run.summary["steps"] == 30
+    finished = rc.run(puck, tmp_path / "out", SHORT, resume=True)
+    whole = rc.run(puck, tmp_path / "whole", SHORT)
+    assert (finished.history["total_energy"] == whole.history["total_energy"]).all()
+
+
+def test_a_failing_step_ends_loops_that_wait_for_the_end(puck, tmp_path):
+    # No iteration can find what this asks for.
+    session = rc.Session(puck, {"time.step": 1e-6, "material.0.law": "neo-hookean", "time.end": 5e-3, "initial.velocity": [0, -2000.0]})
+    session.write_to(tmp_path / "out")
+    with pytest.raises(rc.NotConvergedError) as caught:
+        while session.time < session.end:
+            session.step()
+    assert isinstance(caught.value, ArithmeticError)
+    assert rc.open(tmp_path / "out").status == "failed"
+
+
+def test_ctrl_c_leaves_a_run_to_go_on_with(puck, tmp_path):
+    script = f"import ricochet as rc; rc.run({puck!r}, {str(tmp_path / 'out')!r}, {{'time.end': 1.0}})"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    child = subprocess.Popen([sys.executable, "-c", script], env=environment, stderr=subprocess.PIPE, text=True)
+    deadline = time.time() + 60
+    while time.time() < deadline and not (tmp_path / "out/history.csv").exists():
+        time.sleep(0.1)
+    time.sleep(1.0)
+    child.send_signal(signal.SIGINT)
+    _, said = child.communicate(timeout=60)
+    assert child.returncode == -signal.SIGINT or "KeyboardInterrupt" in said
+    run = rc.open(tmp_path / "out")
+    assert run.status == "interrupted" and run.summary["steps"] > 0
+    assert run.summary["checkpoint_step"] == run.summary["steps"]
+
+
+def test_other_threads_work_meanwhile_and_may_not_look(cases):
+    session = rc.Session(cases / "ball/ball.toml", {"time.end": 1.0})
+    session.start()
+    counted, refused, stop = [0], [0], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            counted[0] += 1
+            try:
+                session.displacement
+            except rc.UsageError as problem:
+                assert "another thread" in str(problem)
+                refused[0] += 1
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    for _ in range(100):
+        session.step()
+    stop.set()
+    thread.join()
+    assert counted[0] > 100 and refused[0] > 0
+
+
+def test_warnings_go_to_logging(puck, caplog):
+    with caplog.at_level(logging.INFO, logger="ricochet"):
+        session = rc.Session(puck, {"initial.parameters.unused": 1})
+    assert len(session.warnings) == 1
+    assert [record.levelname for record in caplog.records] == ["WARNING"]
+    assert "no formula" in caplog.records[0].getMessage()
+
+
+def test_what_does_not_fit_together(puck, tmp_path):
+    session = rc.Session(puck, SHORT)
+    with pytest.raises(rc.UsageError):
+        session.finish()
+    session.write_to(tmp_path / "out")
+    with pytest.raises(rc.UsageError):
+        session.write_to(tmp_path / "other")
+    session.run()
+    run = session.finish()
+    assert run.status == "done" and session.finish().status == "done"
+    with pytest.raises(rc.UsageError):
+        session.step()
+    with pytest.raises(rc.FileAccessError, match="holds a run already"):
+        rc.run(puck, tmp_path / "out", SHORT)
+    assert rc.run(puck, tmp_path / "out", SHORT, resume=True).status == "done"
