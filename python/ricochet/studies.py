@@ -12,6 +12,14 @@ from .errors import UsageError
 from .program import program
 
 
+def as_numbers(texts):
+    """Values that keys take, which the table has as texts: as numbers where all of them are."""
+    try:
+        return [float(text) for text in texts]
+    except (TypeError, ValueError):
+        return texts
+
+
 class Study(Mapping):
     """The table of a study: study["restitution"] is a column as a numpy array. `notes` say what the columns mean and why runs
     failed; `warnings` are those of the runs."""
@@ -25,6 +33,8 @@ class Study(Mapping):
             raise KeyError(f'there is no column "{name}" in the table; there is {", ".join(self.columns)}')
         at = self.columns.index(name)
         values = [row[at] for row in self.rows]
+        if at < self.columns.index("run"):
+            values = as_numbers(values)
         if all(value is None or isinstance(value, (int, float)) for value in values):
             return numpy.array([numpy.nan if value is None else value for value in values])
         return numpy.array(["" if value is None else str(value) for value in values])
@@ -46,7 +56,7 @@ class Study(Mapping):
     def to_pandas(self):
         import pandas
 
-        return pandas.DataFrame(self.rows, columns=self.columns)
+        return pandas.DataFrame({name: self[name] for name in self.columns})
 
     @property
     def table(self):
@@ -77,7 +87,7 @@ def axis_of(key, values):
     keys = [key] if isinstance(key, str) else list(key)
     if isinstance(values, str) or not hasattr(values, "__iter__"):
         raise UsageError(f"study: the values of {key} are a list, not {values!r}")
-    rows = [[value] if isinstance(key, str) else list(value) for value in values]
+    rows = [[value] if isinstance(key, str) or not isinstance(value, (list, tuple)) else list(value) for value in values]
     for row in rows:
         if len(row) != len(keys):
             raise UsageError(f"study: {', '.join(keys)} change together: each of their values is a tuple of {len(keys)}, not {row!r}")

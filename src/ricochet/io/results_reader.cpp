@@ -1,5 +1,6 @@
 #include "ricochet/io/results_reader.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -15,15 +16,26 @@
 namespace ricochet {
 
 struct ResultsReader::File {
-  explicit File(const std::string& path) : path(path), reader(path), frames(reader->members("/frames")) {
-    identify(identity);
+  /// What tells a file from another one at its path, also where that has the same number again.
+  struct Identity {
+    std::uint64_t number = 0;
+    std::int64_t born = 0, born_part = 0;  ///< seconds and nanoseconds, where the file system knows
+    bool operator==(const Identity&) const = default;
+  };
+
+  explicit File(std::string name)
+      : path(std::move(name)), reader(path), frames(reader->members("/frames")), identity(identify(path)) {}
+
+  static Identity identify(const std::string& path) {
+    struct statx file {};
+    if (statx(AT_FDCWD, path.c_str(), 0, STATX_INO | STATX_BTIME, &file) != 0) return {};
+    return {file.stx_ino, file.stx_btime.tv_sec, file.stx_btime.tv_nsec};
   }
 
   const Hdf5Reader& open() {
     if (reader) return *reader;
-    struct stat now {};
     reader.emplace(path);
-    if (identify(now); now.st_dev != identity.st_dev || now.st_ino != identity.st_ino)
+    if (identify(path) != identity)
       reader->fail("/frames", "another run has been written since this one was read: read it again");
     return *reader;
   }
@@ -31,12 +43,7 @@ struct ResultsReader::File {
   std::string path;
   std::optional<Hdf5Reader> reader;
   std::vector<Hdf5Member> frames;  ///< looked up at once: a run may go on adding to them
-  struct stat identity {};
-
- private:
-  void identify(struct stat& file) const {
-    if (stat(path.c_str(), &file) != 0) file = {};
-  }
+  Identity identity;
 };
 
 namespace {

@@ -1,0 +1,152 @@
+"""The contact solvers and the masses alone, on matrices of numpy and scipy."""
+
+import numpy
+import pytest
+import scipy.sparse
+import scipy.sparse.linalg
+
+import ricochet as rc
+
+TOLERANCE = 1e-11
+
+
+def problem(points, seed):
+    random = numpy.random.default_rng(seed)
+    a = random.normal(size=(3 * points, 3 * points))
+    w = a @ a.T + 0.1 * numpy.eye(3 * points)
+    q = random.normal(size=(points, 3))
+    q[:, 0] -= 1.0
+    return w, q.reshape(-1)
+
+
+def require_laws(w, q, friction, found):
+    """Signorini's conditions and Coulomb's law, written down again."""
+    u = (q + w @ found.reaction.reshape(-1)).reshape(-1, 3)
+    r = found.reaction
+    size = abs(q).max()
+    assert abs(found.motion - u).max() < TOLERANCE * abs(w).max() * abs(r).max()
+    normal, tangential = r[:, 0], numpy.linalg.norm(r[:, 1:], axis=1)
+    assert (normal >= 0).all() and (u[:, 0] > -1e-9 * size).all()
+    assert abs(normal * u[:, 0]).max() < 1e-8 * size * abs(r).max()
+    assert (tangential <= friction * normal * (1 + 1e-12)).all()
+    slip = numpy.linalg.norm(u[:, 1:], axis=1)
+    # Dissipation is as large as it can be: -r_T . u_T = F r_N |u_T|.
+    assert (r[:, 1:] * u[:, 1:]).sum(axis=1) == pytest.approx(-friction * normal * slip, abs=1e-7 * size * abs(r).max())
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_solutions_meet_the_laws(seed):
+    w, q = problem(6, seed)
+    dense = rc.contact.solve(w, q, 0.3)
+    require_laws(w, q, 0.3, dense)
+    sparse = rc.contact.solve(scipy.sparse.csr_matrix(w), q, 0.3)
+    require_laws(w, q, 0.3, sparse)
+    assert sparse.reaction == pytest.approx(dense.reaction, rel=1e-6, abs=1e-8)
+    product = rc.contact.solve(scipy.sparse.linalg.aslinearoperator(w), q, 0.3)
+    require_laws(w, q, 0.3, product)
+
+
+def test_every_solver_and_friction_per_point():
+    w, q = problem(5, 3)
+    friction = numpy.linspace(0.0, 0.6, 5)
+    reference = rc.contact.solve(w, q, friction)
+    require_laws(w, q, friction, reference)
+    for name in rc.contact.solver_names():
+        found = rc.contact.solve(w, q, friction, solver=name, tolerance=1e-10, check=False)
+        if found.solved:
+            assert found.reaction == pytest.approx(reference.reaction, rel=1e-5, abs=1e-6), name
+    assert set(reference.status) <= {rc.contact.OPEN, rc.contact.CLOSED, rc.contact.STICK, rc.contact.SLIP}
+
+
+def test_a_solver_goes_on_from_its_last_solution():
+    w, q = problem(8, 4)
+    solver = rc.contact.Solver(w, 0.3)
+    first = solver.solve(q)
+    again = solver.solve(q)
+    assert again.iterations <= first.iterations
+    assert again.reaction == pytest.approx(first.reaction)
+    assert solver.solve(2 * q).reaction == pytest.approx(2 * first.reaction)
+    assert first.reaction == pytest.approx(again.reaction), "a solution stays what it was"
+
+
+def test_two_and_one_rows_per_point():
+    found = rc.contact.solve(numpy.eye(2), [-1.0, 0.5], 0.2, dimension=2)
+    assert found.reaction.tolist() == [[1.0, -0.2]] and found.status[0] == rc.contact.SLIP
+    assert rc.contact.solve([[2.0]], [-1.0], 0.0, dimension=1).reaction.tolist() == [[0.5]]
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ((numpy.eye(4), numpy.zeros(4), 0.3), "multiple of the 3 rows"),
+        ((numpy.eye(3), numpy.zeros(4), 0.3), "q has 4 numbers"),
+        ((numpy.zeros((3, 2)), numpy.zeros(3), 0.3), "square"),
+        ((numpy.array([[1, 0.5, 0], [0, 1, 0], [0, 0, 1.0]]), numpy.zeros(3), 0.3), "not symmetric"),
+        ((scipy.sparse.csr_matrix([[1, 0.5, 0], [0, 1, 0], [0, 0, 1.0]]), numpy.zeros(3), 0.3), "not symmetric"),
+        ((numpy.eye(3), numpy.zeros(3), -0.3), "must be zero or positive"),
+        ((numpy.eye(3), numpy.zeros(3), [0.1, 0.2]), "one for each of the 1 points"),
+    ],
+)
+def test_what_is_wrong_is_said(arguments, message):
+    with pytest.raises(rc.InputError, match=message):
+        rc.contact.solve(*arguments)
+
+
+def test_what_is_not_solved_is_raised():
+    for q in (numpy.array([numpy.nan, 0, 0]), numpy.array([numpy.inf, 0, 0])):
+        with pytest.raises(rc.NotConvergedError):
+            rc.contact.solve(numpy.eye(3), q, 0.3)
+    # No motion: W is zero and the point is pressed.
+    found = rc.contact.solve(numpy.zeros((3, 3)), [-1.0, 0, 0], 0.3, check=False)
+    assert not found.solved and found.reason
+    with pytest.raises(rc.InputError, match="unknown"):
+        rc.contact.solve(numpy.eye(3), numpy.zeros(3), 0.3, solver="nothing")
+
+
+def test_errors_of_products_are_raised():
+    def product(x):
+        raise RuntimeError("mine")
+
+    operator = scipy.sparse.linalg.LinearOperator((3, 3), matvec=product, dtype=float)
+    with pytest.raises(RuntimeError, match="mine"):
+        rc.contact.solve(operator, [-1.0, 0, 0], 0.3)
+
+
+def test_masses_without_inertia_on_contact_nodes(cases):
+    consistent = rc.Session(cases / "puck/puck.toml", {"mass.type": "consistent"})
+    scalar = consistent.mass[::2, ::2]
+    bottom = numpy.argsort(consistent.points[:, 1])[:5]
+    for name in ("equivalent", "equivalent-nodewise", "equivalent-nearest", "lumped", "consistent"):
+        if name not in rc.mass_names():
+            continue
+        built = rc.mass.build(scalar, consistent.points, bottom, name)
+        matrix = built.matrix
+        assert abs(matrix - matrix.T).max() == 0
+        ones, places = numpy.ones(len(consistent.points)), consistent.points
+        # Mass, centre and moments of inertia are those of the body.
+        for a in (ones, places[:, 0], places[:, 1]):
+            for b in (ones, places[:, 0], places[:, 1]):
+                if name == "lumped" and not (a is ones or b is ones):
+                    continue
+                assert a @ matrix @ b == pytest.approx(a @ scalar @ b, rel=1e-9, abs=1e-12 * scalar.sum())
+        if name.startswith("equivalent"):
+            assert matrix[bottom].nnz == 0
+    assert built.construction
+
+
+def test_the_mass_of_a_session_is_the_one_that_is_built(cases):
+    whole = rc.Session(cases / "puck/puck.toml", {"mass.type": "equivalent-nodewise"})
+    consistent = rc.Session(cases / "puck/puck.toml", {"mass.type": "consistent"})
+    skin = numpy.flatnonzero(numpy.asarray(whole.mass[::2, ::2].sum(axis=1)).reshape(-1) == 0)
+    built = rc.mass.build(consistent.mass[::2, ::2], consistent.points, skin, "equivalent-nodewise")
+    assert abs(built.matrix - whole.mass[::2, ::2]).max() < 1e-14 * abs(whole.mass).max()
+
+
+def test_wrong_masses(cases):
+    eye = scipy.sparse.identity(4, format="csc")
+    with pytest.raises(rc.InputError, match="4 x 2 or 3"):
+        rc.mass.build(eye, numpy.zeros((3, 2)), [0])
+    with pytest.raises(rc.InputError, match="contact node 7"):
+        rc.mass.build(eye, numpy.zeros((4, 2)), [7])
+    with pytest.raises(rc.InputError, match="unknown"):
+        rc.mass.build(eye, numpy.random.rand(4, 2), [0], "nothing")

@@ -1,0 +1,143 @@
+"""Runs that are read: histories, fields, answers, and what a notebook shows."""
+
+import pickle
+
+import numpy
+import pytest
+
+import ricochet as rc
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    from conftest import ROOT
+
+    folder = tmp_path_factory.mktemp("run")
+    return rc.run(ROOT / "cases/puck/puck.toml", folder / "out", {"output.fields_every": 100, "output.fields": ["all"]})
+
+
+def test_history_is_what_is_in_the_file(run):
+    table = numpy.genfromtxt(run.directory + "/history.csv", delimiter=",", names=True, deletechars="")
+    assert list(table.dtype.names) == list(run.history)
+    for name in run.history:
+        assert (table[name] == run.history[name]).all()
+    assert (run.time == table["time"]).all()
+    assert not run.history["time"].flags.writeable
+    with pytest.raises(KeyError, match="contact_force_y"):
+        run.history["contact_force_z"]
+    assert (run.history.to_pandas()["kinetic_energy"].to_numpy() == table["kinetic_energy"]).all()
+
+
+def test_columns_share_the_memory_that_was_read(run):
+    assert run.history["time"].ctypes.data == run.history["time"].ctypes.data
+    column = run.history["time"]
+    again = rc.open(run.directory)
+    kept = again.history["time"]
+    del again
+    assert (kept == column).all()
+
+
+def test_frames_agree_with_meshio(run):
+    import meshio
+
+    with meshio.xdmf.TimeSeriesReader(run.directory + "/results.xdmf") as reader:
+        points, cells = reader.read_points_cells()
+        assert (points[:, :2] == run.points).all()
+        assert [(block.type, block.data.tolist()) for block in cells] == [(kind, nodes.tolist()) for kind, nodes in run.cells]
+        assert reader.num_steps == len(run.frames)
+        for number in range(reader.num_steps):
+            time, at_points, at_cells = reader.read_data(number)
+            frame = run.frames[number]
+            assert frame.time == time
+            for name, values in at_points.items():
+                assert numpy.array_equal(frame[name], values, equal_nan=True)
+            for name, values in at_cells.items():
+                assert numpy.array_equal(frame[name], numpy.concatenate(values), equal_nan=True)
+    mesh = run.frame(number=-1).to_meshio()
+    assert numpy.array_equal(mesh.point_data["displacement"], run.frame(number=-1)["displacement"])
+
+
+def test_frames_are_found_by_time(run):
+    times = run.frames.times
+    assert run.frame(t=times[3] * 1.001).number == 3
+    assert [frame.number for frame in run.frames[1:4]] == [1, 2, 3]
+    assert run.frames[-1].time == times[-1]
+    for wrong in (-1e-3, 1.0, numpy.nan):
+        with pytest.raises(rc.UsageError, match="outside"):
+            run.frame(t=wrong)
+    with pytest.raises(IndexError):
+        run.frames[1000]
+    with pytest.raises(KeyError, match="von_mises"):
+        run.frames[0]["von_misses"]
+
+
+def test_answers(run):
+    peak = run.maximum("von_mises")
+    assert peak.value == run.summary["peak_stress"]["von_mises"] and len(peak.place) == 2
+    assert peak.value >= max(frame["von_mises"].max() for frame in run.frames)
+    far = run.maximum("displacement")
+    assert far.among == "frames" and far.value == numpy.linalg.norm(run.frame(t=far.time)["displacement"], axis=1).max()
+    force = run.maximum("contact_force_y")
+    assert force.value == run.history["contact_force_y"].max() and force.place is None
+    assert 0.9 < run.impacts[0]["restitution"] < 1.0
+    with pytest.raises(KeyError):
+        run.maximum("nothing")
+
+
+def test_expectations(run, tmp_path, caplog):
+    assert run.check() is run
+    case = {"expect": [{"quantity": "max(history.total_energy)", "maximum": 1.0}]}
+    from conftest import ROOT
+
+    path = ROOT / "cases/puck/puck.toml"
+    import tomllib
+
+    table = {**tomllib.loads(path.read_text()), **case}
+    table["mesh"]["file"] = str(path.parent / "puck.msh")
+    table["time"]["end"] = 1e-5
+    broken = rc.run(table, tmp_path / "out")
+    assert "expected max(history.total_energy)" in caplog.text
+    with pytest.raises(rc.ExpectationError, match="expected max"):
+        broken.check()
+
+
+def test_a_page_shows_answers_warnings_and_a_picture(run):
+    page = run._repr_html_()
+    assert "restitution" in page and "von Mises" in page and "data:image/png;base64" in page
+    assert page.count("<div>") == page.count("</div>")
+
+
+def test_what_is_no_run(tmp_path):
+    with pytest.raises(rc.FileAccessError):
+        rc.open(tmp_path)
+    with pytest.raises(rc.FileAccessError):
+        rc.open(tmp_path / "nothing")
+
+
+def test_a_run_that_was_written_over_is_not_mixed_with_the_old_one(tmp_path):
+    from conftest import ROOT
+
+    path, short = ROOT / "cases/puck/puck.toml", {"time.end": 1e-5, "output.fields_every": 5}
+    old = rc.run(path, tmp_path / "out", short)
+    rc.run(path, tmp_path / "out", {**short, "contact.0.friction": 0.0}, force=True)
+    with pytest.raises(rc.InputError, match="read it again"):
+        old.frame(number=-1)["displacement"]
+    assert old.reload().frame(number=-1)["displacement"].shape == (len(old.points), 3)
+
+
+def test_a_run_that_goes_on_can_be_read(puck, tmp_path):
+    session = rc.Session(puck, {"time.end": 1e-4, "output.fields_every": 10})
+    session.write_to(tmp_path / "out")
+    session.run(lambda s: s.step_number < 50)
+    # What has been written may be waiting in memory; what is there fits together.
+    run = rc.open(tmp_path / "out")
+    assert run.status == "running"
+    assert len(run.time) >= 1
+    session.run()
+    session.finish()
+    assert run.reload().status == "done" and len(run.time) == 101
+
+
+def test_errors_can_be_pickled():
+    problem = pickle.loads(pickle.dumps(rc.InputError("a.toml:3:4: wrong")))
+    assert problem.places == [rc.Place("a.toml", 3, 4)] and str(problem) == "a.toml:3:4: wrong"
