@@ -294,7 +294,10 @@ void bind_problem(Class& session) {
 void bind_session(py::module_& module) {
   py::class_<OpenSession> session(module, "Session");
   session.def(py::init<Case, std::vector<std::string>>(), py::arg("case"), py::arg("remarks"))
-      .def("step", &OpenSession::step)
+      .def(
+          "step", &OpenSession::step,
+          "One step. False, and nothing done: the run is at its end. Raises NotConvergedError; the state is then that\n"
+          "before the step.")
       .def("_run", &OpenSession::run, py::arg("each"), py::arg("progress"))
       .def("_run_steps", &OpenSession::take_steps)
       .def("_write_to", &write_to)
@@ -305,7 +308,9 @@ void bind_session(py::module_& module) {
       .def_property_readonly("is_complete_already",
                              [](const OpenSession& open) { return open.session.is_complete_already(); })
       .def("build", [](OpenSession& open) { (void)open.problem(); })
-      .def("start", [](OpenSession& open) { (void)open.simulation(); })
+      .def(
+          "start", [](OpenSession& open) { (void)open.simulation(); },
+          "Finds the state at t = 0 and factorizes, unless that is done.")
       .def(
           "set_load",
           [](OpenSession& open, const Numbers& force) {
@@ -328,7 +333,9 @@ void bind_session(py::module_& module) {
             open.has_problem = false;  // the first time it is built anew
             open.alone([&] { open.session.set_obstacle_velocity(obstacle, v, w); });
           },
-          py::arg("obstacle"), py::arg("velocity"), py::arg("rotation_rate") = py::none())
+          py::arg("obstacle"), py::arg("velocity"), py::arg("rotation_rate") = py::none(),
+          "From now on this obstacle moves with a constant velocity, and a constant rate of its rotation vector where\n"
+          "the case gives it a rotation, from where it is. The first call comes before the session starts.")
       .def_property_readonly("warnings", [](const OpenSession& open) { return open.session.warnings(); })
       .def_property_readonly("steps", [](const OpenSession& open) { return open.session.steps(); })
       .def_property_readonly("end", [](OpenSession& open) {

@@ -6,7 +6,7 @@ import re
 import weakref
 
 _numbers = itertools.count(1)
-_known = weakref.WeakValueDictionary()
+_known: "weakref.WeakValueDictionary[str, Lines]" = weakref.WeakValueDictionary()
 
 
 class Lines:

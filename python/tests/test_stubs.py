@@ -1,12 +1,23 @@
-"""Types: what mypy is told of the module is what is there."""
+"""Types: what mypy is told of the module is what is there, and the package keeps to it."""
 
 import os
+import pathlib
 import subprocess
 import sys
 
+HERE = pathlib.Path(__file__).parent
+
+
+def mypy(*arguments):
+    package = next(path for path in sys.path if os.path.isfile(os.path.join(path, "ricochet/_core.pyi")))
+    outcome = subprocess.run([sys.executable, "-m", *arguments], env={**os.environ, "PYTHONPATH": package, "MYPYPATH": package, "MYPY_CACHE_DIR": os.devnull},
+                             capture_output=True, text=True, cwd="/")
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+
 
 def test_stubs_say_what_is_there():
-    environment = {**os.environ, "MYPYPATH": os.pathsep.join(path for path in sys.path if path.endswith("build/python"))}
-    outcome = subprocess.run([sys.executable, "-m", "mypy.stubtest", "ricochet._core", "--ignore-missing-stub"], env=environment,
-                             capture_output=True, text=True, cwd="/tmp")
-    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    mypy("mypy.stubtest", "ricochet._core", "--mypy-config-file", str(HERE / "mypy.ini"))
+
+
+def test_the_package_keeps_to_its_types():
+    mypy("mypy", "--config-file", str(HERE / "mypy.ini"), "-p", "ricochet")
