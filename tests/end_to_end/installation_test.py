@@ -71,6 +71,10 @@ class Installation(TestCase):
         include = prefix / "include"
         headers = sorted(path.relative_to(include) for path in include.rglob("*.hpp"))
         self.assertGreater(len(headers), 30)
+        for header in headers:  # what is installed on this machine must not hide it
+            for foreign in re.findall(r"#include <([^>]*[/.][^>]*)>", (include / header).read_text(encoding="utf-8")):
+                of_compiler = foreign in ("sys/types.h", "emmintrin.h")
+                self.assertTrue(foreign.startswith("Eigen/") or of_compiler, f"{header} includes <{foreign}>")
         one = self.write("all.cpp", "".join(f'#include "{header}"\n' for header in headers))
         eigen = self.command("pkg-config", "--cflags-only-I", "eigen3").split()
         self.command("c++", "-std=c++20", "-fsyntax-only", f"-I{include}", *eigen, one)

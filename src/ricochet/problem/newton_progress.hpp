@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -63,12 +61,7 @@ class NewtonProgress {
   /// Corrections grow, or shrink slowly with a new factor, as some forces are in none (those of contact turn with what
   /// they press on): iterations may be accelerated (linear_algebra/anderson_acceleration.hpp).
   [[nodiscard]] bool wants_acceleration() const { return accelerates_; }
-  [[nodiscard]] Error failure(double correction) const {
-    return {
-        ErrorKind::not_converged,
-        fmt::format("Newton's method did not converge in {} iterations (the last correction moves a node by {:.3g})",
-                    all_rounds_, correction)};
-  }
+  [[nodiscard]] Error failure(double correction) const;
   [[nodiscard]] int rounds() const { return all_rounds_; }
 
  private:

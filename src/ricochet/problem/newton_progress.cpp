@@ -1,0 +1,13 @@
+#include "ricochet/problem/newton_progress.hpp"
+
+#include <fmt/format.h>
+
+namespace ricochet {
+
+Error NewtonProgress::failure(double correction) const {
+  return {ErrorKind::not_converged,
+          fmt::format("Newton's method did not converge in {} iterations (the last correction moves a node by {:.3g})",
+                      all_rounds_, correction)};
+}
+
+}  // namespace ricochet
