@@ -244,6 +244,16 @@ class Plot(TestCase):
                             environment=os.environ | {"PYTHONPATH": str(self.folder)})
         self.assertIn("KeyError: 'odd'", process.stderr)
 
+    def test_python_of_the_environment(self):
+        results = self.simulate("run")
+        named = self.write("python", f'#!/bin/sh\ntouch {self.folder}/used\nexec /usr/bin/python3 "$@"\n')
+        named.chmod(0o755)
+        self.plot(results, "--what", "energy", "-o", "f.svg", environment=os.environ | {"RICOCHET_PYTHON": str(named)})
+        self.assertTrue((self.folder / "used").is_file())
+        process = self.plot(results, "--what", "energy", "-o", "f.svg", status=4,
+                            environment=os.environ | {"RICOCHET_PYTHON": str(self.folder / "none")})
+        self.assertIn("which is not here", process.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
