@@ -13,6 +13,9 @@
 #include <string_view>
 
 #include "commands.hpp"
+#include "completion.hpp"
+#include "described_command.hpp"
+#include "manual_page.hpp"
 #include "ricochet/base/blas.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -36,6 +39,7 @@ struct Arguments {
   program::StudyArguments study;
   program::BenchmarkArguments benchmark;
   std::vector<std::string> info_paths;
+  std::string shell;
   bool markdown = false;
   std::string log_level = "info";
   int threads = 1;
@@ -105,7 +109,7 @@ void add_study(CLI::App& app, program::StudyArguments& arguments, std::string& l
 void add_benchmark(CLI::App& app, program::BenchmarkArguments& arguments, std::string& log_level) {
   CLI::App* benchmark =
       app.add_subcommand("benchmark", "Run cases with reference values, and tabulate what is found against them");
-  benchmark->add_option("names", arguments.names, "benchmarks (default: all)")->type_name("NAME");
+  benchmark->add_option("names", arguments.names, "benchmarks (default: all)")->type_name("BENCHMARK");
   benchmark->add_option("-o,--output", arguments.output_directory, "directory of the tables and runs")
       ->type_name("DIR")
       ->capture_default_str();
@@ -128,6 +132,49 @@ void add_benchmark(CLI::App& app, program::BenchmarkArguments& arguments, std::s
       "Exit status: 0 all expected values hold; 5 some do not; 128 + N stopped by signal N; else that of the run that "
       "went worst, as of `ricochet run`. What another scheme than that of the case refuses does not count.");
   add_common(*benchmark, log_level);
+}
+
+program::DescribedOption described(const CLI::Option& option) {
+  program::DescribedOption result;
+  for (const std::string& name : option.get_snames()) result.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) result.names.push_back("--" + name);
+  result.doc = option.get_description();
+  if (!option.get_default_str().empty()) result.doc += " (default: " + option.get_default_str() + ")";
+  const int most = option.get_items_expected_max();
+  if (most > 0) result.value = option.get_type_name();
+  // CLI11 puts what a number is checked for behind its name: "N:INT in [1 - 1024]".
+  if (const std::size_t bounds = result.value.find(" in ["); bounds != std::string::npos) {
+    result.doc += ", in " + result.value.substr(bounds + 4);
+    result.value.resize(result.value.rfind(':', bounds));
+  }
+  for (const CLI::Option* other : option.get_excludes()) result.doc += "; not with " + other->get_name();
+  for (const CLI::Option* other : option.get_needs()) result.doc += "; only with " + other->get_name();
+  result.required = option.get_required();
+  result.many = most >= CLI::detail::expected_max_vector_size;
+  return result;
+}
+
+/// With all that `--help` lists, and nothing else.
+program::DescribedCommand described(const CLI::App& command) {
+  program::DescribedCommand result{command.get_name(), command.get_description(), command.get_footer(), {}, {}};
+  for (const CLI::Option* option : command.get_options()) result.options.push_back(described(*option));
+  for (const CLI::App* part : command.get_subcommands([](const CLI::App*) { return true; }))
+    result.commands.push_back(described(*part));
+  return result;
+}
+
+/// `ricochet complete -- WORD...`, which completion scripts call, and `ricochet manual-page`, which the build calls:
+/// what they are about is the command line itself, which must not be parsed for them. False: it is none of these.
+bool answers_about(const CLI::App& app, int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() >= 2 && words[0] == "complete" && words[1] == "--") {
+    for (const program::Candidate& candidate : program::complete(described(app), {words.begin() + 2, words.end()}))
+      fmt::print("{}\t{}\n", candidate.word, candidate.doc);
+    return true;
+  }
+  if (words != std::vector<std::string>{"manual-page"}) return false;
+  std::fputs(program::manual_of_commands(described(app)).c_str(), stdout);
+  return true;
 }
 
 int dispatch(int argc, char** argv) {
@@ -188,7 +235,7 @@ int dispatch(int argc, char** argv) {
   CLI::App* contact = app.add_subcommand("contact", "Solve a contact problem from an FCLib file");
   contact->add_option("problem", arguments.contact.problem, "FCLib file of a local problem")->type_name("PROBLEM.hdf5");
   contact->add_option("--solver", arguments.contact.solver, "name of the solver, see --list (default: automatic)")
-      ->type_name("NAME");
+      ->type_name("SOLVER");
   contact
       ->add_option("--tolerance", arguments.contact.tolerance,
                    "relative residual to reach, or rounding where that is more (default: 0, down to rounding)")
@@ -245,6 +292,11 @@ int dispatch(int argc, char** argv) {
   CLI::App* schema = app.add_subcommand("schema", "Print the JSON Schema of the case file");
   schema->add_flag("--markdown", arguments.markdown, "print the reference page of the case file instead");
 
+  CLI::App* completion =
+      app.add_subcommand("completion", "Print the script by which a shell completes ricochet's words");
+  completion->add_option("shell", arguments.shell, "bash, zsh or fish")->required()->type_name("SHELL");
+
+  if (answers_about(app, argc, argv)) return 0;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {
@@ -254,7 +306,7 @@ int dispatch(int argc, char** argv) {
     std::fputs(text.str().c_str(), stdout);
     return status == 0 ? 0 : static_cast<int>(ErrorKind::usage);
   }
-  if (info->parsed() || validate->parsed() || schema->parsed() ||
+  if (info->parsed() || validate->parsed() || schema->parsed() || completion->parsed() ||
       (contact->parsed() && arguments.contact.output.empty()))
     program::require_standard_output();
   log::set_level(log::parse_level(arguments.log_level));
@@ -271,6 +323,10 @@ int dispatch(int argc, char** argv) {
   if (app.got_subcommand("study")) return program::study(arguments.study);
   if (app.got_subcommand("benchmark")) return program::benchmark(arguments.benchmark);
   if (report->parsed()) return program::report(arguments.report);
+  if (completion->parsed()) {
+    std::fputs(program::completion_script(arguments.shell).c_str(), stdout);
+    return 0;
+  }
   return program::schema(arguments.markdown);
 }
 
