@@ -16,7 +16,8 @@ find_package(BLAS REQUIRED)
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_package(PkgConfig REQUIRED)
-pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
+# Debian has it beside the parallel one, others call it hdf5.
+pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)
 
 # Included and linked by the library's own sources only: nothing of it appears in a public header but Eigen.
 add_library(ricochet_dependencies INTERFACE)
