@@ -90,7 +90,7 @@ if(RICOCHET_BUILD_PYTHON)
   math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
   ricochet_package(python python3-ricochet python "elastodynamics with contact and friction (Python 3)"
     "${about}This package has the module for Python 3."
-    DEPENDS ${ricochet_same_library} "python3 (>= 3.${Python3_VERSION_MINOR})" "python3 (<< 3.${next_minor})" python3-numpy
-    RECOMMENDS gmsh python3-meshio python3-matplotlib SUGGESTS ricochet-doc)
+    DEPENDS ${ricochet_same_library} "ricochet (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})" "python3 (>= 3.${Python3_VERSION_MINOR})" "python3 (<< 3.${next_minor})" python3-numpy
+    RECOMMENDS python3-scipy python3-matplotlib python3-meshio SUGGESTS ricochet-doc python3-pandas python3-gmsh)
 endif()
 include(CPack)

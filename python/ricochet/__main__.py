@@ -5,4 +5,10 @@ import sys
 
 from .program import program
 
-os.execv(program(), ["ricochet", *sys.argv[1:]])
+
+def main():
+    os.execv(program(), ["ricochet", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,26 @@
+"""Every block of docs/python.md runs, in the folder of the case that it speaks of."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BLOCKS = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(encoding="utf-8"), re.S)
+
+
+def test_there_are_blocks():
+    assert len(BLOCKS) >= 5
+
+
+@pytest.mark.parametrize("number", range(len(BLOCKS)))
+def test_a_block_runs_and_says_something(number, tmp_path):
+    shutil.copytree(ROOT / "cases/puck", tmp_path / "puck")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "MPLBACKEND": "Agg"}
+    outcome = subprocess.run([sys.executable, "-c", BLOCKS[number]], cwd=tmp_path / "puck", env=environment, capture_output=True, text=True)
+    assert outcome.returncode == 0, outcome.stderr
+    assert outcome.stdout.strip()
