@@ -4,6 +4,7 @@ import numpy
 
 MOST_TRIANGLES = 20000
 COLOURS = "viridis"
+NAMES = {"von_mises": "von Mises stress", "nodal_von_mises": "von Mises stress"}
 
 
 def on_triangles(run, frame, field, cells, nodes, triangles):
@@ -74,7 +75,7 @@ def picture(frame, field="von_mises", *, axes=None, limits=None, scale=1.0, colo
     axes.set_title(f"t = {frame.time:.4g}", fontsize=9)
     if bar:
         mapped = pyplot.cm.ScalarMappable(norm=scale_of_colours, cmap=colour_map)
-        axes.figure.colorbar(mapped, ax=axes, label=field.replace("_", " "), shrink=0.8)
+        axes.figure.colorbar(mapped, ax=axes, label=NAMES.get(field, field.replace("_", " ")), shrink=0.8)
     return axes.figure
 
 

@@ -86,7 +86,7 @@ def test_pictures_show_what_the_fields_say(puck, tmp_path):
     figure = frame.plot("von_mises", limits=(0, 1e5))
     (collection,) = [c for c in figure.axes[0].collections if len(c.get_facecolor()) > 10]
     assert len(collection.get_facecolor()) == sum(len(nodes) for _, nodes in run.cells)
-    assert figure.axes[1].get_ylabel() == "von mises"
+    assert figure.axes[1].get_ylabel() == "von Mises stress"
     low, high = figure.axes[0].get_xlim()
     assert low < frame.positions[:, 0].min() and high > frame.positions[:, 0].max()
     report = run.report()
