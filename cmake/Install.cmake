@@ -38,8 +38,8 @@ install(FILES ${RICOCHET_USER_FILES}/zsh/vendor-completions/_ricochet
 
 # --- to read -------------------------------------------------------------------------------------------------------------
 # The built pages, where they were built, and else the pages as they are written.
-if(IS_DIRECTORY ${CMAKE_SOURCE_DIR}/site)
-  install(DIRECTORY site/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ricochet/html COMPONENT documentation)
+if(IS_DIRECTORY ${CMAKE_SOURCE_DIR}/build/site)
+  install(DIRECTORY build/site/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ricochet/html COMPONENT documentation)
 endif()
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ricochet COMPONENT documentation)
 install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ricochet COMPONENT documentation)

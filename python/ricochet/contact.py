@@ -1,7 +1,7 @@
 """The contact solvers alone, on matrices of numpy and scipy.
 
 Find reactions r and motions u = q + W r such that, at every point, 0 <= r_N, u_N >= 0, r_N u_N = 0 and Coulomb's law
-|r_T| <= F r_N hold, where u_T is opposite to r_T if it slips. The rows of a point follow one another: its normal, then its
+``|r_T| <= F r_N`` hold, where u_T is opposite to r_T if it slips. The rows of a point follow one another: its normal, then its
 tangents.
 """
 
@@ -71,7 +71,7 @@ class Solver:
     """A solver for one W and many q: each solution is the start of the next one.
 
     `w`: a symmetric matrix, dense or of scipy.sparse, or a scipy LinearOperator. `friction`: F, one number or one per point.
-    `dimension`: rows per point, 3, 2 or (without friction) 1. `bound`: the largest |r_T|, per point or for all; 0: none.
+    `dimension`: rows per point, 3, 2 or (without friction) 1. `bound`: the largest ``|r_T|``, per point or for all; 0: none.
     """
 
     def __init__(self, w, friction, *, dimension=3, solver="automatic", bound=0.0):

@@ -25,9 +25,11 @@ class Mesh:
 
     `points`: nodes x 2 or 3. `cells`: a list of (kind, cells x nodes) with meshio's names of kinds ("triangle", "tetra10",
     ...) and VTK's order of nodes, or a dictionary of these. `groups`: by name, one of
-      - {kind: cells x nodes}: facets (or cells), by their nodes;
-      - an array of numbers of nodes: all boundary facets whose nodes are among them;
-      - {number of a block of `cells`: numbers of its cells}.
+
+    - {kind: cells x nodes}: facets (or cells), by their nodes;
+    - an array of numbers of nodes: all boundary facets whose nodes are among them;
+    - {number of a block of `cells`: numbers of its cells}.
+
     The mesh is checked when a case uses it, as one from a file is.
     """
 

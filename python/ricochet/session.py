@@ -11,7 +11,7 @@ from .sparse import csc
 
 
 class Session(_core.Session):
-    """A case that is open: step it, look at its state, change what acts, save and take up states.
+    """A case that is open: step it, look at its state, change what acts, save and take up states. ::
 
         session = ricochet.Session("case.toml", {"time.step": 1e-4})
         while session.time < session.end:
@@ -22,7 +22,7 @@ class Session(_core.Session):
     friction_reactions) are views without copies: they always show the present state, and cannot be written to; copy what is
     to be kept. Their rows are nodes in the order of `points`; `node_numbers` are the numbers of the mesh.
 
-    A session that writes (write_to) is closed with finish(), or as a context:
+    A session that writes (write_to) is closed with finish(), or as a context::
 
         with ricochet.Session("case.toml") as session:
             session.write_to("out/a")

@@ -1,0 +1,52 @@
+"""The site: `./dev docs` builds it with Sphinx. Its pages are those of docs/ and cases/, as they are read in the repository, and
+those of this folder."""
+
+import os
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, os.environ.get("RICOCHET_PYTHON_PACKAGE", str(ROOT / "build/python")))
+
+project = "Ricochet"
+author = "The Ricochet authors"
+copyright = author
+version = release = re.search(r"project\(ricochet VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "breathe", "sphinx_copybutton"]
+root_doc = "docs/site/index"
+include_patterns = ["docs/*.md", "docs/site/**.md", "docs/site/**.rst", "cases/README.md", "cases/*/README.md", "benchmarks/README.md",
+                    "benchmarks/*/README.md", "bench/*/README.md", "examples/README.md", "CHANGELOG.md", "CONTRIBUTING.md"]
+html_theme = "furo"
+html_title = f"Ricochet {release}"
+html_static_path = ["static"]
+html_css_files = ["ricochet.css"]
+html_show_sphinx = False
+myst_enable_extensions = ["dollarmath", "deflist"]
+myst_heading_anchors = 4
+smartquotes_action = "qe"  # two hyphens are an option's, no dash
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+# What the pages say in words for terminals is no language that Pygments knows.
+highlight_language = "none"
+autodoc_member_order = "bysource"
+autodoc_typehints = "description"
+breathe_projects = {"ricochet": os.environ.get("RICOCHET_DOXYGEN_XML", str(ROOT / "build/doxygen/xml"))}
+breathe_default_project = "ricochet"
+breathe_default_members = ("members",)
+
+
+def as_sphinx_reads_it(app, name, source):
+    """Formulas in fences as the repository shows them, and links to folders, of which a site has no page."""
+    text = source[0].replace("```math", "```{math}")
+    here = (ROOT / name).parent
+
+    def shown(match):
+        words, target = match.groups()
+        return words if "://" not in target and (here / target.split("#")[0]).is_dir() and target[0] != "#" else match.group(0)
+
+    source[0] = re.sub(r"\[([^\]\n]+)\]\(([^)\s]+)\)", shown, text)
+
+
+def setup(app):
+    app.connect("source-read", as_sphinx_reads_it)
