@@ -92,5 +92,7 @@ if(RICOCHET_BUILD_PYTHON)
     "${about}This package has the module for Python 3."
     DEPENDS ${ricochet_same_library} "ricochet (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})" "python3 (>= 3.${Python3_VERSION_MINOR})" "python3 (<< 3.${next_minor})" python3-numpy
     RECOMMENDS python3-scipy python3-matplotlib python3-meshio SUGGESTS ricochet-doc python3-pandas python3-gmsh)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/debian/python/postinst
+    ${CMAKE_SOURCE_DIR}/packaging/debian/python/prerm)
 endif()
 include(CPack)

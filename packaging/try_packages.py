@@ -132,7 +132,8 @@ def try_in(root, steps, packages, recommends):
     known = root.run("dpkg-query -W -f '${Package} ${Status}\\n'")
     must("ricochet" not in known, f"dpkg still knows them:\n{known}")
     # What packages of Debian leave (caches, states of alternatives) is not ours, and is told.
-    print("           left by others: " + (" ".join(sorted(left)) or "nothing"))
+    folders = sorted({"/".join(path.split("/")[:2]) for path in left})
+    print(f"           left by packages of Debian: {f'{len(left)} files in ' + ', '.join(folders) if left else 'nothing'}")
 
 
 def main():

@@ -18,9 +18,9 @@ CASE = {
 
 
 def seconds_of(work, count):
-    start = time.perf_counter()
+    start = time.thread_time()
     work(count)
-    return (time.perf_counter() - start) / count
+    return (time.thread_time() - start) / count
 
 
 def test_a_step_costs_at_most_two_microseconds_more():
@@ -40,7 +40,7 @@ def test_a_step_costs_at_most_two_microseconds_more():
         differences.append(python - library)
     overhead = statistics.median(differences)
     print(f"{1e6 * overhead:.2f} microseconds")
-    # Measured: 0.3. The bound is that of the promise, so that a busy machine does not matter.
+    # Measured: 0.7. The bound is that of the promise, and the clock is this thread's own: a busy machine does not matter.
     assert overhead < 2e-6
 
 
