@@ -1,4 +1,4 @@
-"""Every block of docs/python.md runs, in the folder of the case that it speaks of."""
+"""Every block of Python in the pages runs, in the folder of the case that it speaks of."""
 
 import os
 import pathlib
@@ -10,11 +10,12 @@ import sys
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BLOCKS = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(encoding="utf-8"), re.S)
+PAGES = ("docs/python.md", "docs/coupling.md")
+BLOCKS = [block for page in PAGES for block in re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.S)]
 
 
 def test_there_are_blocks():
-    assert len(BLOCKS) >= 5
+    assert len(BLOCKS) >= 6
 
 
 @pytest.mark.parametrize("number", range(len(BLOCKS)))
