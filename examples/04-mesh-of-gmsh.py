@@ -62,8 +62,8 @@ assert abs(impulse / change - 1) < 1e-9, "the floor's impulse is not the change 
 assert np.ptp(history["total_energy"]) < 1e-9 * history["total_energy"][0], "energy is not constant"
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
-run.frame(t=run.maximum("contact_force_y").time).plot("von_mises", axes=left, scale=3.0)
-left.set_title("at the largest force (motion × 3)", fontsize=9)
+run.frame(t=run.maximum("contact_force_y").time).plot("von_mises", axes=left)
+left.set_title("at the largest force", fontsize=9)
 for name in ("kinetic_energy", "elastic_energy", "total_energy"):
     right.plot(1e3 * time, history[name], label=name.replace("_", " "))
 right.set(xlabel="time, ms", ylabel="J/m")

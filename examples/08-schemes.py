@@ -56,9 +56,10 @@ assert np.isclose(impulse, momentum[-1] - momentum[0], rtol=1e-9) and 0.98 < imp
 assert abs(np.diff(force)).sum() / (2 * force.max()) < 1.5, "the default's force is not smooth"
 
 figure, axes = plt.subplots(2, 1, figsize=(8, 5.5), sharex=True, constrained_layout=True)
-for name, run in runs.items():
-    axes[0].plot(1e3 * run.time, run.history["total_energy"] / energy[0], label=name)
-    axes[1].plot(1e3 * run.time, run.history["contact_force_y"], linewidth=1)
+for name, run in reversed(runs.items()):  # the default is drawn last, over the others
+    width = 2.5 if name.startswith("reduced-kane") else 0.8
+    axes[0].plot(1e3 * run.time, run.history["total_energy"] / energy[0], linewidth=width, label=name)
+    axes[1].plot(1e3 * run.time, run.history["contact_force_y"], linewidth=width)
 axes[0].set(ylabel="energy / (m v²/2)", yscale="log")
 axes[1].set(ylabel="contact force, N/m", xlabel="time, ms")
 axes[0].legend(fontsize=8)
