@@ -4,6 +4,7 @@ those of this folder."""
 import os
 import pathlib
 import re
+import shutil
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -14,14 +15,19 @@ author = "The Ricochet authors"
 copyright = author
 version = release = re.search(r"project\(ricochet VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "breathe", "sphinx_copybutton"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "breathe", "sphinx_copybutton"]
 root_doc = "docs/site/index"
 include_patterns = ["docs/*.md", "docs/site/**.md", "docs/site/**.rst", "cases/README.md", "cases/*/README.md", "benchmarks/README.md",
                     "benchmarks/*/README.md", "bench/*/README.md", "examples/README.md", "CHANGELOG.md", "CONTRIBUTING.md"]
 html_theme = "furo"
 html_title = f"Ricochet {release}"
 html_static_path = ["static"]
-html_css_files = ["ricochet.css"]
+# Formulas are set by Debian's KaTeX, a copy of which is in the site: nothing of it is loaded from elsewhere. Sphinx writes them as
+# for MathJax, which KaTeX reads, too.
+KATEX = pathlib.Path("/usr/share/javascript/katex")
+html_css_files = ["ricochet.css", "katex/katex.min.css"]
+html_js_files = [(name, {"defer": "defer"}) for name in ("katex/katex.min.js", "katex/contrib/auto-render.js")]
+mathjax_path = "set-formulas.js"
 html_show_sphinx = False
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
@@ -38,7 +44,7 @@ breathe_default_members = ("members",)
 
 def as_sphinx_reads_it(app, name, source):
     """Formulas in fences as the repository shows them, and links to folders, of which a site has no page."""
-    text = source[0].replace("```math", "```{math}")
+    text = re.sub(r"\$`([^`]*)`\$", r"$\1$", source[0].replace("```math", "```{math}"))
     here = (ROOT / name).parent
 
     def shown(match):
@@ -48,5 +54,11 @@ def as_sphinx_reads_it(app, name, source):
     source[0] = re.sub(r"\[([^\]\n]+)\]\(([^)\s]+)\)", shown, text)
 
 
+def copy_katex(app):
+    if app.builder.format == "html":
+        shutil.copytree(KATEX, pathlib.Path(app.outdir) / "_static" / "katex", dirs_exist_ok=True)
+
+
 def setup(app):
+    app.connect("builder-inited", copy_katex)
     app.connect("source-read", as_sphinx_reads_it)
