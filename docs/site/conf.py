@@ -31,6 +31,7 @@ mathjax_path = "set-formulas.js"
 html_show_sphinx = False
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
+html_copy_source = False
 smartquotes_action = "qe"  # two hyphens are an option's, no dash
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 # What the pages say in words for terminals is no language that Pygments knows.
