@@ -2,7 +2,6 @@
 
 #include "bindings.hpp"
 #include "ricochet/base/log.hpp"
-#include "ricochet/case/keys_override.hpp"
 #include "ricochet/case/read_case.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/scheme/scheme.hpp"
@@ -49,7 +48,6 @@ void bind_case(py::module_& module) {
       },
       py::arg("text"), py::arg("path"), py::arg("changes"));
   module.def("case_schema", &case_schema);
-  module.def("normal_change", &normal_override, py::arg("change"));
   module.def("scheme_names", &scheme_names);
   module.def("mass_names", &mass_names);
   module.def("contact_solver_names", [] { return contact_solver_registry().names(); });

@@ -62,10 +62,6 @@ void bind_study(py::module_& module) {
       },
       py::arg("directory"));
   module.def("holds_study", &holds_study, py::arg("directory"));
-  module.def("parse_axis", [](const std::string& text) {
-    const StudyAxis axis = parse_axis(text);
-    return std::make_pair(axis.keys, axis.values);
-  });
 }
 
 }  // namespace ricochet::python

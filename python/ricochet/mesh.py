@@ -1,6 +1,7 @@
 """Meshes from arrays: for users of gmsh's and meshio's Python interfaces, who then need no file."""
 
 import os
+import shutil
 import tempfile
 import weakref
 
@@ -184,7 +185,7 @@ class Mesh:
         if self._file is None:
             folder = tempfile.mkdtemp(prefix="ricochet-mesh-")
             path = os.path.join(folder, "mesh.msh")
-            weakref.finalize(self, _remove, folder, path)
+            weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
             self.write(path)
             self._file = path
         return self._file
@@ -192,11 +193,3 @@ class Mesh:
     def __repr__(self):
         cells = ", ".join(f"{len(block.ids)} x {block.kind}" for block in self._mesh.blocks)
         return f"<Mesh of {len(self.points)} points: {cells}>"
-
-
-def _remove(folder, path):
-    for remove, what in ((os.unlink, path), (os.rmdir, folder)):
-        try:
-            remove(what)
-        except OSError:
-            pass
