@@ -31,16 +31,16 @@ const ResultsReader& results_of(const RunData& run) {
   return *run.results;
 }
 
-const XdmfField& field_of(const RunData& run, const std::string& name) {
-  if (const XdmfField* field = results_of(run).find_field(name)) return *field;
+const ResultField& field_of(const RunData& run, const std::string& name) {
+  if (const ResultField* field = results_of(run).find_field(name)) return *field;
   std::string names;
-  for (const XdmfField& field : results_of(run).fields()) names += (names.empty() ? "" : ", ") + field.name;
+  for (const ResultField& field : results_of(run).fields()) names += (names.empty() ? "" : ", ") + field.name;
   throw Error(ErrorKind::invalid_input,
               fmt::format("{}: there is no field \"{}\"; there are {}", run.directory, name, names));
 }
 
 py::array read_field(const RunData& run, Index frame, const std::string& name) {
-  const XdmfField& field = field_of(run, name);
+  const ResultField& field = field_of(run, name);
   const ResultsReader& results = results_of(run);
   std::vector<double> values;
   {
@@ -154,7 +154,7 @@ void bind_run(py::module_& module) {
                              [](const RunData& run) {
                                std::vector<std::tuple<std::string, bool, int>> result;
                                if (run.results == nullptr) return result;
-                               for (const XdmfField& field : run.results->fields())
+                               for (const ResultField& field : run.results->fields())
                                  result.emplace_back(field.name, field.on_nodes, field.components);
                                return result;
                              })

@@ -5,7 +5,7 @@ import subprocess
 
 from harness import DISC, PROGRAM, TestCase, method, settings, with_more
 
-RESULTS = {"history.csv", "results.h5", "results.xdmf", "obstacles.xdmf", "probes-3.csv"}
+RESULTS = {"history.csv", "results.h5", "results.xdmf", "obstacles.xdmf", "results.vtkhdf", "obstacles.vtkhdf", "probes-3.csv"}
 
 PROBES = """
 [[probe]]

@@ -170,6 +170,7 @@ struct OutputSection {
   std::optional<long> fields_every;       ///< steps; absent: chosen so that about a hundred frames are written; 0: none
   std::optional<double> fields_interval;  ///< time, instead of fields_every
   std::vector<std::string> fields;        ///< names, also "all"; empty: the usual ones
+  bool vtkhdf = false;                    ///< else XDMF
   bool single_precision = false;          ///< of fields
   int compression = 0;
   std::optional<long> history_every;  ///< none: as the scheme says

@@ -97,17 +97,25 @@ Section output_section() {
            .choices = field_choices(),
            .doc = "The fields that are written (docs/results.md describes them); \"all\" stands for all. Default: "
                   "displacement, velocity, those of contact, and von_mises."},
+          {.name = "format",
+           .type = KeyType::choice,
+           .standard = "xdmf",
+           .choices = {"xdmf", "vtkhdf"},
+           .doc =
+               "Files of the fields: results.h5 with results.xdmf, which ParaView and meshio read, or results.vtkhdf, "
+               "one file with all frames for ParaView 5.12 and later."},
           {.name = "fields_precision",
            .type = KeyType::choice,
            .standard = "double",
            .choices = {"double", "single"},
-           .doc = "Precision of the fields in results.h5: 64 or 32 bits. The mesh always has 64."},
+           .doc = "Precision of the fields in results.h5 or results.vtkhdf: 64 or 32 bits. The mesh always has 64."},
           {.name = "compression",
            .type = KeyType::integer,
            .unit = "1",
            .standard = "0",
            .range = {.at_least = 0.0, .at_most = 9.0},
-           .doc = "zlib level of results.h5, from 0 (off) to 9. Double precision compresses little, single precision "
+           .doc = "zlib level of results.h5 or results.vtkhdf, from 0 (off) to 9. Double precision compresses little, "
+                  "single precision "
                   "more."},
           {.name = "history_every",
            .type = KeyType::integer,

@@ -364,6 +364,7 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems) {
   result.output = {.fields_every = output.optional_integer("fields_every"),
                    .fields_interval = output.optional_number("fields_interval"),
                    .fields = output.chosen("fields"),
+                   .vtkhdf = output.text("format") == "vtkhdf",
                    .single_precision = output.text("fields_precision") == "single",
                    .compression = static_cast<int>(output.integer("compression")),
                    .history_every = output.optional_integer("history_every"),

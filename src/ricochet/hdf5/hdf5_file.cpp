@@ -211,6 +211,15 @@ std::int64_t Hdf5Reader::integer(const std::string& name) const {
   return integers(name, 1).front();
 }
 
+std::int64_t Hdf5Reader::attribute(const std::string& group, const std::string& name) const {
+  const Hdf5Handle found(H5Aopen_by_name(file_, group.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle space(found >= 0 ? H5Aget_space(found) : -1, H5Sclose);
+  std::int64_t value = 0;
+  if (space < 0 || H5Sget_simple_extent_npoints(space) != 1 || H5Aread(found, H5T_NATIVE_INT64, &value) < 0)
+    fail(group, fmt::format("there is no number \"{}\" among its attributes", name));
+  return value;
+}
+
 std::vector<std::int64_t> Hdf5Reader::integers(const std::string& name, std::int64_t expected_size) const {
   const Dataset set(*this, name);
   std::vector<std::int64_t> result;

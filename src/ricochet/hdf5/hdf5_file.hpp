@@ -38,6 +38,8 @@ class Hdf5Reader {
   /// room for a data set that was never written: vectors and texts of that sort are read as their fill value, with a
   /// warning.
   [[nodiscard]] std::int64_t integer(const std::string& name) const;
+  /// Of an attribute of a group.
+  [[nodiscard]] std::int64_t attribute(const std::string& group, const std::string& name) const;
   /// Number of entries of a data set of one dimension (or of a scalar: 1).
   [[nodiscard]] std::int64_t size(const std::string& name) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const std::string& name, std::int64_t expected_size) const;
@@ -66,6 +68,7 @@ class Hdf5Reader {
   [[noreturn]] void fail(const std::string& name, const std::string& message) const;
 
  private:
+  friend class Hdf5Rows;
   struct Dataset;
   [[nodiscard]] bool has(const std::string& name, bool group) const;
   void check_size(const Dataset& set, std::int64_t expected_size, std::size_t bytes_per_entry) const;

@@ -6,35 +6,15 @@
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
-#include "ricochet/base/types.hpp"
+#include "ricochet/io/frame_arrangement.hpp"
 
-/// @file An HDF5 file of frames that survives interruptions: fixed data sets, then /frames/NNNNNN/… again and again.
+/// @file An HDF5 file of frames that survives interruptions: fixed data sets, then a frame again and again.
 ///
 /// The file is closed between frames: it is complete after each of them, whoever reads it then, and its bytes after k
 /// frames depend on the data alone. So a file that was left in any state after its first k frames can be given back the
 /// bytes it had: the numbers of these frames are never written over, and where everything else lies is found by writing
 /// k empty frames into a file beside it.
 namespace ricochet {
-
-/// A data set as it is in the file. In memory reals are double and whole numbers int, row by row.
-struct DatasetLayout {
-  std::string name;
-  bool whole = false;  ///< whole numbers of 32 bits
-  Index rows = 0;
-  Index columns = 0;  ///< 0: a data set of one dimension
-};
-
-struct FixedDataset {
-  std::string name;  ///< with its group: "/mesh/nodes"
-  Index rows = 0, columns = 0;
-  std::vector<double> reals;           ///< these, or
-  std::vector<std::int64_t> integers;  ///< these
-};
-
-struct FrameFileOptions {
-  bool single = false;  ///< reals of frames in 32 bits
-  int compression = 0;  ///< 1 to 9: of zlib; 0: none
-};
 
 class FrameFile {
  public:
@@ -47,33 +27,34 @@ class FrameFile {
   FrameFile(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
             const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name);
   void save(Snapshot& snapshot, const std::string& name) const;
+  /// Throws what going on would throw, and changes nothing: where there are several files, before the first is changed.
+  static void check(std::string path, const std::vector<FixedDataset>& fixed, std::vector<DatasetLayout> frame,
+                    const FrameFileOptions& options, const Snapshot& snapshot, const std::string& name);
 
-  /// One frame: the values of its data sets, in the order of the layout (const double*, const int*). On a full disk
-  /// throws Error(file_access) before the file is touched.
-  void append(const std::vector<const void*>& values);
+  /// One frame: the values of its data sets, in the order of the layout (const double*, const int*), and its time (only
+  /// VTKHDF keeps it). On a full disk throws Error(file_access) before the file is touched.
+  void append(const std::vector<const void*>& values, double time);
   [[nodiscard]] long frames() const { return frames_; }
-  /// "/frames/000012".
-  [[nodiscard]] static std::string frame_name(long frame);
 
  private:
-  struct Extent {
-    std::int64_t address = 0, size = 0;
-  };
-  struct Prepared;
+  FrameFile(std::string path, std::vector<DatasetLayout> frame, const FrameFileOptions& options)
+      : path_(std::move(path)), layout_(std::move(frame)), options_(options) {}
+  void load(const Snapshot& snapshot, const std::string& name);
   void create(const std::string& path, const std::vector<FixedDataset>& fixed) const;
-  std::vector<Extent> write_frame(const std::string& path, long frame, const std::vector<const void*>* values,
-                                  const std::int64_t* stored_sizes) const;
-  [[nodiscard]] std::uint32_t checksum(const std::vector<Extent>& extents,
+  std::vector<FrameExtent> write_frame(const std::string& path, const FrameToWrite& frame) const;
+  [[nodiscard]] std::uint32_t checksum(const std::vector<FrameExtent>& extents,
                                        const std::vector<const void*>* values) const;
-  void require_same(const std::vector<Extent>& extents) const;
-  void repair(const std::vector<FixedDataset>& fixed) const;
+  void require_same(const std::vector<FrameExtent>& extents) const;
+  enum class Repair { look, write };
+  void repair(const std::vector<FixedDataset>& fixed, Repair repair) const;
   [[nodiscard]] std::int64_t frame_bytes() const;
 
   std::string path_;
   std::vector<DatasetLayout> layout_;
   FrameFileOptions options_;
-  std::shared_ptr<const Prepared> prepared_;
+  std::unique_ptr<const FrameArrangement> arrangement_;
   long frames_ = 0;
+  std::vector<double> times_;               ///< of the frames, where the arrangement keeps them
   std::vector<std::int64_t> checksums_;     ///< of the numbers of every frame as they are in the file
   std::vector<std::int64_t> stored_sizes_;  ///< of the data sets of all frames, when compressed
 };

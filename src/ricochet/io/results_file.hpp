@@ -6,24 +6,26 @@
 
 #include "ricochet/io/fields/field_source.hpp"
 #include "ricochet/io/frame_file.hpp"
+#include "ricochet/io/results_format.hpp"
 
-/// @file Fields over time: results.h5 and its XDMF 3.0 side-file results.xdmf, one dataset per frame and field.
+/// @file Fields over time, in one of two formats.
 ///
-/// results.h5:  /mesh/nodes (nodes × 3), /mesh/cells (cells × nodes in VTK's order, or XDMF's mixed list),
-///   /mesh/contact_facets likewise where there are any, /frames/NNNNNN/… the fields (see fields/field_source.hpp and
-///   docs/results.md).
+/// xdmf: results.h5 has the mesh (mesh_datasets.hpp) and /frames/NNNNNN/…, the fields (fields/field_source.hpp and
+/// docs/results.md); results.xdmf says so to those who read XDMF 3.0. obstacles.xdmf has the surfaces of the obstacles,
+/// where there are some, and results.xdmf includes it.
 ///
-/// Beside them, where there are obstacles, obstacles.xdmf with their surfaces, which results.xdmf includes.
+/// vtkhdf: results.vtkhdf has the mesh and the fields (vtkhdf_frames.hpp), obstacles.vtkhdf the surfaces.
 namespace ricochet {
 
 struct ResultsOptions {
   std::vector<std::string> fields;  ///< names, also "all"; empty: the usual ones
   FrameFileOptions file = {};
+  ResultsFormat format = ResultsFormat::xdmf;
 };
 
 class ResultsWriter {
  public:
-  /// Opens DIRECTORY/results.h5 and results.xdmf. Keeps references to body and problem. Throws Error(file_access).
+  /// Opens the files in the directory. Keeps references to body and problem. Throws Error(file_access).
   ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
                 const ResultsOptions& options);
   /// Goes on after the frames that were there when save() was called; the files will have the bytes of a run that was
@@ -34,11 +36,11 @@ class ResultsWriter {
   ResultsWriter(const ResultsWriter&) = delete;
   ResultsWriter& operator=(const ResultsWriter&) = delete;
 
-  /// Both files are complete afterwards.
+  /// All files are complete afterwards.
   void write(const State& state);
   [[nodiscard]] long frames() const;
   void save(Snapshot& snapshot, const std::string& name) const;
-  /// Waits until both files are on the disk.
+  /// Waits until all files are on the disk.
   void sync() const;
 
  private:

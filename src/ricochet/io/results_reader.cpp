@@ -1,54 +1,23 @@
 #include "ricochet/io/results_reader.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
-#include <optional>
+#include <filesystem>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/hdf5/hdf5_file.hpp"
 #include "ricochet/io/file_lock.hpp"
+#include "ricochet/io/results_storage.hpp"
 #include "ricochet/io/vtk_order.hpp"
+#include "ricochet/io/vtkhdf_reader.hpp"
+#include "ricochet/io/xdmf_reader.hpp"
 
 namespace ricochet {
 
-struct ResultsReader::File {
-  /// What tells a file from another one at its path, also where that has the same number again.
-  struct Identity {
-    std::uint64_t number = 0;
-    std::int64_t born = 0, born_part = 0;  ///< seconds and nanoseconds, where the file system knows
-    bool operator==(const Identity&) const = default;
-  };
-
-  explicit File(std::string name)
-      : path(std::move(name)), reader(path), frames(reader->members("/frames")), identity(identify(path)) {}
-
-  static Identity identify(const std::string& path) {
-    struct statx file {};
-    if (statx(AT_FDCWD, path.c_str(), 0, STATX_INO | STATX_BTIME, &file) != 0) return {};
-    return {file.stx_ino, file.stx_btime.tv_sec, file.stx_btime.tv_nsec};
-  }
-
-  const Hdf5Reader& open() {
-    if (reader) return *reader;
-    reader.emplace(path);
-    if (identify(path) != identity)
-      reader->fail("/frames", "another run has been written since this one was read: read it again");
-    return *reader;
-  }
-
-  std::string path;
-  std::optional<Hdf5Reader> reader;
-  std::vector<Hdf5Member> frames;  ///< looked up at once: a run may go on adding to them
-  Identity identity;
-};
-
 namespace {
 
-constexpr double longest_wait_of_a_reader = 10.0;
+namespace fs = std::filesystem;
 
 std::vector<CellShape> shapes_of(int dimension) {
   if (dimension == 1) return {CellShape::interval};
@@ -120,18 +89,37 @@ class Connectivity {
 
 }  // namespace
 
-ResultsReader::ResultsReader(const std::string& directory, int dimension, int degree)
-    : dimension_(dimension), degree_(degree) {
-  // A run that goes on waits with its next frame. What is known then does not change any more.
-  FileLock lock(directory + "/results.xdmf");
+std::optional<ResultsFormat> find_results(const std::string& directory) {
+  const auto has = [&directory](const char* name) { return fs::exists(fs::path(directory) / name); };
+  if (has("results.vtkhdf")) return ResultsFormat::vtkhdf;
+  if (has("results.xdmf") && has("results.h5")) return ResultsFormat::xdmf;
+  return std::nullopt;
+}
+
+std::string files_of_results(ResultsFormat format) {
+  return format == ResultsFormat::vtkhdf ? "results.vtkhdf" : "results.h5 and results.xdmf";
+}
+
+std::string file_of_obstacles(ResultsFormat format) {
+  return format == ResultsFormat::vtkhdf ? "obstacles.vtkhdf" : "obstacles.xdmf";
+}
+
+std::vector<ObstacleFrame> read_obstacle_frames(const std::string& directory, ResultsFormat format) {
+  const std::string path = directory + "/" + file_of_obstacles(format);
+  if (!fs::exists(path)) return {};
+  if (format == ResultsFormat::xdmf) return read_xdmf_obstacles(path);
+  FileLock lock(directory + "/" + lock_of_results(format));
   lock.acquire(FileLock::Kind::shared, longest_wait_of_a_reader);
-  frames_ = read_xdmf_frames(directory + "/results.xdmf");
-  file_ = std::make_unique<File>(directory + "/results.h5");
-  const Hdf5Reader& file = file_->open();
-  if (file_->frames.size() < frames_.times.size()) {
-    file.fail("/frames",
-              fmt::format("has {} frames where results.xdmf has {}", file_->frames.size(), frames_.times.size()));
-  }
+  return read_vtkhdf_obstacles(path);
+}
+
+ResultsReader::ResultsReader(const std::string& directory, int dimension, int degree)
+    : format_(find_results(directory).value_or(ResultsFormat::xdmf)), dimension_(dimension), degree_(degree) {
+  // What is known now does not change any more when the run goes on.
+  FileLock lock(directory + "/" + lock_of_results(format_));
+  lock.acquire(FileLock::Kind::shared, longest_wait_of_a_reader);
+  storage_ = open_results(directory, format_);
+  const Hdf5Reader& file = storage_->file();
   const std::string name = "/mesh/nodes";
   const auto [rows, columns] = file.extents(name);
   if (columns != 3) file.fail(name, fmt::format("has {} columns where 3 are expected", columns));
@@ -144,7 +132,15 @@ ResultsReader::ResultsReader(const std::string& directory, int dimension, int de
 ResultsReader::~ResultsReader() = default;
 
 void ResultsReader::release() {
-  file_->reader.reset();
+  storage_->close();
+}
+
+const std::vector<double>& ResultsReader::times() const {
+  return storage_->frames().times;
+}
+
+const std::vector<ResultField>& ResultsReader::fields() const {
+  return storage_->frames().fields;
 }
 
 Index ResultsReader::cell_count() const {
@@ -153,25 +149,22 @@ Index ResultsReader::cell_count() const {
   return count;
 }
 
-const XdmfField* ResultsReader::find_field(const std::string& name) const {
+const ResultField* ResultsReader::find_field(const std::string& name) const {
   const auto found =
-      std::find_if(frames_.fields.begin(), frames_.fields.end(), [&](const XdmfField& f) { return f.name == name; });
-  return found == frames_.fields.end() ? nullptr : &*found;
+      std::find_if(fields().begin(), fields().end(), [&](const ResultField& f) { return f.name == name; });
+  return found == fields().end() ? nullptr : &*found;
 }
 
-template <class Number>
-void ResultsReader::read_numbers(Index frame, const XdmfField& field, std::vector<Number>& values) const {
-  file_->open().table(file_->frames[static_cast<std::size_t>(frame)], field.name,
-                      field.on_nodes ? nodes_.cols() : cell_count(), field.components > 1 ? field.components : 0,
-                      values);
+Index ResultsReader::rows_of(const ResultField& field) const {
+  return field.on_nodes ? nodes_.cols() : cell_count();
 }
 
-void ResultsReader::read(Index frame, const XdmfField& field, std::vector<float>& values) const {
-  read_numbers(frame, field, values);
+void ResultsReader::read(Index frame, const ResultField& field, std::vector<float>& values) const {
+  storage_->read(frame, field, rows_of(field), values);
 }
 
-void ResultsReader::read(Index frame, const XdmfField& field, std::vector<double>& values) const {
-  read_numbers(frame, field, values);
+void ResultsReader::read(Index frame, const ResultField& field, std::vector<double>& values) const {
+  storage_->read(frame, field, rows_of(field), values);
 }
 
 }  // namespace ricochet

@@ -24,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What a run leaves in its directory, checkpoints aside.
-constexpr const char* result_files[] = {"history.csv", "summary.json", "results.h5", "results.xdmf", "obstacles.xdmf"};
+constexpr const char* result_files[] = {"history.csv",    "summary.json",   "results.h5",      "results.xdmf",
+                                        "obstacles.xdmf", "results.vtkhdf", "obstacles.vtkhdf"};
 
 int open_directory(const std::string& path) {
   return open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -87,7 +88,8 @@ std::vector<std::string> RunDirectory::results() const {
 
 std::vector<std::string> RunDirectory::left_behind(long step) const {
   std::vector<std::string> result;
-  for (const char* name : {"summary.json.new", "results.h5.pattern"}) {
+  for (const char* name :
+       {"summary.json.new", "results.h5.pattern", "results.vtkhdf.pattern", "obstacles.vtkhdf.pattern"}) {
     if (fs::exists(file(name))) result.push_back(file(name));
   }
   for (const std::string& failure : failure_files(path_)) result.push_back(failure);

@@ -70,22 +70,27 @@ VtkCell vtk_cell(CellShape shape, int degree) {
     case CellShape::interval:
       result.xdmf_name = degree == 1 ? "Polyline" : "Edge_3";
       result.xdmf_number = degree == 1 ? 2 : 34;
+      result.vtk_number = degree == 1 ? 3 : 21;
       break;
     case CellShape::triangle:
       result.xdmf_name = degree == 1 ? "Triangle" : "Tri_6";
       result.xdmf_number = degree == 1 ? 4 : 36;
+      result.vtk_number = degree == 1 ? 5 : 22;
       break;
     case CellShape::quadrilateral:
       result.xdmf_name = degree == 1 ? "Quadrilateral" : "Quad_9";
       result.xdmf_number = degree == 1 ? 5 : 35;
+      result.vtk_number = degree == 1 ? 9 : 28;
       break;
     case CellShape::tetrahedron:
       result.xdmf_name = degree == 1 ? "Tetrahedron" : "Tet_10";
       result.xdmf_number = degree == 1 ? 6 : 38;
+      result.vtk_number = degree == 1 ? 10 : 24;
       break;
     case CellShape::hexahedron:
       result.xdmf_name = degree == 1 ? "Hexahedron" : "Hex_27";
       result.xdmf_number = degree == 1 ? 9 : 50;
+      result.vtk_number = degree == 1 ? 12 : 29;
       break;
   }
   if (degree == 1) return result;

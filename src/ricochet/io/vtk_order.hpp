@@ -11,6 +11,7 @@ namespace ricochet {
 struct VtkCell {
   std::string xdmf_name;       ///< TopologyType
   int xdmf_number = 0;         ///< in Mixed topologies
+  int vtk_number = 0;          ///< of VTK's own, as in vtkCellType.h
   std::vector<int> from_ours;  ///< for each VTK node, its number in Basix's order
 };
 

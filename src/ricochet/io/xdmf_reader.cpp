@@ -77,8 +77,8 @@ class Scanner {
 constexpr std::string_view grid = "<Grid Name=\"body\" GridType=\"Uniform\">";
 constexpr std::string_view obstacle_grid = "<Grid Name=\"obstacles\" GridType=\"Uniform\">";
 
-XdmfField field_of(Scanner& file) {
-  XdmfField field;
+ResultField field_of(Scanner& file) {
+  ResultField field;
   field.name = file.until("\"");
   file.expect("AttributeType=\"");
   const std::string_view type = file.until("\"");
@@ -90,9 +90,9 @@ XdmfField field_of(Scanner& file) {
 
 }  // namespace
 
-XdmfFrames read_xdmf_frames(const std::string& path) {
+ResultFrames read_xdmf_frames(const std::string& path) {
   Scanner file(path);
-  XdmfFrames result;
+  ResultFrames result;
   while (file.find(grid) && file.has_next("</Grid>")) {
     file.expect("<Time Value=\"");
     result.times.push_back(file.number(file.until("\"")));
@@ -103,7 +103,7 @@ XdmfFrames read_xdmf_frames(const std::string& path) {
   return result;
 }
 
-std::vector<ObstacleFrame> read_obstacle_frames(const std::string& path) {
+std::vector<ObstacleFrame> read_xdmf_obstacles(const std::string& path) {
   Scanner file(path);
   std::vector<ObstacleFrame> result;
   while (file.find(obstacle_grid) && file.has_next("</Grid>")) {

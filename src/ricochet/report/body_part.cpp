@@ -21,7 +21,7 @@ bool is_contact(const std::string& name) {
 }
 
 /// Tensors are not in a page, and contact has a part of its own.
-bool is_shown(const XdmfField& field) {
+bool is_shown(const ResultField& field) {
   return field.name != "displacement" && field.components <= 3 && !is_contact(field.name);
 }
 
@@ -61,7 +61,7 @@ BodyFrames::BodyFrames(const ResultsReader& results, Index most_triangles, std::
 /// A number takes somewhat more than a byte in the page, and five tetrahedra share a node.
 void BodyFrames::make_inside(std::size_t bytes) {
   double on_nodes = 3.0, on_cells = 0.0;
-  for (const XdmfField& field : results_.fields()) {
+  for (const ResultField& field : results_.fields()) {
     if (is_shown(field)) (field.on_nodes ? on_nodes : on_cells) += 1.0;
   }
   const double of_each = 4.0 + 1.25 * static_cast<double>(frame_count()) * (on_nodes / 5.0 + on_cells);
@@ -72,7 +72,7 @@ void BodyFrames::make_inside(std::size_t bytes) {
 }
 
 void BodyFrames::choose() {
-  for (const XdmfField& field : results_.fields()) {
+  for (const ResultField& field : results_.fields()) {
     if (is_contact(field.name) && !line_.nodes.empty())
       contact_.push_back({field.name, true, static_cast<Index>(line_.nodes.size()), {}});
     if (field.components > 3) left_out_.push_back(field.name);
@@ -82,7 +82,7 @@ void BodyFrames::choose() {
   for (Part* part : {&outside_, &inside_}) {
     for (int k = 0; k < dimension_ && results_.find_field("displacement") != nullptr; ++k)
       part->deviations.push_back({"xyz"[k] + std::string(), true, static_cast<Index>(part->nodes.size()), {}});
-    for (const XdmfField& field : results_.fields()) {
+    for (const ResultField& field : results_.fields()) {
       const std::size_t columns = field.on_nodes ? part->nodes.size() : part->cells.size();
       if (is_shown(field)) part->fields.push_back({field.name, field.on_nodes, static_cast<Index>(columns), {}});
     }
@@ -101,7 +101,7 @@ void BodyFrames::read_frames() {
   std::vector<float> values;
   if (outside_.deviations.empty()) mean_.assign(3 * frames_.size(), 0.0);
   for (const int frame : frames_) {
-    for (const XdmfField& field : results_.fields()) {
+    for (const ResultField& field : results_.fields()) {
       if (field.components > 3 || (is_contact(field.name) && line_.nodes.empty())) continue;
       results_.read(frame, field, values);
       if (field.name == "displacement") {
@@ -130,12 +130,12 @@ void BodyFrames::take_displacement(const std::vector<float>& field) {
   }
 }
 
-void BodyFrames::take_contact(const XdmfField& field, const std::vector<float>& values) {
+void BodyFrames::take_contact(const ResultField& field, const std::vector<float>& values) {
   Values& own = *std::find_if(contact_.begin(), contact_.end(), [&](const Values& v) { return v.name == field.name; });
   for (const Index node : line_.nodes) own.values.push_back(magnitude(values, field.components, node));
 }
 
-void BodyFrames::take_field(const XdmfField& field, const std::vector<float>& values) {
+void BodyFrames::take_field(const ResultField& field, const std::vector<float>& values) {
   for (Part* part : {&outside_, &inside_}) {
     Values& own =
         *std::find_if(part->fields.begin(), part->fields.end(), [&](const Values& v) { return v.name == field.name; });

@@ -100,8 +100,8 @@ class BodyFrames {
   void make_inside(std::size_t bytes);
   void read_frames();
   void take_displacement(const std::vector<float>& field);
-  void take_contact(const XdmfField& field, const std::vector<float>& values);
-  void take_field(const XdmfField& field, const std::vector<float>& values);
+  void take_contact(const ResultField& field, const std::vector<float>& values);
+  void take_field(const ResultField& field, const std::vector<float>& values);
   /// Rows of the frames that a stride leaves, the last one always.
   [[nodiscard]] std::vector<std::size_t> kept(std::size_t stride) const;
   [[nodiscard]] std::vector<int> frames_of(const std::vector<std::size_t>& rows) const;

@@ -197,7 +197,7 @@ Json panel_of_curves(const std::vector<RunData>& runs, const std::vector<std::st
 }
 
 Json panel_of_map(const RunData& run, const std::string& label, const FigureOptions& options) {
-  const XdmfField* field = run.results ? run.results->find_field("contact_pressure") : nullptr;
+  const ResultField* field = run.results ? run.results->find_field("contact_pressure") : nullptr;
   if (field == nullptr) {
     refuse(fmt::format("{}: the run wrote no contact pressures (output.fields, output.fields_every)", run.directory));
   }

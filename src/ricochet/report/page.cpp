@@ -242,7 +242,10 @@ void PageBuilder::add_frames(const RunData& run, Json& json, std::size_t most_by
   if (!body.volume && run.summary.dimension == 3)
     note(run, json, "the inside is not in the page, so that the file stays small: there are no cuts");
   if (!body.left_out.empty()) {
-    note(run, json, fmt::format("fields that only results.h5 has: {}", fmt::join(body.left_out, ", ")));
+    note(run, json,
+         fmt::format("fields that only {} has: {}",
+                     run.results->format() == ResultsFormat::vtkhdf ? "results.vtkhdf" : "results.h5",
+                     fmt::join(body.left_out, ", ")));
   }
   json["body"] = to_json(body, *run.results);
 }

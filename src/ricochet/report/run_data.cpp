@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "ricochet/base/error.hpp"
@@ -40,13 +41,14 @@ void check_rows(const std::string& path, const HistoryTable& table) {
 }
 
 void read_results(RunData& run) {
-  const auto path = [&run](const char* file) { return (fs::path(run.directory) / file).string(); };
-  if (fs::exists(path("results.xdmf")) && fs::exists(path("results.h5"))) {
+  const std::optional<ResultsFormat> format = find_results(run.directory);
+  if (format) {
     run.results = std::make_unique<ResultsReader>(run.directory, run.summary.dimension, run.summary.degree);
-    if (fs::exists(path("obstacles.xdmf"))) {
-      run.obstacles = read_obstacle_frames(path("obstacles.xdmf"));
+    const std::string name = file_of_obstacles(*format);
+    if (fs::exists(fs::path(run.directory) / name)) {
+      run.obstacles = read_obstacle_frames(run.directory, *format);
       if (run.obstacles.size() < run.results->times().size()) {
-        run.notes.push_back(fmt::format("obstacles.xdmf has {} of {} frames: it is damaged", run.obstacles.size(),
+        run.notes.push_back(fmt::format("{} has {} of {} frames: it is damaged", name, run.obstacles.size(),
                                         run.results->times().size()));
       }
     }
@@ -54,9 +56,12 @@ void read_results(RunData& run) {
   }
   const auto found = static_cast<long>(run.results ? run.results->times().size() : 0);
   if (run.summary.status != "running" && found < run.summary.frames) {
-    run.notes.push_back(fmt::format("results.h5 and results.xdmf have {} of the {} frames that were written: {}", found,
-                                    run.summary.frames,
-                                    found > 0 ? "they are damaged" : "they are missing or damaged"));
+    const std::string files =
+        format ? files_of_results(*format) : "the files of fields (results.h5 and results.xdmf, or results.vtkhdf)";
+    run.notes.push_back(fmt::format("{} {} {} of the {} frames that were written: {} {}", files,
+                                    format == ResultsFormat::vtkhdf ? "has" : "have", found, run.summary.frames,
+                                    format == ResultsFormat::vtkhdf ? "it is" : "they are",
+                                    found > 0 ? "damaged" : "missing or damaged"));
   }
 }
 

@@ -49,7 +49,9 @@ ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, co
 
 std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const Model& model,
                                             const std::string& directory, const Snapshot* snapshot) {
-  const ResultsOptions options{output.fields, {output.single_precision, output.compression}};
+  const ResultsOptions options{output.fields,
+                               {output.single_precision, output.compression},
+                               output.vtkhdf ? ResultsFormat::vtkhdf : ResultsFormat::xdmf};
   if (snapshot != nullptr)
     return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, *snapshot, "results");
   return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options);

@@ -41,7 +41,7 @@ TEST(MalformedCase, Structure) {
       {0, "[mass]\nkind = \"lumped\"", "13:1: unknown key \"kind\" in [mass]; its only key is \"type\""},
       {0, "[output]\nevery = 1",
        "13:1: unknown key \"every\" in [output]; its keys are \"fields_every\", \"fields_interval\", "
-       "\"fields\", \"fields_precision\", \"compression\", \"history_every\", \"checkpoint_every\" and "
+       "\"fields\", \"format\", \"fields_precision\", \"compression\", \"history_every\", \"checkpoint_every\" and "
        "\"checkpoint_seconds\""},
       {0, "[load]\ngravty = [0, -1]", "13:1: unknown key \"gravty\" in [load]; did you mean \"gravity\"?"},
       // sections

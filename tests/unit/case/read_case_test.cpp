@@ -222,6 +222,7 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"solver.method", "auto"},
                                                              {"solver.tolerance", "1e-10"},
                                                              {"solver.contact_points", "near"},
+                                                             {"output.format", "xdmf"},
                                                              {"output.fields_precision", "double"},
                                                              {"output.compression", "0"},
                                                              {"output.checkpoint_every", "0"},

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ricochet/hdf5/hdf5_file.hpp"
+#include "ricochet/hdf5/hdf5_handle.hpp"
+
+/// @file A data set of an HDF5 file that is read some rows at a time.
+namespace ricochet {
+
+/// Numbers of any type, of one or two dimensions. It is opened once, with its index: the rows that are there then can
+/// be read while another process adds further ones.
+class Hdf5Rows {
+ public:
+  /// Keeps a reference to the file. Throws Error(invalid_input) where there is no such data set.
+  Hdf5Rows(const Hdf5Reader& file, const std::string& name);
+
+  /// Row by row; NaN and infinities are left as they are. Throws Error(invalid_input) where they are not there.
+  void read(Index first, Index count, std::vector<float>& values) const;
+  void read(Index first, Index count, std::vector<double>& values) const;
+
+ private:
+  [[nodiscard]] std::size_t entries(Index first, Index count) const;
+  void read(Index first, Index count, std::int64_t type, void* values) const;
+
+  const Hdf5Reader& file_;
+  std::string name_;
+  Index rows_, columns_;
+  Hdf5Handle set_;
+};
+
+}  // namespace ricochet

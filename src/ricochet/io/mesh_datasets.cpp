@@ -1,0 +1,132 @@
+#include "ricochet/io/mesh_datasets.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "ricochet/io/vtk_order.hpp"
+
+namespace ricochet {
+
+namespace {
+
+FixedDataset node_positions(const DisplacementSpace& space) {
+  FixedDataset set{"/mesh/nodes", space.node_count(), 3, {}, {}};
+  set.reals.assign(static_cast<std::size_t>(3 * space.node_count()), 0.0);
+  for (Index i = 0; i < space.node_count(); ++i) {
+    const Index row = space.number[static_cast<std::size_t>(i)];
+    for (int k = 0; k < space.dimension; ++k) set.reals[static_cast<std::size_t>(3 * row + k)] = space.nodes(k, i);
+  }
+  return set;
+}
+
+/// Cells (or facets) of a block by their numbers in it.
+struct Part {
+  const CellBlock* block;
+  std::vector<Index> members;
+};
+
+/// One row for each cell; cells of several shapes are one list, in which each begins with XDMF's number of its shape.
+FixedDataset connectivity(const DisplacementSpace& space, const std::string& name, const std::vector<Part>& parts) {
+  FixedDataset set{name, 0, 0, {}, {}};
+  const bool mixed = parts.size() > 1;
+  for (const Part& part : parts) {
+    const VtkCell cell = vtk_cell(part.block->shape, space.degree);
+    for (const Index i : part.members) {
+      if (mixed) set.integers.push_back(cell.xdmf_number);
+      for (const int k : cell.from_ours)
+        set.integers.push_back(space.number[static_cast<std::size_t>(part.block->cell(i)[k])]);
+    }
+  }
+  set.columns = mixed ? 0 : parts.front().block->nodes_per_cell;
+  set.rows = static_cast<Index>(set.integers.size()) / std::max<Index>(set.columns, 1);
+  return set;
+}
+
+FixedDataset cells_of(const DisplacementSpace& space) {
+  std::vector<Part> parts;
+  for (const CellBlock& block : space.cells) {
+    parts.push_back({&block, std::vector<Index>(static_cast<std::size_t>(block.size()))});
+    std::iota(parts.back().members.begin(), parts.back().members.end(), Index{0});
+  }
+  return connectivity(space, "/mesh/cells", parts);
+}
+
+/// The number of each cell in the mesh file.
+FixedDataset element_numbers(const DisplacementSpace& space) {
+  FixedDataset set{"/mesh/element", 0, 0, {}, {}};
+  for (const CellBlock& block : space.cells)
+    set.integers.insert(set.integers.end(), block.tags.begin(), block.tags.end());
+  set.rows = static_cast<Index>(set.integers.size());
+  return set;
+}
+
+FixedDataset contact_facets_of(const DisplacementSpace& space, const ContactBoundary& contact) {
+  std::vector<Part> parts;
+  for (const Index facet : contact.facets) {
+    const PlaceInBlocks place = locate_facet(space, facet);
+    const CellBlock* block = &space.facets[place.block];
+    if (parts.empty() || parts.back().block != block) parts.push_back({block, {}});
+    parts.back().members.push_back(place.local);
+  }
+  return connectivity(space, "/mesh/contact_facets", parts);
+}
+
+/// Cells one after the other, as VTKHDF has them.
+struct VtkHdfCells {
+  FixedDataset connectivity{"/VTKHDF/Connectivity", 0, 0, {}, {}}, offsets{"/VTKHDF/Offsets", 0, 0, {}, {0}},
+      types{.name = "/VTKHDF/Types", .bytes = true};
+
+  /// Its nodes are added to `connectivity` before.
+  void end_cell(int type) {
+    offsets.integers.push_back(static_cast<std::int64_t>(connectivity.integers.size()));
+    types.integers.push_back(type);
+  }
+  [[nodiscard]] std::vector<FixedDataset> datasets(Index points) {
+    const auto count = [](const char* name, Index value) { return FixedDataset{name, 1, 0, {}, {value}}; };
+    std::vector<FixedDataset> result{
+        count("/VTKHDF/NumberOfPoints", points),
+        count("/VTKHDF/NumberOfCells", static_cast<Index>(types.integers.size())),
+        count("/VTKHDF/NumberOfConnectivityIds", static_cast<Index>(connectivity.integers.size()))};
+    for (FixedDataset* set : {&connectivity, &offsets, &types}) {
+      set->rows = static_cast<Index>(set->integers.size());
+      result.push_back(std::move(*set));
+    }
+    return result;
+  }
+};
+
+}  // namespace
+
+std::vector<FixedDataset> mesh_datasets(const DisplacementSpace& space, const ContactBoundary& contact) {
+  std::vector<FixedDataset> result{node_positions(space), cells_of(space), element_numbers(space)};
+  if (!contact.facets.empty()) result.push_back(contact_facets_of(space, contact));
+  return result;
+}
+
+std::vector<FixedDataset> vtkhdf_mesh_datasets(const DisplacementSpace& space) {
+  VtkHdfCells cells;
+  for (const CellBlock& block : space.cells) {
+    const VtkCell kind = vtk_cell(block.shape, space.degree);
+    for (Index i = 0; i < block.size(); ++i) {
+      for (const int k : kind.from_ours)
+        cells.connectivity.integers.push_back(space.number[static_cast<std::size_t>(block.cell(i)[k])]);
+      cells.end_cell(kind.vtk_number);
+    }
+  }
+  std::vector<FixedDataset> result = cells.datasets(space.node_count());
+  result.push_back({.name = "/VTKHDF/Points", .same_as = "/mesh/nodes"});
+  result.push_back({.name = "/VTKHDF/CellData/element", .same_as = "/mesh/element"});
+  return result;
+}
+
+std::vector<FixedDataset> vtkhdf_cell_datasets(Index points, const std::vector<int>& cells, int type,
+                                               int nodes_per_cell) {
+  VtkHdfCells result;
+  for (const int node : cells) {
+    result.connectivity.integers.push_back(node);
+    if (result.connectivity.integers.size() % static_cast<std::size_t>(nodes_per_cell) == 0) result.end_cell(type);
+  }
+  return result.datasets(points);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,140 @@
+#include <array>
+#include <optional>
+
+#include "ricochet/io/frame_output.hpp"
+#include "ricochet/io/mesh_datasets.hpp"
+#include "ricochet/io/obstacle_surfaces.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// VTK's numbers of the cells of obstacles: lines and quadrilaterals.
+constexpr int vtk_line = 3, vtk_quadrilateral = 9;
+
+/// A field as VTK wants it: of symmetric tensors it takes the components as xx, yy, zz, xy, yz, xz, which here come as
+/// xx, xy, xz, yy, yz, zz.
+class VtkValues {
+ public:
+  explicit VtkValues(const Field& field) : field_(field) {
+    if (is_tensor()) reordered_.resize(static_cast<std::size_t>(components * field.rows));
+  }
+  [[nodiscard]] const void* get() {
+    if (!is_tensor()) return field_.values;
+    constexpr std::array<int, components> ours = {0, 3, 5, 1, 4, 2};
+    const auto* from = static_cast<const double*>(field_.values);
+    for (std::size_t row = 0; row < reordered_.size(); row += components) {
+      for (std::size_t k = 0; k < components; ++k) reordered_[row + k] = from[row + static_cast<std::size_t>(ours[k])];
+    }
+    return reordered_.data();
+  }
+
+ private:
+  static constexpr int components = 6;
+  [[nodiscard]] bool is_tensor() const { return field_.components == components; }
+
+  const Field& field_;
+  std::vector<double> reordered_;
+};
+
+std::vector<DatasetLayout> vtkhdf_datasets_of(const std::vector<Field>& fields) {
+  std::vector<DatasetLayout> result;
+  for (const Field& field : fields) {
+    result.push_back({(field.place == FieldPlace::nodes ? "PointData/" : "CellData/") + field.name, field.whole,
+                      field.rows, field.components > 1 ? field.components : 0});
+  }
+  return result;
+}
+
+/// results.vtkhdf, and obstacles.vtkhdf where there are obstacles.
+class VtkHdfOutput : public FrameOutput {
+ public:
+  explicit VtkHdfOutput(const FrameOutputContext& context)
+      : directory_(context.directory), obstacles_(context.problem) {
+    const DisplacementSpace& space = *context.body.space;
+    std::vector<FixedDataset> fixed = mesh_datasets(space, context.problem.contact);
+    for (FixedDataset& set : vtkhdf_mesh_datasets(space)) fixed.push_back(std::move(set));
+    const FileOfFrames body{"results.vtkhdf", ".frames", std::move(fixed), vtkhdf_datasets_of(context.fields)};
+    for (const Field& field : context.fields) values_.emplace_back(field);
+    if (obstacles_.any()) {
+      const FileOfFrames surfaces = file_of_surfaces();
+      if (context.snapshot != nullptr) {
+        FrameFile::check(path(surfaces), surfaces.fixed, surfaces.layout, options_of(context), *context.snapshot,
+                         context.name + surfaces.saved_as);
+      }
+      open(file_, body, context);
+      open(obstacle_file_, surfaces, context);
+    } else {
+      open(file_, body, context);
+    }
+  }
+
+  void write(const State& state) override {
+    // Whoever finds a frame of the body finds its obstacles, even if the run is killed in between.
+    if (obstacle_file_) {
+      const std::vector<double> positions = obstacles_.positions(state.time, state.displacement);
+      obstacle_file_->append({positions.data()}, state.time);
+    }
+    std::vector<const void*> values;
+    for (VtkValues& each : values_) values.push_back(each.get());
+    file_->append(values, state.time);
+  }
+  [[nodiscard]] long frames() const override { return file_->frames(); }
+  void save(Snapshot& snapshot, const std::string& name) const override {
+    file_->save(snapshot, name + ".frames");
+    if (obstacle_file_) obstacle_file_->save(snapshot, name + ".obstacles");
+  }
+  [[nodiscard]] std::vector<std::string> paths() const override {
+    std::vector<std::string> result{directory_ + "/results.vtkhdf"};
+    if (obstacle_file_) result.push_back(directory_ + "/obstacles.vtkhdf");
+    return result;
+  }
+
+ private:
+  struct FileOfFrames {
+    std::string name, saved_as;
+    std::vector<FixedDataset> fixed;
+    std::vector<DatasetLayout> layout;
+  };
+
+  [[nodiscard]] std::string path(const FileOfFrames& file) const { return directory_ + "/" + file.name; }
+  [[nodiscard]] static FrameFileOptions options_of(const FrameOutputContext& context) {
+    FrameFileOptions options = context.options;
+    options.vtkhdf = true;
+    return options;
+  }
+  void open(std::optional<FrameFile>& file, const FileOfFrames& about, const FrameOutputContext& context) const {
+    const FrameFileOptions options = options_of(context);
+    if (context.snapshot == nullptr) {
+      file.emplace(path(about), about.fixed, about.layout, options);
+    } else {
+      file.emplace(path(about), about.fixed, about.layout, options, *context.snapshot, context.name + about.saved_as);
+    }
+  }
+  [[nodiscard]] FileOfFrames file_of_surfaces() const {
+    const int corners = obstacles_.corners();
+    FileOfFrames file{"obstacles.vtkhdf",
+                      ".obstacles",
+                      vtkhdf_cell_datasets(obstacles_.point_count(), obstacles_.cells(),
+                                           corners == 2 ? vtk_line : vtk_quadrilateral, corners),
+                      {{"Points", false, obstacles_.point_count(), 3}}};
+    const std::vector<int>& numbers = obstacles_.numbers();
+    file.fixed.push_back(
+        {"/VTKHDF/CellData/obstacle", static_cast<Index>(numbers.size()), 0, {}, {numbers.begin(), numbers.end()}});
+    return file;
+  }
+
+  std::string directory_;
+  std::optional<FrameFile> file_;
+  std::vector<VtkValues> values_;  ///< of its fields
+  ObstacleSurfaces obstacles_;
+  std::optional<FrameFile> obstacle_file_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameOutput> make_vtkhdf_output(const FrameOutputContext& context) {
+  return std::make_unique<VtkHdfOutput>(context);
+}
+
+}  // namespace ricochet

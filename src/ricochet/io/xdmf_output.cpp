@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "ricochet/io/frame_groups.hpp"
+#include "ricochet/io/frame_output.hpp"
+#include "ricochet/io/mesh_datasets.hpp"
+#include "ricochet/io/obstacle_surfaces.hpp"
+#include "ricochet/io/vtk_order.hpp"
+#include "ricochet/io/xdmf_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// XDMF of the cells.
+std::string topology_of(const DisplacementSpace& space, const FixedDataset& cells) {
+  Index count = 0;
+  for (const CellBlock& block : space.cells) count += block.size();
+  const bool mixed = space.cells.size() > 1;
+  return fmt::format(
+      "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\"><DataItem Format=\"HDF\" NumberType=\"Int\" "
+      "Precision=\"8\" Dimensions=\"{}\">results.h5:/mesh/cells</DataItem></Topology>\n",
+      mixed ? "Mixed" : vtk_cell(space.cells.front().shape, space.degree).xdmf_name, count,
+      mixed ? fmt::format("{}", cells.rows) : fmt::format("{} {}", cells.rows, cells.columns));
+}
+
+std::string geometry_of(const DisplacementSpace& space) {
+  return fmt::format(
+      "        <Geometry GeometryType=\"XYZ\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
+      "Dimensions=\"{} 3\">results.h5:/mesh/nodes</DataItem></Geometry>\n",
+      space.node_count());
+}
+
+std::vector<DatasetLayout> datasets_of(const std::vector<Field>& fields) {
+  std::vector<DatasetLayout> result;
+  for (const Field& field : fields)
+    result.push_back({field.name, field.whole, field.rows, field.components > 1 ? field.components : 0});
+  return result;
+}
+
+const char* xdmf_type(int components) {
+  return components == 1 ? "Scalar" : components == 3 ? "Vector" : "Tensor6";
+}
+
+/// results.h5 with results.xdmf, which includes obstacles.xdmf where there are obstacles.
+class XdmfOutput : public FrameOutput {
+ public:
+  explicit XdmfOutput(const FrameOutputContext& context)
+      : directory_(context.directory),
+        fields_(context.fields),
+        precision_(context.options.single ? 4 : 8),
+        obstacles_(context.problem) {
+    const DisplacementSpace& space = *context.body.space;
+    const std::vector<FixedDataset> fixed = mesh_datasets(space, context.problem.contact);
+    mesh_ = topology_of(space, fixed[1]) + geometry_of(space);
+    const std::vector<DatasetLayout> layout = datasets_of(fields_);
+    const std::string obstacles = "obstacles.xdmf";
+    if (context.snapshot == nullptr) {
+      file_.emplace(path("results.h5"), fixed, layout, context.options);
+      if (obstacles_.any()) obstacle_side_.emplace(path(obstacles), "obstacles");
+      side_.emplace(path("results.xdmf"), "body", obstacles_.any() ? obstacles : "");
+    } else {
+      const Snapshot& snapshot = *context.snapshot;
+      file_.emplace(path("results.h5"), fixed, layout, context.options, snapshot, context.name + ".frames");
+      if (obstacles_.any()) obstacle_side_.emplace(path(obstacles), snapshot, context.name + ".obstacles");
+      side_.emplace(path("results.xdmf"), snapshot, context.name + ".side");
+    }
+    for (const Field& field : fields_) values_.push_back(field.values);
+  }
+
+  void write(const State& state) override {
+    const long frame = file_->frames();
+    file_->append(values_, state.time);
+    // What the side-file names is in the file by now, even if the run is killed before the next frame.
+    if (obstacle_side_) obstacle_side_->append(obstacles_.grid(state.time, state.displacement));
+    side_->append(grid(state.time, frame));
+  }
+  [[nodiscard]] long frames() const override { return file_->frames(); }
+  void save(Snapshot& snapshot, const std::string& name) const override {
+    file_->save(snapshot, name + ".frames");
+    side_->save(snapshot, name + ".side");
+    if (obstacle_side_) obstacle_side_->save(snapshot, name + ".obstacles");
+  }
+  [[nodiscard]] std::vector<std::string> paths() const override {
+    std::vector<std::string> result{path("results.h5"), path("results.xdmf")};
+    if (obstacle_side_) result.push_back(path("obstacles.xdmf"));
+    return result;
+  }
+
+ private:
+  [[nodiscard]] std::string path(const std::string& file) const { return directory_ + "/" + file; }
+  [[nodiscard]] std::string grid(double time, long frame) const;
+
+  std::string directory_;
+  const std::vector<Field>& fields_;
+  std::vector<const void*> values_;
+  int precision_;     ///< bytes
+  std::string mesh_;  ///< XDMF shared by all frames
+  std::optional<FrameFile> file_;
+  std::optional<XdmfFile> side_;
+  ObstacleSurfaces obstacles_;
+  std::optional<XdmfFile> obstacle_side_;
+};
+
+std::string XdmfOutput::grid(double time, long frame) const {
+  std::string text =
+      fmt::format("      <Grid Name=\"body\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n", time);
+  text += mesh_;
+  for (const Field& field : fields_) {
+    text += fmt::format(
+        "        <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"{2}\"><DataItem Format=\"HDF\" "
+        "NumberType=\"{3}\" Precision=\"{4}\" Dimensions=\"{5}\">results.h5:{6}/{0}</DataItem></Attribute>\n",
+        field.name, xdmf_type(field.components), field.place == FieldPlace::nodes ? "Node" : "Cell",
+        field.whole ? "Int" : "Float", field.whole ? 4 : precision_,
+        field.components > 1 ? fmt::format("{} {}", field.rows, field.components) : fmt::format("{}", field.rows),
+        frame_group_name(frame));
+  }
+  return text + "      </Grid>\n";
+}
+
+}  // namespace
+
+std::unique_ptr<FrameOutput> make_xdmf_output(const FrameOutputContext& context) {
+  return std::make_unique<XdmfOutput>(context);
+}
+
+}  // namespace ricochet
