@@ -35,7 +35,8 @@ class Installation(TestCase):
         figure = self.folder / "energy.svg"
         self.command(program, "plot", self.folder / "by-program", "--what", "energy", "-o", figure)
         self.assertIn("</svg>", figure.read_text(encoding="utf-8"))
-        self.assertTrue((prefix / "share" / "ricochet" / "figure.py").is_file())
+        for script in ("figure.py", "show_in_paraview.py"):
+            self.assertTrue((prefix / "share" / "ricochet" / script).is_file())
         self.command(program, "report", self.folder / "by-program")
         self.assertIn('id="ricochet-runs"', (self.folder / "by-program" / "report.html").read_text(encoding="utf-8"))
         linked = re.search(r"libricochet\S* => (\S+)", self.command("ldd", program))
