@@ -1,0 +1,126 @@
+"""What a tutorial holds, and how it is run as its reader does: blocks that name a file are written, commands are run in their
+order, and what they print is compared with what the page shows.
+
+A fenced block whose first line is a comment with nothing but a file's name is that file. In a block of `console`, lines that begin with
+"$ " are commands; the lines below are what comes out. A line that is "…" stands for any lines, "…" within a line for anything. Numbers
+agree when they do to the digits shown, give or take one of the last."""
+
+import dataclasses
+import decimal
+import os
+import pathlib
+import re
+import subprocess
+import time
+
+FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", re.S | re.M)
+NAME = re.compile(r"^(?:#|//|\*\*)\s*([\w./-]+\.(?:toml|py|cpp|txt|geo|inp|csv|msh))\s*$")
+NUMBER = re.compile(r"(?<![\w.])[-+−]?\d[\d,]*\.?\d*(?:e[-+]?\d+)?")
+ANYTHING = "…"
+
+
+@dataclasses.dataclass
+class Command:
+    text: str
+    shown: list[str]
+
+
+@dataclasses.dataclass
+class File:
+    name: str
+    text: str
+
+
+def read(page):
+    """The files and commands of a page, in their order."""
+    steps = []
+    for kind, body in FENCE.findall(pathlib.Path(page).read_text(encoding="utf-8")):
+        if kind == "console":
+            steps += commands(body)
+            continue
+        name = NAME.match(body.split("\n", 1)[0])
+        if name:
+            steps.append(File(name.group(1), body))
+        elif kind in ("sh", "bash", "python", "toml", "cpp"):
+            raise AssertionError(f"{page}: no test runs this block of {kind}; name its file, or write it as console:\n{body}")
+    return steps
+
+
+def commands(body):
+    result = []
+    lines = iter(body.splitlines())
+    for line in lines:
+        if line.startswith("$ "):
+            text = line[2:]
+            while text.endswith("\\"):
+                text = text[:-1].rstrip() + " " + next(lines).strip()
+            result.append(Command(text, []))
+        elif result:
+            result[-1].shown.append(line)
+        else:
+            raise AssertionError(f"a console block begins without a command: {line}")
+    return result
+
+
+def same_number(shown, found):
+    def value(text):
+        return decimal.Decimal(text.replace(",", "").replace("−", "-"))
+
+    a, b = value(shown), value(found)
+    if a == 0:
+        return abs(b) < decimal.Decimal("1e-12") or a == b
+    return abs(a - b) <= decimal.Decimal(1).scaleb(a.as_tuple().exponent) * decimal.Decimal("1.0000001")
+
+
+def agrees(shown, found):
+    """Does a printed line agree with one that the page shows?"""
+    shown = shown.strip()
+    texts, numbers = NUMBER.split(shown), NUMBER.findall(shown)
+
+    def pattern(text):
+        return ".*?".join(re.sub(r"(\\\s)+", r"\\s+", re.escape(part)) for part in text.split(ANYTHING))
+
+    outcome = re.fullmatch(f"({NUMBER.pattern})".join(map(pattern, texts)), found.strip())
+    return outcome is not None and all(map(same_number, numbers, outcome.groups()))
+
+
+def difference(shown, printed):
+    """None where the lines printed are those that the page shows; else what is wrong."""
+    at, free = 0, False
+    for line in shown:
+        if line.strip() == ANYTHING:
+            free = True
+            continue
+        if not line.strip():
+            continue
+        while at < len(printed) and (not printed[at].strip() or free and not agrees(line, printed[at])):
+            at += 1
+        if at == len(printed) or not agrees(line, printed[at]):
+            return f"the page shows\n    {line}\nwhere there is\n    " + (printed[at] if at < len(printed) else "nothing more")
+        at, free = at + 1, False
+    rest = [line for line in printed[at:] if line.strip()]
+    return None if free or not rest else "the page does not show\n    " + "\n    ".join(rest[:5])
+
+
+def run(page, folder, environment):
+    """Runs a page in an empty folder. Yields (command, seconds, what it printed, what is wrong: None for nothing)."""
+    for step in read(page):
+        if isinstance(step, File):
+            path = folder / step.name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(step.text, encoding="utf-8")
+            continue
+        begin = time.monotonic()
+        outcome = subprocess.run(["bash", "-c", step.text], cwd=folder, env=environment, stdout=subprocess.PIPE,
+                                 stderr=subprocess.STDOUT, text=True)
+        problem = f"ended with status {outcome.returncode}" if outcome.returncode else difference(step.shown, outcome.stdout.splitlines())
+        yield step.text, time.monotonic() - begin, outcome.stdout, problem
+
+
+def environment_of(program, build, folder):
+    """Where `ricochet` is this program, `python3` Debian's, and CMake finds what is installed below the folder."""
+    tools = folder / "tools"
+    tools.mkdir()
+    (tools / "ricochet").symlink_to(program)
+    return {**os.environ, "PATH": f"{tools}:/usr/bin:/bin", "PYTHONPATH": str(pathlib.Path(build) / "python"), "MPLBACKEND": "Agg",
+            "CMAKE_PREFIX_PATH": str(folder / "prefix"), "OPENBLAS_NUM_THREADS": "1", "COLUMNS": "120"}
