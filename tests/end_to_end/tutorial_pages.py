@@ -7,6 +7,7 @@ agree when they do to the digits shown, give or take one of the last."""
 
 import dataclasses
 import decimal
+import functools
 import os
 import pathlib
 import re
@@ -74,14 +75,22 @@ def same_number(shown, found):
 
 def agrees(shown, found):
     """Does a printed line agree with one that the page shows?"""
-    shown = shown.strip()
-    texts, numbers = NUMBER.split(shown), NUMBER.findall(shown)
+    shown, found = " ".join(shown.split()), " ".join(found.split())
+    parts = [part for part in re.split(f"({ANYTHING}|{NUMBER.pattern})", shown) if part]
 
-    def pattern(text):
-        return ".*?".join(re.sub(r"(\\\s)+", r"\\s+", re.escape(part)) for part in text.split(ANYTHING))
+    @functools.cache
+    def agree_from(number, at):
+        if number == len(parts):
+            return at == len(found)
+        part = parts[number]
+        if part == ANYTHING:
+            return any(agree_from(number + 1, end) for end in range(at, len(found) + 1))
+        if NUMBER.fullmatch(part):
+            there = NUMBER.match(found, at)
+            return there is not None and same_number(part, there.group(0)) and agree_from(number + 1, there.end())
+        return found.startswith(part, at) and agree_from(number + 1, at + len(part))
 
-    outcome = re.fullmatch(f"({NUMBER.pattern})".join(map(pattern, texts)), found.strip())
-    return outcome is not None and all(map(same_number, numbers, outcome.groups()))
+    return agree_from(0, 0)
 
 
 def difference(shown, printed):
