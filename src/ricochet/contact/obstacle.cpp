@@ -121,8 +121,12 @@ SpaceVector Obstacle::surface_velocity(const SpaceVector& position, double time,
   if (span > 0.0) return result + mean(time - 0.5 * span, time + 0.5 * span);
   const double near = instant_of_scale * time_scale_;
   if (time >= near) return result + mean(time - near, time + near);
-  // Expressions are not asked for what was before the start.
-  return result + 2.0 * mean(time, time + near) - mean(time, time + 2.0 * near);
+  // Expressions are not asked for what was before the start. A velocity below what the two means differ by is none: of
+  // an obstacle that starts from rest it would be rounding, whose direction friction would take for that of a slide.
+  const SpaceVector first = mean(time, time + near), both = mean(time, time + 2.0 * near);
+  const SpaceVector velocity = 2.0 * first - both;
+  if (velocity.norm() <= 2.0 * (both - first).norm()) return result;
+  return result + velocity;
 }
 
 ObstacleSurface Obstacle::surface(const Vector& centre, double radius) const {

@@ -343,6 +343,23 @@ TEST(Obstacle, TurnsAndIsWhereItsPoseSays) {
   }
 }
 
+/// Rounding of differences would be a velocity, and friction at the start would have its direction.
+TEST(Obstacle, HasNoVelocityWhereItStartsFromRest) {
+  const Vector about = Eigen::Vector2d(0.0, 0.0);
+  const auto velocity = [&](const std::string& motion, double time_scale) {
+    const Obstacle obstacle(shape_of("plane", 2, "outside"), make_path({Expression(motion), Expression("0")}, {}, 2),
+                            0.0, about, time_scale);
+    return obstacle.surface_velocity(about, 0.0)[0];
+  };
+  for (const double step : {1e-2, 1e-3, 5e-4, 2e-4, 1e-4, 7e-5, 3e-6, 1e-7, 1e-9}) {
+    SCOPED_TRACE(step);
+    for (const std::string rest : {"1.5e-4*(1 - cos(2*pi*t/0.2))", "4*t^2", "t^3", "0.1 + 3*t^2", "1e3*sin(t)^2"})
+      EXPECT_EQ(velocity(rest, step), 0.0) << rest;
+    EXPECT_NEAR(velocity("0.03*t + 0.2*t^2", step), 0.03, 1e-12 / step);
+    EXPECT_NEAR(velocity("-2*sin(t)", step), -2.0, 1e-11 + 1e-12 / step);
+  }
+}
+
 TEST(Obstacle, FollowsATable) {
   const TemporaryFolder folder(std::filesystem::temp_directory_path(), "path");
   const std::string file = folder.file("motion.csv");
