@@ -3,7 +3,10 @@ order, and what they print is compared with what the page shows.
 
 A fenced block whose first line is a comment with nothing but a file's name is that file. In a block of `console`, lines that begin with
 "$ " are commands; the lines below are what comes out. A line that is "…" stands for any lines, "…" within a line for anything. Numbers
-agree when they do to the digits shown, give or take one of the last."""
+agree when they do to the digits shown, give or take one of the last.
+
+"```console needs NAME" says that the commands of this block need NAME, a program or a module of Python: where it is not installed they
+are left out."""
 
 import dataclasses
 import decimal
@@ -11,10 +14,11 @@ import functools
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import time
 
-FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", re.S | re.M)
+FENCE = re.compile(r"^```(\w*)(?: needs ([\w.-]+))?[^\n]*\n(.*?)^```$", re.S | re.M)
 NAME = re.compile(r"^(?:#|//|\*\*)\s*([\w./-]+\.(?:toml|py|cpp|txt|geo|inp|csv|msh))\s*$")
 NUMBER = re.compile(r"(?<![\w.])[-+−]?\d[\d,]*\.?\d*(?:e[-+]?\d+)?")
 ANYTHING = "…"
@@ -24,6 +28,7 @@ ANYTHING = "…"
 class Command:
     text: str
     shown: list[str]
+    needs: str = ""
 
 
 @dataclasses.dataclass
@@ -35,9 +40,9 @@ class File:
 def read(page):
     """The files and commands of a page, in their order."""
     steps = []
-    for kind, body in FENCE.findall(pathlib.Path(page).read_text(encoding="utf-8")):
+    for kind, needs, body in FENCE.findall(pathlib.Path(page).read_text(encoding="utf-8")):
         if kind == "console":
-            steps += commands(body)
+            steps += commands(body, needs)
             continue
         name = NAME.match(body.split("\n", 1)[0])
         if name:
@@ -47,7 +52,7 @@ def read(page):
     return steps
 
 
-def commands(body):
+def commands(body, needs):
     result = []
     lines = iter(body.splitlines())
     for line in lines:
@@ -55,7 +60,7 @@ def commands(body):
             text = line[2:]
             while text.endswith("\\"):
                 text = text[:-1].rstrip() + " " + next(lines).strip()
-            result.append(Command(text, []))
+            result.append(Command(text, [], needs))
         elif result:
             result[-1].shown.append(line)
         else:
@@ -111,6 +116,12 @@ def difference(shown, printed):
     return None if free or not rest else "the page does not show\n    " + "\n    ".join(rest[:5])
 
 
+def is_installed(name, environment):
+    import_it = ["python3", "-c", f"import {name}"]
+    return shutil.which(name, path=environment["PATH"]) is not None or (
+        name.isidentifier() and subprocess.run(import_it, env=environment, stderr=subprocess.DEVNULL).returncode == 0)
+
+
 def run(page, folder, environment):
     """Runs a page in an empty folder. Yields (command, seconds, what it printed, what is wrong: None for nothing)."""
     for step in read(page):
@@ -118,6 +129,9 @@ def run(page, folder, environment):
             path = folder / step.name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(step.text, encoding="utf-8")
+            continue
+        if step.needs and not is_installed(step.needs, environment):
+            yield f"{step.text}   (left out: {step.needs} is not installed)", 0.0, "", None
             continue
         begin = time.monotonic()
         outcome = subprocess.run(["bash", "-c", step.text], cwd=folder, env=environment, stdout=subprocess.PIPE,
