@@ -17,7 +17,7 @@ version = release = re.search(r"project\(ricochet VERSION ([0-9.]+)", (ROOT / "C
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "breathe", "sphinx_copybutton"]
 root_doc = "docs/site/index"
-include_patterns = ["docs/*.md", "docs/site/**.md", "docs/site/**.rst", "cases/README.md", "cases/*/README.md", "benchmarks/README.md",
+include_patterns = ["docs/*.md", "docs/tutorials/*.md", "docs/site/**.md", "docs/site/**.rst", "cases/README.md", "cases/*/README.md", "benchmarks/README.md",
                     "benchmarks/*/README.md", "bench/*/README.md", "examples/README.md", "CHANGELOG.md", "CONTRIBUTING.md"]
 html_theme = "furo"
 html_title = f"Ricochet {release}"
