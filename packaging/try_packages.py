@@ -94,6 +94,16 @@ def figures_and_meshes(root):
              directory="/tmp")
 
 
+def tutorial(root, page):
+    """As a newcomer: every command of a page, with what is installed."""
+    folder = root.path / "tmp" / "tests"
+    folder.mkdir(exist_ok=True)
+    for name in ("tutorials_test.py", "tutorial_pages.py"):
+        shutil.copy(SOURCE / "tests/end_to_end" / name, folder)
+    shutil.copy(page, folder)
+    return f"{root.run(f'python3 -B tutorials_test.py {page.name}', directory='/tmp/tests').count('$ ')} commands"
+
+
 def python_module(root):
     """The first program of docs/python.md, on a shipped case that has been shortened."""
     page = (SOURCE / "docs" / "python.md").read_text(encoding="utf-8")
@@ -124,6 +134,8 @@ def try_in(root, steps, packages, recommends):
             steps(text, lambda: check(root))
     if recommends:
         steps("figures and meshes", lambda: figures_and_meshes(root))
+        for page in sorted((SOURCE / "docs" / "tutorials").glob("[a-z]*.md")):
+            steps(f"the tutorial {page.stem}", lambda page=page: tutorial(root, page))
     steps("apt-get purge and autoremove", lambda: root.run(
         f"apt-get purge -y -qq {' '.join(packages)} && apt-get autoremove --purge -y -qq") and None)
     left = root.files() - before

@@ -8,8 +8,7 @@
 #include "drawing.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/report/figure.hpp"
-#include "ricochet/report/reading_runs.hpp"
-#include "ricochet/study/line_labels.hpp"
+#include "ricochet/report/runs_figure.hpp"
 #include "ricochet/study/study_figure.hpp"
 #include "ricochet/study/study_table.hpp"
 
@@ -87,18 +86,13 @@ std::string describe_study(const PlotArguments& arguments, const FigureOptions& 
 
 int plot(const PlotArguments& arguments) {
   const std::string format = format_of(arguments.output);
-  FigureOptions options = options_of(arguments);
+  const FigureOptions options = options_of(arguments);
   if (std::any_of(arguments.directories.begin(), arguments.directories.end(), holds_study)) {
     draw_figure(describe_study(arguments, options), format, arguments.output);
     fmt::print("{}\n", arguments.output);
     return 0;
   }
-  if (options.labels.empty()) options.labels = labels_in_study(arguments.directories);
-  const bool needs_fields = std::count(options.what.begin(), options.what.end(), "pressure-map") > 0;
-  std::string description;
-  read_with_patience(arguments.directories,
-                     [&] { description = describe_figure(read_runs(arguments.directories, needs_fields), options); });
-  draw_figure(description, format, arguments.output);
+  draw_figure(describe_figure_of(arguments.directories, options), format, arguments.output);
   fmt::print("{}\n", arguments.output);
   return 0;
 }

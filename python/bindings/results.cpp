@@ -9,6 +9,7 @@
 #include "ricochet/report/page.hpp"
 #include "ricochet/report/reading_runs.hpp"
 #include "ricochet/report/run_data.hpp"
+#include "ricochet/report/runs_figure.hpp"
 #include "ricochet/report/surface.hpp"
 #include "ricochet/study/study_figure.hpp"
 #include "ricochet/study/study_table.hpp"
@@ -115,12 +116,7 @@ std::string describe_runs(const std::vector<std::string>& directories, const std
                           const std::optional<std::pair<double, double>>& time, bool logarithmic, double width,
                           double height) {
   const py::gil_scoped_release unlocked;
-  const FigureOptions options{what, labels, title, time, logarithmic, width, height};
-  const bool needs_fields = std::count(what.begin(), what.end(), "pressure-map") > 0;
-  std::string description;
-  read_with_patience(directories,
-                     [&] { description = describe_figure(read_runs(directories, needs_fields), options); });
-  return description;
+  return describe_figure_of(directories, {what, labels, title, time, logarithmic, width, height});
 }
 
 std::string describe_study(const std::string& directory, const std::vector<std::string>& what, const std::string& title,

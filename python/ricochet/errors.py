@@ -1,5 +1,6 @@
 """Exceptions. Their texts say what is wrong, where (file:line:column, or the entry of a dictionary), and what to do."""
 
+import difflib
 import re
 from typing import List, NamedTuple
 
@@ -66,3 +67,9 @@ KINDS = {kind.exit_status: kind for kind in (UsageError, InputError, NotConverge
 def from_core(status, message):
     """The exception for an error of the library."""
     return KINDS.get(status, Error)(places.translate(message))
+
+
+def unknown_name(what, name, known):
+    """The KeyError of a column or a field that is not there: it lists the nearest of those that are, or all."""
+    near = difflib.get_close_matches(str(name), known, 3) or known
+    return KeyError(f'there is no {what} "{name}"; there is {", ".join(near)}')

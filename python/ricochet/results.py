@@ -1,6 +1,5 @@
 """Runs that are finished or going on, read from their directories."""
 
-import difflib
 import json
 import os
 from collections.abc import Mapping
@@ -9,7 +8,7 @@ from typing import NamedTuple, Optional, Tuple
 import numpy
 
 from . import _core
-from .errors import ExpectationError, InputError, UsageError
+from .errors import ExpectationError, InputError, UsageError, unknown_name
 from .messages import logger
 
 
@@ -30,10 +29,8 @@ class History(Mapping):
         self._data, self._names = data, list(data.column_names)
 
     def _check(self, name):
-        if name in self._names:
-            return
-        near = difflib.get_close_matches(str(name), self._names, 3) or self._names
-        raise KeyError(f'there is no column "{name}" in the history; there is {", ".join(near)}')
+        if name not in self._names:
+            raise unknown_name("column of the history", name, self._names)
 
     def __getitem__(self, name):
         self._check(name)
@@ -70,8 +67,7 @@ class Frame(Mapping):
 
     def __getitem__(self, name):
         if name not in self._run.fields:
-            near = difflib.get_close_matches(str(name), self._run.fields, 3) or self._run.fields
-            raise KeyError(f'there is no field "{name}"; there is {", ".join(near)}')
+            raise unknown_name("field", name, self._run.fields)
         return self._run._data.read_field(self.number, name)
 
     def __iter__(self):

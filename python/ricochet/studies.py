@@ -8,7 +8,7 @@ import numpy
 
 from . import _core
 from .case import Case, change_texts, toml_value
-from .errors import UsageError
+from .errors import UsageError, unknown_name
 from .program import program
 
 
@@ -30,7 +30,7 @@ class Study(Mapping):
 
     def __getitem__(self, name):
         if name not in self.columns:
-            raise KeyError(f'there is no column "{name}" in the table; there is {", ".join(self.columns)}')
+            raise unknown_name("column of the table", name, self.columns)
         at = self.columns.index(name)
         values = [row[at] for row in self.rows]
         if at < self.columns.index("run"):

@@ -8,12 +8,16 @@ import pytest
 import ricochet as rc
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
+def run_puck(folder, file_format):
     from conftest import ROOT
 
-    folder = tmp_path_factory.mktemp("run")
-    return rc.run(ROOT / "cases/puck/puck.toml", folder / "out", {"output.fields_every": 100, "output.fields": ["all"]})
+    return rc.run(ROOT / "cases/puck/puck.toml", folder / file_format,
+                  {"output.fields_every": 100, "output.fields": ["all"], "output.format": file_format})
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return run_puck(tmp_path_factory.mktemp("run"), "xdmf")
 
 
 def test_history_is_what_is_in_the_file(run):
@@ -114,10 +118,22 @@ def test_what_is_no_run(tmp_path):
         rc.open(tmp_path / "nothing")
 
 
-def test_a_run_that_was_written_over_is_not_mixed_with_the_old_one(tmp_path):
+def test_both_formats_hold_the_same(run, tmp_path):
+    other = run_puck(tmp_path, "vtkhdf")
+    assert other.fields == run.fields and (other.frames.times == run.frames.times).all()
+    assert (other.points == run.points).all()
+    assert all(kind == theirs and (nodes == those).all() for (kind, nodes), (theirs, those) in zip(other.cells, run.cells))
+    for mine, theirs in zip(run.frames, other.frames):
+        for name in run.fields:
+            assert numpy.array_equal(mine[name], theirs[name], equal_nan=True), name
+    assert other.maximum("displacement") == run.maximum("displacement")
+
+
+@pytest.mark.parametrize("file_format", ["xdmf", "vtkhdf"])
+def test_a_run_that_was_written_over_is_not_mixed_with_the_old_one(tmp_path, file_format):
     from conftest import ROOT
 
-    path, short = ROOT / "cases/puck/puck.toml", {"time.end": 1e-5, "output.fields_every": 5}
+    path, short = ROOT / "cases/puck/puck.toml", {"time.end": 1e-5, "output.fields_every": 5, "output.format": file_format}
     old = rc.run(path, tmp_path / "out", short)
     rc.run(path, tmp_path / "out", {**short, "contact.0.friction": 0.0}, force=True)
     with pytest.raises(rc.InputError, match="read it again"):
@@ -125,17 +141,20 @@ def test_a_run_that_was_written_over_is_not_mixed_with_the_old_one(tmp_path):
     assert old.reload().frame(number=-1)["displacement"].shape == (len(old.points), 3)
 
 
-def test_a_run_that_goes_on_can_be_read(puck, tmp_path):
-    session = rc.Session(puck, {"time.end": 1e-4, "output.fields_every": 10})
+@pytest.mark.parametrize("file_format", ["xdmf", "vtkhdf"])
+def test_a_run_that_goes_on_can_be_read(puck, tmp_path, file_format):
+    session = rc.Session(puck, {"time.end": 1e-4, "output.fields_every": 10, "output.format": file_format})
     session.write_to(tmp_path / "out")
     session.run(lambda s: s.step_number < 50)
     # What has been written may be waiting in memory; what is there fits together.
     run = rc.open(tmp_path / "out")
     assert run.status == "running"
     assert len(run.time) >= 1
+    kept = [frame["displacement"].copy() for frame in run.frames]
     session.run()
     session.finish()
-    assert run.reload().status == "done" and len(run.time) == 101
+    assert len(kept) >= 1 and all((run.frames[number]["displacement"] == kept[number]).all() for number in range(len(kept)))
+    assert run.reload().status == "done" and len(run.time) == 101 and len(run.frames) == 11
 
 
 def test_errors_can_be_pickled():

@@ -184,6 +184,15 @@ class ForeignMeshes(TestCase):
             self.assertIn("1 of type MASS", errors)
         self.assertEqual(len(list((self.folder / "cache").glob("job-*.msh"))), 1)
 
+    def test_abaqus_rigid_surfaces_are_left_aside(self):
+        twin = Twin("tetrahedron_o1")
+        reference = self.history_of("msh", twin.path, 3, "top")
+        rigid = ("*NODE, NSET=NREF\n9999, 0., 0., -5.\n*SURFACE, TYPE=CYLINDER, NAME=FLOOR\n0., 0., 0., 1., 0., 0.\n0., 0., 1.\n"
+                 "START, 4., 0.\nLINE, -4., 0.\n*RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=9999\n")
+        file = self.write("job.inp", rigid + abaqus_text(twin, "top"))
+        self.assertIn("*SURFACE of type CYLINDER, which an [obstacle.NAME]", self.expect_status(0, run("info", file)).stderr)
+        self.expect_same(self.history_of("inp", file, 3, "top", body="Body"), reference)
+
     def test_calculix_files_with_an_include(self):
         twin = Twin("hexahedron_o1")
         reference = self.history_of("msh", twin.path, 3, "top")

@@ -3,6 +3,8 @@
     tutorials_test.py PAGE.md                 # the test
     tutorials_test.py PAGE.md --pictures      # also puts the pictures that the page shows into docs/figures/tutorials
     tutorials_test.py PAGE.md --print         # shows what every command prints, for who writes one
+
+RICOCHET_PROGRAM and RICOCHET_BUILD_DIR say which build is used; without them it is what is installed.
 """
 
 import os
@@ -13,32 +15,33 @@ import subprocess
 import sys
 import tempfile
 
-from harness import PROGRAM, SOURCE
 from tutorial_pages import environment_of, run
 
-BUILD_DIR = os.environ["RICOCHET_BUILD_DIR"]
+
+def environment(root, text):
+    build = os.environ.get("RICOCHET_BUILD_DIR")
+    if build is None:
+        return {**os.environ, "MPLBACKEND": "Agg"}
+    if "find_package(ricochet" in text:
+        subprocess.run(["cmake", "--install", build, "--prefix", root / "prefix"], check=True, stdout=subprocess.DEVNULL)
+    return environment_of(os.environ["RICOCHET_PROGRAM"], build, root)
 
 
-def install(folder):
-    subprocess.run(["cmake", "--install", BUILD_DIR, "--prefix", folder / "prefix"], check=True, stdout=subprocess.DEVNULL)
-
-
-def put_pictures(page, text, folder):
-    for name in re.findall(r"\]\(\.\./figures/tutorials/([\w.-]+)\)", text):
-        shutil.copy(folder / name, SOURCE / "docs/figures/tutorials" / name)
+def put_pictures(page, shown, folder):
+    for name in shown:
+        shutil.copy(folder / name, page.parents[1] / "figures/tutorials" / name)
         print(f"{page.name}: {name}")
 
 
 def main(page, options):
     text = page.read_text(encoding="utf-8")
+    shown = re.findall(r"\]\(\.\./figures/tutorials/([\w.-]+)\)", text)
     with tempfile.TemporaryDirectory() as name:
         root = pathlib.Path(name)
         folder = root / "work"
         folder.mkdir()
-        if "find_package(ricochet" in text:
-            install(root)
         count = 0
-        for command, seconds, printed, problem in run(page, folder, environment_of(PROGRAM, BUILD_DIR, root)):
+        for command, seconds, printed, problem in run(page, folder, environment(root, text)):
             count += 1
             print(f"$ {command}   # {seconds:.1f} s", flush=True)
             if problem or "--print" in options:
@@ -47,12 +50,12 @@ def main(page, options):
                 sys.exit(f"{page}: {problem}")
         if not count:
             sys.exit(f"{page}: holds no command")
-        for name in re.findall(r"\]\(\.\./figures/tutorials/([\w.-]+)\)", text):
-            if not (folder / name).exists():
-                sys.exit(f"{page}: shows {name}, which no command makes")
+        for picture in shown:
+            if not (folder / picture).exists():
+                sys.exit(f"{page}: shows {picture}, which no command makes")
         if "--pictures" in options:
-            put_pictures(page, text, folder)
+            put_pictures(page, shown, folder)
 
 
 if __name__ == "__main__":
-    main(pathlib.Path(sys.argv[1]), sys.argv[2:])
+    main(pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:])

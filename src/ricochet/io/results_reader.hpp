@@ -45,7 +45,8 @@ class ResultsReader {
   [[nodiscard]] const std::vector<ResultField>& fields() const;
   /// nullptr: there is no such field.
   [[nodiscard]] const ResultField* find_field(const std::string& name) const;
-  /// The values of a field in a frame, row by row. Throws Error(invalid_input) where they are not there.
+  /// The values of a field in a frame, row by row; symmetric tensors as xx, xy, xz, yy, yz, zz, whatever the format.
+  /// Throws Error(invalid_input) where they are not there.
   void read(Index frame, const ResultField& field, std::vector<float>& values) const;
   void read(Index frame, const ResultField& field, std::vector<double>& values) const;
 

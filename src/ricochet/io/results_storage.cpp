@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 
 #include "ricochet/hdf5/hdf5_rows.hpp"
 #include "ricochet/io/file_lock.hpp"
+#include "ricochet/io/vtk_order.hpp"
 #include "ricochet/io/vtkhdf_reader.hpp"
 #include "ricochet/io/xdmf_reader.hpp"
 
@@ -88,10 +91,10 @@ class RowsStorage : public ResultsStorage {
   }
 
   void read(Index frame, const ResultField& field, Index rows, std::vector<float>& values) override {
-    rows_of(field).read(frame * rows, rows, values);
+    read_numbers(frame, field, rows, values);
   }
   void read(Index frame, const ResultField& field, Index rows, std::vector<double>& values) override {
-    rows_of(field).read(frame * rows, rows, values);
+    read_numbers(frame, field, rows, values);
   }
 
  private:
@@ -102,9 +105,16 @@ class RowsStorage : public ResultsStorage {
     }
   }
   void forget() override { values_of_.clear(); }
-  const Hdf5Rows& rows_of(const ResultField& field) {
+  template <class Number>
+  void read_numbers(Index frame, const ResultField& field, Index rows, std::vector<Number>& values) {
     static_cast<void>(file());
-    return values_of_.at(vtkhdf_name(field));
+    values_of_.at(vtkhdf_name(field)).read(frame * rows, rows, values);
+    if (field.components != static_cast<int>(vtk_tensor_from_ours.size())) return;
+    std::array<Number, vtk_tensor_from_ours.size()> tensor;
+    for (auto row = values.begin(); row != values.end(); row += tensor.size()) {
+      std::copy_n(row, tensor.size(), tensor.begin());
+      for (std::size_t k = 0; k < tensor.size(); ++k) row[vtk_tensor_from_ours[k]] = tensor[k];
+    }
   }
 
   std::map<std::string, Hdf5Rows> values_of_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,5 +17,9 @@ struct VtkCell {
 };
 
 [[nodiscard]] VtkCell vtk_cell(CellShape shape, int degree);
+
+/// Components of a symmetric tensor in VTK's order, xx, yy, zz, xy, yz, xz: each one's number in ours, xx, xy, xz, yy,
+/// yz, zz, which is XDMF's.
+constexpr std::array<int, 6> vtk_tensor_from_ours = {0, 3, 5, 1, 4, 2};
 
 }  // namespace ricochet

@@ -1,9 +1,9 @@
-#include <array>
 #include <optional>
 
 #include "ricochet/io/frame_output.hpp"
 #include "ricochet/io/mesh_datasets.hpp"
 #include "ricochet/io/obstacle_surfaces.hpp"
+#include "ricochet/io/vtk_order.hpp"
 
 namespace ricochet {
 
@@ -12,8 +12,7 @@ namespace {
 /// VTK's numbers of the cells of obstacles: lines and quadrilaterals.
 constexpr int vtk_line = 3, vtk_quadrilateral = 9;
 
-/// A field as VTK wants it: of symmetric tensors it takes the components as xx, yy, zz, xy, yz, xz, which here come as
-/// xx, xy, xz, yy, yz, zz.
+/// A field as VTK wants it: symmetric tensors have another order there.
 class VtkValues {
  public:
   explicit VtkValues(const Field& field) : field_(field) {
@@ -21,10 +20,10 @@ class VtkValues {
   }
   [[nodiscard]] const void* get() {
     if (!is_tensor()) return field_.values;
-    constexpr std::array<int, components> ours = {0, 3, 5, 1, 4, 2};
     const auto* from = static_cast<const double*>(field_.values);
     for (std::size_t row = 0; row < reordered_.size(); row += components) {
-      for (std::size_t k = 0; k < components; ++k) reordered_[row + k] = from[row + static_cast<std::size_t>(ours[k])];
+      for (std::size_t k = 0; k < components; ++k)
+        reordered_[row + k] = from[row + static_cast<std::size_t>(vtk_tensor_from_ours[k])];
     }
     return reordered_.data();
   }

@@ -260,6 +260,9 @@ class InpReader:
     def surface_reader(self, parameters):
         name = parameters.get("NAME", "")
         kind = parameters.get("TYPE", "ELEMENT").upper()
+        if kind in ("SEGMENTS", "CYLINDER", "REVOLUTION"):  # an analytical rigid surface: no part of a body
+            self.aside[f"SURFACE of type {kind}, which an [obstacle.NAME] of the case can stand for"] = 1
+            return None
         if "COMBINE" in parameters or kind not in ("ELEMENT", "NODE"):
             self.fail(f'surface "{name}": only surfaces of elements\' faces and of nodes are read, neither combined ones '
                       f"nor those of type {kind}")
