@@ -32,6 +32,9 @@ html_show_sphinx = False
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
 html_copy_source = False
+# Of a block of commands and what they print, the commands are copied.
+copybutton_prompt_text = "$ "
+copybutton_line_continuation_character = "\\"
 smartquotes_action = "qe"  # two hyphens are an option's, no dash
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 # What the pages say in words for terminals is no language that Pygments knows.
