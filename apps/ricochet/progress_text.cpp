@@ -53,8 +53,10 @@ void print_checkpoints(const std::string& directory, const RunSummary& summary) 
   } else {
     fmt::print("  checkpoint of step {}: {}\n", checkpoints.back().step, checkpoints.back().path);
   }
-  if (!is_running(directory, summary))
-    fmt::print("  `ricochet run` with --resume {}\n", checkpoints.empty() ? "starts it anew" : "goes on with it");
+  if (!is_running(directory, summary)) {
+    fmt::print("  {} {}\n", summary.steered ? "the program that steers it" : "`ricochet run` with --resume",
+               checkpoints.empty() ? "starts it anew" : "goes on with it");
+  }
   for (const std::string& file : failure_files(directory)) fmt::print("  of the step that failed: {}\n", file);
 }
 

@@ -170,6 +170,7 @@ void bind_run(py::module_& module) {
       .def("obstacles", &obstacles_of, py::arg("frame"));
   module.def("read_run", &read_run, py::arg("directory"));
   module.def("holds_run", &holds_run, py::arg("directory"));
+  module.def("is_in_use", &RunDirectory::is_in_use, py::arg("directory"));
 }
 
 }  // namespace

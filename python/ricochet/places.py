@@ -23,8 +23,15 @@ def entry(path):
     return "case" + "".join(f"[{key!r}]" if isinstance(key, int) else f'["{key}"]' for key in path)
 
 
+# What messages call options of the program are arguments here.
+ARGUMENTS = (("with --force", "with force=True"), ("(--force)", "(force=True)"), ("with --resume", "with resume=True"),
+              (" with -o", ""), (" (-o)", ""))
+
+
 def translate(message):
-    """The message with entries in the place of lines."""
+    """The message with entries in the place of lines, and arguments in that of options."""
+    for option, argument in ARGUMENTS:
+        message = message.replace(option, argument)
 
     def named(match):
         lines = _known.get(match.group(1))

@@ -104,7 +104,8 @@ class Frame(Mapping):
         return meshio.Mesh(points, list(self.cells), point_data=at_points, cell_data=at_cells)
 
     def plot(self, field="von_mises", **options):
-        """A matplotlib figure of the body as it is now, coloured by a field; see ricochet.picture."""
+        """A matplotlib figure of the body as it is now, coloured by a field. The options are those of the function
+        ricochet.picture: axes, limits, scale, colours, view, bar."""
         from .pictures import picture
 
         return picture(self, field, **options)
@@ -153,8 +154,9 @@ class Run:
 
     @property
     def status(self):
-        """"done", "running", "failed" or "interrupted"."""
-        return self.summary["status"]
+        """"done", "running", "failed" or "interrupted"; also of a run that was killed, or whose session was dropped."""
+        status = self.summary["status"]
+        return "interrupted" if status == "running" and not _core.is_in_use(self.directory) else status
 
     @property
     def time(self):
@@ -206,6 +208,8 @@ class Run:
             raise UsageError("frame: give a time or a number")
         if number is not None:
             return frames[number]
+        if not isinstance(t, (int, float, numpy.number)):
+            raise UsageError(f"frame: {t!r} is no time; a field is taken from a frame: run.frame(t=0.1)[{t!r}]")
         times = frames.times
         if not numpy.isfinite(t) or t < times[0] - 1e-9 * abs(times[-1]) or t > times[-1] * (1 + 1e-9):
             raise UsageError(f"frame: the time {t} is outside of the frames, from {times[0]:.9g} to {times[-1]:.9g}")

@@ -157,6 +157,54 @@ def test_a_run_that_goes_on_can_be_read(puck, tmp_path, file_format):
     assert run.reload().status == "done" and len(run.time) == 101 and len(run.frames) == 11
 
 
+def test_a_session_that_is_dropped_leaves_an_interrupted_run(puck, tmp_path):
+    session = rc.Session(puck, {"time.end": 1e-4})
+    session.write_to(tmp_path / "out")
+    session.run(lambda s: s.step_number < 50)
+    assert rc.open(tmp_path / "out").status == "running"
+    del session
+    assert rc.open(tmp_path / "out").status == "interrupted"
+    assert rc.run(puck, tmp_path / "out", {"time.end": 1e-4}, resume=True).status == "done"
+
+
+def test_a_loop_that_ends_early_leaves_its_last_state(puck, tmp_path):
+    """Also where no frame was due; a run that goes on from there has the bytes of one that was never stopped."""
+    changes = {"time.end": 1e-4, "output.fields_every": 40, "output.history_every": 20}
+    session = rc.Session(puck, changes)
+    session.write_to(tmp_path / "out")
+    session.run(lambda s: s.step_number < 53)
+    displacement = session.displacement.copy()
+    session.finish()
+    run = rc.open(tmp_path / "out")
+    assert run.status == "interrupted" and run.time[-1] == run.frames.times[-1] == pytest.approx(53e-6, rel=1e-12)
+    assert (run.frames[-1]["displacement"][:, :2] == displacement).all()
+    assert "--resume goes on" in run.summary["message"]
+    rc.run(puck, tmp_path / "out", changes, resume=True)
+    rc.run(puck, tmp_path / "whole", changes)
+    for name in ("history.csv", "results.h5", "results.xdmf"):
+        assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
+
+
+def test_a_steered_run_says_who_goes_on(puck, tmp_path):
+    session = rc.Session(puck, {"time.end": 1e-4})
+    session.set_obstacle_velocity("wall", [0.0, 0.0])
+    session.write_to(tmp_path / "out")
+    session.run(lambda s: s.step_number < 5)
+    session.finish()
+    assert "the program that steers it goes on" in rc.open(tmp_path / "out").summary["message"]
+
+
+def test_messages_speak_of_arguments(run, puck):
+    with pytest.raises(rc.FileAccessError, match="resume=True.*force=True") as caught:
+        rc.run(puck, run.directory)
+    assert "--" not in str(caught.value)[len(run.directory):]
+
+
+def test_a_frame_is_found_by_a_time(run):
+    with pytest.raises(rc.UsageError, match="is no time"):
+        run.frame("von_mises")
+
+
 def test_errors_can_be_pickled():
     problem = pickle.loads(pickle.dumps(rc.InputError("a.toml:3:4: wrong")))
     assert problem.places == [rc.Place("a.toml", 3, 4)] and str(problem) == "a.toml:3:4: wrong"

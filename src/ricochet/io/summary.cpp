@@ -187,6 +187,7 @@ std::string to_json(const RunSummary& s) {
   for (const auto& [phase, seconds] : s.timings) timings[phase] = seconds;
   Json json = {{"status", s.status},
                {"message", s.message},
+               {"steered_by_program", s.steered},
                {"title", s.title},
                {"case", s.case_file},
                {"overrides", s.overrides},
@@ -273,6 +274,7 @@ RunSummary read_summary(const std::string& path) {
     const Json json = Json::parse({std::istreambuf_iterator<char>(file), {}});
     s.status = json.at("status");
     s.message = json.at("message");
+    s.steered = json.value("steered_by_program", false);
     s.title = json.at("title");
     s.case_file = json.at("case");
     s.overrides = json.at("overrides").get<std::vector<std::string>>();

@@ -117,6 +117,7 @@ struct AdaptiveSteps {
 struct RunSummary {
   std::string status = "done";  ///< "running", "done", "failed" or "interrupted"
   std::string message;          ///< of the failure or the interruption
+  bool steered = false;         ///< by a program that loads it or moves its obstacles: no other can go on with it
   std::string case_file, title, version, scheme, mass;
   std::string mass_built;  ///< the construction that was used for `mass`; empty in results that do not say it
   std::string libraries;

@@ -179,7 +179,11 @@ void orient_cells_of_dimension(Mesh& mesh) {
   if (flat.any())
     fail_mesh(mesh.source, fmt::format("degenerate cells, whose Jacobian vanishes: {}", flat.text("element")));
   if (tangled.any()) {
-    fail_mesh(mesh.source, fmt::format("tangled cells, whose Jacobian changes sign: {}", tangled.text("element")));
+    const char* cure =
+        mesh.degree > 1 ? "; smaller cells where the part is curved untangle them, or Gmsh's Mesh.HighOrderOptimize = 2"
+                        : "";
+    fail_mesh(mesh.source,
+              fmt::format("tangled cells, whose Jacobian changes sign: {}{}", tangled.text("element"), cure));
   }
   if (reversed.any()) {
     const bool all = reversed.count() == mesh.cell_count();

@@ -49,8 +49,11 @@ std::string Run::step_in_words() {
 void Run::interrupt(const std::string& how) {
   const std::lock_guard files(files_);
   write_checkpoint();
+  // Behind what the checkpoint knows: a run that goes on takes it back.
+  recording_->record_end(session_.state(), session_.simulation().account());
   summary_.status = "interrupted";
-  summary_.message = fmt::format("{} after {}; run --resume goes on from there", how, step_in_words());
+  summary_.message = fmt::format("{} after {}; {} goes on from there", how, step_in_words(),
+                                 session_.is_steered() ? "the program that steers it" : "run --resume");
 }
 
 /// On another thread, while this run is in the middle of something that takes too long. What is on the disk is good
@@ -115,6 +118,7 @@ void Run::write_checkpoint() {
 
 void Run::describe_progress(RunSummary& summary) const {
   recording_->describe(summary);
+  summary.steered = session_.is_steered();
   summary.factor_entries = session_.simulation().factor_entries();
   summary.critical_step = session_.scheme().critical_step();
   summary.steps = session_.simulation().state().step;

@@ -83,6 +83,11 @@ void Session::save(Snapshot& snapshot) {
   if (!steered.empty()) snapshot.save(steered_name, std::move(steered));
 }
 
+bool Session::is_steered() const {
+  return load_ != nullptr || std::any_of(input_.obstacles.begin(), input_.obstacles.end(),
+                                         [](const ObstacleSection& obstacle) { return obstacle.is_steered; });
+}
+
 bool Session::is_complete_already() const {
   return run_ != nullptr && run_->is_complete_already();
 }

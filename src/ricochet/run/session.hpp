@@ -93,6 +93,8 @@ class Session {
   void write_to(RunOptions options);
   /// The run that write_to was to go on with had come to its end before: there is no state to look at.
   [[nodiscard]] bool is_complete_already() const;
+  /// Has a program set its load, or said that it moves obstacles?
+  [[nodiscard]] bool is_steered() const;
   /// Ends what write_to has begun: the summary, with the expectations of the case. Before the last step the run is an
   /// interrupted one, with a checkpoint that --resume goes on from. No step can follow. Throws the error
   /// that has ended the steps, if one has.
