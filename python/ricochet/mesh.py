@@ -4,12 +4,14 @@ import os
 import shutil
 import tempfile
 import weakref
+from collections.abc import Mapping
 
 import numpy
 
+from .arrays import numbers, whole_numbers
 from .converter.file_mesh import TYPES, Block, FileMesh, Refusal, dimension_of
 from .converter.write_msh import write_msh
-from .errors import InputError
+from .errors import InputError, UsageError
 
 GMSH_KINDS = {kind.gmsh: name for name, kind in TYPES.items()}
 
@@ -36,7 +38,7 @@ class Mesh:
 
     def __init__(self, points, cells, groups=None):
         mesh = FileMesh()
-        points = numpy.asarray(points, dtype=float)
+        points = numbers(points, "mesh: points")
         if points.ndim != 2 or points.shape[1] not in (2, 3) or len(points) == 0:
             raise InputError(f"mesh: points are an array of nodes x 2 or 3, not of shape {points.shape}")
         if not numpy.isfinite(points).all():
@@ -46,21 +48,29 @@ class Mesh:
         mesh.points[:, :points.shape[1]] = points
         mesh.node_ids = numpy.arange(1, len(points) + 1, dtype=numpy.int64)
         self._mesh, self._next, self._file = mesh, 1, None
-        for kind, nodes in (cells.items() if isinstance(cells, dict) else cells):
+        try:
+            listed = [(kind, nodes) for kind, nodes in (cells.items() if isinstance(cells, Mapping) else cells)]
+        except (TypeError, ValueError):
+            raise InputError("mesh: cells are a dictionary, {kind: cells x nodes}, or a list of (kind, cells x nodes)") from None
+        for kind, nodes in listed:
             self._add_block(kind, nodes, "cells")
+        if not any(len(block.ids) and block.dimension >= 2 for block in mesh.blocks):
+            raise InputError("mesh: there are no cells of dimension 2 or 3")
+        if not isinstance(groups or {}, Mapping):
+            raise InputError("mesh: groups are a dictionary of what belongs to each name")
         count = len(mesh.blocks)
         for name, members in (groups or {}).items():
             self._add_group(str(name), members, count)
 
     def _add_block(self, kind, nodes, what):
-        nodes = numpy.asarray(nodes)
+        if not isinstance(kind, str):
+            raise InputError(f"mesh: {what}: the kind {kind!r} is no name; kinds are {', '.join(TYPES)}")
+        nodes = whole_numbers(nodes, f"mesh: {what}", "nodes")
         wanted = len(TYPES[kind].places) if kind in TYPES else None
         if nodes.size == 0:
             nodes = numpy.zeros((0, wanted or 1), dtype=numpy.int64)
         if nodes.ndim != 2 or (wanted is not None and nodes.shape[1] != wanted):
             raise InputError(f"mesh: {what}: a {kind} has {wanted} nodes; the array has the shape {nodes.shape}")
-        if not numpy.issubdtype(nodes.dtype, numpy.integer):
-            raise InputError(f"mesh: {what}: numbers of nodes are whole numbers, not {nodes.dtype}")
         if nodes.size and (nodes.min() < 0 or nodes.max() >= len(self._mesh.points)):
             raise InputError(f"mesh: {what}: a {kind} has node {nodes.max() if nodes.min() >= 0 else nodes.min()}; nodes are "
                              f"numbered from 0 to {len(self._mesh.points) - 1}")
@@ -74,31 +84,35 @@ class Mesh:
         return len(self._mesh.blocks) - 1
 
     def _add_group(self, name, members, blocks):
-        if not isinstance(members, dict):
-            nodes = numpy.asarray(members)
-            if nodes.ndim != 1 or not numpy.issubdtype(nodes.dtype, numpy.integer):
+        if any(not c.isprintable() and not "\udc80" <= c <= "\udcff" for c in name):
+            raise InputError(f"mesh: the name of the group {name!r} has characters that files of meshes cannot have")
+        if not isinstance(members, Mapping):
+            nodes = whole_numbers(members, f'mesh: group "{name}"', "nodes")
+            if nodes.ndim != 1:
                 raise InputError(f'mesh: group "{name}": numbers of nodes, or a dictionary, are needed')
             if nodes.size and (nodes.min() < 0 or nodes.max() >= len(self._mesh.points)):
                 raise InputError(f'mesh: group "{name}": there is no node {nodes.max() if nodes.min() >= 0 else nodes.min()}')
             self._mesh.node_groups.append((name, nodes.astype(numpy.int64)))
             return
         chosen = {}
-        for key, numbers in members.items():
+        for key, own in members.items():
             if isinstance(key, str):
-                block = self._add_block(key, numbers, f'group "{name}"')
+                block = self._add_block(key, own, f'group "{name}"')
                 chosen[block] = numpy.arange(len(self._mesh.blocks[block].ids))
                 continue
-            if not 0 <= key < blocks:
+            if not isinstance(key, (int, numpy.integer)) or not 0 <= key < blocks:
                 raise InputError(f'mesh: group "{name}": there is no block {key} of cells')
-            numbers = numpy.asarray(numbers, dtype=numpy.int64)
-            if numbers.size and (numbers.min() < 0 or numbers.max() >= len(self._mesh.blocks[key].ids)):
+            own = whole_numbers(own, f'mesh: group "{name}": block {key}', "cells").reshape(-1)
+            if own.size and (own.min() < 0 or own.max() >= len(self._mesh.blocks[key].ids)):
                 raise InputError(f'mesh: group "{name}": block {key} has {len(self._mesh.blocks[key].ids)} cells, numbered from 0')
-            chosen[key] = numbers
+            chosen[int(key)] = own
         self._mesh.cell_groups.append((name, chosen))
 
     @classmethod
     def from_meshio(cls, source):
         """Of a meshio.Mesh: its cell sets, point sets, and the names that gmsh's physical groups have there."""
+        if not all(hasattr(source, name) for name in ("points", "cells", "cell_data", "cell_sets", "point_sets")):
+            raise UsageError(f"mesh: a meshio.Mesh is needed, not a {type(source).__name__}")
         groups = {}
         names = {(int(tag), int(dimension)): name for name, (tag, dimension) in (getattr(source, "field_data", None) or {}).items()}
         tags = (source.cell_data or {}).get("gmsh:physical")
@@ -129,6 +143,8 @@ class Mesh:
 
             model = gmsh.model
         tags, coordinates, _ = model.mesh.getNodes()
+        if len(tags) == 0:
+            raise InputError("mesh: Gmsh's current model has no nodes: gmsh.model.mesh.generate() makes them")
         number = numpy.full(int(tags.max()) + 1, -1, dtype=numpy.int64)
         number[tags.astype(numpy.int64)] = numpy.arange(len(tags))
         cells, groups, placed = [], {}, {}

@@ -125,11 +125,52 @@ def test_files_of_meshes_go_with_them():
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": [5]}, "there is no node 5"),
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {3: [0]}}, "there is no block 3"),
         ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [4]}}, "block 0 has 1 cells"),
+        ([[0, 0], [1, 0], [0, 1j]], {"triangle": [[0, 1, 2]]}, {}, "points: real numbers"),
+        ([[0, 0], [1, 0], [0, None]], {"triangle": [[0, 1, 2]]}, {}, "points: real numbers"),
+        ([["a", "b"]], {"triangle": [[0, 1, 2]]}, {}, "points: real numbers"),
+        ([[0, 0], [1]], {"triangle": [[0, 1, 2]]}, {}, "points: this is no array"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1], [0, 1, 2]]}, {}, "cells: this is no array"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": []}, {}, "no cells of dimension 2 or 3"),
+        ([[0, 0], [1, 0], [0, 1]], {"line": [[0, 1]]}, {}, "no cells of dimension 2 or 3"),
+        ([[0, 0], [1, 0], [0, 1]], None, {}, "cells are a dictionary"),
+        ([[0, 0], [1, 0], [0, 1]], [1, 2], {}, "cells are a dictionary"),
+        ([[0, 0], [1, 0], [0, 1]], {3: [[0, 1, 2]]}, {}, "the kind 3 is no name"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, [1], "groups are a dictionary"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {None: [0]}}, "there is no block None"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [0.7]}}, "block 0: numbers of cells are whole numbers, not float64"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [2**70]}}, "numbers of cells are whole numbers"),
+        # As numbers a mask would be those of the cells 0 and 1.
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": {0: [True]}}, "numpy.flatnonzero"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a": [True, True, False]}, "numpy.flatnonzero"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a\nb": [0]}, "characters that files of meshes cannot have"),
+        ([[0, 0], [1, 0], [0, 1]], {"triangle": [[0, 1, 2]]}, {"a\ud800b": [0]}, "characters that files of meshes cannot have"),
     ],
 )
 def test_what_is_wrong_is_said(points, cells, groups, message):
     with pytest.raises(rc.InputError, match=message):
         rc.Mesh(points, cells, groups)
+
+
+def test_arrays_that_change_later_leave_the_mesh_alone(tmp_path):
+    points, quads = square()
+    bottom = numpy.flatnonzero(points[:, 1] < 0.01)
+    mesh, same = (rc.Mesh(points.copy(), {"quad": cells}, {"bottom": nodes}) for cells, nodes in ((quads.copy(), bottom.copy()), (quads, bottom)))
+    quads[:], bottom[:], points[:] = 77, 0, numpy.nan
+    assert open(mesh.write(tmp_path / "a.msh"), "rb").read() == open(same.write(tmp_path / "b.msh"), "rb").read()
+
+
+def test_what_is_no_mesh_of_another_library():
+    with pytest.raises(rc.UsageError, match="a meshio.Mesh is needed, not a int"):
+        rc.Mesh.from_meshio(3)
+    import gmsh
+
+    gmsh.initialize()
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        with pytest.raises(rc.InputError, match="has no nodes"):
+            rc.Mesh.from_gmsh()
+    finally:
+        gmsh.finalize()
 
 
 def test_a_case_with_a_file_takes_no_mesh(cases):

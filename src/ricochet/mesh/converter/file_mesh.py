@@ -81,7 +81,8 @@ class Block:
 
     def __init__(self, kind, nodes, ids, name=None):
         self.kind, self.name = kind, name or kind
-        self.nodes = numpy.asarray(nodes, dtype=numpy.int64).reshape(len(ids), -1)
+        nodes = numpy.asarray(nodes, dtype=numpy.int64)
+        self.nodes = nodes.reshape(len(ids), -1 if nodes.size else nodes.shape[-1])
         self.ids = numpy.asarray(ids, dtype=numpy.int64)
         self.dimension = dimension_of(kind)
 
