@@ -5,12 +5,14 @@ Find reactions r and motions u = q + W r such that, at every point, 0 <= r_N, u_
 tangents.
 """
 
+import threading
 from typing import NamedTuple
 
 import numpy
 
 from . import _core
-from .errors import InputError, NotConvergedError
+from .arrays import numbers
+from .errors import InputError, NotConvergedError, UsageError
 from .sparse import is_sparse, parts, require_symmetry
 
 OPEN, CLOSED, STICK, SLIP = range(4)
@@ -48,8 +50,9 @@ def _operator(w):
     if hasattr(w, "matvec"):
         if w.shape[0] != w.shape[1]:
             raise InputError(f"contact: W is a square operator, not one of {w.shape[0]} x {w.shape[1]}")
-        return _core.product_operator(w.shape[0], lambda x: numpy.asarray(w.matvec(x), dtype=float)), w.shape[0]
-    w = numpy.asarray(w, dtype=float)
+        # The library's vector is gone when the solver returns: a product that keeps its argument has a copy.
+        return _core.product_operator(w.shape[0], lambda x: numbers(w.matvec(x.copy()), "contact: the product with W")), w.shape[0]
+    w = numbers(w, "contact: W")
     if w.ndim != 2 or w.shape[0] != w.shape[1]:
         raise InputError(f"contact: W is a square matrix, not an array of shape {w.shape}")
     finite = w[numpy.isfinite(w)]
@@ -59,7 +62,7 @@ def _operator(w):
 
 
 def _per_point(values, points, name):
-    values = numpy.asarray(values, dtype=float)
+    values = numbers(values, f"contact: {name}")
     if values.ndim == 0:
         values = numpy.full(points, float(values))
     if values.shape != (points,):
@@ -68,7 +71,7 @@ def _per_point(values, points, name):
 
 
 class Solver:
-    """A solver for one W and many q: each solution is the start of the next one.
+    """A solver for one W and many q: each solution is the start of the next one. Threads need a solver each.
 
     `w`: a symmetric matrix, dense or of scipy.sparse, or a scipy LinearOperator. `friction`: F, one number or one per point.
     `dimension`: rows per point, 3, 2 or (without friction) 1. `bound`: the largest ``|r_T|``, per point or for all; 0: none.
@@ -78,19 +81,26 @@ class Solver:
         operator, rows = _operator(w)
         if dimension not in (1, 2, 3) or rows % dimension:
             raise InputError(f"contact: W has {rows} rows, which is not a multiple of the {dimension} rows of a point; give `dimension`")
-        self.points, self.dimension = rows // dimension, dimension
+        self.points, self.dimension, self._alone = rows // dimension, dimension, threading.Lock()
         bound = _per_point(bound, self.points, "the bound")
         self._solver = _core.ContactSolver(solver, dimension, operator, _per_point(friction, self.points, "the friction coefficient"),
                                            bound if bound.any() else numpy.zeros(0))
 
     def solve(self, q, *, tolerance=0.0, iteration_limit=0, start=None):
         """The Solution for one q. `tolerance`: on the residual; 0: down to rounding. `start`: reactions to begin with."""
-        if start is not None:
-            self._solver.set_warm_start(numpy.asarray(start, dtype=float).reshape(-1))
-        q = numpy.asarray(q, dtype=float).reshape(-1)
+        q = numbers(q, "contact: q").reshape(-1)
         if q.size != self.points * self.dimension:
             raise InputError(f"contact: q has {q.size} numbers where W has {self.points * self.dimension} rows")
-        return Solution(**self._solver.solve(q, tolerance, iteration_limit))
+        if start is not None:
+            start = numbers(start, "contact: the start").reshape(-1)
+        if not self._alone.acquire(blocking=False):
+            raise UsageError("contact: another thread is using this solver: each needs one of its own")
+        try:
+            if start is not None:
+                self._solver.set_warm_start(start)
+            return Solution(**self._solver.solve(q, tolerance, iteration_limit))
+        finally:
+            self._alone.release()
 
 
 def solve(w, q, friction, *, dimension=3, tolerance=0.0, solver="automatic", bound=0.0, check=True):

@@ -5,8 +5,9 @@ from typing import Any, NamedTuple
 import numpy
 
 from . import _core
+from .arrays import numbers, whole_numbers
 from .errors import InputError
-from .sparse import csc, parts
+from .sparse import csc, is_sparse, parts
 
 
 class BuiltMass(NamedTuple):
@@ -29,11 +30,13 @@ def build(consistent, points, contact_nodes, type="equivalent", **parameters):
     `consistent`: the integrals of density times products of shape functions, nodes x nodes, of scipy.sparse. `points`:
     nodes x dimension. `contact_nodes`: numbers from 0. `parameters`: the keys that the type has in a case file.
     """
-    points = numpy.asarray(points, dtype=float)
+    points = numbers(points, "mass: points")
+    if not is_sparse(consistent):
+        raise InputError(f"mass: the consistent mass is a matrix of scipy.sparse, not a {consistent.__class__.__name__}")
     data, indices, starts, size = parts(consistent, "the consistent mass")
     if points.ndim != 2 or len(points) != size or points.shape[1] not in (2, 3):
         raise InputError(f"mass: points are an array of {size} x 2 or 3, not of shape {points.shape}")
-    nodes = numpy.unique(numpy.asarray(contact_nodes, dtype=numpy.int64).reshape(-1))
+    nodes = numpy.unique(whole_numbers(contact_nodes, "mass: contact nodes", "nodes").reshape(-1))
     if nodes.size and (nodes[0] < 0 or nodes[-1] >= size):
         raise InputError(f"mass: contact node {nodes[-1] if nodes[0] >= 0 else nodes[0]} is none of the {size} nodes")
     construction, reason, built = _core.build_mass(type, data, indices, starts, size, points, nodes.tolist(), parameters)

@@ -18,6 +18,8 @@ def parts(matrix, name):
     matrix = matrix.tocsc(copy=True)
     matrix.sum_duplicates()
     matrix.sort_indices()
+    if matrix.dtype.kind not in "biuf":
+        raise InputError(f"{name}: real numbers are needed, not {matrix.dtype}")
     if matrix.shape[0] != matrix.shape[1]:
         raise InputError(f"{name} is a square matrix, not one of {matrix.shape[0]} x {matrix.shape[1]}")
     if matrix.nnz > numpy.iinfo(numpy.int32).max:

@@ -1,5 +1,7 @@
 """The contact solvers and the masses alone, on matrices of numpy and scipy."""
 
+import threading
+
 import numpy
 import pytest
 import scipy.sparse
@@ -110,6 +112,56 @@ def test_errors_of_products_are_raised():
     operator = scipy.sparse.linalg.LinearOperator((3, 3), matvec=product, dtype=float)
     with pytest.raises(RuntimeError, match="mine"):
         rc.contact.solve(operator, [-1.0, 0, 0], 0.3)
+
+
+def test_what_is_no_number_is_refused():
+    eye = numpy.eye(3)
+    for w, q, friction in ((eye * 1j, [-1.0, 0, 0], 0.3), (scipy.sparse.identity(3) * 1j, [-1.0, 0, 0], 0.3), (eye, "abc", 0.3),
+                           (eye, [None, 0, 0], 0.3), (eye, [-1.0, 0, 0], "a"), (eye, [-1.0, 0, 0], None)):
+        with pytest.raises(rc.InputError, match="real numbers"):
+            rc.contact.solve(w, q, friction)
+    with pytest.raises(rc.InputError, match="real numbers"):
+        rc.contact.solve(scipy.sparse.linalg.LinearOperator((3, 3), matvec=lambda x: x * (1 + 1j), dtype=complex), [-1.0, 0, 0], 0.3)
+    with pytest.raises(rc.InputError, match="scipy.sparse, not a ndarray"):
+        rc.mass.build(eye, numpy.zeros((3, 2)), [0])
+    with pytest.raises(rc.InputError, match="contact nodes: numbers of nodes are whole numbers, not float64"):
+        rc.mass.build(scipy.sparse.identity(3), numpy.random.rand(3, 2), [0.5])
+
+
+def test_products_may_keep_their_arguments():
+    kept, copies = [], []
+
+    def product(x):
+        kept.append(x)
+        copies.append(x.copy())
+        return 2.0 * x
+
+    for _ in range(20):
+        operator = scipy.sparse.linalg.LinearOperator((30, 30), matvec=product, dtype=float)
+        rc.contact.solve(operator, numpy.tile([-1.0, 0.2, 0.0], 10), 0.3)
+    assert all((a == b).all() for a, b in zip(kept, copies))
+
+
+def test_a_solver_is_for_one_thread():
+    size = 300
+    solver = rc.contact.Solver(numpy.eye(size) + 0.1, 0.3)
+    q = numpy.random.default_rng(1).normal(size=size)
+    expected = solver.solve(q).reaction
+    solved, refused = [], []
+
+    def work():
+        for _ in range(30):
+            try:
+                solved.append(abs(solver.solve(q).reaction - expected).max())
+            except rc.UsageError:
+                refused.append(True)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(solved) + len(refused) == 120 and max(solved) < 1e-8
 
 
 def test_masses_without_inertia_on_contact_nodes(cases):
