@@ -8,6 +8,7 @@ import numpy
 
 from . import _core, places
 from .errors import InputError, UsageError
+from .files import file_access, library_path, path_of, write_whole
 from .mesh import Mesh
 
 # Keys that name files. In a dictionary they are relative to the folder in which Python works.
@@ -123,7 +124,7 @@ class Case:
         elif isinstance(source, (str, os.PathLike)):
             if mesh is not None:
                 raise UsageError("a case from a file names its mesh; give `mesh` with a dictionary, or change mesh.file")
-            self._core, self.warnings = _core.read_case(os.fspath(source), self.changes)
+            self._core, self.warnings = _core.read_case(library_path(source, "case"), self.changes)
         else:
             raise UsageError(f"a case is a path or a dictionary, not a {type(source).__name__}")
 
@@ -161,18 +162,17 @@ class Case:
 
     def write(self, folder, name="case.toml"):
         """Writes the case, and a mesh that was given as arrays, into a folder. Returns the path of the case file."""
-        os.makedirs(folder, exist_ok=True)
-        path = os.path.join(folder, name)
         if self.text is None:
             raise UsageError(f"{self.path} is a file already")
+        with file_access():
+            os.makedirs(folder, exist_ok=True)
+        path = os.path.join(path_of(folder, "write"), name)
         text = self.text
         if self.mesh is not None:
             own = os.path.splitext(name)[0] + ".msh"
             self.mesh.write(os.path.join(folder, own))
             text = text.replace(f"file = {toml_text(self.mesh.path)}", f"file = {toml_text(own)}", 1)
-        with open(path + ".part", "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(path + ".part", path)
+        write_whole(path, text.encode())
         return path
 
     def check(self):

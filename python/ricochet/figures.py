@@ -2,17 +2,22 @@
 
 import json
 import os
+from collections.abc import Iterable
 
 from . import _core
 from .errors import UsageError
+from .files import library_path, path_of, write_whole
 from .program import shared_file
 
 
 def directories_of(runs):
-    runs = [runs] if isinstance(runs, (str, os.PathLike)) or hasattr(runs, "directory") else list(runs)
-    if not runs:
+    runs = [runs] if isinstance(runs, (str, bytes, os.PathLike)) or hasattr(runs, "directory") else runs
+    if not isinstance(runs, Iterable):
+        raise UsageError(f"runs, or their directories, are needed, not {runs!r}")
+    directories = [library_path(getattr(run, "directory", run), "a run") for run in runs]
+    if not directories:
         raise UsageError("there is no run to be shown")
-    return [os.fspath(getattr(run, "directory", run)) for run in runs]
+    return directories
 
 
 def plot(runs, *what, labels=None, title="", time=None, logarithmic=False, size=None):
@@ -42,7 +47,5 @@ def write_report(runs, path):
 
     for sentence in thinned:
         logger.info("%s", sentence)
-    with open(path + ".part", "w", encoding="utf-8") as file:
-        file.write(html)
-    os.replace(path + ".part", path)
+    write_whole(path_of(path, "report"), html.encode("utf-8", "surrogateescape"))
     return path

@@ -12,6 +12,7 @@ from .arrays import numbers, whole_numbers
 from .converter.file_mesh import TYPES, Block, FileMesh, Refusal, dimension_of
 from .converter.write_msh import write_msh
 from .errors import InputError, UsageError
+from .files import file_access, path_of
 
 GMSH_KINDS = {kind.gmsh: name for name, kind in TYPES.items()}
 
@@ -190,7 +191,8 @@ class Mesh:
     def write(self, path):
         """Writes a .msh file (4.1, binary)."""
         try:
-            write_msh(self._mesh, os.fspath(path))
+            with file_access():
+                write_msh(self._mesh, path_of(path, "mesh"))
         except Refusal as problem:
             raise InputError(f"mesh: {problem}") from None
         return path
@@ -199,7 +201,8 @@ class Mesh:
     def path(self):
         """Of a file that exists as long as this mesh: sessions read it."""
         if self._file is None:
-            folder = tempfile.mkdtemp(prefix="ricochet-mesh-")
+            with file_access():
+                folder = tempfile.mkdtemp(prefix="ricochet-mesh-")
             path = os.path.join(folder, "mesh.msh")
             weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
             self.write(path)

@@ -9,6 +9,7 @@ import numpy
 
 from . import _core
 from .errors import ExpectationError, InputError, UsageError, unknown_name
+from .files import library_path
 from .messages import logger
 
 
@@ -142,7 +143,7 @@ class Run:
     """What a run has left in its directory so far."""
 
     def __init__(self, directory):
-        self.directory = os.fspath(directory)
+        self.directory = library_path(directory, "open")
         self.reload()
 
     def reload(self):

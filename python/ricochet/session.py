@@ -2,9 +2,12 @@
 
 import os
 
+import numpy
+
 from . import _core
 from .case import Case
 from .errors import Error, UsageError
+from .files import file_access, library_path, path_of, write_whole
 from .progress import progress_of
 from .results import Run
 from .sparse import csc
@@ -38,7 +41,8 @@ class Session(_core.Session):
     def run(self, each=None, *, progress=None):
         """Takes all steps that are left. `each` is called with this session after every one, and ends them where it returns
         False; what it raises ends them, too. `progress`: None: where somebody looks; True, False."""
-        call = None if each is None else lambda: each(self)
+        # What comparisons of numpy's numbers give is False, too.
+        call = None if each is None else lambda: not is_false(each(self))
         with progress_of(progress, self) as show:
             self._run(call, show)
         return self
@@ -47,7 +51,7 @@ class Session(_core.Session):
         """From here on the session writes what a run writes (history, fields, checkpoints, summary) into a directory.
         `force`: over a run that is there. `resume`: goes on with it. `export_contact`: steps whose contact problems are
         written as FCLib's files ("1:10")."""
-        directory = os.fspath(directory)
+        directory = library_path(directory, "write_to")
         kept = self.case.text is not None
         case_path = os.path.join(directory, "case.toml") if kept else ""
         self._write_to(directory, force, resume, True, export_contact, case_path, self.case.changes)
@@ -79,15 +83,13 @@ class Session(_core.Session):
         `path`, written to that file, too."""
         saved = self._save()
         if path is not None:
-            with open(os.fspath(path) + ".part", "wb") as file:
-                file.write(saved)
-            os.replace(os.fspath(path) + ".part", path)
+            write_whole(path_of(path, "save"), saved)
         return saved
 
     def resume(self, saved):
         """Before the first step: goes on from what save() gave, bytes or the path of a file."""
         if not isinstance(saved, (bytes, bytearray, memoryview)):
-            with open(saved, "rb") as file:
+            with file_access(), open(path_of(saved, "resume"), "rb") as file:
                 saved = file.read()
         self._resume(bytes(saved))
 
@@ -102,6 +104,10 @@ class Session(_core.Session):
 
     def __repr__(self):
         return f"<Session of {self.case!r}>"
+
+
+def is_false(answer):
+    return isinstance(answer, (bool, numpy.bool_)) and not answer
 
 
 def run(source, directory, changes=None, *, mesh=None, each=None, force=False, resume=False, export_contact="", progress=None):

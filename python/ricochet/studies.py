@@ -9,6 +9,7 @@ import numpy
 from . import _core
 from .case import Case, change_texts, toml_value
 from .errors import UsageError, unknown_name
+from .files import library_path
 from .program import program
 
 
@@ -103,7 +104,12 @@ def study(source, vary, directory, changes=None, *, mesh=None, jobs=0, threads=1
     `order`: what the table says besides, as the options of `ricochet study`. `resume` goes on with the study in the directory,
     also with more values; `force` starts anew.
     """
-    directory = os.fspath(directory)
+    directory = library_path(directory, "study")
+    for name, value, least in (("jobs", jobs, 0), ("threads", threads, 1)):
+        if not isinstance(value, (int, numpy.integer)) or not least <= value <= 1024:
+            raise UsageError(f"study: {name} is a whole number from {least} to 1024, not {value!r}")
+    if not isinstance(vary, Mapping):
+        raise UsageError(f"study: what varies is a dictionary of keys and lists of values, not {vary!r}")
     case = source if isinstance(source, Case) and changes is None and mesh is None else Case(source, changes, mesh=mesh)
     axes = [axis_of(key, values) for key, values in vary.items()]
     if case.text is None:
@@ -121,4 +127,5 @@ def study(source, vary, directory, changes=None, *, mesh=None, jobs=0, threads=1
 
 def open_study(directory):
     """The Study in a directory, as far as its runs are."""
-    return Study(os.fspath(directory), _core.read_study(os.fspath(directory)))
+    directory = library_path(directory, "open_study")
+    return Study(directory, _core.read_study(directory))

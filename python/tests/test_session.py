@@ -189,3 +189,42 @@ def test_what_does_not_fit_together(puck, tmp_path):
     with pytest.raises(rc.FileAccessError, match="holds a run already"):
         rc.run(puck, tmp_path / "out", SHORT)
     assert rc.run(puck, tmp_path / "out", SHORT, resume=True).status == "done"
+
+
+def test_false_of_numpy_ends_a_run_too(puck):
+    for answer in (False, numpy.bool_(False)):
+        session = rc.Session(puck, SHORT)
+        session.run(lambda s: answer)
+        assert session.step_number == 1
+    for answer in (None, True, numpy.bool_(True), 0):
+        session = rc.Session(puck, SHORT)
+        session.run(lambda s: answer)
+        assert session.step_number == session.steps
+
+
+def test_files_that_cannot_be_used_are_errors_of_ricochet(puck, tmp_path):
+    session = rc.Session(puck, SHORT)
+    for use in (lambda: session.save(tmp_path / "none" / "a"), lambda: session.save(tmp_path), lambda: session.resume(tmp_path / "none")):
+        with pytest.raises(rc.FileAccessError, match=str(tmp_path)) as caught:
+            use()
+        assert caught.value.errno
+    for use in (lambda: session.save(3), lambda: session.resume(3), lambda: session.write_to(3), lambda: rc.open(None), lambda: rc.plot(3),
+                lambda: rc.open_study([]), lambda: session.write_to(""), lambda: rc.open("a\0b"), lambda: session.write_to(tmp_path / "\udcff")):
+        with pytest.raises(rc.UsageError):
+            use()
+
+
+def test_states_are_written_to_pipes_and_not_over_them(puck, tmp_path):
+    session = rc.Session(puck, SHORT)
+    pipe, got = tmp_path / "pipe", []
+    os.mkfifo(pipe)
+    thread = threading.Thread(target=lambda: got.append(pipe.read_bytes()))
+    thread.start()
+    saved = session.save(pipe)
+    thread.join()
+    assert got == [saved] and pipe.is_fifo()
+    link, file = tmp_path / "link", tmp_path / "file"
+    file.write_bytes(b"old")
+    link.symlink_to(file)
+    session.save(link)
+    assert link.is_symlink() and file.read_bytes() == saved

@@ -51,11 +51,25 @@ def test_a_study_of_a_dictionary(tmp_path):
     assert study.done == 2 and study["time.step"].tolist() == [1e-4, 5e-5]
 
 
+def test_reports_go_where_paths_say(puck, tmp_path):
+    run = rc.run(puck, tmp_path / "out", SHORT)
+    for path in (tmp_path / "a.html", str(tmp_path / "b.html")):
+        assert run.report(path) == path
+    assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
+    with pytest.raises(rc.FileAccessError, match="none"):
+        run.report(tmp_path / "none" / "a.html")
+
+
 def test_wrong_studies(puck, tmp_path):
     with pytest.raises(rc.UsageError, match="are a list"):
         rc.study(puck, {"time.step": 1e-6}, tmp_path / "study")
     with pytest.raises(rc.UsageError, match="change together"):
         rc.study(puck, {("time.step", "time.end"): [1e-6]}, tmp_path / "study")
+    for wrong in ({"threads": 0}, {"threads": -1}, {"threads": 1.5}, {"jobs": -1}, {"jobs": "2"}, {"jobs": 2000}):
+        with pytest.raises(rc.UsageError, match="whole number"):
+            rc.study(puck, {"time.step": [1e-6]}, tmp_path / "study", **wrong)
+    with pytest.raises(rc.UsageError, match="a dictionary of keys"):
+        rc.study(puck, ["time.step"], tmp_path / "study")
     with pytest.raises(rc.Error, match="stp"):
         rc.study(puck, {"time.stp": [1e-6]}, tmp_path / "study")
 
