@@ -20,6 +20,8 @@ def toml_value(value, path):
     if isinstance(value, (bool, numpy.bool_)):
         return "true" if value else "false"
     if isinstance(value, (int, numpy.integer)):
+        if not -2**63 <= value < 2**63:
+            raise InputError(f"{places.entry(path)}: whole numbers in a case have 64 bits; this one is larger")
         return str(int(value))
     if isinstance(value, (float, numpy.floating)):
         number = float(value)
@@ -120,7 +122,10 @@ class Case:
         self.changes = change_texts(changes)
         self.mesh, self.dictionary, self.text, self._lines = mesh, None, None, None
         if isinstance(source, Mapping):
-            self._read_dictionary(source)
+            try:
+                self._read_dictionary(source)
+            except RecursionError:
+                raise InputError("case: a dictionary, or a list, contains itself or is too deep") from None
         elif isinstance(source, (str, os.PathLike)):
             if mesh is not None:
                 raise UsageError("a case from a file names its mesh; give `mesh` with a dictionary, or change mesh.file")

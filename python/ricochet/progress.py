@@ -26,7 +26,7 @@ class Progress:
 
     def __init__(self, session):
         self.session, self.began, self.start = session, time.monotonic(), None
-        self.open = False
+        self.open = self.silent = False
 
     def line(self, step, at):
         done = min(1.0, at / self.session.end) if self.session.end > 0 else 1.0
@@ -40,17 +40,25 @@ class Progress:
     def __call__(self, step, at):
         self.show(*self.line(step, at))
 
+    def say(self, text):
+        """Where nobody listens any more (a terminal, or a reader of a pipe, that is gone) the run goes on in silence."""
+        if self.silent or sys.stderr is None:
+            return
+        try:
+            sys.stderr.write(text)
+            sys.stderr.flush()
+        except (OSError, ValueError):
+            self.silent = True
+
     def show(self, done, text):
         bar = "#" * int(20 * done)
-        sys.stderr.write(f"\r[{bar:<20}] {100 * done:3.0f} %  {text}\x1b[K")
-        sys.stderr.flush()
+        self.say(f"\r[{bar:<20}] {100 * done:3.0f} %  {text}\x1b[K")
         self.open = True
 
     def close(self):
         if self.open:
             self(self.session.step_number, self.session.time)
-            sys.stderr.write("\n")
-            sys.stderr.flush()
+            self.say("\n")
 
 
 class NotebookProgress(Progress):
@@ -73,12 +81,19 @@ class NotebookProgress(Progress):
             self(self.session.step_number, self.session.time)
 
 
+def is_terminal(stream):
+    try:
+        return stream is not None and stream.isatty()
+    except ValueError:  # it is closed
+        return False
+
+
 @contextmanager
 def progress_of(wanted, session):
     """What Session.run calls with step and time, or None."""
     notebook = in_notebook()
     if wanted is None:
-        wanted = notebook or (sys.stderr is not None and sys.stderr.isatty())
+        wanted = notebook or is_terminal(sys.stderr)
     if not wanted or session.is_complete_already:
         yield None
         return

@@ -73,6 +73,22 @@ def test_values_of_numpy_and_odd_texts(puck, monkeypatch, tmp_path):
         rc.Case(table)
 
 
+def test_values_that_no_case_has(puck, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path / "puck")
+    for wrong in (2**63, -10**30, 10**5000, numpy.uint64(2**64 - 1)):
+        table = dictionary(puck)
+        table["mesh"]["degree"] = wrong
+        with pytest.raises(rc.InputError, match=r'case\["mesh"\]\["degree"\]: whole numbers'):
+            rc.Case(table)
+    table = dictionary(puck)
+    around = []
+    around.append(around)
+    for itself in (table, around):
+        table["mesh"]["own"] = itself
+        with pytest.raises(rc.InputError, match="contains itself"):
+            rc.Case(table)
+
+
 def test_numbers_are_exact(puck):
     for value in (0.1, 1 / 3, 1e-300, 5e-324, 123456789.123456789):
         assert float(rc.Case(puck, {"material.0.damping.mass": value}).values["material.0.damping.mass"]) == value

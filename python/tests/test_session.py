@@ -228,3 +228,29 @@ def test_states_are_written_to_pipes_and_not_over_them(puck, tmp_path):
     link.symlink_to(file)
     session.save(link)
     assert link.is_symlink() and file.read_bytes() == saved
+
+
+@pytest.mark.parametrize("stderr", ["None", "closed()", "full()"])
+def test_a_run_outlives_whoever_watches_it(puck, tmp_path, stderr):
+    script = f"""
+import io, os, sys
+import ricochet as rc
+
+def closed():
+    stream = open(os.devnull, "w")
+    stream.close()
+    return stream
+
+class full(io.StringIO):
+    def write(self, text):
+        raise BrokenPipeError(32, "nobody reads")
+
+sys.stderr = {stderr}
+for progress in (None, True):
+    session = rc.Session({puck!r}, {{"time.end": 1e-2}})
+    session.run(progress=progress)
+    assert session.step_number == session.steps
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    outcome = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True)
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
