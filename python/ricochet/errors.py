@@ -54,6 +54,9 @@ class FileAccessError(Error, OSError):
 
     exit_status = 4
 
+    def __str__(self):
+        return self.message
+
 
 class ExpectationError(Error):
     """A run is complete, but an [[expect]] entry of its case does not hold."""

@@ -6,17 +6,22 @@ from contextlib import contextmanager
 from .errors import Error, FileAccessError, UsageError
 
 
+def _error_of(problem, path):
+    name = problem.filename or path
+    result = FileAccessError(f"{os.fsdecode(name)}: {problem.strerror}" if name and problem.strerror else str(problem))
+    result.errno, result.filename = problem.errno, name
+    return result
+
+
 @contextmanager
-def file_access():
+def file_access(path=None):
     """Within it, what Python says of files that cannot be read or written is a FileAccessError."""
     try:
         yield
     except OSError as problem:
         if isinstance(problem, Error):
             raise
-        raised = FileAccessError(str(problem))
-        raised.errno, raised.filename = problem.errno, problem.filename
-        raise raised from problem
+        raise _error_of(problem, path) from problem
 
 
 def path_of(path, what):
@@ -42,12 +47,18 @@ def library_path(path, what):
 
 def write_whole(path, content):
     """Writes bytes: the file is there whole or as it was. A device, or a pipe, is written to; it is not replaced."""
-    with file_access():
+    with file_access(path):
         path = os.path.realpath(path)
         if os.path.exists(path) and not os.path.isfile(path):
             with open(path, "wb") as file:
                 file.write(content)
             return
-        with open(path + ".part", "wb") as file:
-            file.write(content)
-        os.replace(path + ".part", path)
+        part = path + ".part"
+        try:
+            with open(part, "wb") as file:
+                file.write(content)
+            os.replace(part, path)
+        except OSError:
+            if os.path.isfile(part):
+                os.remove(part)
+            raise

@@ -191,7 +191,7 @@ class Mesh:
     def write(self, path):
         """Writes a .msh file (4.1, binary)."""
         try:
-            with file_access():
+            with file_access(path):
                 write_msh(self._mesh, path_of(path, "mesh"))
         except Refusal as problem:
             raise InputError(f"mesh: {problem}") from None

@@ -55,9 +55,9 @@ class Session(_core.Session):
         kept = self.case.text is not None
         case_path = os.path.join(directory, "case.toml") if kept else ""
         self._write_to(directory, force, resume, True, export_contact, case_path, self.case.changes)
+        self.directory = directory  # from here on it is to be finished
         if kept and not self.is_complete_already:
             self.case.write(directory)
-        self.directory = directory
 
     def finish(self):
         """Ends what write_to has begun, and returns the Run. Before the last step the run is an interrupted one, with a

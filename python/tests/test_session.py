@@ -205,9 +205,10 @@ def test_false_of_numpy_ends_a_run_too(puck):
 def test_files_that_cannot_be_used_are_errors_of_ricochet(puck, tmp_path):
     session = rc.Session(puck, SHORT)
     for use in (lambda: session.save(tmp_path / "none" / "a"), lambda: session.save(tmp_path), lambda: session.resume(tmp_path / "none")):
-        with pytest.raises(rc.FileAccessError, match=str(tmp_path)) as caught:
+        with pytest.raises(rc.FileAccessError, match=f"^{tmp_path}.*: [A-Z]") as caught:
             use()
-        assert caught.value.errno
+        assert caught.value.errno and caught.value.filename
+    assert sorted(os.listdir(tmp_path)) == ["puck"]  # nothing half written
     for use in (lambda: session.save(3), lambda: session.resume(3), lambda: session.write_to(3), lambda: rc.open(None), lambda: rc.plot(3),
                 lambda: rc.open_study([]), lambda: session.write_to(""), lambda: rc.open("a\0b"), lambda: session.write_to(tmp_path / "\udcff")):
         with pytest.raises(rc.UsageError):
@@ -254,3 +255,16 @@ for progress in (None, True):
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     outcome = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+
+
+def test_a_run_whose_case_cannot_be_written_is_closed(tmp_path):
+    from test_mesh import CASE, square
+
+    points, quads = square()
+    mesh = rc.Mesh(points, {"quad": quads}, {"bottom": numpy.flatnonzero(points[:, 1] < 0.01)})
+    (tmp_path / "out/case.toml").mkdir(parents=True)
+    with pytest.raises(rc.FileAccessError, match="case.toml"):
+        rc.run(CASE, tmp_path / "out", mesh=mesh)
+    assert rc.open(tmp_path / "out").status == "interrupted"
+    (tmp_path / "out/case.toml").rmdir()
+    assert rc.run(CASE, tmp_path / "out", mesh=mesh, force=True).status == "done"
