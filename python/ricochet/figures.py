@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from . import _core
 from .errors import UsageError
 from .files import library_path, path_of, write_whole
+from .messages import logger
 from .program import shared_file
 
 
@@ -43,9 +44,8 @@ def plot(runs, *what, labels=None, title="", time=None, logarithmic=False, size=
 def write_report(runs, path):
     """Writes the report of one run or several for a browser: one file with all that it needs. Returns its path."""
     html, thinned = _core.make_report(directories_of(runs), shared_file("viewer.html"))
-    from .messages import logger
-
     for sentence in thinned:
         logger.info("%s", sentence)
-    write_whole(path_of(path, "report"), html.encode("utf-8", "surrogateescape"))
+    path = path_of(path, "report")
+    write_whole(path, html.encode("utf-8", "surrogateescape"))
     return path

@@ -4,8 +4,6 @@ import sys
 import time
 from contextlib import contextmanager
 
-from . import _core  # noqa: F401  (the package is loaded through it)
-
 
 def in_notebook():
     shell = sys.modules.get("IPython")

@@ -8,7 +8,7 @@ from typing import NamedTuple, Optional, Tuple
 import numpy
 
 from . import _core
-from .errors import ExpectationError, InputError, UsageError, unknown_name
+from .errors import Error, ExpectationError, InputError, UsageError, unknown_name
 from .files import library_path
 from .messages import logger
 
@@ -279,8 +279,10 @@ class Run:
         return f"{entry['location']}: expected {entry['name'] or entry['quantity']} to be {entry['wanted']}, {found}"
 
     def check(self):
-        """Raises ExpectationError where an [[expect]] entry that applies does not hold; NotConvergedError where the run has
-        failed. Returns this run."""
+        """Raises ExpectationError where an [[expect]] entry that applies does not hold, and Error with the run's own message
+        where the run has failed. Returns this run."""
+        if self.status == "failed":
+            raise Error(f"{self.directory}: the run has failed: {self.summary['message']}")
         broken = self._broken_expectations()
         if broken:
             raise ExpectationError("\n".join(self._text_of(entry) for entry in broken))

@@ -124,7 +124,10 @@ def test_a_failing_step_ends_loops_that_wait_for_the_end(puck, tmp_path):
         while session.time < session.end:
             session.step()
     assert isinstance(caught.value, ArithmeticError)
-    assert rc.open(tmp_path / "out").status == "failed"
+    failed = rc.open(tmp_path / "out")
+    assert failed.status == "failed"
+    with pytest.raises(rc.Error, match="has failed: step"):
+        failed.check()
 
 
 def test_ctrl_c_leaves_a_run_to_go_on_with(puck, tmp_path):

@@ -105,3 +105,5 @@ def test_pictures_show_what_the_fields_say(puck, tmp_path):
     assert low < frame.positions[:, 0].min() and high > frame.positions[:, 0].max()
     report = run.report()
     assert open(report).read().startswith("<!")
+    named = run.report(tmp_path / "named.html")
+    assert named == str(tmp_path / "named.html") and open(named).read() == open(report).read()
