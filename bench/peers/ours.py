@@ -1,6 +1,5 @@
 """Runs Ricochet and reads what it wrote."""
 
-import csv
 import os
 import pathlib
 import subprocess

@@ -53,11 +53,16 @@ def test_every_solver_and_friction_per_point():
     friction = numpy.linspace(0.0, 0.6, 5)
     reference = rc.contact.solve(w, q, friction)
     require_laws(w, q, friction, reference)
+    assert "gauss-seidel" in rc.contact.solver_names()
     for name in rc.contact.solver_names():
         found = rc.contact.solve(w, q, friction, solver=name, tolerance=1e-10, check=False)
-        if found.solved:
-            assert found.reaction == pytest.approx(reference.reaction, rel=1e-5, abs=1e-6), name
-    assert set(reference.status) <= {rc.contact.OPEN, rc.contact.CLOSED, rc.contact.STICK, rc.contact.SLIP}
+        if found.outcome == "not applicable":
+            assert name == "active-set" and found.reason  # it knows no friction
+            continue
+        assert found.solved, f"{name}: {found.reason}"
+        assert found.reaction == pytest.approx(reference.reaction, rel=1e-5, abs=1e-6), name
+    presses = reference.reaction[:, 0] > 0
+    assert presses.any() and ((reference.status != rc.contact.OPEN) == presses).all()
 
 
 def test_a_solver_goes_on_from_its_last_solution():
@@ -169,8 +174,6 @@ def test_masses_without_inertia_on_contact_nodes(cases):
     scalar = consistent.mass[::2, ::2]
     bottom = numpy.argsort(consistent.points[:, 1])[:5]
     for name in ("equivalent", "equivalent-nodewise", "equivalent-nearest", "lumped", "consistent"):
-        if name not in rc.mass_names():
-            continue
         built = rc.mass.build(scalar, consistent.points, bottom, name)
         matrix = built.matrix
         assert abs(matrix - matrix.T).max() == 0
@@ -194,7 +197,7 @@ def test_the_mass_of_a_session_is_the_one_that_is_built(cases):
     assert abs(built.matrix - whole.mass[::2, ::2]).max() < 1e-14 * abs(whole.mass).max()
 
 
-def test_wrong_masses(cases):
+def test_wrong_masses():
     eye = scipy.sparse.identity(4, format="csc")
     with pytest.raises(rc.InputError, match="4 x 2 or 3"):
         rc.mass.build(eye, numpy.zeros((3, 2)), [0])

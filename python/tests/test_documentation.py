@@ -1,15 +1,14 @@
 """Every block of Python in the pages runs, in the folder of the case that it speaks of."""
 
 import os
-import pathlib
 import re
 import shutil
 import subprocess
 import sys
 
 import pytest
+from conftest import ROOT
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ("docs/python.md", "docs/coupling.md")
 BLOCKS = [block for page in PAGES for block in re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.S)]
 

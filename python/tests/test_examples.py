@@ -1,15 +1,13 @@
 """Every example runs, its own assertions hold, and a picture comes out."""
 
 import os
-import pathlib
-import shutil
 import subprocess
 import sys
 
 import pytest
+from conftest import ROOT
 from matplotlib.image import imread
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = sorted((ROOT / "examples").glob("[0-9]*.py"))
 NOTEBOOKS = sorted((ROOT / "examples").glob("*.ipynb"))
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "MPLBACKEND": "Agg"}
@@ -22,7 +20,7 @@ def is_a_picture(path):
 
 
 def test_all_are_in_the_gallery():
-    assert len(SCRIPTS) == 10 and len(NOTEBOOKS) == 2
+    assert SCRIPTS and NOTEBOOKS
     gallery = (ROOT / "examples/README.md").read_text(encoding="utf-8")
     for path in SCRIPTS + NOTEBOOKS:
         assert f"({path.name})" in gallery

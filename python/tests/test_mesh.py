@@ -60,7 +60,7 @@ def test_the_same_mesh_three_ways(tmp_path, cases):
 
 
 @pytest.mark.parametrize("case", ["disc/degree2.toml", "hertz/sphere.toml", "ball/ball.toml", "rod/quadrilaterals.toml"])
-def test_meshes_of_every_kind_of_cell(cases, case, tmp_path):
+def test_meshes_of_every_kind_of_cell(cases, case):
     """Their order of nodes: a wrong one gives another stiffness, or cells that are inside out."""
     import tomllib
 
@@ -71,8 +71,7 @@ def test_meshes_of_every_kind_of_cell(cases, case, tmp_path):
         table.pop(section, None)
     first = rc.Session(path)
     second = rc.Session(table, mesh=rc.Mesh.from_meshio(meshio.read(file)))
-    for name in ("mass",):
-        assert abs(getattr(first, name) - getattr(second, name)).max() < 1e-12 * abs(getattr(first, name)).max()
+    assert abs(first.mass - second.mass).max() < 1e-12 * abs(first.mass).max()
     assert abs(first.stiffness() - second.stiffness()).max() < 1e-12 * abs(first.stiffness()).max()
 
 

@@ -1,6 +1,5 @@
 """Python and the program give the same bits, on every shipped case."""
 
-import pathlib
 import subprocess
 
 import h5py
@@ -8,8 +7,8 @@ import numpy
 import pytest
 
 import ricochet as rc
+from conftest import ROOT
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 STEPS = 12
 CASES = sorted(str(path.relative_to(ROOT)) for path in (ROOT / "cases").glob("*/*.toml"))
 

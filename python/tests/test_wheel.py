@@ -2,13 +2,12 @@
 
 import importlib.util
 import os
-import pathlib
 import subprocess
 import sys
 
 import pytest
+from conftest import ROOT
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPT = """
 import sys, ricochet as rc
 assert rc.__file__.startswith(sys.argv[1]), rc.__file__

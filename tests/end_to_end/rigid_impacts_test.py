@@ -1,6 +1,5 @@
 """Rigid and elastic bodies that strike one another, beside closed forms: Hertz, a cradle, bounces in a bowl, a peg in a hole."""
 
-import math
 import unittest
 
 import numpy

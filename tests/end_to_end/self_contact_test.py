@@ -1,6 +1,5 @@
 """A surface that touches itself: against the same surfaces as a pair, energy, momenta, runs that are resumed, refusals."""
 
-import json
 import unittest
 
 import numpy

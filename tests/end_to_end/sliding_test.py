@@ -80,7 +80,7 @@ class Sliding(TestCase):
             self.assertLess(numpy.ptp(history[name]), 1e-11 * size, name)
 
 
-def block_in_bowl(x, slope=0.0):
+def block_in_bowl(x):
     """Of a rigid block whose two lower corners are on the parabola: height of its centre, and kinetic energy per mass
     and velocity squared of x, the middle of the chord."""
     def place(x):

@@ -4,7 +4,7 @@ between bodies in motion, static starts of what floats, motions far away."""
 import json
 import unittest
 
-from harness import History, TestCase, run, settings
+from harness import History, TestCase, run
 from two_bodies_test import material, strip
 
 

@@ -18,7 +18,7 @@ import h5py
 import numpy
 
 from harness import DISC, MESHES, TestCase, block_case, run, settings, with_more, with_sphere
-from interrupted_runs import ResumeTestCase, busy, checkpoints, start
+from interrupted_runs import ResumeTestCase, busy, start
 from obstacle_files_test import surfaces
 from report_page import Page
 from results_files_test import SHAPES
