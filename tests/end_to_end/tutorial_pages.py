@@ -3,7 +3,8 @@ order, and what they print is compared with what the page shows.
 
 A fenced block whose first line is a comment with nothing but a file's name is that file. In a block of `console`, lines that begin with
 "$ " are commands; the lines below are what comes out. A line that is "…" stands for any lines, "…" within a line for anything. Numbers
-agree when they do to the digits shown, give or take one of the last.
+agree when they do to the digits shown, give or take one of the last; whole numbers of one or two digits, which count something, when
+they are equal.
 
 "```console needs NAME" says that the commands of this block need NAME, a program or a module of Python: where it is not installed they
 are left out."""
@@ -47,7 +48,7 @@ def read(page):
         name = NAME.match(body.split("\n", 1)[0])
         if name:
             steps.append(File(name.group(1), body))
-        elif kind in ("sh", "bash", "python", "toml", "cpp"):
+        elif kind in ("sh", "bash", "python", "toml", "cpp", "cmake"):
             raise AssertionError(f"{page}: no test runs this block of {kind}; name its file, or write it as console:\n{body}")
     return steps
 
@@ -73,6 +74,8 @@ def same_number(shown, found):
         return decimal.Decimal(text.replace(",", "").replace("−", "-"))
 
     a, b = value(shown), value(found)
+    if re.fullmatch(r"[-+−]?\d{1,2}", shown) and re.fullmatch(r"[-+−]?\d+", found):
+        return a == b
     if a == 0:
         return abs(b) < decimal.Decimal("1e-12") or a == b
     return abs(a - b) <= decimal.Decimal(1).scaleb(a.as_tuple().exponent) * decimal.Decimal("1.0000001")
