@@ -21,9 +21,33 @@ class Session(_core.Session):
             session.step()
             print(session.time, session.displacement[:, 1].min())
 
-    `source`, `changes` and `mesh` are those of Case. Arrays of the state (displacement, velocity, acceleration, reactions,
-    friction_reactions) are views without copies: they always show the present state, and cannot be written to; copy what is
-    to be kept. Their rows are nodes in the order of `points`; `node_numbers` are the numbers of the mesh.
+    `source`, `changes` and `mesh` are those of Case. Quantities are in the units of the case.
+
+    The state, as views without copies: they always show the present state, and cannot be written to; copy what is to be kept.
+
+    - `displacement`, `velocity`, `acceleration`: nodes x dimension, nodes in the order of `points`;
+    - `reactions`: the normal force at each contact point, positive where it presses; `friction_reactions`: contact points x
+      (dimension - 1), along the tangents of the point.
+
+    The state, as copies:
+
+    - `contact_status`: of each contact point, as ricochet.contact numbers it: OPEN, CLOSED, STICK, SLIP;
+    - `gaps`: of each contact point, positive where it is open;
+    - `contact_force`: nodes x dimension, the force of all contacts on each node;
+    - `energies`: a dictionary of the parts of the energy account, by the names of history.csv;
+    - `time`, `step_number`; `iterations`: of the contact solver in the last step; `at_end`: no step is left.
+
+    The problem:
+
+    - `dimension`; `points`: nodes x dimension, undeformed; `node_numbers`: the row of each node in the arrays of Run and Frame;
+      `contact_points`: places of the contact points, undeformed;
+    - `mass_built`: the type of the mass that was built;
+    - `end`: the time at which the run ends; `steps`: until there, of adaptive steps if all were the longest;
+    - `warnings`: all that were said for this session; `writes`: whether it writes a run; `is_complete_already`: whether the
+      run that write_to was to go on with had come to its end.
+
+    Errors: InputError for arrays that do not fit and names that the case does not have, UsageError for what comes too late or
+    while another thread uses the session, NotConvergedError for a step without a solution; the state is then that before it.
 
     A session that writes (write_to) is closed with finish(), or as a context::
 

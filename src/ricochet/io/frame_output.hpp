@@ -8,8 +8,8 @@
 #include "ricochet/io/fields/field_source.hpp"
 #include "ricochet/io/frame_file.hpp"
 
-/// @file The files that frames go into, in one of the formats. To add one: a file like xdmf_output.cpp, and a line in
-/// results_file.cpp.
+/// @file The files that frames go into, in one of the formats. CONTRIBUTING.md says what else a further format needs:
+/// reading it (results_storage.hpp) most of all.
 namespace ricochet {
 
 struct FrameOutputContext {

@@ -25,7 +25,7 @@ std::vector<CellShape> shapes_of(int dimension) {
   return {CellShape::tetrahedron, CellShape::hexahedron};
 }
 
-/// Reads connectivity as results_file.cpp writes it: a table of cells of one shape, or XDMF's mixed list.
+/// Reads connectivity as mesh_datasets.cpp writes it: a table of cells of one shape, or XDMF's mixed list.
 class Connectivity {
  public:
   Connectivity(const Hdf5Reader& file, std::string name, int dimension, int degree, Index nodes)
