@@ -38,7 +38,7 @@ install(FILES ${RICOCHET_USER_FILES}/zsh/vendor-completions/_ricochet
   DESTINATION ${CMAKE_INSTALL_DATADIR}/${ricochet_zsh_folder} COMPONENT program)
 
 # --- to read -------------------------------------------------------------------------------------------------------------
-# The built pages, where they were built, and else the pages as they are written.
+# The pages as they are written, and the site where `./dev docs` has built it.
 if(IS_DIRECTORY ${CMAKE_SOURCE_DIR}/build/site)
   install(DIRECTORY build/site/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/ricochet/html COMPONENT documentation)
 endif()

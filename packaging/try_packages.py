@@ -105,7 +105,7 @@ def tutorial(root, page):
 
 
 def python_module(root):
-    """The first program of docs/python.md, on a shipped case that has been shortened."""
+    """The first program of docs/python.md, in a copy of the folder of its case."""
     page = (SOURCE / "docs" / "python.md").read_text(encoding="utf-8")
     program = re.search(r"```python\n(.*?)```", page, re.S)[1]
     (root.path / "tmp" / "first.py").write_text(program, encoding="utf-8")
@@ -156,6 +156,9 @@ def main():
     packages = {path.name.split("_")[0]: path for path in sorted(pathlib.Path(arguments[0]).glob("*.deb"))}
     must({"ricochet", "libricochet0", "libricochet-dev", "ricochet-doc"} <= packages.keys(),
          f"{arguments[0]} has no packages: ./dev package makes them")
+    # The shared libraries have no use of their own: all others need them.
+    unused = packages.keys() - {package for package, *_ in CHECKS} - {"libricochet0"}
+    must(not unused, f"nothing uses what these packages install: {', '.join(sorted(unused))}; CHECKS says what is done with each")
     steps = Steps()
     steps("what is in the files", lambda: look_at_files(packages))
     root = MinimalRoot()

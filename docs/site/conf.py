@@ -1,5 +1,5 @@
-"""The site: `./dev docs` builds it with Sphinx. Its pages are those of docs/ and cases/, as they are read in the repository, and
-those of this folder."""
+"""The site: `./dev docs` builds it with Sphinx. Its pages are those of the repository (`include_patterns`), as they are read there,
+and those of this folder."""
 
 import os
 import pathlib

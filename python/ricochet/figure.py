@@ -293,7 +293,7 @@ def draw_panels(description):
     columns = len(panels) if len(panels) <= 3 else 2
     rows = -(-len(panels) // columns)
     width = description["width"] or (9 if columns == 1 else 17)
-    height = description["height"] or 6.2 * rows if columns < 3 else description["height"] or 5.2 * rows
+    height = description["height"] or (6.2 if columns < 3 else 5.2) * rows
     figure, grid = plt.subplots(rows, columns, figsize=(width * CENTIMETRE, height * CENTIMETRE), squeeze=False,
                                 constrained_layout=True)
     handles, labels = common_legend(panels, width / columns)
