@@ -56,6 +56,39 @@ TEST_F(SessionSteeringTest, AccountsContainAnImpulse) {
   EXPECT_GT(schemes, 12);
 }
 
+/// A load that is set between two steps acts from there on: the forces of the step before are those of the old one.
+TEST_F(SessionSteeringTest, AccountsContainALoadThatIsSet) {
+  int schemes = 0;
+  for (const std::string& name : scheme_names()) {
+    for (const char* mass : {"equivalent", "lumped"}) {
+      SCOPED_TRACE(name + ", " + mass);
+      try {
+        Session session(path_, {"time.scheme=" + name, std::string("mass.type=") + mass, "time.end=0.3"});
+        session.write_to({.output_directory = directory_, .force = true, .quiet = true});
+        Vector load = Vector::Zero(session.problem().dof_count());
+        for (int k = 0; session.step(); ++k) {
+          if (k % 5 != 2) continue;
+          for (Index dof = 1; dof < load.size(); dof += 2) load[dof] = k % 2 == 0 ? 0.01 : -0.02;
+          session.set_load(load);
+        }
+        const RunSummary summary = session.finish();
+        ++schemes;
+        for (const CheckResult& check : summary.checks) EXPECT_LT(check.largest, 1e-9) << check.name;
+      } catch (const Error& problem) {
+        ASSERT_EQ(problem.kind(), ErrorKind::invalid_input) << problem.what();
+      }
+    }
+  }
+  EXPECT_GT(schemes, 12);
+}
+
+TEST_F(SessionSteeringTest, AVelocityWithoutAFiniteEnergyIsRefused) {
+  Session session(path_);
+  const Vector before = session.state().velocity;
+  EXPECT_THROW(session.set_velocity(Vector::Constant(before.size(), 1e200)), Error);
+  EXPECT_EQ(session.state().velocity, before);
+}
+
 /// A body in free flight goes on with the velocity that was set.
 TEST_F(SessionSteeringTest, BodiesFlyWithTheVelocityThatWasSet) {
   Session session(path_, {"load.gravity=[0, 0]"});

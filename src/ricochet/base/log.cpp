@@ -36,7 +36,7 @@ Sink& other_sink() {
 }
 
 std::vector<std::string>*& collected_warnings() {
-  static std::vector<std::string>* list = nullptr;
+  thread_local std::vector<std::string>* list = nullptr;
   return list;
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/case/read_case.hpp"
@@ -120,12 +122,17 @@ void Session::set_load(const Vector& force) {
     built.problem.loads.add_general([load = load_](double, Vector& sum) { sum += *load; });
   }
   *load_ = force;
+  // Tied nodes have no equations: what acts on them acts on those that they follow.
+  if (built.problem.tied != nullptr)
+    built.problem.tied->condense_load(*load_, static_cast<int>(built.problem.dimension));
 }
 
 void Session::set_velocity(const Vector& velocity) {
   const log::CollectWarnings collect(warnings_);
   Simulation& running = simulation();
   check_values(problem(), velocity, "velocity");
+  if (!std::isfinite(problem().mass.form(velocity)))
+    throw Error(ErrorKind::invalid_input, "session: the velocity is so large that its energy is no finite number");
   const Vector impulse = running.set_velocity(velocity);
   if (run_ == nullptr) return;
   run_->enter_impulse(impulse);

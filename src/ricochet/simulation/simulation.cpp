@@ -314,9 +314,9 @@ void Simulation::take_step_in_parts(const std::function<void(const State&)>& eac
         continue;
       }
       state_ = start;
-      account_ = std::make_unique<EnergyAccount>(account);
       for (std::size_t k = 0; k < bodies.size(); ++k) *problem_.free_bodies[k] = bodies[k];
-      use_level(0);
+      use_level(0);  // enters a change of the step, of which the account of the start knows nothing
+      account_ = std::make_unique<EnergyAccount>(account);
       throw;
     }
     done += whole >> level;

@@ -56,7 +56,7 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
     stages_.position(problem, state, h, weights_, stages);
     const StageSolution& impact = stages_.impulses(problem, state, h, weights_, stages);
     increment = (0.5 * h) * (state.velocity + stages_.velocity + impact.increment);  // that Λ/h works on
-    account(problem, state.time, impact, increment);
+    account(problem, state.time, impact, increment, state.memory[smooth_varying_load]);
     take_forces(problem, stages, impact, state);
     state.displacement += stages_.motion;
     state.velocity = stages_.velocity + impact.increment;
@@ -72,14 +72,19 @@ class NonsmoothGeneralizedAlpha final : public Scheme {
 
  private:
   /// F̄ works on ΔU, not on the increment: the difference.
-  void account(const SemidiscreteProblem& problem, double time, const StageSolution& impact, const Vector& increment) {
+  void account(const SemidiscreteProblem& problem, double time, const StageSolution& impact, const Vector& increment,
+               Vector& load_before) {
     const double h = step(), less = 0.5 - weights_.force;
     work_on_ = stages_.motion - increment;
     corrections_ = {.support_work = problem.supports.work(stages_.mean_support, work_on_)};
+    if (load_before.size() == 0) {  // of an older checkpoint
+      load_before = Vector::Zero(problem.dof_count());
+      if (problem.loads.varies()) problem.loads.varying(time, load_before);
+    }
     if (problem.loads.varies()) {
-      problem.loads.varying(time, load_);
       problem.loads.varying(time + h, force_);
-      load_ = weights_.force * load_ + (1.0 - weights_.force) * force_;
+      load_ = weights_.force * load_before + (1.0 - weights_.force) * force_;
+      load_before = force_;
       corrections_.load_work = load_.dot(work_on_);
     }
     problem.mass.multiply(stages_.change, force_);

@@ -13,6 +13,9 @@ const StageSolution& NonsmoothStages::push(const SemidiscreteProblem& problem, c
 }
 
 void NonsmoothStages::start(const SemidiscreteProblem& problem, State& state, StageSolve& stages) {
+  Vector& load = state.memory[smooth_varying_load];
+  load = Vector::Zero(problem.dof_count());
+  if (problem.loads.varies()) problem.loads.varying(state.time, load);
   Vector& reaction = state.memory[smooth_support_reaction];
   reaction = state.forces.support_reaction;
   if (state.forces.normal_reaction.sum() > 0.0) {

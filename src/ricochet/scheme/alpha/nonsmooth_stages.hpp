@@ -46,5 +46,7 @@ class NonsmoothStages {
 
 /// Key of State::memory: `support` of the last step.
 inline const std::string smooth_support_reaction = "smooth_support_reaction";
+/// Key of State::memory: the varying load that a₀ is of. A load that is set between two steps is not.
+inline const std::string smooth_varying_load = "smooth_varying_load";
 
 }  // namespace ricochet
