@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -26,6 +27,20 @@ void bind_results(py::module_& module);
 void bind_contact(py::module_& module);
 void bind_mass(py::module_& module);
 void bind_study(py::module_& module);
+
+/// Lets go of Python's lock and takes the library's. HDF5 is for one thread at a time, and no thread can write to a
+/// file that another one has open to read. Sessions that step at once would have other bits, too.
+class LibraryLock {
+ public:
+  LibraryLock() : lock_(mutex()) {}
+
+ private:
+  /// What is said to a handler of messages may read a run.
+  static std::recursive_mutex& mutex();
+
+  py::gil_scoped_release unlocked_;
+  std::lock_guard<std::recursive_mutex> lock_;
+};
 
 /// Asks whether Python wants to stop (Ctrl-C): after every step, but not more often than Python can answer without
 /// being felt. Remembers the exception that a signal's handler has raised.

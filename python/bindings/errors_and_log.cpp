@@ -13,11 +13,17 @@ py::object function(const char* module, const char* name) {
   return py::module_::import(module).attr(name);
 }
 
+/// Messages quote what damaged files hold, which may be no UTF-8.
+py::object readable(const std::string& text) {
+  return py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
+}
+
 void translate(std::exception_ptr pointer) {
   try {
     if (pointer) std::rethrow_exception(pointer);
   } catch (const Error& problem) {
-    const py::object raised = function("ricochet.errors", "from_core")(problem.exit_status(), problem.what());
+    const py::object raised = function("ricochet.errors", "from_core")(problem.exit_status(), readable(problem.what()));
     PyErr_SetObject(py::type::of(raised).ptr(), raised.ptr());
   }
 }
@@ -26,9 +32,13 @@ void hand_to_python(log::Level level, const std::string& message) {
   if (Py_IsInitialized() == 0) return;
   const py::gil_scoped_acquire lock;
   try {
-    function("ricochet.messages", "from_core")(static_cast<int>(level), message);
+    function("ricochet.messages", "from_core")(static_cast<int>(level), readable(message));
   } catch (py::error_already_set& problem) {
-    problem.discard_as_unraisable("a message of Ricochet");
+    // Ctrl-C while a handler writes: what is asked after the step must hear of it.
+    if (problem.matches(PyExc_KeyboardInterrupt))
+      PyErr_SetInterrupt();
+    else
+      problem.discard_as_unraisable("a message of Ricochet");
   }
 }
 

@@ -14,6 +14,11 @@ constexpr double signal_interval = 0.05;
 
 }  // namespace
 
+std::recursive_mutex& LibraryLock::mutex() {
+  static std::recursive_mutex one_at_a_time;
+  return one_at_a_time;
+}
+
 int SignalCheck::operator()() {
   static const Timer clock;
   const double now = clock.seconds();

@@ -19,7 +19,7 @@ namespace ricochet::python {
 namespace {
 
 RunData read_run(const std::string& directory) {
-  const py::gil_scoped_release unlocked;
+  const LibraryLock lock;
   std::vector<RunData> runs;
   read_with_patience({directory}, [&] { runs = read_runs({directory}, true); });
   if (runs.front().results != nullptr) runs.front().results->release();
@@ -45,9 +45,12 @@ py::array read_field(const RunData& run, Index frame, const std::string& name) {
   const ResultsReader& results = results_of(run);
   std::vector<double> values;
   {
-    const py::gil_scoped_release unlocked;
+    const LibraryLock lock;
+    const struct Release {
+      ResultsReader& results;
+      ~Release() { results.release(); }
+    } release{*run.results};
     results.read(frame, field, values);
-    run.results->release();
   }
   const Index rows = field.on_nodes ? results.nodes().cols() : results.cell_count();
   return give(std::move(values), rows, field.components > 1 ? field.components : 0);
@@ -91,7 +94,7 @@ py::tuple surface_of(const RunData& run, Index most) {
   const ResultsReader& results = results_of(run);
   Surface surface;
   {
-    const py::gil_scoped_release unlocked;
+    const LibraryLock lock;
     surface = make_surface(results.nodes(), results.cells(), most);
   }
   const auto nodes = static_cast<Index>(surface.nodes.size());
@@ -115,13 +118,13 @@ std::string describe_runs(const std::vector<std::string>& directories, const std
                           const std::vector<std::string>& labels, const std::string& title,
                           const std::optional<std::pair<double, double>>& time, bool logarithmic, double width,
                           double height) {
-  const py::gil_scoped_release unlocked;
+  const LibraryLock lock;
   return describe_figure_of(directories, {what, labels, title, time, logarithmic, width, height});
 }
 
 std::string describe_study(const std::string& directory, const std::vector<std::string>& what, const std::string& title,
                            bool logarithmic, double width, double height) {
-  const py::gil_scoped_release unlocked;
+  const LibraryLock lock;
   const Study study = read_study(directory);
   return describe_study_figure(study, make_study_table(study).table, {what, title, logarithmic, width, height});
 }
@@ -184,7 +187,7 @@ void bind_results(py::module_& module) {
   module.def(
       "make_report",
       [](const std::vector<std::string>& directories, const std::string& viewer) {
-        const py::gil_scoped_release unlocked;
+        const LibraryLock lock;
         Report report = make_report(directories, {.viewer = viewer});
         return std::make_pair(std::move(report.html), std::move(report.thinned));
       },

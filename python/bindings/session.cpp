@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <mutex>
 
 #include "bindings.hpp"
 #include "ricochet/base/error.hpp"
@@ -24,8 +23,8 @@ class OpenSession {
  public:
   OpenSession(Case input, std::vector<std::string> remarks) : session(std::move(input), std::move(remarks)) {}
 
-  /// Calls what may take time without Python's lock. Sessions of several threads work one after the other: at once they
-  /// would have other bits. Throws Error(usage) where another thread is in such a call of this session.
+  /// Calls what may take time without Python's lock. Sessions of several threads work one after the other. Throws
+  /// Error(usage) where another thread is in such a call of this session.
   template <class Work>
   auto alone(const Work& work) {
     if (is_busy_.exchange(true)) refuse_other_thread();
@@ -33,9 +32,7 @@ class OpenSession {
       std::atomic<bool>& is_busy;
       ~End() { is_busy = false; }
     } end{is_busy_};
-    static std::mutex one_at_a_time;
-    const py::gil_scoped_release unlocked;
-    const std::lock_guard lock(one_at_a_time);
+    const LibraryLock lock;
     return work();
   }
   [[nodiscard]] const SemidiscreteProblem& problem() {

@@ -13,6 +13,8 @@ import pytest
 
 import ricochet as rc
 
+from conftest import ROOT
+
 SHORT = {"time.end": 1e-4}
 
 
@@ -240,6 +242,8 @@ def test_a_run_outlives_whoever_watches_it(puck, tmp_path, stderr):
 import io, os, sys
 import ricochet as rc
 
+from conftest import ROOT
+
 def closed():
     stream = open(os.devnull, "w")
     stream.close()
@@ -271,3 +275,67 @@ def test_a_run_whose_case_cannot_be_written_is_closed(tmp_path):
     assert rc.open(tmp_path / "out").status == "interrupted"
     (tmp_path / "out/case.toml").rmdir()
     assert rc.run(CASE, tmp_path / "out", mesh=mesh, force=True).status == "done"
+
+
+def test_a_load_on_tied_nodes_acts_on_what_they_follow():
+    session = rc.Session(ROOT / "cases/tied/tied.toml")
+    session.start()
+    load = numpy.zeros_like(session.displacement)
+    load[:, 0] = 1e-3
+    before = session.mass @ session.velocity.ravel()
+    session.set_load(load)
+    for _ in range(5):
+        session.step()
+    gained = (session.mass @ session.velocity.ravel() - before).reshape(load.shape).sum(axis=0)[0]
+    assert abs(gained - load[:, 0].sum() * session.time) < 1e-9 * abs(gained)
+
+
+@pytest.mark.parametrize("file_format", ["xdmf", "vtkhdf"])
+def test_threads_read_what_a_session_writes(puck, tmp_path, file_format):
+    session = rc.Session(puck, {"time.end": 2e-4, "output.fields_every": 2, "output.format": file_format})
+    session.write_to(tmp_path / "out")
+    session.run(lambda s: s.step_number < 20)
+    shared, stop, problems = rc.open(tmp_path / "out"), threading.Event(), []
+
+    def read():
+        try:
+            while not stop.is_set():
+                for run in (shared, rc.open(tmp_path / "out")):
+                    assert numpy.isfinite(run.frames[-1]["displacement"]).all()
+                rc.Case(puck, {"initial.parameters.unused": 1})
+        except rc.InputError as problem:
+            if "try again" not in str(problem) and "goes on" not in str(problem):
+                problems.append(problem)
+        except BaseException as problem:
+            problems.append(problem)
+
+    threads = [threading.Thread(target=read) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    session.run()
+    run = session.finish()
+    stop.set()
+    for thread in threads:
+        thread.join()
+    assert not problems
+    assert run.status == "done" and len(run.frames) == 101
+
+
+def test_ctrl_c_within_a_message_ends_the_run(puck, tmp_path, caplog):
+    """A handler of messages is Python, too, where the interruption may fall."""
+    class Interrupted(logging.Handler):
+        def emit(self, record):
+            if "rotated" in record.getMessage():
+                signal.raise_signal(signal.SIGINT)
+                for _ in range(1000):  # it is raised between two instructions
+                    pass
+
+    handler = Interrupted()
+    logging.getLogger("ricochet").addHandler(handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            rc.run(puck, tmp_path / "out", {"time.end": 1.0})
+    finally:
+        logging.getLogger("ricochet").removeHandler(handler)
+    run = rc.open(tmp_path / "out")
+    assert run.status == "interrupted" and 4000 < run.summary["steps"] < 10000

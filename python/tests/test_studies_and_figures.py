@@ -54,7 +54,7 @@ def test_a_study_of_a_dictionary(tmp_path):
 def test_reports_go_where_paths_say(puck, tmp_path):
     run = rc.run(puck, tmp_path / "out", SHORT)
     for path in (tmp_path / "a.html", str(tmp_path / "b.html")):
-        assert run.report(path) == path
+        assert run.report(path) == str(path)
     assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
     with pytest.raises(rc.FileAccessError, match="none"):
         run.report(tmp_path / "none" / "a.html")
