@@ -31,8 +31,7 @@ void bind_case(py::module_& module) {
   py::class_<Case>(module, "Case")
       .def_readonly("path", &Case::path)
       .def_readonly("title", &Case::title)
-      .def_readonly("values", &Case::values)
-      .def("where", [](const Case& input, const std::string& key) { return input.where(key).text(); });
+      .def_readonly("values", &Case::values);
   module.def(
       "read_case",
       [](const std::string& path, const std::vector<std::string>& changes) {

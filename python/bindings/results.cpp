@@ -145,7 +145,6 @@ void bind_run(py::module_& module) {
              const std::vector<double>& times = self.cast<const RunData&>().times_of(name);
              return view(times.data(), static_cast<Index>(times.size()), 0, self);
            })
-      .def_property_readonly("has_fields", [](const RunData& run) { return run.results != nullptr; })
       .def_property_readonly(
           "frame_times",
           [](const RunData& run) { return run.results != nullptr ? run.results->times() : std::vector<double>(); })

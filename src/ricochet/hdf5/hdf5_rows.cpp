@@ -10,8 +10,7 @@ namespace ricochet {
 Hdf5Rows::Hdf5Rows(const Hdf5Reader& file, const std::string& name)
     : file_(file),
       name_(name),
-      rows_(file.extents(name).first),
-      columns_(file.extents(name).second),
+      extents_(file.extents(name)),
       set_(H5Dopen2(file.file_, name.c_str(), H5P_DEFAULT), H5Dclose) {
   const Hdf5Handle type(set_ >= 0 ? H5Dget_type(set_) : -1, H5Tclose);
   const Hdf5Handle properties(set_ >= 0 ? H5Dget_create_plist(set_) : -1, H5Pclose);
@@ -26,16 +25,18 @@ Hdf5Rows::Hdf5Rows(const Hdf5Reader& file, const std::string& name)
 }
 
 std::size_t Hdf5Rows::entries(Index first, Index count) const {
-  if (first < 0 || count < 0 || first + count > rows_)
-    file_.fail(name_, fmt::format("has {} rows where {} are expected", rows_, first + count));
-  return static_cast<std::size_t>(count * std::max<Index>(columns_, 1));
+  const auto [rows, columns] = extents_;
+  if (first < 0 || count < 0 || first + count > rows)
+    file_.fail(name_, fmt::format("has {} rows where {} are expected", rows, first + count));
+  return static_cast<std::size_t>(count * std::max<Index>(columns, 1));
 }
 
 void Hdf5Rows::read(Index first, Index count, std::int64_t type, void* values) const {
   if (count == 0) return;
-  const int rank = columns_ > 0 ? 2 : 1;
+  const Index columns = extents_.second;
+  const int rank = columns > 0 ? 2 : 1;
   const hsize_t begin[2] = {static_cast<hsize_t>(first), 0};
-  const hsize_t size[2] = {static_cast<hsize_t>(count), static_cast<hsize_t>(columns_)};
+  const hsize_t size[2] = {static_cast<hsize_t>(count), static_cast<hsize_t>(columns)};
   const Hdf5Handle in_file(H5Dget_space(set_), H5Sclose);
   const Hdf5Handle in_memory(H5Screate_simple(rank, size, nullptr), H5Sclose);
   if (H5Sselect_hyperslab(in_file, H5S_SELECT_SET, begin, nullptr, size, nullptr) < 0 ||

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ricochet/hdf5/hdf5_file.hpp"
@@ -26,7 +27,7 @@ class Hdf5Rows {
 
   const Hdf5Reader& file_;
   std::string name_;
-  Index rows_, columns_;
+  std::pair<Index, Index> extents_;  ///< rows and columns (0: one dimension)
   Hdf5Handle set_;
 };
 

@@ -9,9 +9,6 @@ namespace ricochet {
 
 namespace {
 
-/// VTK's numbers of the cells of obstacles: lines and quadrilaterals.
-constexpr int vtk_line = 3, vtk_quadrilateral = 9;
-
 /// A field as VTK wants it: symmetric tensors have another order there.
 class VtkValues {
  public:
@@ -112,11 +109,12 @@ class VtkHdfOutput : public FrameOutput {
   }
   [[nodiscard]] FileOfFrames file_of_surfaces() const {
     const int corners = obstacles_.corners();
-    FileOfFrames file{"obstacles.vtkhdf",
-                      ".obstacles",
-                      vtkhdf_cell_datasets(obstacles_.point_count(), obstacles_.cells(),
-                                           corners == 2 ? vtk_line : vtk_quadrilateral, corners),
-                      {{"Points", false, obstacles_.point_count(), 3}}};
+    const CellShape shape = corners == 2 ? CellShape::interval : CellShape::quadrilateral;
+    FileOfFrames file{
+        "obstacles.vtkhdf",
+        ".obstacles",
+        vtkhdf_cell_datasets(obstacles_.point_count(), obstacles_.cells(), vtk_cell(shape, 1).vtk_number, corners),
+        {{"Points", false, obstacles_.point_count(), 3}}};
     const std::vector<int>& numbers = obstacles_.numbers();
     file.fixed.push_back(
         {"/VTKHDF/CellData/obstacle", static_cast<Index>(numbers.size()), 0, {}, {numbers.begin(), numbers.end()}});
