@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "ricochet/base/node_order.hpp"
 #include "ricochet/base/parallel.hpp"
@@ -42,25 +43,13 @@ NodeMatrix::NodeMatrix(const SparseMatrix& matrix, int d) : dimension_(d) {
   read_values(matrix);
 }
 
-/// Calls enter(node of the row, its first block, the group with its numbers of blocks) for the rows of these parts.
-template <class Enter>
-void NodeMatrix::visit_rows(Index first_part, Index end_part, const Enter& enter) const {
-  const auto group_of = [&](Index part) { return pattern_.part_groups[static_cast<std::size_t>(part)]; };
-  for (Index g = group_of(first_part); g < group_of(end_part); ++g) {
-    const RowGroup& group = pattern_.groups[static_cast<std::size_t>(g)];
-    Index block = group.first_block;
-    for (Index row = group.first_row; row < group.end_row(); ++row, block += group.blocks_per_row())
-      enter(pattern_.node[static_cast<std::size_t>(row)], block, group);
-  }
-}
-
 void NodeMatrix::read_values(const SparseMatrix& matrix) {
   const int d = dimension_;
   // The kernels read one number beyond a block.
   values_.assign(pattern_.column.size() * static_cast<std::size_t>(stride_) + 1, 0.0);
   const int* const columns = pattern_.column.data();
   parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
-    visit_rows(first, last, [&](int node, Index first_block, const RowGroup& group) {
+    pattern_.visit_rows(first, last, [&](int node, Index first_block, const RowGroup& group) {
       const int* begin = columns + first_block;
       const int* middle = begin + group.two_sided;
       const int* end = middle + group.one_sided;
@@ -89,21 +78,11 @@ std::size_t NodeMatrix::bytes() const {
   return sizeof(double) * values_.size() + pattern_.bytes();
 }
 
-NodeRows NodeMatrix::rows_of(Index part) const {
-  const Index* const groups = pattern_.part_groups.data() + part;
-  return {pattern_.part_begins[static_cast<std::size_t>(part)],
-          pattern_.part_begins[static_cast<std::size_t>(part) + 1],
-          {pattern_.groups.data() + groups[0], pattern_.groups.data() + groups[1]},
-          pattern_.node.data(),
-          pattern_.column.data(),
-          values_.data()};
-}
-
 void NodeMatrix::multiply(const Vector& x, Vector& y) const {
   y.resize(size());
   parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
-      multiply_rows(rows_of(part), dimension_, is_scalar(), x.data(), y.data());
+      multiply_rows(part_rows(pattern_, part, values_.data()), dimension_, is_scalar(), x.data(), y.data());
     }
   });
 }
@@ -112,7 +91,8 @@ double NodeMatrix::form(const Vector& x) const {
   std::array<double, most_node_parts> sums{};
   parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
     for (Index part = first; part < last; ++part) {
-      sums[static_cast<std::size_t>(part)] = form_rows(rows_of(part), dimension_, is_scalar(), x.data());
+      sums[static_cast<std::size_t>(part)] =
+          form_rows(part_rows(pattern_, part, values_.data()), dimension_, is_scalar(), x.data());
     }
   });
   double total = 0.0;
@@ -123,7 +103,7 @@ double NodeMatrix::form(const Vector& x) const {
 /// Calls enter(node of the row, node of the column, its numbers) for every block that is stored.
 template <class Enter>
 void NodeMatrix::visit_blocks(const Enter& enter) const {
-  visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
+  pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
     for (Index k = first_block; k < first_block + group.blocks_per_row(); ++k)
       enter(node, pattern_.column[static_cast<std::size_t>(k)], values_.data() + k * stride_);
   });
@@ -151,22 +131,33 @@ bool NodeMatrix::is_diagonal() const {
 }
 
 SparseMatrix NodeMatrix::whole() const {
+  std::vector<Index> all(pattern_.node.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return principal(all);
+}
+
+SparseMatrix NodeMatrix::principal(const std::vector<Index>& taken) const {
   const int d = dimension_;
-  const Index nodes = size() / d;
+  std::vector<int> number(pattern_.node.size(), -1);
+  for (std::size_t i = 0; i < taken.size(); ++i) number[static_cast<std::size_t>(taken[i])] = static_cast<int>(i);
+  const auto nodes = static_cast<Index>(taken.size());
   struct Place {
     int node;
     Index block;
     bool transposed;
   };
   // Blocks per row, both sides of the diagonal.
-  std::vector<Index> begins(static_cast<std::size_t>(nodes) + 1, 0);
+  std::vector<Index> begins(taken.size() + 1, 0);
   const auto each_block = [&](const auto& enter) {
-    visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
+    pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
+      const int row = number[static_cast<std::size_t>(node)];
+      if (row < 0) return;
       for (Index k = 0; k < group.blocks_per_row(); ++k) {
         const Index block = first_block + k;
-        const int other = pattern_.column[static_cast<std::size_t>(block)];
-        enter(node, Place{other, block, false});
-        if (k < group.two_sided) enter(other, Place{node, block, true});
+        const int other = number[static_cast<std::size_t>(pattern_.column[static_cast<std::size_t>(block)])];
+        if (other < 0) continue;
+        enter(row, Place{other, block, false});
+        if (k < group.two_sided) enter(other, Place{row, block, true});
       }
     });
   };
@@ -180,11 +171,11 @@ SparseMatrix NodeMatrix::whole() const {
     });
   }
   const Index per_block = is_scalar() ? 1 : d;  // entries of a block in one column of the matrix
-  SparseMatrix result(size(), size());
+  SparseMatrix result(nodes * d, nodes * d);
   const Index entries = begins.back() * d * per_block;
   result.resizeNonZeros(entries);
   int* outer = result.outerIndexPtr();
-  outer[size()] = static_cast<int>(entries);
+  outer[nodes * d] = static_cast<int>(entries);
   parallel_ranges(nodes, [&](Index first, Index last) {
     for (Index node = first; node < last; ++node) {
       const auto begin = places.begin() + begins[static_cast<std::size_t>(node)];

@@ -8,8 +8,6 @@
 /// @file Products with a symmetric matrix on the dofs of nodes, at the price of reading about half of it once.
 namespace ricochet {
 
-struct NodeRows;
-
 /// A symmetric matrix A with d dofs per node (dof of component k at node i: i·d + k), stored in blocks of d × d with
 /// one index each, or, where A = m ⊗ I, in single numbers m that act on d components at once.
 ///
@@ -28,8 +26,12 @@ class NodeMatrix {
   NodeMatrix(const SparseMatrix& matrix, int d);
 
   [[nodiscard]] Index size() const { return static_cast<Index>(pattern_.node.size()) * dimension_; }
+  [[nodiscard]] int dimension() const { return dimension_; }
   /// True where the matrix is m ⊗ I.
   [[nodiscard]] bool is_scalar() const { return stride_ == 1; }
+  /// What is stored: the blocks, column by column, in the order of the pattern, and one number more.
+  [[nodiscard]] const NodePattern& pattern() const { return pattern_; }
+  [[nodiscard]] const std::vector<double>& values() const { return values_; }
   [[nodiscard]] std::size_t bytes() const;
 
   /// y = A x. `y` is another vector; it is made of the right size.
@@ -42,11 +44,10 @@ class NodeMatrix {
   [[nodiscard]] bool is_diagonal() const;
   /// The matrix as it was given: whole, in compressed columns.
   [[nodiscard]] SparseMatrix whole() const;
+  /// Its rows and columns of these nodes, ascending, in compressed columns.
+  [[nodiscard]] SparseMatrix principal(const std::vector<Index>& nodes) const;
 
  private:
-  [[nodiscard]] NodeRows rows_of(Index part) const;
-  template <class Enter>
-  void visit_rows(Index first_part, Index end_part, const Enter& enter) const;
   template <class Enter>
   void visit_blocks(const Enter& enter) const;
   void read_values(const SparseMatrix& matrix);

@@ -30,6 +30,17 @@ struct NodePattern {
 
   [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
   [[nodiscard]] std::size_t bytes() const;
+  /// Calls enter(node of the row, its first block, the group with its numbers of blocks) for the rows of these parts.
+  template <class Enter>
+  void visit_rows(Index first_part, Index end_part, const Enter& enter) const {
+    for (Index g = part_groups[static_cast<std::size_t>(first_part)];
+         g < part_groups[static_cast<std::size_t>(end_part)]; ++g) {
+      const RowGroup& group = groups[static_cast<std::size_t>(g)];
+      Index block = group.first_block;
+      for (Index row = group.first_row; row < group.end_row(); ++row, block += group.blocks_per_row())
+        enter(node[static_cast<std::size_t>(row)], block, group);
+    }
+  }
 };
 
 /// Of a symmetric matrix with d dofs per node, stored whole and compressed. Where `alike`, it is m ⊗ I and only the

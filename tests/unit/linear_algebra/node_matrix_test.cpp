@@ -8,6 +8,7 @@
 #include "ricochet/base/node_order.hpp"
 #include "ricochet/base/parallel.hpp"
 #include "ricochet/fem/assembly.hpp"
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "support/box_mesh.hpp"
 
 namespace ricochet {
@@ -67,6 +68,27 @@ TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
         ASSERT_EQ(whole.innerIndexPtr()[k], given->innerIndexPtr()[k]);
         ASSERT_EQ(whole.valuePtr()[k], given->valuePtr()[k]);
       }
+    }
+  }
+}
+
+TEST(NodeMatrix, GivesTheRowsAndColumnsOfNodes) {
+  for (const int d : {2, 3}) {
+    const auto test = body_of(d);
+    std::vector<Index> nodes;
+    std::vector<int> number(static_cast<std::size_t>(d * test->space.node_count()), -1);
+    for (Index node = 7; node < test->space.node_count(); node += 1 + node % 3) {
+      for (int k = 0; k < d; ++k)
+        number[static_cast<std::size_t>(node * d + k)] = static_cast<int>(nodes.size()) * d + k;
+      nodes.push_back(node);
+    }
+    const auto size = static_cast<Index>(nodes.size()) * d;
+    for (const SparseMatrix& whole : {stiffness_of(*test), mass_of(*test)}) {
+      const SparseMatrix expected = extract(whole, number, size, number, size);
+      const SparseMatrix found = NodeMatrix(whole, d).principal(nodes);
+      ASSERT_GT(expected.nonZeros(), size);
+      EXPECT_EQ(found.nonZeros(), expected.nonZeros());
+      EXPECT_EQ(SparseMatrix(found - expected).norm(), 0.0);
     }
   }
 }

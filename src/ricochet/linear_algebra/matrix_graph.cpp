@@ -1,0 +1,53 @@
+#include "ricochet/linear_algebra/matrix_graph.hpp"
+
+#include <algorithm>
+#include <unordered_set>
+
+namespace ricochet {
+
+MatrixGraph::MatrixGraph(const SparseMatrix& matrix, int d) {
+  const Index nodes = matrix.cols() / d;
+  begin_.reserve(static_cast<std::size_t>(nodes) + 1);
+  neighbour_.reserve(static_cast<std::size_t>(matrix.nonZeros() / (d * d) + nodes));
+  for (Index node = 0; node < nodes; ++node) {
+    for (int a = 0; a < d; ++a) {
+      int last = -1;
+      for (SparseMatrix::InnerIterator entry(matrix, node * d + a); entry; ++entry) {
+        const int other = static_cast<int>(entry.row()) / d;
+        if (other != last) neighbour_.push_back(other);
+        last = other;
+      }
+    }
+    const auto first = neighbour_.begin() + begin_.back();
+    std::sort(first, neighbour_.end());
+    neighbour_.erase(std::unique(first, neighbour_.end()), neighbour_.end());
+    begin_.push_back(static_cast<Index>(neighbour_.size()));
+  }
+}
+
+std::vector<Index> NodeLayers::ascending() const {
+  std::vector<Index> result = nodes;
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+NodeLayers layers_around(const MatrixGraph& graph, const std::vector<Index>& first, int layers) {
+  NodeLayers result;
+  std::unordered_set<Index> reached;
+  const auto reach = [&](Index node, int layer) {
+    if (!reached.insert(node).second) return;
+    result.nodes.push_back(node);
+    result.layer.push_back(layer);
+  };
+  for (const Index node : first) reach(node, 0);
+  std::size_t begin = 0;
+  for (int layer = 1; layer <= layers; ++layer) {
+    const std::size_t end = result.nodes.size();
+    for (; begin < end; ++begin) {
+      for (const int other : graph.neighbours(result.nodes[begin])) reach(other, layer);
+    }
+  }
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+/// @file Nodes and their neighbours, as a matrix sees them.
+namespace ricochet {
+
+class MatrixGraph {
+ public:
+  MatrixGraph() = default;
+  /// Of a matrix with a symmetric pattern and d rows per node: nodes that share an entry are neighbours.
+  MatrixGraph(const SparseMatrix& matrix, int d);
+
+  [[nodiscard]] Index size() const { return static_cast<Index>(begin_.size()) - 1; }
+  /// Ascending; the node itself is among them.
+  [[nodiscard]] std::span<const int> neighbours(Index node) const {
+    const auto at = static_cast<std::size_t>(node);
+    return {neighbour_.data() + begin_[at], neighbour_.data() + begin_[at + 1]};
+  }
+
+ private:
+  std::vector<Index> begin_{0};
+  std::vector<int> neighbour_;
+};
+
+/// Nodes around others, with the number of steps to the nearest of these.
+struct NodeLayers {
+  std::vector<Index> nodes;  ///< the first ones come first, then layer after layer
+  std::vector<int> layer;    ///< of each of them
+  [[nodiscard]] std::vector<Index> ascending() const;
+};
+/// The first nodes may be given more than once.
+[[nodiscard]] NodeLayers layers_around(const MatrixGraph& graph, const std::vector<Index>& first, int layers);
+
+}  // namespace ricochet

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/linear_algebra/conjugate_gradients.hpp"
+#include "ricochet/linear_algebra/node_matrix.hpp"
+
+/// @file Conjugate gradients in single precision, for the inner iterations of a solve in double precision.
+namespace ricochet {
+
+/// On Â = L⁻¹ A L⁻ᵀ with D = L Lᵀ, the d × d diagonal blocks of A: conjugate gradients with D as preconditioner, which
+/// has gone into the matrix. An iteration reads two fifths of what one in double precision does. What is found is good
+/// to a few digits; a caller that takes its residual in double precision and asks again gets the others.
+class SingleGradients {
+ public:
+  /// Of a matrix in blocks, which is referred to; `solved` per dof: rows and columns of the others are left out.
+  SingleGradients(const NodeMatrix& matrix, const std::vector<char>& solved);
+
+  /// Adds to x an approximation of A⁻¹ r, after iterations that take √(rᵀD⁻¹r) down to this part of it, as they see it
+  /// themselves.
+  ConjugateGradients::Result solve(const Vector& residual, double reduction, int iteration_limit, Vector& x);
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  using Numbers = Eigen::VectorXf;
+
+  [[nodiscard]] double multiply();
+  double scale(const Vector& residual);
+  void add_to(Vector& x, double factor) const;
+
+  const NodeMatrix& matrix_;
+  std::vector<float> values_;          ///< Â, in the pattern of the matrix
+  std::vector<float> inverse_factor_;  ///< L⁻¹ per node, column by column
+  Numbers x_, residual_, direction_, image_;
+};
+
+}  // namespace ricochet
