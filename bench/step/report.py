@@ -153,6 +153,23 @@ def thread_table(records):
     return table(["", "method", "1 thread, ms per step", "2 threads, ms per step", "gain"], rows)
 
 
+def iterative_table(records):
+    rows = []
+    one = {tuple(r["body"]): r for r in records if r["threads"] == 1}
+    for record in records:
+        contact = [(force, step) for force, step in zip(record["force"], record["steps_ms"]) if force > 0.0]
+        deep = sorted(contact, reverse=True)[:10]
+        step = statistics.median(step for _, step in contact)
+        set_up = record["read_s"] + record["assembly_s"] + record["start_s"]
+        before = statistics.median(step for force, step in zip(one[tuple(record["body"])]["force"], one[tuple(record["body"])]["steps_ms"])
+                                   if force > 0.0)
+        rows.append([str(record["dofs"]), f"{141 * 1e-3 / record['body'][2]:.1f}", str(record["threads"]), f"{step:.0f}",
+                     f"{statistics.median(step for _, step in deep):.0f}", f"{max(step for _, step in contact):.0f}",
+                     str(last_phase(record)["active"]), f"{record['peak_mb']:.0f}", f"{set_up:.0f}", f"{before / step:.2f}"])
+    return table(["dofs", "cells crossed", "threads", "step in contact, ms (median)", "deep", "the slowest (zones are made)", "points that press",
+                  "peak, MB", "set-up, s", "gain"], rows)
+
+
 def factorization_table(records):
     rows = []
     for record in records:
@@ -226,6 +243,8 @@ def report(everything, docs):
         plot_scaling(everything["scaling"], docs / "figures" / "step-scaling.png")
     if "threads" in everything:
         parts["threads"] = thread_table(everything["threads"])
+    if "iterative" in everything:
+        parts["iterative"] = iterative_table(everything["iterative"])
     if "factor" in everything:
         parts["factorization"], parts["solves"] = factorization_table(everything["factor"]), solve_table(everything["factor"])
     write_parts(docs / "performance.md", parts)

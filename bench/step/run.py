@@ -30,6 +30,9 @@ PEER_BODIES = [("disc", 2, 0.0202), ("disc", 2, 0.0101), ("ball", 3, 0.101)]
 SCALING_BODIES = ([("disc", 2, size) for size in (0.09, 0.05, 0.0275, 0.0155, 0.0086, 0.0048, 0.0027)]
                   + [("ball", 3, size) for size in (0.25, 0.165, 0.107, 0.072, 0.0475, 0.032, 0.0212)])
 SCALING_STEPS = 112
+# About 287,000 and 976,000 dofs.
+ITERATIVE_BODIES = [("ball", 3, 0.0325), ("ball", 3, 0.0213)]
+ITERATIVE_STEPS = 70  # from just above the floor to past the largest force
 FACTOR_BODIES = RATIO_BODIES[:4] + [("ball", 3, 0.0648), ("ball", 3, 0.0475)]  # the ball of 41,000 dofs besides
 
 
@@ -130,6 +133,12 @@ def measure_threads(arguments, directory):
             for body in RATIO_BODIES for method in ("direct", "iterative") if method == "direct" or body[1] == 3 for threads in (1, 2)]
 
 
+def measure_iterative(arguments, directory):
+    return [dict(ours(arguments, case(directory, body, friction=0.3, method="iterative", down=0.098), "--alone", "--forces",
+                      "--steps", ITERATIVE_STEPS, "--threads", threads), body=body)
+            for body in ITERATIVE_BODIES for threads in (1, 2)]
+
+
 def measure_factor(arguments, directory):
     """Factorization and solves: ours on one and two threads, CHOLMOD's."""
     return [dict(output_of([str(arguments.build / "ricochet_factor_bench"), str(case(directory, body)), "2"]), body=body) for body in FACTOR_BODIES]
@@ -146,7 +155,7 @@ def measure_explicit(arguments, directory):
     return records
 
 
-PARTS = {"ratios": measure_ratios, "pairs": measure_pairs, "pairing": measure_pairing, "explicit": measure_explicit, "peer": measure_peer, "scaling": measure_scaling, "threads": measure_threads, "factor": measure_factor}
+PARTS = {"ratios": measure_ratios, "pairs": measure_pairs, "pairing": measure_pairing, "explicit": measure_explicit, "peer": measure_peer, "scaling": measure_scaling, "threads": measure_threads, "iterative": measure_iterative, "factor": measure_factor}
 
 
 def main():

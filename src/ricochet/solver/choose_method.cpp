@@ -7,6 +7,7 @@
 
 #include "ricochet/base/memory.hpp"
 #include "ricochet/linear_algebra/graph_components.hpp"
+#include "ricochet/solver/stage_product.hpp"
 #include "ricochet/solver/step_estimate.hpp"
 
 namespace ricochet {
@@ -17,10 +18,14 @@ namespace {
 constexpr double memory_part = 0.5;
 /// A factorization of less time is not worth a thought: solves with a factor are exact to rounding.
 constexpr double short_factorization = 10.0;
-/// Where nobody knows how many solves follow: some ten minutes of one core.
-constexpr double most_operations = 2e13;
-/// Vectors that an iteration reads or writes besides what the product does.
+/// Where nobody knows how many solves follow.
+constexpr double many_solves = 1000.0;
+/// Vectors that an iteration reads or writes besides what the product does, in single precision, and with a mass apart
+/// in double.
+constexpr double single_vectors_per_iteration = 13.0;
 constexpr double vectors_per_iteration = 12.0;
+/// Products in double precision of a stage whose iterations are in single precision: two for each of five rounds.
+constexpr double double_products = 10.0;
 
 /// M 1, component by component: also of a mass that acts on components alike.
 Vector row_sums(const NodeMatrix& mass) {
@@ -112,8 +117,14 @@ IterationEstimate estimate_iterations(const SemidiscreteProblem& problem, const 
   const double blocks = 0.5 * (static_cast<double>(stiffness.nonZeros()) / (d * d) + nodes);
   IterationEstimate result;
   result.iterations = 0.5 * std::sqrt(condition) * std::log(2.0 / tolerance);
-  result.bytes = blocks * (8.0 * d * d + 4.0) + static_cast<double>(problem.mass.bytes()) +
-                 8.0 * nodes * d * (d + vectors_per_iteration);
+  const double product = blocks * (8.0 * d * d + 4.0);
+  // Of a mass that couples many more nodes than K (stage_product.hpp) iterations are in double precision.
+  if (static_cast<double>(problem.mass.pattern().column.size()) > most_growth_by_mass * blocks) {
+    result.bytes = product + static_cast<double>(problem.mass.bytes()) + 8.0 * nodes * d * (d + vectors_per_iteration);
+  } else {
+    result.bytes = blocks * (4.0 * d * d + 4.0) + 4.0 * nodes * d * single_vectors_per_iteration +
+                   double_products * product / result.iterations;
+  }
   return result;
 }
 
@@ -144,13 +155,9 @@ ChosenMethod choose_method(const SparseCholesky::Prediction& predicted, const Op
     chosen.reason = "a factor is made within seconds";
   } else if (coefficients.mass == 0.0) {
     chosen.reason = "there is no inertia, without which iterations converge badly";
-  } else if (options.solves > 0) {
-    compare(predicted, static_cast<double>(options.solves), iterations(), chosen);
   } else {
-    const bool direct = predicted.operations <= most_operations;
-    chosen.method = direct ? SolverMethod::direct : SolverMethod::iterative;
-    chosen.reason = fmt::format("a factor takes {} to make, by estimate, for a number of solves that nobody knows",
-                                seconds_text(predicted.operations / estimated_operations_per_second));
+    compare(predicted, options.solves > 0 ? static_cast<double>(options.solves) : many_solves, iterations(), chosen);
+    if (options.solves == 0) chosen.reason += ", for a number of solves that nobody knows";
   }
   return chosen;
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "ricochet/solver/factored_stage.hpp"
+#include "ricochet/solver/stage_product.hpp"
 
 /// @file The part of a body near its contact, solved directly.
 ///
@@ -15,14 +16,21 @@ namespace ricochet {
 
 class ContactZone {
  public:
-  /// On these nodes, for these contact points; `solved` tells per dof whether the stage solves for it. Keeps a
-  /// reference to the problem only.
+  struct Extent {
+    std::vector<Index> nodes;       ///< ascending
+    std::vector<Index> own_nodes;   ///< those that this zone moves, where there are others
+    std::vector<Index> points;      ///< whose conditions hold in the zone
+    std::vector<Index> own_points;  ///< those whose reactions are kept
+  };
+  /// `solved` tells per dof whether the stage solves for it. Keeps a reference to the problem only.
   ContactZone(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-              const std::vector<char>& solved, const std::vector<Index>& nodes, const std::vector<Index>& points,
-              bool all_candidates, const Vector& displacement = {}, FactoredStage* layer = nullptr);
+              const std::vector<char>& solved, const Extent& extent, const StageProduct& product, bool all_candidates,
+              FactoredStage* layer);
 
-  /// With the residual b − A x of the whole body, reactions left out: x_P and the reactions.
-  void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution);
+  /// `stage` is one on the correction c; what is eligible in it is chosen here. `correction`, per dof of the problem:
+  /// work space, zero outside of the zone. x moves, and `solution` gets the reactions, where they are the zone's own.
+  void solve(Stage& stage, const std::vector<char>& eligible, const Vector& residual, Vector& correction,
+             StageSolution& local, Vector& x, StageSolution& solution);
 
   /// What the contact conditions leave for later stages.
   void save(Snapshot& snapshot, const std::string& name) const { zone_->save(snapshot, name); }
@@ -33,12 +41,10 @@ class ContactZone {
   [[nodiscard]] std::size_t factor_entries() const { return zone_->factor_entries(); }
 
  private:
-  void state_locally(const Stage& stage, const Vector& x);
-
   std::vector<char> has_;  ///< per contact point
+  std::vector<Index> own_points_;
+  std::vector<int> own_dofs_;
   std::unique_ptr<FactoredStage> zone_;
-  Stage stage_;                        ///< on the correction c, of the points of the zone
-  Vector correction_, motion_, slip_;  ///< c, and G x and B_T x of the start
 };
 
 }  // namespace ricochet

@@ -5,7 +5,8 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/block_jacobi.hpp"
-#include "ricochet/solver/contact_zone.hpp"
+#include "ricochet/linear_algebra/single_gradients.hpp"
+#include "ricochet/solver/contact_zones.hpp"
 #include "ricochet/solver/stage_operator.hpp"
 #include "ricochet/solver/stage_product.hpp"
 #include "ricochet/solver/stage_solver.hpp"
@@ -14,16 +15,17 @@ namespace ricochet {
 
 namespace {
 
-/// Layers of nodes around the contact points of a zone, and around those that asked for it.
-constexpr int zone_layers = 6;
-constexpr int reserve_layers = 3;
 /// A round of conjugate gradients goes on to this part of what it began with: the zone has its say before the end.
-constexpr double round_reduction = 1e-3;
+constexpr double round_reduction = 1e-2;
 constexpr int round_limit = 60;
 constexpr int iteration_limit = 5000;
+/// What iterations in single precision are asked for at once; their roundings are a hundredth of it.
+constexpr double single_reduction = 1e-5;
+/// Iterations in single precision have gone astray where they leave so many times what they say.
+constexpr double astray = 10.0;
 
-/// The stages of one operator without a factor of it: conjugate gradients on the whole body and the contact zone in
-/// turn. The zone comes last: contact and friction hold to rounding, and what is left over is a force of at most
+/// The stages of one operator without a factor of it: conjugate gradients on the whole body and the contact zones in
+/// turn. The zones come last: contact and friction hold to rounding, and what is left over is a force of at most
 /// `tolerance` times the forces of the step, in the energy norm as the preconditioner sees it.
 class IterativeStage final : public StageSolver {
  public:
@@ -33,49 +35,43 @@ class IterativeStage final : public StageSolver {
   void solve(const Stage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
   void show_contact() const override {
-    if (touches_) zone_->report();
+    if (touches_) zones_.report();
   }
-  void observe_contact(const ContactObserver& observer) override {
-    observer_ = observer;
-    if (zone_) zone_->observe(observer);
-  }
+  void observe_contact(const ContactObserver& observer) override { zones_.observe(observer); }
   void save(Snapshot& snapshot, const std::string& name) const override;
   void load(const Snapshot& snapshot, const std::string& name) override;
-  [[nodiscard]] double contact_seconds() const override {
-    return earlier_contact_seconds_ + (zone_ ? zone_->contact_seconds() : 0.0);
-  }
-  [[nodiscard]] std::size_t factor_entries() const override { return zone_ ? zone_->factor_entries() : 0; }
+  [[nodiscard]] double contact_seconds() const override { return zones_.contact_seconds(); }
+  [[nodiscard]] std::size_t factor_entries() const override { return zones_.factor_entries(); }
 
  private:
   void begin(const Stage& stage, StageSolution& solution);
-  void make_zone(const Stage& stage, const std::vector<Index>& points);
-  void make_zone_of(const std::vector<Index>& points, const std::vector<Index>& nodes);
-  [[nodiscard]] std::vector<Index> with_neighbours(const std::vector<Index>& nodes) const;
+  void make_zones(const Stage& stage, const std::vector<Index>& points);
   void find_residual(const Stage& stage);
   void add_reactions(const Stage& stage, const StageSolution& solution, Vector& force) const;
   void mask(Vector& values) const;
   [[nodiscard]] double forces(const Stage& stage, const StageSolution& solution);
-  void solve_linear(double target);
+  void solve_linear(double norm, double target);
+  void watch_single_precision(const Stage& stage, const StageSolution& solution);
   void end(const Stage& stage, StageSolution& solution);
 
   const SemidiscreteProblem& problem_;
   OperatorCoefficients coefficients_;
   StepSolverOptions options_;
-  FactoredStage* layer_stage_;           ///< of A_c; null: none
-  std::unique_ptr<ContactLayer> layer_;  ///< likewise
+  std::unique_ptr<ContactLayer> layer_;  ///< of A_c; null: none
   std::vector<char> solved_;             ///< per dof
   std::vector<int> unsolved_;            ///< dofs
   StageProduct product_;                 ///< with A
   std::unique_ptr<Preconditioner> preconditioner_;
   ConjugateGradients gradients_;
-  ContactCandidates near_;  ///< the points that the zone is made for
-  std::unique_ptr<ContactZone> zone_;
-  ContactObserver observer_;
+  std::unique_ptr<SingleGradients> single_;  ///< null where A is not stored in blocks
+  bool single_is_trusted_ = true;            ///< in this stage
+  double promised_ = 0.0;                    ///< the norm of the residual that they ended with
+  ContactCandidates near_;                   ///< the points that the zones are made for
+  ContactZones zones_;
   bool presses_at_start_ = false;  ///< points whose reactions at the start of the step are part of a mean
   bool touches_ = false;           ///< the last stage had a contact problem
-  double earlier_contact_seconds_ = 0.0;
-  Vector displacement_;          ///< of the tangent; empty: the undeformed body
-  Vector increment_, previous_;  ///< of this stage and the last one, for the guess
+  Vector displacement_;            ///< of the tangent; empty: the undeformed body
+  Vector increment_, previous_;    ///< of this stage and the last one, for the guess
   bool has_previous_ = false;
   Vector guess_, residual_, work_, motion_, prescribed_, supported_force_;
 };
@@ -85,8 +81,8 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
     : problem_(problem),
       coefficients_(coefficients),
       options_(options),
-      layer_stage_(layer),
-      near_(problem.contact.size(), *problem.ranks) {
+      near_(problem.contact.size(), *problem.ranks),
+      zones_(problem, coefficients, solved_, product_, options.all_points, layer) {
   if (layer != nullptr) layer_ = std::make_unique<ContactLayer>(problem, coefficients, *layer);
   const auto count = static_cast<std::size_t>(problem.dof_count());
   solved_.assign(count, 0);
@@ -99,14 +95,16 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
   previous_ = increment_;
 }
 
-/// The zone is made for the new operator when it is needed next.
+/// Zones are made for the new operator when they are needed next.
 void IterativeStage::refactorize(const Vector& displacement) {
   displacement_ = displacement;
   const SparseMatrix matrix = combine_operator(problem_, coefficients_, displacement);
+  single_.reset();
   product_ = StageProduct(problem_, coefficients_, matrix, displacement);
   preconditioner_ = make_block_jacobi(matrix, problem_.dimension, solved_);
-  if (zone_) earlier_contact_seconds_ += zone_->contact_seconds();
-  zone_.reset();
+  if (const NodeMatrix* blocks = product_.matrix(); blocks != nullptr && !blocks->is_scalar())
+    single_ = std::make_unique<SingleGradients>(*blocks, solved_);
+  zones_.clear();
   near_.clear();
 }
 
@@ -114,54 +112,28 @@ void IterativeStage::mask(Vector& values) const {
   for (const int dof : unsolved_) values[dof] = 0.0;
 }
 
-/// Points whose nodes are within some layers of those of the given ones come along, so that a contact that grows does
-/// not ask for another zone in every step.
-std::vector<Index> IterativeStage::with_neighbours(const std::vector<Index>& nodes) const {
-  std::vector<char> reached(static_cast<std::size_t>(problem_.nodes.cols()), 0);
-  for (const Index node : nodes) reached[static_cast<std::size_t>(node)] = 1;
-  std::vector<Index> result;
-  for (Index point = 0; point < problem_.contact.size(); ++point) {
-    bool inside = near_.number(point) >= 0;
-    problem_.contact.visit_nodes(
-        point, [&](Index node, double) { inside = inside || reached[static_cast<std::size_t>(node)] != 0; });
-    if (inside) result.push_back(point);
-  }
-  return result;
-}
-
-/// For these points and those near them, and those of the last zone unless it has become too large: a body that rolls
-/// leaves them behind.
-void IterativeStage::make_zone(const Stage& stage, const std::vector<Index>& wanted) {
+/// For these points and those near them, and those of the last zones unless they have become too many: a body that
+/// rolls leaves them behind.
+void IterativeStage::make_zones(const Stage& stage, const std::vector<Index>& wanted) {
   std::vector<Index> points = wanted;
   if (near_.are_too_many()) {
     const std::vector<Index> nearest = near_.nearest(stage);
     points.insert(points.end(), nearest.begin(), nearest.end());
     near_.clear();
   }
-  std::vector<Index> nodes, all;
-  {
-    // Layers of cells: an equivalent mass has neighbours farther away.
-    const SparseMatrix stiffness = problem_.internal_force->tangent();
-    all = with_neighbours(nodes_near(problem_, stiffness, points, reserve_layers));
-    nodes = nodes_near(problem_, stiffness, all, zone_layers);
-  }
-  make_zone_of(all, nodes);
-}
-
-void IterativeStage::make_zone_of(const std::vector<Index>& points, const std::vector<Index>& nodes) {
-  if (zone_) earlier_contact_seconds_ += zone_->contact_seconds();
-  zone_.reset();
+  points = zones_.with_neighbours(points);
+  points.insert(points.end(), near_.points().begin(), near_.points().end());
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
   near_.clear();
   near_.take_up(points);
   try {
-    zone_ = std::make_unique<ContactZone>(problem_, coefficients_, solved_, nodes, points, options_.all_points,
-                                          displacement_, layer_stage_);
+    zones_.make(points);
   } catch (const Error& problem) {
     // The tangent of a place that an iteration leads to is no fault of the case.
     if (problem.kind() != ErrorKind::invalid_input || displacement_.size() == 0) throw;
     throw Error(ErrorKind::not_converged, problem.what());
   }
-  zone_->observe(observer_);
 }
 
 void IterativeStage::save(Snapshot& snapshot, const std::string& name) const {
@@ -169,10 +141,10 @@ void IterativeStage::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".previous", previous_);
   snapshot.save(name + ".has_previous", has_previous_);
   near_.save_history(snapshot, name + ".near");
-  snapshot.save(name + ".has_zone", zone_ != nullptr);
-  if (zone_ == nullptr) return;
+  snapshot.save(name + ".has_zone", zones_.are_made());
+  if (!zones_.are_made()) return;
   snapshot.save(name + ".near.points", near_.points());
-  zone_->save(snapshot, name + ".zone");
+  zones_.save(snapshot, name + ".zones");
 }
 
 void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
@@ -181,8 +153,9 @@ void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
   has_previous_ = snapshot.flag(name + ".has_previous");
   if (snapshot.flag(name + ".has_zone")) {
     const std::vector<Index>& points = snapshot.integers(name + ".near.points", 0, problem_.contact.size() - 1);
-    make_zone_of(points, nodes_near(problem_, problem_.internal_force->tangent(), points, zone_layers));
-    zone_->load(snapshot, name + ".zone");
+    near_.clear();
+    near_.take_up(points);
+    zones_.load(snapshot, name + ".zones", points);
   }
   near_.load_history(snapshot, name + ".near");
 }
@@ -205,10 +178,10 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   presses_at_start_ = !pressing.empty();
   if (near_.some_may_touch(stage)) {
     if (const std::vector<Index> approaching = near_.approaching(stage); !approaching.empty())
-      make_zone(stage, approaching);
+      make_zones(stage, approaching);
   }
   const auto is_outside = [&](Index point) { return near_.number(point) < 0; };
-  if (std::any_of(pressing.begin(), pressing.end(), is_outside)) make_zone(stage, pressing);
+  if (std::any_of(pressing.begin(), pressing.end(), is_outside)) make_zones(stage, pressing);
 }
 
 /// b − A x, on the dofs that are solved for.
@@ -239,11 +212,20 @@ double IterativeStage::forces(const Stage& stage, const StageSolution& solution)
   return std::max(given, gradients_.norm(*preconditioner_, work_));
 }
 
-void IterativeStage::solve_linear(double target) {
+/// From a residual of this norm to one of `target`; of the first digits in single precision.
+void IterativeStage::solve_linear(double norm, double target) {
   const auto product = [&](const Vector& x, Vector& y) {
     product_.multiply(x, y);
     mask(y);
   };
+  if (single_ && single_is_trusted_) {
+    const auto result = single_->solve(residual_, std::max(target / norm, single_reduction), iteration_limit, guess_);
+    promised_ = result.residual;
+    if (result.converged) return;
+    single_is_trusted_ = false;
+    return;
+  }
+  promised_ = 0.0;
   const auto result = gradients_.solve(product, *preconditioner_, target, iteration_limit, residual_, guess_);
   if (result.converged) return;
   throw Error(ErrorKind::not_converged,
@@ -252,15 +234,27 @@ void IterativeStage::solve_linear(double target) {
                           result.iterations, result.residual / target));
 }
 
+/// Whether they have led where they said: `residual_` is b − A x, reactions left out.
+void IterativeStage::watch_single_precision(const Stage& stage, const StageSolution& solution) {
+  if (promised_ == 0.0) return;
+  work_ = residual_;
+  add_reactions(stage, solution, work_);
+  single_is_trusted_ = gradients_.norm(*preconditioner_, work_) <= astray * promised_;
+  promised_ = 0.0;
+}
+
 void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   begin(stage, solution);
+  single_is_trusted_ = true;
+  promised_ = 0.0;
   double target = 0.0;
   bool must_touch = false;  // points have penetrated where none was thought to touch
   for (int round = 0; round < round_limit; ++round) {
     find_residual(stage);
-    const bool touches = zone_ != nullptr && (must_touch || presses_at_start_ || near_.some_may_touch(stage));
+    watch_single_precision(stage, solution);
+    const bool touches = zones_.are_made() && (must_touch || presses_at_start_ || near_.some_may_touch(stage));
     if (touches) {
-      zone_->solve(stage, residual_, guess_, solution);
+      zones_.solve(stage, residual_, guess_, solution);
       find_residual(stage);
       add_reactions(stage, solution, residual_);
     }
@@ -276,18 +270,18 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
       }
       must_touch = true;
       if (std::any_of(penetrating.begin(), penetrating.end(), [&](Index p) { return near_.number(p) < 0; }))
-        make_zone(stage, penetrating);
+        make_zones(stage, penetrating);
       target = 0.0;
       continue;
     }
-    solve_linear(touches ? std::max(0.3 * target, round_reduction * norm) : 0.9 * target);
+    solve_linear(norm, touches ? std::max(0.3 * target, round_reduction * norm) : 0.9 * target);
   }
   throw Error(
       ErrorKind::not_converged,
       fmt::format("contact and conjugate gradients did not converge in {} rounds; the time step is long compared "
-                  "with the time in which a wave crosses {} cells: set solver.method = \"direct\" or take a "
-                  "smaller time.step",
-                  round_limit, zone_layers));
+                  "with the time in which a wave crosses a cell: set solver.method = \"direct\" or take a smaller "
+                  "time.step",
+                  round_limit));
 }
 
 void IterativeStage::end(const Stage& stage, StageSolution& solution) {

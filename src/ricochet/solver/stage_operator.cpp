@@ -35,32 +35,6 @@ SparseMatrix combine_operator(const SemidiscreteProblem& problem, const Operator
   return result;
 }
 
-std::vector<Index> nodes_near(const SemidiscreteProblem& problem, const SparseMatrix& matrix,
-                              const std::vector<Index>& points, int layers) {
-  std::vector<char> reached(static_cast<std::size_t>(problem.nodes.cols()), 0);
-  std::vector<Index> nodes;
-  const auto reach = [&](Index node) {
-    if (reached[static_cast<std::size_t>(node)] != 0) return;
-    reached[static_cast<std::size_t>(node)] = 1;
-    nodes.push_back(node);
-  };
-  for (const Index point : points) {
-    problem.contact.visit_nodes(point, [&](Index node, double) { reach(node); });
-  }
-  const Index d = problem.dimension;
-  std::size_t begin = 0;
-  for (int layer = 0; layer < layers; ++layer) {
-    const std::size_t end = nodes.size();
-    for (; begin < end; ++begin) {
-      for (Index dof = nodes[begin] * d; dof < (nodes[begin] + 1) * d; ++dof) {
-        for (SparseMatrix::InnerIterator entry(matrix, dof); entry; ++entry) reach(entry.row() / d);
-      }
-    }
-  }
-  std::sort(nodes.begin(), nodes.end());
-  return nodes;
-}
-
 std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs) {
   const auto solved_for = [&](Index dof) {
     if (problem.supports.contains(dof) || problem.is_tied_dof(dof)) return false;

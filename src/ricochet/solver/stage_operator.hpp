@@ -29,9 +29,4 @@ void prescribe(const SemidiscreteProblem& problem, const Stage& stage, Vector& i
 /// Numbers of the given dofs: per dof of the problem its place in the list, or −1.
 [[nodiscard]] std::vector<int> number_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs);
 
-/// The nodes that the traces of these contact points reach, and `layers` of neighbours by the entries of a matrix on
-/// the dofs. Ascending.
-[[nodiscard]] std::vector<Index> nodes_near(const SemidiscreteProblem& problem, const SparseMatrix& matrix,
-                                            const std::vector<Index>& points, int layers);
-
 }  // namespace ricochet

@@ -1,22 +1,16 @@
 #include "ricochet/solver/stage_product.hpp"
 
+#include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/stage_operator.hpp"
 
 namespace ricochet {
-
-namespace {
-
-/// A sum of K and M is worth it where it has hardly more entries than K.
-constexpr double most_growth = 1.3;
-
-}  // namespace
 
 StageProduct::StageProduct(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                            const SparseMatrix& matrix, const Vector& displacement) {
   const bool is_damped = coefficients.damping != 0.0 && problem.has_damping();
   if (coefficients.mass != 0.0 && coefficients.stiffness != 0.0 && !is_damped) {
     SparseMatrix stiffness = stage_stiffness(problem, coefficients, displacement);
-    if (static_cast<double>(matrix.nonZeros()) > most_growth * static_cast<double>(stiffness.nonZeros())) {
+    if (static_cast<double>(matrix.nonZeros()) > most_growth_by_mass * static_cast<double>(stiffness.nonZeros())) {
       stiffness *= coefficients.stiffness;
       matrix_ = NodeMatrix(stiffness, problem.dimension);
       mass_ = &problem.mass;
@@ -32,6 +26,19 @@ void StageProduct::multiply(const Vector& x, Vector& y) const {
   if (mass_ == nullptr) return;
   mass_->multiply(x, inertia_);
   y += mass_factor_ * inertia_;
+}
+
+SparseMatrix StageProduct::principal(const std::vector<Index>& nodes) const {
+  SparseMatrix result = matrix_.principal(nodes);
+  if (mass_ == nullptr) return result;
+  SparseMatrix inertia = mass_->principal(nodes);
+  inertia *= mass_factor_;
+  return add_sparse(result, inertia);
+}
+
+Vector StageProduct::diagonal() const {
+  if (mass_ == nullptr) return matrix_.diagonal();
+  return matrix_.diagonal() + mass_factor_ * mass_->diagonal();
 }
 
 }  // namespace ricochet

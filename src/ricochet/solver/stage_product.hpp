@@ -7,6 +7,9 @@
 /// @file Products with the matrix of a stage.
 namespace ricochet {
 
+/// Where A has more entries than so many times those of K, its mass is kept apart.
+inline constexpr double most_growth_by_mass = 1.3;
+
 /// A = αM + κK + ηC on all dofs. A mass that couples more nodes than the stiffness (an equivalent mass) is not added up
 /// with it: one number per pair of nodes is read for it then, and not d².
 class StageProduct {
@@ -18,6 +21,11 @@ class StageProduct {
 
   /// y = A x. Allocates on the first call only.
   void multiply(const Vector& x, Vector& y) const;
+  /// The rows and columns of these nodes, ascending, of A.
+  [[nodiscard]] SparseMatrix principal(const std::vector<Index>& nodes) const;
+  [[nodiscard]] Vector diagonal() const;
+  /// A, where it is stored as one matrix; else null.
+  [[nodiscard]] const NodeMatrix* matrix() const { return mass_ == nullptr ? &matrix_ : nullptr; }
 
  private:
   NodeMatrix matrix_;                 ///< A, or κK

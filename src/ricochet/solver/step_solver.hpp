@@ -26,7 +26,8 @@ struct StepSolverOptions {
   double memory = 0.0;
   /// All contact points take part in every contact problem, not only those that may touch. For comparisons.
   bool all_points = false;
-  /// Solves that are expected of each operator: what a factorization is worth. 0: nobody knows, and it counts as many.
+  /// Solves that are expected of each operator: what a factorization is worth. 0: nobody knows, and it counts as a
+  /// thousand.
   long solves = 0;
   /// What was chosen before for these operators, one by one: a run that goes on keeps it. Empty: chosen anew.
   std::vector<SolverMethod> chosen = {};

@@ -1,0 +1,211 @@
+#include "ricochet/solver/contact_zones.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "ricochet/solver/contact_clusters.hpp"
+#include "ricochet/solver/stage_operator.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Contact points of the smallest clusters that are tried: fewer are no work.
+constexpr std::size_t least_cluster = 256;
+/// Of nodes around the points that asked for zones.
+constexpr int reserve_layers = 3;
+/// What R does to the contact has decayed to a tenth behind so many cells that a wave crosses in a step.
+constexpr double layers_per_cell_crossed = 1.2;
+constexpr int least_layers = 2;
+/// Where a wave crosses more, rounds are cheaper than zones that grow with the cube of their layers.
+constexpr int most_layers = 12;
+
+/// Of the contact problems, which are dense: their entries. Where layers are many and points few, clusters have nearly
+/// the same points around them, and one zone is less.
+double dense_work(const std::vector<ContactZone::Extent>& zones) {
+  double sum = 0.0;
+  for (const ContactZone::Extent& zone : zones)
+    sum += static_cast<double>(zone.points.size()) * static_cast<double>(zone.points.size());
+  return sum;
+}
+
+}  // namespace
+
+double cells_crossed(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                     const StageProduct& product, const std::vector<Index>& nodes) {
+  if (coefficients.mass == 0.0) return std::numeric_limits<double>::infinity();
+  Vector inertia;
+  problem.mass.multiply(Vector::Ones(problem.dof_count()), inertia);
+  const Vector elastic = product.diagonal() - coefficients.mass * problem.mass.diagonal();
+  double stiff = 0.0, heavy = 0.0;
+  for (const Index node : nodes) {
+    for (Index dof = node * problem.dimension; dof < (node + 1) * problem.dimension; ++dof) {
+      if (!(inertia[dof] > 0.0)) continue;
+      stiff += elastic[dof];
+      heavy += coefficients.mass * inertia[dof];
+    }
+  }
+  return heavy > 0.0 ? std::sqrt(std::max(stiff, 0.0) / heavy) : std::numeric_limits<double>::infinity();
+}
+
+ContactZones::ContactZones(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                           const std::vector<char>& solved, const StageProduct& product, bool all_points,
+                           FactoredStage* layer)
+    : problem_(problem),
+      coefficients_(coefficients),
+      solved_(solved),
+      product_(product),
+      all_points_(all_points),
+      layer_(layer) {
+  correction_.setZero(problem.dof_count());
+}
+
+const MatrixGraph& ContactZones::graph() {
+  if (graph_.size() == 0) graph_ = MatrixGraph(problem_.internal_force->tangent(), problem_.dimension);
+  return graph_;
+}
+
+std::vector<Index> ContactZones::nodes_of(const std::vector<Index>& points) const {
+  std::vector<Index> nodes;
+  for (const Index point : points)
+    problem_.contact.visit_nodes(point, [&](Index node, double) { nodes.push_back(node); });
+  return nodes;
+}
+
+std::vector<Index> ContactZones::with_neighbours(const std::vector<Index>& points) {
+  std::vector<char> reached(static_cast<std::size_t>(problem_.nodes.cols()), 0);
+  for (const Index node : layers_around(graph(), nodes_of(points), reserve_layers).nodes)
+    reached[static_cast<std::size_t>(node)] = 1;
+  std::vector<Index> result;
+  for (Index point = 0; point < problem_.contact.size(); ++point) {
+    bool inside = false;
+    problem_.contact.visit_nodes(
+        point, [&](Index node, double) { inside = inside || reached[static_cast<std::size_t>(node)] != 0; });
+    if (inside) result.push_back(point);
+  }
+  return result;
+}
+
+void ContactZones::clear() {
+  earlier_contact_seconds_ = contact_seconds();
+  zones_.clear();
+}
+
+/// Clusters of at most so many points with the layers around them, as zones.
+std::vector<ContactZone::Extent> ContactZones::divide(const std::vector<Index>& points, std::size_t most) {
+  std::vector<ContactZone::Extent> zones;
+  struct Owner {
+    std::size_t zone;
+    int layer;
+  };
+  std::unordered_map<Index, Owner> owners;
+  for (std::vector<Index>& cluster : cluster_points(problem_, points, most)) {
+    const NodeLayers reached = layers_around(graph(), nodes_of(cluster), layers_);
+    for (std::size_t i = 0; i < reached.nodes.size(); ++i) {
+      Owner& owner = owners.try_emplace(reached.nodes[i], Owner{zones.size(), reached.layer[i]}).first->second;
+      if (reached.layer[i] < owner.layer) owner = {zones.size(), reached.layer[i]};
+    }
+    zones.push_back({.nodes = reached.ascending(), .own_nodes = {}, .points = {}, .own_points = std::move(cluster)});
+  }
+  for (std::size_t number = 0; number < zones.size(); ++number) {
+    ContactZone::Extent& zone = zones[number];
+    for (const Index node : zone.nodes) {
+      if (owners.at(node).zone == number) zone.own_nodes.push_back(node);
+    }
+    for (const Index point : points) {
+      bool inside = true;
+      problem_.contact.visit_nodes(point, [&](Index node, double) {
+        inside = inside && std::binary_search(zone.nodes.begin(), zone.nodes.end(), node);
+      });
+      if (inside) zone.points.push_back(point);
+    }
+  }
+  return zones;
+}
+
+void ContactZones::make(const std::vector<Index>& points) {
+  clear();
+  if (layers_ == 0) {
+    const std::vector<Index> near = layers_around(graph(), nodes_of(points), reserve_layers).nodes;
+    const double crossed = cells_crossed(problem_, coefficients_, product_, near);
+    layers_ = static_cast<int>(
+        std::clamp(std::ceil(layers_per_cell_crossed * crossed), 1.0 * least_layers, 1.0 * most_layers));
+  }
+  // A layer of the stage makes the motion of a contact node depend on all reactions near it.
+  std::vector<ContactZone::Extent> extents = divide(points, points.size());
+  if (layer_ == nullptr) {
+    for (std::size_t most = least_cluster; most < points.size(); most *= 2) {
+      std::vector<ContactZone::Extent> others = divide(points, most);
+      if (dense_work(others) < dense_work(extents)) extents = std::move(others);
+    }
+  }
+  for (const ContactZone::Extent& extent : extents) {
+    zones_.push_back(
+        std::make_unique<ContactZone>(problem_, coefficients_, solved_, extent, product_, all_points_, layer_));
+    zones_.back()->observe(observer_);
+  }
+}
+
+/// The stage on the correction: q and p at x instead of at δ = 0. All zones begin from the same residual.
+void ContactZones::solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
+  stage_ = stage;  // its right-hand side is not looked at; members that come later are not forgotten
+  stage_.rows_in_store.clear();
+  stage_.prescribed.setZero(stage.prescribed.size());
+  stage.rows->normal_motion(x, motion_);
+  stage_.gap_offset += stage.gap_factor * motion_;
+  if (stage.slip_offset.size() > 0) {
+    stage.rows->tangential_motion(x, slip_);
+    stage_.slip_offset += stage.slip_factor * slip_;
+  }
+  if (zones_.size() == 1) {
+    zones_.front()->solve(stage_, stage.eligible, residual, correction_, solution, x, solution);
+    return;
+  }
+  for (const auto& zone : zones_) {
+    solution_.iterations = 0;
+    solution_.clear_mean();
+    solution_.normal_reaction.setZero(solution.normal_reaction.size());
+    solution_.tangential_reaction.setZero(solution.tangential_reaction.size());
+    solution_.contact_status.assign(solution.contact_status.size(), ContactStatus::open);
+    zone->solve(stage_, stage.eligible, residual, correction_, solution_, x, solution);
+    solution.iterations += solution_.iterations;
+  }
+}
+
+void ContactZones::save(Snapshot& snapshot, const std::string& name) const {
+  snapshot.save(name + ".layers", layers_);
+  for (std::size_t i = 0; i < zones_.size(); ++i) zones_[i]->save(snapshot, fmt::format("{}.{}", name, i));
+}
+
+void ContactZones::load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) {
+  layers_ = static_cast<int>(snapshot.integers(name + ".layers", least_layers, most_layers).at(0));
+  make(points);
+  for (std::size_t i = 0; i < zones_.size(); ++i) zones_[i]->load(snapshot, fmt::format("{}.{}", name, i));
+}
+
+void ContactZones::report() const {
+  for (const auto& zone : zones_) zone->report();
+}
+
+void ContactZones::observe(const ContactObserver& observer) {
+  observer_ = observer;
+  for (const auto& zone : zones_) zone->observe(observer);
+}
+
+double ContactZones::contact_seconds() const {
+  double sum = earlier_contact_seconds_;
+  for (const auto& zone : zones_) sum += zone->contact_seconds();
+  return sum;
+}
+
+std::size_t ContactZones::factor_entries() const {
+  std::size_t sum = 0;
+  for (const auto& zone : zones_) sum += zone->factor_entries();
+  return sum;
+}
+
+}  // namespace ricochet
