@@ -1,9 +1,5 @@
 #pragma once
 
-#if defined(__SSE2__)
-#include <xmmintrin.h>
-#endif
-
 /// @file Numbers too small for their exponent.
 namespace ricochet {
 
@@ -11,12 +7,12 @@ namespace ricochet {
 /// them, and in single precision what decays across a body reaches them.
 class FlushDenormals {
  public:
-#if defined(__SSE2__)
-  FlushDenormals() : before_(_mm_getcsr()) {
-    _mm_setcsr(before_ | flush_results | zero_operands);
+#if defined(__SSE__)
+  FlushDenormals() : before_(__builtin_ia32_stmxcsr()) {
+    __builtin_ia32_ldmxcsr(before_ | flush_results | zero_operands);
   }
   ~FlushDenormals() {
-    _mm_setcsr(before_);
+    __builtin_ia32_ldmxcsr(before_);
   }
 #else
   FlushDenormals() = default;
@@ -25,7 +21,7 @@ class FlushDenormals {
   FlushDenormals(const FlushDenormals&) = delete;
   FlushDenormals& operator=(const FlushDenormals&) = delete;
 
-#if defined(__SSE2__)
+#if defined(__SSE__)
  private:
   static constexpr unsigned flush_results = 0x8000, zero_operands = 0x0040;
   unsigned before_;
