@@ -7,7 +7,7 @@ install(TARGETS ricochet_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COM
 # --- for programs of others ------------------------------------------------------------------------------------------
 set(ricochet_cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/ricochet)
 install(DIRECTORY src/ricochet/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ricochet COMPONENT development
-  FILES_MATCHING PATTERN "*.hpp")
+  FILES_MATCHING PATTERN "*.hpp" PATTERN "distributed" EXCLUDE)
 install(FILES ${CMAKE_BINARY_DIR}/generated/ricochet/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ricochet
   COMPONENT development)
 install(EXPORT ricochetTargets NAMESPACE ricochet:: DESTINATION ${ricochet_cmake_folder} COMPONENT development)

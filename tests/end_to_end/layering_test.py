@@ -8,7 +8,7 @@ import unittest
 from harness import SOURCE
 
 LAYERS = ["base", "linear_algebra", "hdf5", "mesh", "fem", "contact", "mass", "problem", "scheme", "solver", "fclib",
-          "simulation", "io", "case", "model", "run", "study", "report"]
+          "simulation", "io", "case", "model", "run", "study", "report", "distributed"]
 # The library ricochet_contact: solvers of the contact problem and its files, without finite elements or time.
 CONTACT_LIBRARY = ("base", "linear_algebra", "hdf5", "solver/contact", "fclib")
 # linear_algebra is a tool of the layers from mass on: meshes, elements and contact do without it.
@@ -26,6 +26,8 @@ CONFINED = {
     "Eigen's eigenvalues and singular values": (r"Eigen/(Dense|Eigenvalues|SVD)", {"src/ricochet/base": 1}),
     "CHOLMOD": (r"cholmod|suitesparse/", {"src/ricochet/linear_algebra": 1}),
     "spdlog": (r"spdlog/", {"src/ricochet/base": 1}),
+    "MPI": (r"mpi\.h", {"src/ricochet/distributed": 1}),
+    "PETSc": (r"petsc", {"src/ricochet/distributed": 1}),
     "muParser": (r"muParser", {"src/ricochet/base": 1}),
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)

@@ -1,0 +1,18 @@
+# The library and the program for several processes. Debian's PETSc has no package for CMake, but one for pkg-config.
+find_package(MPI REQUIRED COMPONENTS CXX)
+pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET petsc)
+# PETSc divides meshes by PT-Scotch, but cannot tell it to begin again with the same random numbers.
+find_path(PTSCOTCH_INCLUDE_DIR ptscotch.h PATH_SUFFIXES scotch REQUIRED)
+find_library(PTSCOTCH_LIBRARY ptscotch REQUIRED)
+# They bring the options with which Debian compiled them; with others the common headers would have to be read again.
+set_target_properties(MPI::MPI_CXX PkgConfig::PETSC PROPERTIES INTERFACE_COMPILE_OPTIONS "")
+
+add_library(ricochet_distributed SHARED ${RICOCHET_DISTRIBUTED_SOURCES})
+set_target_properties(ricochet_distributed PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0 DEFINE_SYMBOL "" INSTALL_RPATH "$ORIGIN")
+# Of Open MPI's C++ interface nothing is used; its headers would be most of the time of compiling.
+target_compile_definitions(ricochet_distributed PUBLIC OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
+target_link_libraries(ricochet_distributed PUBLIC ricochet::ricochet MPI::MPI_CXX
+  PRIVATE PkgConfig::PETSC ${PTSCOTCH_LIBRARY} ricochet_dependencies ricochet_warnings Threads::Threads)
+target_include_directories(ricochet_distributed SYSTEM PRIVATE ${PTSCOTCH_INCLUDE_DIR})
+target_precompile_headers(ricochet_distributed REUSE_FROM ricochet_contact)
+ricochet_unity_groups(ricochet_distributed 40)

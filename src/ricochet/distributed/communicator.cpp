@@ -1,0 +1,77 @@
+#include "ricochet/distributed/communicator.hpp"
+
+#include <mpi.h>
+
+#include <limits>
+#include <numeric>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+constexpr int message_tag = 26;
+
+}  // namespace
+
+struct Communicator::Handle {
+  MPI_Comm ranks = MPI_COMM_NULL;
+  std::vector<MPI_Request> requests;  ///< work space
+};
+
+Communicator::Communicator(std::shared_ptr<Handle> handle) : handle_(std::move(handle)) {
+  MPI_Comm_rank(handle_->ranks, &rank_);
+  MPI_Comm_size(handle_->ranks, &size_);
+}
+
+Communicator Communicator::world() {
+  auto handle = std::make_shared<Handle>();
+  handle->ranks = MPI_COMM_WORLD;
+  return Communicator(std::move(handle));
+}
+
+void Communicator::swap(std::vector<Message>& messages) const {
+  std::vector<MPI_Request>& requests = handle_->requests;
+  requests.resize(2 * messages.size());
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    Message& message = messages[i];
+    MPI_Irecv(message.in.data(), static_cast<int>(message.in.size()), MPI_DOUBLE, message.rank, message_tag,
+              handle_->ranks, &requests[2 * i]);
+    MPI_Isend(message.out.data(), static_cast<int>(message.out.size()), MPI_DOUBLE, message.rank, message_tag,
+              handle_->ranks, &requests[2 * i + 1]);
+  }
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+std::vector<std::vector<std::int64_t>> Communicator::exchange(
+    const std::vector<std::vector<std::int64_t>>& to_each) const {
+  const auto ranks = static_cast<std::size_t>(size_);
+  std::vector<int> counts_out(ranks), counts_in(ranks), begins_out(ranks), begins_in(ranks);
+  std::vector<std::int64_t> out, in;
+  for (std::size_t r = 0; r < ranks; ++r) {
+    begins_out[r] = static_cast<int>(out.size());
+    out.insert(out.end(), to_each[r].begin(), to_each[r].end());
+    if (out.size() > std::numeric_limits<int>::max())
+      throw Error(ErrorKind::invalid_input, "a rank has more to tell the others than MPI can count: take more ranks");
+    counts_out[r] = static_cast<int>(to_each[r].size());
+  }
+  MPI_Alltoall(counts_out.data(), 1, MPI_INT, counts_in.data(), 1, MPI_INT, handle_->ranks);
+  std::exclusive_scan(counts_in.begin(), counts_in.end(), begins_in.begin(), 0);
+  in.resize(static_cast<std::size_t>(begins_in.back() + counts_in.back()));
+  MPI_Alltoallv(out.data(), counts_out.data(), begins_out.data(), MPI_INT64_T, in.data(), counts_in.data(),
+                begins_in.data(), MPI_INT64_T, handle_->ranks);
+  std::vector<std::vector<std::int64_t>> result(ranks);
+  for (std::size_t r = 0; r < ranks; ++r)
+    result[r].assign(in.begin() + begins_in[r], in.begin() + begins_in[r] + counts_in[r]);
+  return result;
+}
+
+std::vector<double> Communicator::gather(std::span<const double> values) const {
+  std::vector<double> result(values.size() * static_cast<std::size_t>(size_));
+  const int count = static_cast<int>(values.size());
+  MPI_Allgather(values.data(), count, MPI_DOUBLE, result.data(), count, MPI_DOUBLE, handle_->ranks);
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+/// @file What ranks say to each other. All functions are called by all ranks, and wait for them.
+namespace ricochet {
+
+/// How much has been sent by this rank so far.
+struct Traffic {
+  std::int64_t messages = 0, bytes = 0;
+};
+
+/// To another rank, and from it: as many numbers as there is room for.
+struct Message {
+  int rank = 0;
+  std::vector<double> out, in;
+};
+
+/// A group of ranks. A copy is the same group.
+class Communicator {
+ public:
+  /// All ranks of the run. MPI must have begun.
+  [[nodiscard]] static Communicator world();
+
+  [[nodiscard]] int rank() const { return rank_; }
+  [[nodiscard]] int size() const { return size_; }
+
+  /// What each rank has for each: `to_each` has one entry per rank, and so has the result, by whom it comes from.
+  [[nodiscard]] std::vector<std::vector<std::int64_t>> exchange(
+      const std::vector<std::vector<std::int64_t>>& to_each) const;
+  /// The same numbers of every rank, rank after rank.
+  [[nodiscard]] std::vector<double> gather(std::span<const double> values) const;
+  /// Sends and receives at once. Only the ranks that are named take part; each names the others.
+  void swap(std::vector<Message>& messages) const;
+
+ private:
+  struct Handle;  ///< MPI's
+  explicit Communicator(std::shared_ptr<Handle> handle);
+
+  std::shared_ptr<Handle> handle_;
+  int rank_ = 0, size_ = 1;
+};
+
+}  // namespace ricochet

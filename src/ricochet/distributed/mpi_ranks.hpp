@@ -1,0 +1,23 @@
+#pragma once
+
+#include "ricochet/base/ranks.hpp"
+#include "ricochet/distributed/node_exchange.hpp"
+
+/// @file The ranks of a run, as the rest of the library sees them.
+namespace ricochet {
+
+class MpiRanks final : public Ranks {
+ public:
+  /// Keeps a reference to the exchange. Its nodes are those of the vectors of forces.
+  MpiRanks(const Communicator& ranks, const NodeExchange& nodes) : ranks_(ranks), nodes_(nodes) {}
+
+  void reduce(std::span<double> values, std::span<const Reduction> by) const override;
+  void accumulate(Vector& force) const override { nodes_.accumulate(force); }
+  [[nodiscard]] bool is_owned(Index node) const override { return nodes_.is_owned(node); }
+
+ private:
+  Communicator ranks_;
+  const NodeExchange& nodes_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,135 @@
+#include "ricochet/distributed/node_exchange.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <unordered_map>
+
+namespace ricochet {
+
+namespace {
+
+/// Who else has these nodes, and their ranks in ascending order. A rank keeps the list of a range of numbers, and
+/// answers for it.
+std::map<int, std::vector<std::int64_t>> find_sharers(const Communicator& ranks,
+                                                      const std::vector<std::int64_t>& numbers, std::int64_t count) {
+  const auto size = static_cast<std::size_t>(ranks.size());
+  const std::int64_t range = std::max<std::int64_t>(1, (count + ranks.size() - 1) / ranks.size());
+  std::vector<std::vector<std::int64_t>> asked(size);
+  for (const std::int64_t number : numbers) asked.at(static_cast<std::size_t>(number / range)).push_back(number);
+  const std::vector<std::vector<std::int64_t>> known = ranks.exchange(asked);
+  std::unordered_map<std::int64_t, std::vector<int>> sharers;
+  for (std::size_t rank = 0; rank < size; ++rank) {
+    for (const std::int64_t number : known[rank]) sharers[number].push_back(static_cast<int>(rank));
+  }
+  // To each rank the numbers that others have, each followed by one of these.
+  std::vector<std::vector<std::int64_t>> answers(size);
+  for (std::size_t rank = 0; rank < size; ++rank) {
+    for (const std::int64_t number : known[rank]) {
+      for (const int other : sharers.at(number)) {
+        if (other == static_cast<int>(rank)) continue;
+        answers[rank].push_back(number);
+        answers[rank].push_back(other);
+      }
+    }
+  }
+  std::map<int, std::vector<std::int64_t>> result;
+  for (const std::vector<std::int64_t>& told : ranks.exchange(answers)) {
+    for (std::size_t i = 0; i < told.size(); i += 2) result[static_cast<int>(told[i + 1])].push_back(told[i]);
+  }
+  for (auto& [rank, shared] : result) std::sort(shared.begin(), shared.end());
+  return result;
+}
+
+}  // namespace
+
+NodeExchange::NodeExchange(const Communicator& ranks, const std::vector<std::int64_t>& numbers, std::int64_t count)
+    : ranks_(ranks), is_owned_(numbers.size(), 1), nodes_(static_cast<Index>(numbers.size())) {
+  std::unordered_map<std::int64_t, Index> node_of;
+  for (std::size_t node = 0; node < numbers.size(); ++node) node_of.emplace(numbers[node], static_cast<Index>(node));
+  if (node_of.size() != numbers.size()) throw std::logic_error("a rank has a node twice");
+  std::vector<int> owner(numbers.size(), ranks.rank());
+  for (const auto& [rank, shared] : find_sharers(ranks, numbers, count)) {
+    Neighbour& neighbour = neighbours_.emplace_back();
+    messages_.push_back({.rank = rank, .out = {}, .in = {}});
+    for (const std::int64_t number : shared) {
+      const Index node = node_of.at(number);
+      neighbour.nodes.push_back(node);
+      shared_.push_back(node);
+      int& first = owner[static_cast<std::size_t>(node)];
+      first = std::min(first, rank);
+    }
+  }
+  std::sort(shared_.begin(), shared_.end());
+  shared_.erase(std::unique(shared_.begin(), shared_.end()), shared_.end());
+  for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+    for (const Index node : neighbours_[i].nodes)
+      neighbours_[i].gives.push_back(owner[static_cast<std::size_t>(node)] == messages_[i].rank ? 1 : 0);
+  }
+  for (std::size_t node = 0; node < owner.size(); ++node) {
+    is_owned_[node] = owner[node] == ranks.rank() ? 1 : 0;
+    owned_ += is_owned_[node];
+  }
+}
+
+/// Fills the messages with what this rank and its neighbours have at the nodes that they share.
+void NodeExchange::send_all(const Vector& values, Index per_node) const {
+  if (values.size() != per_node * nodes_) throw std::logic_error("values are not those of the nodes");
+  for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+    Message& message = messages_[i];
+    const std::size_t count = neighbours_[i].nodes.size() * static_cast<std::size_t>(per_node);
+    message.in.resize(count);
+    message.out.resize(count);
+    auto to = message.out.begin();
+    for (const Index node : neighbours_[i].nodes) to = std::copy_n(values.data() + node * per_node, per_node, to);
+    ++traffic_.messages;
+    traffic_.bytes += static_cast<std::int64_t>(count * sizeof(double));
+  }
+  ranks_.swap(messages_);
+}
+
+void NodeExchange::accumulate(Vector& values) const {
+  if (neighbours_.empty()) return;
+  const Index per_node = values.size() / std::max<Index>(1, nodes_);
+  send_all(values, per_node);
+  own_.resize(shared_.size() * static_cast<std::size_t>(per_node));
+  auto kept = own_.begin();
+  for (const Index node : shared_) {
+    kept = std::copy_n(values.data() + node * per_node, per_node, kept);
+    values.segment(node * per_node, per_node).setZero();
+  }
+  const auto add_own = [&] {
+    const double* from = own_.data();
+    for (const Index node : shared_) {
+      for (Index k = 0; k < per_node; ++k) values[node * per_node + k] += *from++;
+    }
+  };
+  bool is_added = false;
+  for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+    if (!is_added && messages_[i].rank > ranks_.rank()) {
+      add_own();
+      is_added = true;
+    }
+    const double* from = messages_[i].in.data();
+    for (const Index node : neighbours_[i].nodes) {
+      for (Index k = 0; k < per_node; ++k) values[node * per_node + k] += *from++;
+    }
+  }
+  if (!is_added) add_own();
+}
+
+void NodeExchange::spread(Vector& values) const {
+  if (neighbours_.empty()) return;
+  const Index per_node = values.size() / std::max<Index>(1, nodes_);
+  send_all(values, per_node);
+  for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+    const Neighbour& neighbour = neighbours_[i];
+    for (std::size_t k = 0; k < neighbour.nodes.size(); ++k) {
+      if (neighbour.gives[k] == 0) continue;
+      std::copy_n(messages_[i].in.data() + k * static_cast<std::size_t>(per_node), per_node,
+                  values.data() + neighbour.nodes[k] * per_node);
+    }
+  }
+}
+
+}  // namespace ricochet

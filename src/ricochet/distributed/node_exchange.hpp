@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ricochet/distributed/communicator.hpp"
+
+/// @file Nodes that several ranks have.
+namespace ricochet {
+
+/// The sharers of each node of this rank, and what they send each other. A shared node belongs to the first of the
+/// ranks that have it.
+class NodeExchange {
+ public:
+  /// `numbers`: of this rank's nodes in the whole body, each once, from 0 to `count` − 1.
+  NodeExchange(const Communicator& ranks, const std::vector<std::int64_t>& numbers, std::int64_t count);
+
+  /// From a part of each sharer their sum, the same bits for all of them: parts are added in the order of the ranks.
+  /// So many values per node, node after node. One message to each neighbour.
+  void accumulate(Vector& values) const;
+  /// The values of a node's owner, for all that share it.
+  void spread(Vector& values) const;
+
+  [[nodiscard]] bool is_owned(Index node) const { return is_owned_[static_cast<std::size_t>(node)] != 0; }
+  [[nodiscard]] Index owned_count() const { return owned_; }
+  [[nodiscard]] std::size_t neighbour_count() const { return neighbours_.size(); }
+  [[nodiscard]] Index shared_count() const { return static_cast<Index>(shared_.size()); }
+  [[nodiscard]] const Traffic& traffic() const { return traffic_; }
+
+ private:
+  struct Neighbour {
+    std::vector<Index> nodes;  ///< that both have, by their numbers in the whole body
+    std::vector<char> gives;   ///< per node: it belongs to the neighbour
+  };
+  void send_all(const Vector& values, Index per_node) const;
+
+  Communicator ranks_;
+  std::vector<Neighbour> neighbours_;      ///< by rank
+  mutable std::vector<Message> messages_;  ///< with each
+  std::vector<Index> shared_;              ///< nodes that some neighbour has, each once
+  std::vector<char> is_owned_;             ///< per node
+  Index owned_ = 0, nodes_ = 0;
+  mutable Traffic traffic_;
+  mutable std::vector<double> own_;
+};
+
+}  // namespace ricochet

@@ -1,0 +1,153 @@
+#include "ricochet/distributed/partition.hpp"
+
+#include <fmt/format.h>
+#include <petscmat.h>
+#include <ptscotch.h>
+#include <stdio.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <span>
+
+#include "ricochet/base/error.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Calls visit(number, nodes) for the cells of all blocks.
+template <class Visit>
+void each_cell(const Mesh& mesh, const Visit& visit) {
+  Index number = 0;
+  for (const CellBlock& block : mesh.cells) {
+    for (Index i = 0; i < block.size(); ++i, ++number)
+      visit(number, std::span<const Index>(block.cell(i), static_cast<std::size_t>(block.nodes_per_cell)));
+  }
+}
+
+/// Nodes that share a cell, row after row, without the node itself.
+struct Adjacency {
+  std::vector<PetscInt> begin{0}, neighbour;
+};
+
+Adjacency adjacency_of(const Mesh& mesh) {
+  const auto count = static_cast<std::size_t>(mesh.node_count());
+  std::vector<Index> begin(count + 1, 0);
+  each_cell(mesh, [&](Index, std::span<const Index> nodes) {
+    for (const Index node : nodes) ++begin[static_cast<std::size_t>(node) + 1];
+  });
+  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+  std::vector<const Index*> cell(static_cast<std::size_t>(begin.back()));
+  std::vector<int> length(cell.size());
+  std::vector<Index> next(begin.begin(), begin.end() - 1);
+  each_cell(mesh, [&](Index, std::span<const Index> nodes) {
+    for (const Index node : nodes) {
+      const auto at = static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++);
+      cell[at] = nodes.data();
+      length[at] = static_cast<int>(nodes.size());
+    }
+  });
+  Adjacency result;
+  std::vector<Index> found;
+  for (std::size_t node = 0; node < count; ++node) {
+    found.clear();
+    for (auto at = static_cast<std::size_t>(begin[node]); at < static_cast<std::size_t>(begin[node + 1]); ++at)
+      found.insert(found.end(), cell[at], cell[at] + length[at]);
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    for (const Index other : found) {
+      if (other != static_cast<Index>(node)) result.neighbour.push_back(static_cast<PetscInt>(other));
+    }
+    result.begin.push_back(static_cast<PetscInt>(result.neighbour.size()));
+  }
+  return result;
+}
+
+std::vector<int> divide_nodes(const Mesh& mesh, int parts) {
+  Adjacency adjacency = adjacency_of(mesh);
+  const auto nodes = static_cast<PetscInt>(mesh.node_count());
+  Mat graph = nullptr;
+  MatPartitioning partitioning = nullptr;
+  IS division = nullptr;
+  const PetscInt* number = nullptr;
+  std::vector<int> result(static_cast<std::size_t>(nodes), 0);
+  const auto divide = [&]() -> PetscErrorCode {
+    PetscFunctionBeginUser;
+    // PETSc frees what it is given.
+    PetscInt *begin = nullptr, *neighbour = nullptr;
+    PetscCall(PetscMalloc1(adjacency.begin.size(), &begin));
+    PetscCall(PetscMalloc1(adjacency.neighbour.size(), &neighbour));
+    std::copy(adjacency.begin.begin(), adjacency.begin.end(), begin);
+    std::copy(adjacency.neighbour.begin(), adjacency.neighbour.end(), neighbour);
+    adjacency = {};
+    PetscCall(MatCreateMPIAdj(PETSC_COMM_SELF, nodes, nodes, begin, neighbour, nullptr, &graph));
+    PetscCall(MatPartitioningCreate(PETSC_COMM_SELF, &partitioning));
+    PetscCall(MatPartitioningSetAdjacency(partitioning, graph));
+    PetscCall(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
+    PetscCall(MatPartitioningSetNParts(partitioning, parts));
+    PetscCall(MatPartitioningApply(partitioning, &division));
+    PetscCall(ISGetIndices(division, &number));
+    std::copy_n(number, nodes, result.begin());
+    PetscCall(ISRestoreIndices(division, &number));
+    PetscCall(ISDestroy(&division));
+    PetscCall(MatPartitioningDestroy(&partitioning));
+    PetscCall(MatDestroy(&graph));
+    PetscFunctionReturn(0);
+  };
+  // The same division in every run: threads of Scotch find another one each time.
+  setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
+  SCOTCH_randomReset();
+  if (divide() != 0) throw Error(ErrorKind::invalid_input, "PT-Scotch could not divide the mesh among ranks");
+  return result;
+}
+
+}  // namespace
+
+std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod method, std::uint64_t seed) {
+  const Index cells = mesh.cell_count();
+  if (cells < ranks)
+    throw Error(ErrorKind::invalid_input,
+                fmt::format("{} has {} cells, fewer than the {} ranks of this run: take fewer ranks", mesh.source,
+                            cells, ranks));
+  std::vector<int> result(static_cast<std::size_t>(cells), 0);
+  if (ranks == 1) return result;
+  if (method == PartitionMethod::random) {
+    std::mt19937_64 generator(seed);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      // Of the first cells one for each: nobody is left without.
+      const auto any = static_cast<int>(generator() % static_cast<std::uint64_t>(ranks));
+      result[i] = i < static_cast<std::size_t>(ranks) ? static_cast<int>(i) : any;
+    }
+    return result;
+  }
+  const std::vector<int> part = divide_nodes(mesh, ranks);
+  std::vector<Index> count(static_cast<std::size_t>(ranks), 0);
+  each_cell(mesh, [&](Index cell, std::span<const Index> nodes) {
+    int best = -1;
+    std::ptrdiff_t most = 0;
+    for (const Index node : nodes) {
+      const int own = part[static_cast<std::size_t>(node)];
+      const std::ptrdiff_t votes = std::count_if(
+          nodes.begin(), nodes.end(), [&](Index other) { return part[static_cast<std::size_t>(other)] == own; });
+      if (votes > most || (votes == most && own < best)) {
+        most = votes;
+        best = own;
+      }
+    }
+    result[static_cast<std::size_t>(cell)] = best;
+    ++count[static_cast<std::size_t>(best)];
+  });
+  // A part of few nodes may win no cell: it takes one of the largest part.
+  for (std::size_t empty = 0; empty < count.size(); ++empty) {
+    if (count[empty] > 0) continue;
+    const auto largest = static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+    const auto cell = std::find(result.begin(), result.end(), largest);
+    *cell = static_cast<int>(empty);
+    --count[static_cast<std::size_t>(largest)];
+    ++count[empty];
+  }
+  return result;
+}
+
+}  // namespace ricochet
