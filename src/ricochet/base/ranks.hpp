@@ -24,10 +24,13 @@ class Ranks {
   virtual ~Ranks() = default;
   /// The numbers of the whole body from those of this rank, in place; one exchange for all.
   virtual void reduce(std::span<double> /* values */, std::span<const Reduction> /* by */) const {}
-  /// Makes an additive force consistent.
+  /// Makes an additive force consistent: as many numbers for each node as there are.
   virtual void accumulate(Vector& /* force */) const {}
+  virtual void accumulate(Eigen::VectorXf& /* force */) const {}
   /// Whether this rank speaks for the node where it is counted once.
   [[nodiscard]] virtual bool is_owned(Index /* node */) const { return true; }
+  /// The nodes for which another rank speaks, ascending: what they have in a sum over all nodes is taken off again.
+  [[nodiscard]] virtual std::span<const Index> not_owned() const { return {}; }
 
   [[nodiscard]] double sum(double value) const { return reduced(value, Reduction::sum); }
   [[nodiscard]] double minimum(double value) const { return reduced(value, Reduction::minimum); }

@@ -13,7 +13,9 @@ class MpiRanks final : public Ranks {
 
   void reduce(std::span<double> values, std::span<const Reduction> by) const override;
   void accumulate(Vector& force) const override { nodes_.accumulate(force); }
+  void accumulate(Eigen::VectorXf& force) const override { nodes_.accumulate(force); }
   [[nodiscard]] bool is_owned(Index node) const override { return nodes_.is_owned(node); }
+  [[nodiscard]] std::span<const Index> not_owned() const override { return nodes_.not_owned(); }
 
  private:
   Communicator ranks_;

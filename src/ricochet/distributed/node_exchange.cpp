@@ -68,12 +68,13 @@ NodeExchange::NodeExchange(const Communicator& ranks, const std::vector<std::int
   }
   for (std::size_t node = 0; node < owner.size(); ++node) {
     is_owned_[node] = owner[node] == ranks.rank() ? 1 : 0;
-    owned_ += is_owned_[node];
+    if (is_owned_[node] == 0) not_owned_.push_back(static_cast<Index>(node));
   }
 }
 
 /// Fills the messages with what this rank and its neighbours have at the nodes that they share.
-void NodeExchange::send_all(const Vector& values, Index per_node) const {
+template <class Values>
+void NodeExchange::send_all(const Values& values, Index per_node) const {
   if (values.size() != per_node * nodes_) throw std::logic_error("values are not those of the nodes");
   for (std::size_t i = 0; i < neighbours_.size(); ++i) {
     Message& message = messages_[i];
@@ -88,7 +89,9 @@ void NodeExchange::send_all(const Vector& values, Index per_node) const {
   ranks_.swap(messages_);
 }
 
-void NodeExchange::accumulate(Vector& values) const {
+template <class Values>
+void NodeExchange::accumulate_any(Values& values) const {
+  using Number = typename Values::Scalar;
   if (neighbours_.empty()) return;
   const Index per_node = values.size() / std::max<Index>(1, nodes_);
   send_all(values, per_node);
@@ -101,7 +104,7 @@ void NodeExchange::accumulate(Vector& values) const {
   const auto add_own = [&] {
     const double* from = own_.data();
     for (const Index node : shared_) {
-      for (Index k = 0; k < per_node; ++k) values[node * per_node + k] += *from++;
+      for (Index k = 0; k < per_node; ++k) values[node * per_node + k] += static_cast<Number>(*from++);
     }
   };
   bool is_added = false;
@@ -112,11 +115,14 @@ void NodeExchange::accumulate(Vector& values) const {
     }
     const double* from = messages_[i].in.data();
     for (const Index node : neighbours_[i].nodes) {
-      for (Index k = 0; k < per_node; ++k) values[node * per_node + k] += *from++;
+      for (Index k = 0; k < per_node; ++k) values[node * per_node + k] += static_cast<Number>(*from++);
     }
   }
   if (!is_added) add_own();
 }
+
+template void NodeExchange::accumulate_any(Vector& values) const;
+template void NodeExchange::accumulate_any(Eigen::VectorXf& values) const;
 
 void NodeExchange::spread(Vector& values) const {
   if (neighbours_.empty()) return;

@@ -17,12 +17,14 @@ class NodeExchange {
 
   /// From a part of each sharer their sum, the same bits for all of them: parts are added in the order of the ranks.
   /// So many values per node, node after node. One message to each neighbour.
-  void accumulate(Vector& values) const;
+  void accumulate(Vector& values) const { accumulate_any(values); }
+  void accumulate(Eigen::VectorXf& values) const { accumulate_any(values); }
   /// The values of a node's owner, for all that share it.
   void spread(Vector& values) const;
 
   [[nodiscard]] bool is_owned(Index node) const { return is_owned_[static_cast<std::size_t>(node)] != 0; }
-  [[nodiscard]] Index owned_count() const { return owned_; }
+  [[nodiscard]] Index owned_count() const { return nodes_ - static_cast<Index>(not_owned_.size()); }
+  [[nodiscard]] const std::vector<Index>& not_owned() const { return not_owned_; }
   [[nodiscard]] std::size_t neighbour_count() const { return neighbours_.size(); }
   [[nodiscard]] Index shared_count() const { return static_cast<Index>(shared_.size()); }
   [[nodiscard]] const Traffic& traffic() const { return traffic_; }
@@ -32,14 +34,18 @@ class NodeExchange {
     std::vector<Index> nodes;  ///< that both have, by their numbers in the whole body
     std::vector<char> gives;   ///< per node: it belongs to the neighbour
   };
-  void send_all(const Vector& values, Index per_node) const;
+  template <class Values>
+  void accumulate_any(Values& values) const;
+  template <class Values>
+  void send_all(const Values& values, Index per_node) const;
 
   Communicator ranks_;
   std::vector<Neighbour> neighbours_;      ///< by rank
   mutable std::vector<Message> messages_;  ///< with each
   std::vector<Index> shared_;              ///< nodes that some neighbour has, each once
   std::vector<char> is_owned_;             ///< per node
-  Index owned_ = 0, nodes_ = 0;
+  std::vector<Index> not_owned_;
+  Index nodes_ = 0;
   mutable Traffic traffic_;
   mutable std::vector<double> own_;
 };

@@ -10,8 +10,9 @@ namespace ricochet {
 /// P = the d × d diagonal blocks of a matrix with d dofs per node. Of what was measured for one step of elastodynamics
 /// (docs/performance.md) this is as fast as incomplete Cholesky factors and polynomials in A on one thread and faster
 /// on more: inertia bounds the condition of A, so that an iteration must be cheap before it is clever. `solved` per
-/// dof: the others are left alone (z = r there).
+/// dof: the others are left alone (z = r there). Blocks of the ranks are added up.
 [[nodiscard]] std::unique_ptr<Preconditioner> make_block_jacobi(const SparseMatrix& matrix, int d,
-                                                                const std::vector<char>& solved);
+                                                                const std::vector<char>& solved,
+                                                                const Ranks& ranks = one_rank());
 
 }  // namespace ricochet

@@ -12,23 +12,29 @@ double dot_product(const Vector& a, const Vector& b) {
   });
 }
 
+double dot_product(const Vector& a, const Vector& b, const Ranks& ranks, int d) {
+  double sum = dot_product(a, b);
+  for (const Index node : ranks.not_owned()) sum -= a.segment(node * d, d).dot(b.segment(node * d, d));
+  return ranks.sum(sum);
+}
+
 double ConjugateGradients::norm(const Preconditioner& preconditioner, const Vector& residual) {
   preconditioner.apply(residual, preconditioned_);
-  return std::sqrt(dot_product(residual, preconditioned_));
+  return std::sqrt(dot(residual, preconditioned_));
 }
 
 ConjugateGradients::Result ConjugateGradients::solve(const Product& product, const Preconditioner& preconditioner,
                                                      double target, int iteration_limit, Vector& residual, Vector& x) {
   Result result;
   preconditioner.apply(residual, preconditioned_);
-  double squared = dot_product(residual, preconditioned_);
+  double squared = dot(residual, preconditioned_);
   direction_ = preconditioned_;
   while (true) {
     result.residual = std::sqrt(squared);
     result.converged = result.residual <= target;
     if (result.converged || result.iterations == iteration_limit) break;
     product(direction_, image_);
-    const double curvature = dot_product(direction_, image_);
+    const double curvature = dot(direction_, image_);
     if (!(curvature > 0.0) || !std::isfinite(squared)) break;
     ++result.iterations;
     const double length = squared / curvature;
@@ -37,7 +43,7 @@ ConjugateGradients::Result ConjugateGradients::solve(const Product& product, con
       residual.segment(begin, end - begin) -= length * image_.segment(begin, end - begin);
     });
     preconditioner.apply(residual, preconditioned_);
-    const double next = dot_product(residual, preconditioned_);
+    const double next = dot(residual, preconditioned_);
     const double factor = next / squared;
     squared = next;
     parallel_ranges(x.size(), [&](Index begin, Index end) {

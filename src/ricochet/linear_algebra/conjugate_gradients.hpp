@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include "ricochet/base/types.hpp"
+#include "ricochet/base/ranks.hpp"
 
 /// @file Preconditioned conjugate gradients.
 namespace ricochet {
@@ -18,10 +18,15 @@ class Preconditioner {
 
 /// aᵀb in a fixed order of sums, by all threads.
 [[nodiscard]] double dot_product(const Vector& a, const Vector& b);
+/// The same of vectors that are consistent on the ranks (d numbers per node), each node once.
+[[nodiscard]] double dot_product(const Vector& a, const Vector& b, const Ranks& ranks, int d);
 
 /// Work space is kept from solve to solve.
 class ConjugateGradients {
  public:
+  /// Vectors are consistent on the ranks, with d numbers per node; so is what a product gives.
+  explicit ConjugateGradients(int d = 1, const Ranks& ranks = one_rank()) : d_(d), ranks_(&ranks) {}
+
   using Product = std::function<void(const Vector& x, Vector& y)>;
   struct Result {
     int iterations = 0;
@@ -37,6 +42,10 @@ class ConjugateGradients {
                Vector& residual, Vector& x);
 
  private:
+  [[nodiscard]] double dot(const Vector& a, const Vector& b) const { return dot_product(a, b, *ranks_, d_); }
+
+  int d_;
+  const Ranks* ranks_;
   Vector direction_, image_, preconditioned_;
 };
 

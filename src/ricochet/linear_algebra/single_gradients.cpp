@@ -29,25 +29,39 @@ Square<d> masked(const double* values, const std::vector<char>& solved, Index ro
   return block;
 }
 
+/// The blocks on the diagonal, of all ranks.
+template <int d>
+Vector diagonal_blocks(const NodeMatrix& matrix, const Ranks& ranks) {
+  const NodePattern& pattern = matrix.pattern();
+  Vector result = Vector::Zero(matrix.size() * d);
+  pattern.visit_rows(0, pattern.parts(), [&](int node, Index first_block, const RowGroup& group) {
+    for (Index k = first_block + group.two_sided; k < first_block + group.blocks_per_row(); ++k) {
+      if (pattern.column[static_cast<std::size_t>(k)] == node)
+        result.segment<d * d>(Index{node} * d * d) =
+            Eigen::Map<const Vector>(matrix.values().data() + k * d * d, d * d);
+    }
+  });
+  ranks.accumulate(result);
+  return result;
+}
+
 /// L⁻¹ per node; a block that is not positive definite is taken for one: conjugate gradients will say so.
 template <int d>
-void invert_factors(const NodeMatrix& matrix, const std::vector<char>& solved, std::vector<float>& result) {
-  const NodePattern& pattern = matrix.pattern();
-  result.assign(static_cast<std::size_t>(matrix.size() * d) + 1, 0.0F);
-  parallel_ranges(pattern.parts(), [&](Index first, Index last) {
-    pattern.visit_rows(first, last, [&](int node, Index first_block, const RowGroup& group) {
-      for (Index k = first_block + group.two_sided; k < first_block + group.blocks_per_row(); ++k) {
-        if (pattern.column[static_cast<std::size_t>(k)] != node) continue;
-        Square<d> own = masked<d>(matrix.values().data() + k * d * d, solved, node, node);
-        for (int a = 0; a < d; ++a) {
-          if (solved[static_cast<std::size_t>(node * d + a)] == 0) own(a, a) = 1.0;
-        }
-        const Eigen::LLT<Square<d>> factor(own);
-        Square<d> inverse = Square<d>::Identity();
-        if (factor.info() == Eigen::Success) factor.matrixL().solveInPlace(inverse);
-        Eigen::Map<SingleSquare<d>>(result.data() + Index{node} * d * d) = inverse.template cast<float>();
+void invert_factors(const NodeMatrix& matrix, const std::vector<char>& solved, const Ranks& ranks,
+                    std::vector<float>& result) {
+  const Vector blocks = diagonal_blocks<d>(matrix, ranks);
+  result.assign(static_cast<std::size_t>(blocks.size()) + 1, 0.0F);
+  parallel_ranges(matrix.size() / d, [&](Index begin, Index end) {
+    for (Index node = begin; node < end; ++node) {
+      Square<d> own = masked<d>(blocks.data() + node * d * d, solved, node, node);
+      for (int a = 0; a < d; ++a) {
+        if (solved[static_cast<std::size_t>(node * d + a)] == 0) own(a, a) = 1.0;
       }
-    });
+      const Eigen::LLT<Square<d>> factor(own);
+      Square<d> inverse = Square<d>::Identity();
+      if (factor.info() == Eigen::Success) factor.matrixL().solveInPlace(inverse);
+      Eigen::Map<SingleSquare<d>>(result.data() + node * d * d) = inverse.template cast<float>();
+    }
   });
 }
 
@@ -85,12 +99,13 @@ auto with_dimension(int d, const Work& work) {
 
 }  // namespace
 
-SingleGradients::SingleGradients(const NodeMatrix& matrix, const std::vector<char>& solved) : matrix_(matrix) {
+SingleGradients::SingleGradients(const NodeMatrix& matrix, const std::vector<char>& solved, const Ranks& ranks)
+    : matrix_(matrix), ranks_(ranks) {
   if (matrix.dimension() == 2) {
-    invert_factors<2>(matrix, solved, inverse_factor_);
+    invert_factors<2>(matrix, solved, ranks, inverse_factor_);
     scale_blocks<2>(matrix, solved, inverse_factor_, values_);
   } else {
-    invert_factors<3>(matrix, solved, inverse_factor_);
+    invert_factors<3>(matrix, solved, ranks, inverse_factor_);
     scale_blocks<3>(matrix, solved, inverse_factor_, values_);
   }
   for (Numbers* numbers : {&x_, &residual_, &direction_, &image_}) numbers->setZero(matrix.size());
@@ -113,19 +128,34 @@ double SingleGradients::multiply() {
   });
   double total = 0.0;
   for (const double sum : sums) total += sum;
+  // Of the image each rank has a part, which is what pᵀ q takes of it.
+  total = ranks_.sum(total);
+  ranks_.accumulate(image_);
   return total;
+}
+
+/// |r̂|² from what this rank's nodes have in it, those of others among them.
+double SingleGradients::squared_norm(double of_all_nodes) const {
+  const int d = matrix_.dimension();
+  for (const Index node : ranks_.not_owned())
+    of_all_nodes -= static_cast<double>(residual_.segment(node * d, d).squaredNorm());
+  return ranks_.sum(of_all_nodes);
 }
 
 /// r̂ = L⁻¹ r / |L⁻¹ r|; returns the norm.
 double SingleGradients::scale(const Vector& residual) {
   return with_dimension(matrix_.dimension(), [&](auto dimension) {
     constexpr int d = dimension;
-    const double norm = std::sqrt(parallel_sum<double>(residual.size() / d, [&](Index begin, Index end) {
+    const auto at = [&](Index node) {
+      return (block_of<d>(inverse_factor_, node) * residual.segment<d>(node * d)).squaredNorm();
+    };
+    double squared = parallel_sum<double>(residual.size() / d, [&](Index begin, Index end) {
       double sum = 0.0;
-      for (Index node = begin; node < end; ++node)
-        sum += (block_of<d>(inverse_factor_, node) * residual.segment<d>(node * d)).squaredNorm();
+      for (Index node = begin; node < end; ++node) sum += at(node);
       return sum;
-    }));
+    });
+    for (const Index node : ranks_.not_owned()) squared -= at(node);
+    const double norm = std::sqrt(ranks_.sum(squared));
     if (!(norm > 0.0) || !std::isfinite(norm)) return norm;
     parallel_ranges(residual.size() / d, [&](Index begin, Index end) {
       for (Index node = begin; node < end; ++node) {
@@ -170,7 +200,7 @@ ConjugateGradients::Result SingleGradients::solve(const Vector& residual, double
     if (!(curvature > 0.0) || !std::isfinite(squared)) break;
     ++result.iterations;
     const auto length = static_cast<float>(squared / curvature);
-    const double next = parallel_sum<double>(x.size(), [&](Index begin, Index end) {
+    const double next = squared_norm(parallel_sum<double>(x.size(), [&](Index begin, Index end) {
       const FlushDenormals flush;
       double sum = 0.0;
       constexpr Index stretch = 512;
@@ -181,7 +211,7 @@ ConjugateGradients::Result SingleGradients::solve(const Vector& residual, double
         sum += static_cast<double>(residual_.segment(at, count).squaredNorm());
       }
       return sum;
-    });
+    }));
     const auto factor = static_cast<float>(next / squared);
     squared = next;
     parallel_ranges(x.size(), [&](Index begin, Index end) {

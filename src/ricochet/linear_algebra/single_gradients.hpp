@@ -14,7 +14,8 @@ namespace ricochet {
 class SingleGradients {
  public:
   /// Of a matrix in blocks, which is referred to; `solved` per dof: rows and columns of the others are left out.
-  SingleGradients(const NodeMatrix& matrix, const std::vector<char>& solved);
+  /// Of several ranks each has a part of the matrix, and the whole of the vectors at its nodes.
+  SingleGradients(const NodeMatrix& matrix, const std::vector<char>& solved, const Ranks& ranks = one_rank());
 
   /// Adds to x an approximation of A⁻¹ r, after iterations that take √(rᵀD⁻¹r) down to this part of it, as they see it
   /// themselves.
@@ -26,10 +27,12 @@ class SingleGradients {
   using Numbers = Eigen::VectorXf;
 
   [[nodiscard]] double multiply();
+  [[nodiscard]] double squared_norm(double of_all_nodes) const;
   double scale(const Vector& residual);
   void add_to(Vector& x, double factor) const;
 
   const NodeMatrix& matrix_;
+  const Ranks& ranks_;
   std::vector<float> values_;          ///< Â, in the pattern of the matrix
   std::vector<float> inverse_factor_;  ///< L⁻¹ per node, column by column
   Numbers x_, residual_, direction_, image_;

@@ -1,0 +1,152 @@
+#include "ricochet/distributed/piece.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "ricochet/fem/exterior_facets.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// The elements that are wanted, by their numbers through all blocks, with the nodes that they have there.
+struct Cut {
+  std::vector<CellBlock> blocks;
+  std::vector<Index> numbers;
+};
+
+Cut cut_blocks(const std::vector<CellBlock>& blocks, const std::vector<char>& wanted) {
+  Cut result;
+  Index number = 0;
+  for (const CellBlock& block : blocks) {
+    // Blocks without elements stay: those of mesh and space go together, and with what is numbered through them.
+    CellBlock& taken = result.blocks.emplace_back();
+    taken.shape = block.shape;
+    taken.nodes_per_cell = block.nodes_per_cell;
+    for (Index i = 0; i < block.size(); ++i, ++number) {
+      if (wanted[static_cast<std::size_t>(number)] == 0) continue;
+      result.numbers.push_back(number);
+      taken.nodes.insert(taken.nodes.end(), block.cell(i), block.cell(i) + block.nodes_per_cell);
+      taken.tags.push_back(block.tags[static_cast<std::size_t>(i)]);
+    }
+  }
+  return result;
+}
+
+/// Places of nodes in an ascending list.
+class Renumbering {
+ public:
+  explicit Renumbering(Index count) : place_(static_cast<std::size_t>(count), -1) {}
+
+  void want(const std::vector<CellBlock>& blocks) {
+    for (const CellBlock& block : blocks) {
+      for (const Index node : block.nodes) place_[static_cast<std::size_t>(node)] = 0;
+    }
+  }
+  void want(Index node) { place_[static_cast<std::size_t>(node)] = 0; }
+  /// The nodes that are wanted, ascending.
+  std::vector<Index> finish() {
+    std::vector<Index> nodes;
+    for (std::size_t node = 0; node < place_.size(); ++node) {
+      if (place_[node] < 0) continue;
+      place_[node] = static_cast<Index>(nodes.size());
+      nodes.push_back(static_cast<Index>(node));
+    }
+    return nodes;
+  }
+  void apply(std::vector<CellBlock>& blocks) const {
+    for (CellBlock& block : blocks) {
+      for (Index& node : block.nodes) node = place_[static_cast<std::size_t>(node)];
+    }
+  }
+
+ private:
+  std::vector<Index> place_;
+};
+
+Points columns(const Points& all, const std::vector<Index>& taken) {
+  Points result(all.rows(), static_cast<Index>(taken.size()));
+  for (std::size_t i = 0; i < taken.size(); ++i) result.col(static_cast<Index>(i)) = all.col(taken[i]);
+  return result;
+}
+
+/// The members that are among `numbers` (ascending), by their places there.
+std::vector<Index> places_of(const std::vector<Index>& members, const std::vector<Index>& numbers) {
+  std::vector<Index> result;
+  for (const Index member : members) {
+    const auto at = std::lower_bound(numbers.begin(), numbers.end(), member);
+    if (at != numbers.end() && *at == member) result.push_back(at - numbers.begin());
+  }
+  return result;
+}
+
+std::vector<char> facets_of_rank(const Mesh& mesh, const std::vector<int>& rank_of_cell, int rank) {
+  std::vector<Index> all(static_cast<std::size_t>(mesh.facet_count()));
+  std::iota(all.begin(), all.end(), Index{0});
+  std::vector<char> result;
+  for (const std::vector<Index>& cells : cells_of_facets(mesh, all))
+    result.push_back(rank_of_cell[static_cast<std::size_t>(cells.front())] == rank ? 1 : 0);
+  return result;
+}
+
+void cut_mesh_nodes(const Mesh& whole, Mesh& mesh) {
+  Renumbering places(whole.node_count());
+  places.want(mesh.cells);
+  const std::vector<Index> nodes = places.finish();
+  places.apply(mesh.cells);
+  places.apply(mesh.facets);
+  mesh.nodes = columns(whole.nodes, nodes);
+  for (const Index node : nodes) mesh.node_tags.push_back(whole.node_tags[static_cast<std::size_t>(node)]);
+  for (const MeshPart& part : whole.parts) {
+    MeshPart& own = mesh.parts.emplace_back();
+    own.name = part.name;
+    const auto begin = std::lower_bound(nodes.begin(), nodes.end(), part.first_node);
+    const auto end = std::lower_bound(begin, nodes.end(), part.first_node + part.node_count);
+    own.first_node = begin - nodes.begin();
+    own.node_count = end - begin;
+  }
+}
+
+}  // namespace
+
+Piece cut_piece(const Mesh& mesh, const DisplacementSpace& space, const std::vector<int>& rank_of_cell, int rank,
+                const std::vector<Index>& more_nodes) {
+  Piece piece;
+  std::vector<char> cells(rank_of_cell.size());
+  std::transform(rank_of_cell.begin(), rank_of_cell.end(), cells.begin(), [rank](int r) { return r == rank ? 1 : 0; });
+  const std::vector<char> facets = facets_of_rank(mesh, rank_of_cell, rank);
+  Cut of_cells = cut_blocks(mesh.cells, cells), of_facets = cut_blocks(mesh.facets, facets);
+  piece.cell_number = std::move(of_cells.numbers);
+  piece.facet_number = std::move(of_facets.numbers);
+
+  piece.mesh.source = mesh.source;
+  piece.mesh.dimension = mesh.dimension;
+  piece.mesh.degree = mesh.degree;
+  piece.mesh.cells = std::move(of_cells.blocks);
+  piece.mesh.facets = std::move(of_facets.blocks);
+  cut_mesh_nodes(mesh, piece.mesh);
+  for (std::size_t i = 0; i < mesh.parts.size(); ++i)
+    piece.mesh.parts[i].cells = places_of(mesh.parts[i].cells, piece.cell_number);
+  for (const Group& group : mesh.groups) {
+    const bool is_of_cells = group.dimension == mesh.dimension;
+    piece.mesh.groups.push_back({group.name, group.tag, group.dimension,
+                                 places_of(group.members, is_of_cells ? piece.cell_number : piece.facet_number)});
+  }
+
+  piece.space.dimension = space.dimension;
+  piece.space.degree = space.degree;
+  piece.space.cells = cut_blocks(space.cells, cells).blocks;
+  piece.space.facets = cut_blocks(space.facets, facets).blocks;
+  Renumbering places(space.node_count());
+  places.want(piece.space.cells);
+  for (const Index node : more_nodes) places.want(node);
+  const std::vector<Index> nodes = places.finish();
+  places.apply(piece.space.cells);
+  places.apply(piece.space.facets);
+  piece.space.nodes = columns(space.nodes, nodes);
+  for (const Index node : nodes) piece.space.number.push_back(space.number[static_cast<std::size_t>(node)]);
+  piece.node_number.assign(nodes.begin(), nodes.end());
+  return piece;
+}
+
+}  // namespace ricochet

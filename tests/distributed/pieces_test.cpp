@@ -1,0 +1,177 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/distributed/mpi_ranks.hpp"
+#include "ricochet/distributed/partition.hpp"
+#include "ricochet/distributed/piece.hpp"
+#include "ricochet/fem/assembly.hpp"
+#include "ricochet/linear_algebra/block_jacobi.hpp"
+#include "ricochet/linear_algebra/single_gradients.hpp"
+#include "support/box_mesh.hpp"
+
+// Bodies that are cut in pieces, whose matrices add up to those of the whole. Every rank has the whole here, too, to
+// tell what it should find.
+
+namespace ricochet {
+namespace {
+
+using test_support::BoxMesh;
+using test_support::make_box_mesh;
+using test_support::make_meshed_body;
+using test_support::MeshedBody;
+
+struct Variant {
+  CellShape shape;
+  std::vector<int> counts;
+  int degree;
+  PartitionMethod method;
+};
+
+class Pieces : public testing::TestWithParam<Variant> {
+ protected:
+  Pieces()
+      : world_(Communicator::world()),
+        whole_(make_meshed_body(make_box_mesh({GetParam().shape, GetParam().counts, 1, 0.1, {}}), GetParam().degree)),
+        division_(partition_cells(whole_->mesh, world_.size(), GetParam().method, 7)),
+        piece_(cut_piece(whole_->mesh, whole_->space, division_, world_.rank())),
+        exchange_(world_, piece_.node_number, whole_->space.node_count()),
+        ranks_(world_, exchange_),
+        d_(whole_->mesh.dimension) {
+    own_.mesh = &piece_.mesh;
+    own_.space = &piece_.space;
+    own_.materials = whole_->body.materials;
+    own_.cell_material.assign(piece_.cell_number.size(), 0);
+  }
+  /// Of a vector on the whole body, what this rank has.
+  [[nodiscard]] Vector part_of(const Vector& whole) const {
+    Vector result(piece_.space.dof_count());
+    for (std::size_t i = 0; i < piece_.node_number.size(); ++i)
+      result.segment(static_cast<Index>(i) * d_, d_) = whole.segment(piece_.node_number[i] * d_, d_);
+    return result;
+  }
+  [[nodiscard]] static SparseMatrix operator_of(const Body& body) {
+    const NodeGraph graph = node_graph(*body.space);
+    const SparseMatrix mass = expand_to_components(assemble_scalar_mass(body, graph), body.mesh->dimension);
+    return assemble_stiffness(body, graph) + 300.0 * mass;
+  }
+  [[nodiscard]] static Vector some(Index size) {
+    return Vector::NullaryExpr(size, [](Index i) { return std::sin(0.9 * static_cast<double>(i * i % 1013)); });
+  }
+
+  Communicator world_;
+  std::unique_ptr<MeshedBody> whole_;
+  std::vector<int> division_;
+  Piece piece_;
+  NodeExchange exchange_;
+  MpiRanks ranks_;
+  Body own_;
+  int d_;
+};
+
+TEST_P(Pieces, AreTheWhole) {
+  const Mesh& mesh = whole_->mesh;
+  EXPECT_EQ(ranks_.sum(static_cast<double>(piece_.mesh.cell_count())), mesh.cell_count());
+  EXPECT_EQ(ranks_.sum(static_cast<double>(piece_.mesh.facet_count())), mesh.facet_count());
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
+    EXPECT_EQ(piece_.mesh.groups[g].name, mesh.groups[g].name);
+    EXPECT_EQ(ranks_.sum(static_cast<double>(piece_.mesh.groups[g].members.size())), mesh.groups[g].members.size());
+  }
+  // Nodes are where they were, and known to people as before.
+  for (std::size_t i = 0; i < piece_.node_number.size(); ++i) {
+    const auto node = static_cast<Index>(i);
+    EXPECT_EQ(piece_.space.nodes.col(node), whole_->space.nodes.col(piece_.node_number[i]));
+    EXPECT_EQ(piece_.space.number[i], whole_->space.number[static_cast<std::size_t>(piece_.node_number[i])]);
+  }
+  // Elements keep their tags, their nodes and their places in mesh and space.
+  for (std::size_t i = 0; i < piece_.cell_number.size(); ++i) {
+    const PlaceInBlocks here = place_in_blocks(piece_.mesh.cells, static_cast<Index>(i));
+    const PlaceInBlocks there = place_in_blocks(mesh.cells, piece_.cell_number[i]);
+    const CellBlock &own = piece_.mesh.cells[here.block], &all = mesh.cells[there.block];
+    EXPECT_EQ(own.tags[static_cast<std::size_t>(here.local)], all.tags[static_cast<std::size_t>(there.local)]);
+    for (int k = 0; k < own.nodes_per_cell; ++k)
+      EXPECT_EQ(piece_.mesh.nodes.col(own.cell(here.local)[k]), mesh.nodes.col(all.cell(there.local)[k]));
+  }
+}
+
+TEST_P(Pieces, GroupsHaveTheirElements) {
+  for (const Group& group : piece_.mesh.groups) {
+    const Group* const whole = whole_->mesh.find_group(group.name, group.dimension);
+    ASSERT_NE(whole, nullptr);
+    const bool of_cells = group.dimension == whole_->mesh.dimension;
+    for (const Index member : group.members) {
+      const Index number = (of_cells ? piece_.cell_number : piece_.facet_number)[static_cast<std::size_t>(member)];
+      EXPECT_TRUE(std::binary_search(whole->members.begin(), whole->members.end(), number));
+    }
+  }
+}
+
+/// Products and forms of the parts add up to those of the whole.
+TEST_P(Pieces, HaveMatricesThatAddUp) {
+  const SparseMatrix whole = operator_of(whole_->body);
+  const NodeMatrix own(operator_of(own_), d_);
+  const Vector x = some(whole.cols()), expected = whole * x;
+  Vector y;
+  own.multiply(part_of(x), y);
+  ranks_.accumulate(y);
+  EXPECT_LT((y - part_of(expected)).lpNorm<Eigen::Infinity>(), 1e-12 * expected.lpNorm<Eigen::Infinity>());
+  EXPECT_NEAR(ranks_.sum(own.form(part_of(x))), x.dot(expected), 1e-12 * whole.norm() * x.squaredNorm());
+  EXPECT_NEAR(dot_product(part_of(x), part_of(expected), ranks_, d_), x.dot(expected),
+              1e-12 * x.norm() * expected.norm());
+}
+
+/// Conjugate gradients in both precisions take the iterations that one rank takes, and find what it finds.
+TEST_P(Pieces, AreSolvedAsTheWhole) {
+  const SparseMatrix whole = operator_of(whole_->body), part = operator_of(own_);
+  const NodeMatrix whole_blocks(whole, d_), own(part, d_);
+  const Vector force = some(whole.cols());
+  std::vector<char> whole_solved(static_cast<std::size_t>(whole.cols()), 1);
+  for (std::size_t dof = 3; dof < whole_solved.size(); dof += 11) whole_solved[dof] = 0;
+  Vector masked = force;
+  for (Index dof = 0; dof < force.size(); ++dof) masked[dof] *= whole_solved[static_cast<std::size_t>(dof)];
+  std::vector<char> solved;
+  for (const std::int64_t node : piece_.node_number) {
+    for (int k = 0; k < d_; ++k) solved.push_back(whole_solved[static_cast<std::size_t>(node * d_ + k)]);
+  }
+  const auto rounds = [](const NodeMatrix& matrix, const std::vector<char>& taken, const Vector& right, int d,
+                         const Ranks& ranks, const SparseMatrix& assembled) {
+    SingleGradients single(matrix, taken, ranks);
+    ConjugateGradients gradients(d, ranks);
+    const auto blocks = make_block_jacobi(assembled, d, taken, ranks);
+    Vector x = Vector::Zero(right.size()), residual = right, image;
+    const auto product = [&](const Vector& a, Vector& b) {
+      matrix.multiply(a, b);
+      ranks.accumulate(b);
+      for (Index dof = 0; dof < b.size(); ++dof) b[dof] *= taken[static_cast<std::size_t>(dof)];
+    };
+    const double target = 1e-13 * gradients.norm(*blocks, residual);
+    std::pair<int, int> iterations;
+    for (int round = 0; round < 2; ++round) {
+      iterations.first += single.solve(residual, 1e-5, 1000, x).iterations;
+      product(x, image);
+      residual = right - image;
+    }
+    iterations.second = gradients.solve(product, *blocks, target, 1000, residual, x).iterations;
+    return std::pair(x, iterations);
+  };
+  const auto [expected, iterations] = rounds(whole_blocks, whole_solved, masked, d_, one_rank(), whole);
+  const auto [found, iterations_found] = rounds(own, solved, part_of(masked), d_, ranks_, part);
+  EXPECT_LT((found - part_of(expected)).lpNorm<Eigen::Infinity>(), 1e-11 * expected.lpNorm<Eigen::Infinity>());
+  EXPECT_NEAR(iterations_found.first, iterations.first, 2);
+  EXPECT_NEAR(iterations_found.second, iterations.second, 3);
+  // Shared nodes have the same bits on all that share them.
+  Vector owners = found;
+  exchange_.spread(owners);
+  EXPECT_EQ(owners, found);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Pieces,
+                         testing::Values(Variant{CellShape::triangle, {12, 9}, 2, PartitionMethod::graph},
+                                         Variant{CellShape::quadrilateral, {12, 9}, 1, PartitionMethod::random},
+                                         Variant{CellShape::tetrahedron, {7, 6, 5}, 1, PartitionMethod::graph},
+                                         Variant{CellShape::tetrahedron, {4, 4, 3}, 2, PartitionMethod::random},
+                                         Variant{CellShape::hexahedron, {6, 5, 4}, 2, PartitionMethod::graph}));
+
+}  // namespace
+}  // namespace ricochet
