@@ -47,8 +47,9 @@ class IterativeStage final : public StageSolver {
   void begin(const Stage& stage, StageSolution& solution);
   void make_zones(const Stage& stage, const std::vector<Index>& points);
   void find_residual(const Stage& stage);
-  void add_reactions(const Stage& stage, const StageSolution& solution, Vector& force) const;
+  void find_reactions(const Stage& stage, const StageSolution& solution);
   void mask(Vector& values) const;
+  void put_together(Vector& force) const;
   [[nodiscard]] double forces(const Stage& stage, const StageSolution& solution);
   void solve_linear(double norm, double target);
   void watch_single_precision(const Stage& stage, const StageSolution& solution);
@@ -73,7 +74,7 @@ class IterativeStage final : public StageSolver {
   Vector displacement_;            ///< of the tangent; empty: the undeformed body
   Vector increment_, previous_;    ///< of this stage and the last one, for the guess
   bool has_previous_ = false;
-  Vector guess_, residual_, work_, motion_, prescribed_, supported_force_;
+  Vector guess_, residual_, reactions_, work_, motion_, prescribed_, supported_force_;
 };
 
 IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
@@ -81,6 +82,7 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
     : problem_(problem),
       coefficients_(coefficients),
       options_(options),
+      gradients_(problem.dimension, *problem.ranks),
       near_(problem.contact.size(), *problem.ranks),
       zones_(problem, coefficients, solved_, product_, options.all_points, layer) {
   if (layer != nullptr) layer_ = std::make_unique<ContactLayer>(problem, coefficients, *layer);
@@ -101,9 +103,9 @@ void IterativeStage::refactorize(const Vector& displacement) {
   const SparseMatrix matrix = combine_operator(problem_, coefficients_, displacement);
   single_.reset();
   product_ = StageProduct(problem_, coefficients_, matrix, displacement);
-  preconditioner_ = make_block_jacobi(matrix, problem_.dimension, solved_);
+  preconditioner_ = make_block_jacobi(matrix, problem_.dimension, solved_, *problem_.ranks);
   if (const NodeMatrix* blocks = product_.matrix(); blocks != nullptr && !blocks->is_scalar())
-    single_ = std::make_unique<SingleGradients>(*blocks, solved_);
+    single_ = std::make_unique<SingleGradients>(*blocks, solved_, *problem_.ranks);
   zones_.clear();
   near_.clear();
 }
@@ -167,7 +169,8 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   for (const int dof : unsolved_) guess_[dof] = 0.0;
   prescribe(problem_, stage, guess_);
   // Nothing that acts or is given: the residual of another guess would have nothing to be small beside.
-  if (stage.right_hand_side.isZero(0.0) && stage.prescribed.isZero(0.0)) guess_.setZero();
+  const bool is_loaded = !stage.right_hand_side.isZero(0.0) || !stage.prescribed.isZero(0.0);
+  if (!problem_.ranks->any(is_loaded)) guess_.setZero();
   const Index points = problem_.contact.size();
   solution.normal_reaction.setZero(points);
   if (problem_.contact.has_friction()) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
@@ -184,39 +187,45 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   if (std::any_of(pressing.begin(), pressing.end(), is_outside)) make_zones(stage, pressing);
 }
 
-/// b − A x, on the dofs that are solved for.
+/// Of a force of which each rank has a part, the whole, on the dofs that are solved for.
+void IterativeStage::put_together(Vector& force) const {
+  problem_.ranks->accumulate(force);
+  mask(force);
+}
+
+/// b − A x.
 void IterativeStage::find_residual(const Stage& stage) {
   product_.multiply(guess_, residual_);
   residual_ = stage.right_hand_side - residual_;
-  mask(residual_);
+  put_together(residual_);
 }
 
-void IterativeStage::add_reactions(const Stage& stage, const StageSolution& solution, Vector& force) const {
-  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), force);
-  mask(force);
+void IterativeStage::find_reactions(const Stage& stage, const StageSolution& solution) {
+  reactions_.setZero(problem_.dof_count());
+  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), reactions_);
+  put_together(reactions_);
 }
 
 /// The norm of all that acts, what moving supports exert among it: what the residual is small beside.
 double IterativeStage::forces(const Stage& stage, const StageSolution& solution) {
   work_ = stage.right_hand_side;
-  if (problem_.supports.size() > 0 && !stage.prescribed.isZero(0.0)) {
+  if (!stage.prescribed.isZero(0.0)) {
     prescribed_.setZero(problem_.dof_count());
     prescribe(problem_, stage, prescribed_);
     product_.multiply(prescribed_, supported_force_);
     work_ -= supported_force_;
   }
-  mask(work_);
+  put_together(work_);
   const double given = gradients_.norm(*preconditioner_, work_);
-  work_.setZero();
-  add_reactions(stage, solution, work_);
-  return std::max(given, gradients_.norm(*preconditioner_, work_));
+  find_reactions(stage, solution);
+  return std::max(given, gradients_.norm(*preconditioner_, reactions_));
 }
 
 /// From a residual of this norm to one of `target`; of the first digits in single precision.
 void IterativeStage::solve_linear(double norm, double target) {
   const auto product = [&](const Vector& x, Vector& y) {
     product_.multiply(x, y);
-    mask(y);
+    put_together(y);
   };
   if (single_ && single_is_trusted_) {
     const auto result = single_->solve(residual_, std::max(target / norm, single_reduction), iteration_limit, guess_);
@@ -237,8 +246,8 @@ void IterativeStage::solve_linear(double norm, double target) {
 /// Whether they have led where they said: `residual_` is b − A x, reactions left out.
 void IterativeStage::watch_single_precision(const Stage& stage, const StageSolution& solution) {
   if (promised_ == 0.0) return;
-  work_ = residual_;
-  add_reactions(stage, solution, work_);
+  find_reactions(stage, solution);
+  work_ = residual_ + reactions_;
   single_is_trusted_ = gradients_.norm(*preconditioner_, work_) <= astray * promised_;
   promised_ = 0.0;
 }
@@ -256,7 +265,8 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
     if (touches) {
       zones_.solve(stage, residual_, guess_, solution);
       find_residual(stage);
-      add_reactions(stage, solution, residual_);
+      find_reactions(stage, solution);
+      residual_ += reactions_;
     }
     if (target == 0.0) target = options_.tolerance * forces(stage, solution);
     const double norm = gradients_.norm(*preconditioner_, residual_);
