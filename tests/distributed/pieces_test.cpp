@@ -3,54 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ricochet/distributed/mpi_ranks.hpp"
-#include "ricochet/distributed/partition.hpp"
-#include "ricochet/distributed/piece.hpp"
-#include "ricochet/fem/assembly.hpp"
+#include "distributed/cut_body.hpp"
 #include "ricochet/linear_algebra/block_jacobi.hpp"
 #include "ricochet/linear_algebra/single_gradients.hpp"
-#include "support/box_mesh.hpp"
 
-// Bodies that are cut in pieces, whose matrices add up to those of the whole. Every rank has the whole here, too, to
-// tell what it should find.
+// Matrices of pieces add up to those of the whole, and are solved as it is.
 
 namespace ricochet {
 namespace {
 
-using test_support::BoxMesh;
-using test_support::make_box_mesh;
-using test_support::make_meshed_body;
-using test_support::MeshedBody;
+using distributed_test::CutBody;
+using distributed_test::Variant;
 
-struct Variant {
-  CellShape shape;
-  std::vector<int> counts;
-  int degree;
-  PartitionMethod method;
-};
-
-class Pieces : public testing::TestWithParam<Variant> {
+class Pieces : public CutBody, public testing::TestWithParam<Variant> {
  protected:
-  Pieces()
-      : world_(Communicator::world()),
-        whole_(make_meshed_body(make_box_mesh({GetParam().shape, GetParam().counts, 1, 0.1, {}}), GetParam().degree)),
-        division_(partition_cells(whole_->mesh, world_.size(), GetParam().method, 7)),
-        piece_(cut_piece(whole_->mesh, whole_->space, division_, world_.rank())),
-        exchange_(world_, piece_.node_number, whole_->space.node_count()),
-        ranks_(world_, exchange_),
-        d_(whole_->mesh.dimension) {
-    own_.mesh = &piece_.mesh;
-    own_.space = &piece_.space;
-    own_.materials = whole_->body.materials;
-    own_.cell_material.assign(piece_.cell_number.size(), 0);
-  }
-  /// Of a vector on the whole body, what this rank has.
-  [[nodiscard]] Vector part_of(const Vector& whole) const {
-    Vector result(piece_.space.dof_count());
-    for (std::size_t i = 0; i < piece_.node_number.size(); ++i)
-      result.segment(static_cast<Index>(i) * d_, d_) = whole.segment(piece_.node_number[i] * d_, d_);
-    return result;
-  }
+  Pieces() : CutBody(GetParam()) {}
   [[nodiscard]] static SparseMatrix operator_of(const Body& body) {
     const NodeGraph graph = node_graph(*body.space);
     const SparseMatrix mass = expand_to_components(assemble_scalar_mass(body, graph), body.mesh->dimension);
@@ -59,15 +26,6 @@ class Pieces : public testing::TestWithParam<Variant> {
   [[nodiscard]] static Vector some(Index size) {
     return Vector::NullaryExpr(size, [](Index i) { return std::sin(0.9 * static_cast<double>(i * i % 1013)); });
   }
-
-  Communicator world_;
-  std::unique_ptr<MeshedBody> whole_;
-  std::vector<int> division_;
-  Piece piece_;
-  NodeExchange exchange_;
-  MpiRanks ranks_;
-  Body own_;
-  int d_;
 };
 
 TEST_P(Pieces, AreTheWhole) {
@@ -166,12 +124,8 @@ TEST_P(Pieces, AreSolvedAsTheWhole) {
   EXPECT_EQ(owners, found);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Pieces,
-                         testing::Values(Variant{CellShape::triangle, {12, 9}, 2, PartitionMethod::graph},
-                                         Variant{CellShape::quadrilateral, {12, 9}, 1, PartitionMethod::random},
-                                         Variant{CellShape::tetrahedron, {7, 6, 5}, 1, PartitionMethod::graph},
-                                         Variant{CellShape::tetrahedron, {4, 4, 3}, 2, PartitionMethod::random},
-                                         Variant{CellShape::hexahedron, {6, 5, 4}, 2, PartitionMethod::graph}));
+INSTANTIATE_TEST_SUITE_P(All, Pieces, testing::ValuesIn(distributed_test::variants()),
+                         [](const auto& info) { return info.param.name(); });
 
 }  // namespace
 }  // namespace ricochet
