@@ -32,13 +32,10 @@ Mesh box() {
 /// The nodes of each rank, ascending, by a division of the cells.
 std::vector<std::vector<std::int64_t>> nodes_of_ranks(const Mesh& mesh, const std::vector<int>& rank_of_cell) {
   std::vector<std::set<std::int64_t>> nodes(static_cast<std::size_t>(world().size()));
-  std::size_t number = 0;
-  for (const CellBlock& block : mesh.cells) {
-    for (Index cell = 0; cell < block.size(); ++cell, ++number) {
-      std::set<std::int64_t>& own = nodes[static_cast<std::size_t>(rank_of_cell[number])];
-      own.insert(block.cell(cell), block.cell(cell) + block.nodes_per_cell);
-    }
-  }
+  each_cell(mesh.cells, [&](Index number, std::span<const Index> of_cell) {
+    const int rank = rank_of_cell[static_cast<std::size_t>(number)];
+    nodes[static_cast<std::size_t>(rank)].insert(of_cell.begin(), of_cell.end());
+  });
   std::vector<std::vector<std::int64_t>> result;
   for (const auto& own : nodes) result.emplace_back(own.begin(), own.end());
   return result;

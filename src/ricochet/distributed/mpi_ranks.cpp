@@ -1,7 +1,5 @@
 #include "ricochet/distributed/mpi_ranks.hpp"
 
-#include <algorithm>
-
 namespace ricochet {
 
 /// Numbers of all ranks come to each, which takes them in the order of the ranks: the same bits everywhere, whatever

@@ -44,7 +44,7 @@ std::map<int, std::vector<std::int64_t>> find_sharers(const Communicator& ranks,
 }  // namespace
 
 NodeExchange::NodeExchange(const Communicator& ranks, const std::vector<std::int64_t>& numbers, std::int64_t count)
-    : ranks_(ranks), is_owned_(numbers.size(), 1), nodes_(static_cast<Index>(numbers.size())) {
+    : ranks_(ranks), nodes_(static_cast<Index>(numbers.size())) {
   std::unordered_map<std::int64_t, Index> node_of;
   for (std::size_t node = 0; node < numbers.size(); ++node) node_of.emplace(numbers[node], static_cast<Index>(node));
   if (node_of.size() != numbers.size()) throw std::logic_error("a rank has a node twice");
@@ -67,8 +67,7 @@ NodeExchange::NodeExchange(const Communicator& ranks, const std::vector<std::int
       neighbours_[i].gives.push_back(owner[static_cast<std::size_t>(node)] == messages_[i].rank ? 1 : 0);
   }
   for (std::size_t node = 0; node < owner.size(); ++node) {
-    is_owned_[node] = owner[node] == ranks.rank() ? 1 : 0;
-    if (is_owned_[node] == 0) not_owned_.push_back(static_cast<Index>(node));
+    if (owner[node] != ranks.rank()) not_owned_.push_back(static_cast<Index>(node));
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -22,7 +23,9 @@ class NodeExchange {
   /// The values of a node's owner, for all that share it.
   void spread(Vector& values) const;
 
-  [[nodiscard]] bool is_owned(Index node) const { return is_owned_[static_cast<std::size_t>(node)] != 0; }
+  [[nodiscard]] bool is_owned(Index node) const {
+    return !std::binary_search(not_owned_.begin(), not_owned_.end(), node);
+  }
   [[nodiscard]] Index owned_count() const { return nodes_ - static_cast<Index>(not_owned_.size()); }
   [[nodiscard]] const std::vector<Index>& not_owned() const { return not_owned_; }
   [[nodiscard]] std::size_t neighbour_count() const { return neighbours_.size(); }
@@ -43,8 +46,7 @@ class NodeExchange {
   std::vector<Neighbour> neighbours_;      ///< by rank
   mutable std::vector<Message> messages_;  ///< with each
   std::vector<Index> shared_;              ///< nodes that some neighbour has, each once
-  std::vector<char> is_owned_;             ///< per node
-  std::vector<Index> not_owned_;
+  std::vector<Index> not_owned_;           ///< ascending
   Index nodes_ = 0;
   mutable Traffic traffic_;
   mutable std::vector<double> own_;

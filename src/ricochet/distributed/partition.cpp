@@ -16,16 +16,6 @@ namespace ricochet {
 
 namespace {
 
-/// Calls visit(number, nodes) for the cells of all blocks.
-template <class Visit>
-void each_cell(const Mesh& mesh, const Visit& visit) {
-  Index number = 0;
-  for (const CellBlock& block : mesh.cells) {
-    for (Index i = 0; i < block.size(); ++i, ++number)
-      visit(number, std::span<const Index>(block.cell(i), static_cast<std::size_t>(block.nodes_per_cell)));
-  }
-}
-
 /// Nodes that share a cell, row after row, without the node itself.
 struct Adjacency {
   std::vector<PetscInt> begin{0}, neighbour;
@@ -34,14 +24,14 @@ struct Adjacency {
 Adjacency adjacency_of(const Mesh& mesh) {
   const auto count = static_cast<std::size_t>(mesh.node_count());
   std::vector<Index> begin(count + 1, 0);
-  each_cell(mesh, [&](Index, std::span<const Index> nodes) {
+  each_cell(mesh.cells, [&](Index, std::span<const Index> nodes) {
     for (const Index node : nodes) ++begin[static_cast<std::size_t>(node) + 1];
   });
   for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
   std::vector<const Index*> cell(static_cast<std::size_t>(begin.back()));
   std::vector<int> length(cell.size());
   std::vector<Index> next(begin.begin(), begin.end() - 1);
-  each_cell(mesh, [&](Index, std::span<const Index> nodes) {
+  each_cell(mesh.cells, [&](Index, std::span<const Index> nodes) {
     for (const Index node : nodes) {
       const auto at = static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++);
       cell[at] = nodes.data();
@@ -123,7 +113,7 @@ std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod me
   }
   const std::vector<int> part = divide_nodes(mesh, ranks);
   std::vector<Index> count(static_cast<std::size_t>(ranks), 0);
-  each_cell(mesh, [&](Index cell, std::span<const Index> nodes) {
+  each_cell(mesh.cells, [&](Index cell, std::span<const Index> nodes) {
     int best = -1;
     std::ptrdiff_t most = 0;
     for (const Index node : nodes) {

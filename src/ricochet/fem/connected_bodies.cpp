@@ -10,29 +10,16 @@
 
 namespace ricochet {
 
-namespace {
-
-/// Calls visit(number of the cell, its nodes, how many).
-template <class Visit>
-void for_each_cell(const DisplacementSpace& space, const Visit& visit) {
-  Index number = 0;
-  for (const CellBlock& block : space.cells) {
-    for (Index cell = 0; cell < block.size(); ++cell, ++number) visit(number, block.cell(cell), block.nodes_per_cell);
-  }
-}
-
-}  // namespace
-
 ConnectedBodies find_connected_bodies(const DisplacementSpace& space) {
   DisjointSets sets(space.node_count());
-  for_each_cell(space, [&](Index, const Index* nodes, int count) {
-    for (int k = 1; k < count; ++k) sets.join(nodes[0], nodes[k]);
+  each_cell(space.cells, [&](Index, std::span<const Index> nodes) {
+    for (const Index node : nodes.subspan(1)) sets.join(nodes[0], node);
   });
   for (const auto& [one, other] : space.glued) sets.join(one, other);
   ConnectedBodies result;
   const auto count = static_cast<std::size_t>(space.node_count());
   std::vector<int> of_root(count, -1);
-  for_each_cell(space, [&](Index, const Index* nodes, int) {
+  each_cell(space.cells, [&](Index, std::span<const Index> nodes) {
     int& body = of_root[static_cast<std::size_t>(sets.root(nodes[0]))];
     if (body < 0) body = result.count++;
     result.of_cell.push_back(body);

@@ -111,10 +111,6 @@ SingleGradients::SingleGradients(const NodeMatrix& matrix, const std::vector<cha
   for (Numbers* numbers : {&x_, &residual_, &direction_, &image_}) numbers->setZero(matrix.size());
 }
 
-std::size_t SingleGradients::bytes() const {
-  return sizeof(float) * (values_.size() + inverse_factor_.size() + 4 * static_cast<std::size_t>(x_.size()));
-}
-
 /// q = Â p; pᵀ q.
 double SingleGradients::multiply() {
   const NodePattern& pattern = matrix_.pattern();

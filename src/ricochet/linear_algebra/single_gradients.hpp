@@ -21,8 +21,6 @@ class SingleGradients {
   /// themselves.
   ConjugateGradients::Result solve(const Vector& residual, double reduction, int iteration_limit, Vector& x);
 
-  [[nodiscard]] std::size_t bytes() const;
-
  private:
   using Numbers = Eigen::VectorXf;
 

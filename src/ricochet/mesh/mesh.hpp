@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,16 @@ struct PlaceInBlocks {
   PlaceInBlocks place{0, number};
   while (place.local >= blocks[place.block].size()) place.local -= blocks[place.block++].size();
   return place;
+}
+
+/// Calls visit(number, its nodes) for the elements of all blocks, numbered through them.
+template <class Visit>
+void each_cell(const std::vector<CellBlock>& blocks, const Visit& visit) {
+  Index number = 0;
+  for (const CellBlock& block : blocks) {
+    for (Index i = 0; i < block.size(); ++i, ++number)
+      visit(number, std::span<const Index>(block.cell(i), static_cast<std::size_t>(block.nodes_per_cell)));
+  }
 }
 
 /// A named physical group. An unnamed physical group is called by its number.

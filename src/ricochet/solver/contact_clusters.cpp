@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
+
+#include "ricochet/mesh/disjoint_sets.hpp"
 
 namespace ricochet {
 
@@ -16,34 +17,26 @@ struct Bundle {
 
 /// Bundles of points that see a node in common, in the order of their first points.
 std::vector<Bundle> bundle_points(const SemidiscreteProblem& problem, const std::vector<Index>& points) {
-  std::vector<std::size_t> leader(points.size());
-  std::iota(leader.begin(), leader.end(), std::size_t{0});
-  const auto find = [&](std::size_t member) {
-    while (leader[member] != member) member = leader[member] = leader[leader[member]];
-    return member;
-  };
-  const auto join = [&](std::size_t a, std::size_t b) {
-    a = find(a);
-    b = find(b);
-    leader[std::max(a, b)] = std::min(a, b);
-  };
-  std::map<Index, std::size_t> first_at;
-  std::size_t first_that_slides = points.size();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    problem.contact.visit_nodes(points[i],
-                                [&](Index node, double) { join(i, first_at.try_emplace(node, i).first->second); });
-    if (!problem.contact.slides(points[i])) continue;
-    if (first_that_slides == points.size()) first_that_slides = i;
-    join(i, first_that_slides);
+  DisjointSets together(static_cast<Index>(points.size()));
+  std::map<Index, Index> first_at;
+  Index first_that_slides = -1;
+  for (Index i = 0; i < static_cast<Index>(points.size()); ++i) {
+    const Index point = points[static_cast<std::size_t>(i)];
+    problem.contact.visit_nodes(
+        point, [&](Index node, double) { together.join(i, first_at.try_emplace(node, i).first->second); });
+    if (!problem.contact.slides(point)) continue;
+    if (first_that_slides < 0) first_that_slides = i;
+    together.join(i, first_that_slides);
   }
   std::vector<Bundle> bundles;
   std::vector<std::size_t> bundle_of(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (find(i) == i) {
+    const auto root = static_cast<std::size_t>(together.root(static_cast<Index>(i)));
+    if (root == i) {
       bundle_of[i] = bundles.size();
       bundles.push_back({{}, problem.nodes.col(problem.contact.first_own_node(points[i]))});
     }
-    bundles[bundle_of[find(i)]].members.push_back(i);
+    bundles[bundle_of[root]].members.push_back(i);
   }
   return bundles;
 }

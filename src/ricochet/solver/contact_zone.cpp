@@ -46,12 +46,14 @@ ContactZone::ContactZone(const SemidiscreteProblem& problem, const OperatorCoeff
 }
 
 void ContactZone::solve(Stage& stage, const std::vector<char>& eligible, const Vector& residual, Vector& correction,
-                        StageSolution& local, Vector& x, StageSolution& solution) {
+                        Vector& x, StageSolution& solution) {
   for (std::size_t i = 0; i < has_.size(); ++i) stage.eligible[i] = has_[i] != 0 ? eligible[i] : char{0};
-  zone_->solve(stage, residual, local, correction);
+  zone_->solve(stage, residual, solution, correction);
   for (const int dof : own_dofs_) x[dof] += correction[dof];
   for (const int dof : zone_->dofs()) correction[dof] = 0.0;
-  if (&local == &solution) return;
+}
+
+void ContactZone::keep_own(const StageSolution& local, StageSolution& solution) const {
   const Index tangents = solution.tangential_reaction.size() / std::max<Index>(1, solution.normal_reaction.size());
   for (const Index point : own_points_) {
     solution.normal_reaction[point] = local.normal_reaction[point];

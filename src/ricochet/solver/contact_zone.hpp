@@ -28,9 +28,11 @@ class ContactZone {
               FactoredStage* layer);
 
   /// `stage` is one on the correction c; what is eligible in it is chosen here. `correction`, per dof of the problem:
-  /// work space, zero outside of the zone. x moves, and `solution` gets the reactions, where they are the zone's own.
-  void solve(Stage& stage, const std::vector<char>& eligible, const Vector& residual, Vector& correction,
-             StageSolution& local, Vector& x, StageSolution& solution);
+  /// work space, zero before and after. x moves where it is the zone's own; `solution` is that of the zone.
+  void solve(Stage& stage, const std::vector<char>& eligible, const Vector& residual, Vector& correction, Vector& x,
+             StageSolution& solution);
+  /// Of a solution of the zone what is its own.
+  void keep_own(const StageSolution& local, StageSolution& solution) const;
 
   /// What the contact conditions leave for later stages.
   void save(Snapshot& snapshot, const std::string& name) const { zone_->save(snapshot, name); }

@@ -162,16 +162,13 @@ void ContactZones::solve(const Stage& stage, const Vector& residual, Vector& x, 
     stage_.slip_offset += stage.slip_factor * slip_;
   }
   if (zones_.size() == 1) {
-    zones_.front()->solve(stage_, stage.eligible, residual, correction_, solution, x, solution);
+    zones_.front()->solve(stage_, stage.eligible, residual, correction_, x, solution);
     return;
   }
   for (const auto& zone : zones_) {
     solution_.iterations = 0;
-    solution_.clear_mean();
-    solution_.normal_reaction.setZero(solution.normal_reaction.size());
-    solution_.tangential_reaction.setZero(solution.tangential_reaction.size());
-    solution_.contact_status.assign(solution.contact_status.size(), ContactStatus::open);
-    zone->solve(stage_, stage.eligible, residual, correction_, solution_, x, solution);
+    zone->solve(stage_, stage.eligible, residual, correction_, x, solution_);
+    zone->keep_own(solution_, solution);
     solution.iterations += solution_.iterations;
   }
 }

@@ -50,9 +50,9 @@ class IterativeStage final : public StageSolver {
   void find_reactions(const Stage& stage, const StageSolution& solution);
   void mask(Vector& values) const;
   void put_together(Vector& force) const;
-  [[nodiscard]] double forces(const Stage& stage, const StageSolution& solution);
+  [[nodiscard]] double forces(const Stage& stage);
   void solve_linear(double norm, double target);
-  void watch_single_precision(const Stage& stage, const StageSolution& solution);
+  void watch_single_precision();
   void end(const Stage& stage, StageSolution& solution);
 
   const SemidiscreteProblem& problem_;
@@ -74,7 +74,8 @@ class IterativeStage final : public StageSolver {
   Vector displacement_;            ///< of the tangent; empty: the undeformed body
   Vector increment_, previous_;    ///< of this stage and the last one, for the guess
   bool has_previous_ = false;
-  Vector guess_, residual_, reactions_, work_, motion_, prescribed_, supported_force_;
+  Vector reactions_;  ///< their forces, those of the last zones
+  Vector guess_, residual_, work_, motion_, prescribed_, supported_force_;
 };
 
 IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
@@ -207,7 +208,7 @@ void IterativeStage::find_reactions(const Stage& stage, const StageSolution& sol
 }
 
 /// The norm of all that acts, what moving supports exert among it: what the residual is small beside.
-double IterativeStage::forces(const Stage& stage, const StageSolution& solution) {
+double IterativeStage::forces(const Stage& stage) {
   work_ = stage.right_hand_side;
   if (!stage.prescribed.isZero(0.0)) {
     prescribed_.setZero(problem_.dof_count());
@@ -217,7 +218,6 @@ double IterativeStage::forces(const Stage& stage, const StageSolution& solution)
   }
   put_together(work_);
   const double given = gradients_.norm(*preconditioner_, work_);
-  find_reactions(stage, solution);
   return std::max(given, gradients_.norm(*preconditioner_, reactions_));
 }
 
@@ -230,8 +230,7 @@ void IterativeStage::solve_linear(double norm, double target) {
   if (single_ && single_is_trusted_) {
     const auto result = single_->solve(residual_, std::max(target / norm, single_reduction), iteration_limit, guess_);
     promised_ = result.residual;
-    if (result.converged) return;
-    single_is_trusted_ = false;
+    single_is_trusted_ = result.converged;
     return;
   }
   promised_ = 0.0;
@@ -244,11 +243,10 @@ void IterativeStage::solve_linear(double norm, double target) {
 }
 
 /// Whether they have led where they said: `residual_` is b − A x, reactions left out.
-void IterativeStage::watch_single_precision(const Stage& stage, const StageSolution& solution) {
+void IterativeStage::watch_single_precision() {
   if (promised_ == 0.0) return;
-  find_reactions(stage, solution);
   work_ = residual_ + reactions_;
-  single_is_trusted_ = gradients_.norm(*preconditioner_, work_) <= astray * promised_;
+  single_is_trusted_ = single_is_trusted_ && gradients_.norm(*preconditioner_, work_) <= astray * promised_;
   promised_ = 0.0;
 }
 
@@ -256,11 +254,12 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   begin(stage, solution);
   single_is_trusted_ = true;
   promised_ = 0.0;
+  reactions_.setZero(problem_.dof_count());
   double target = 0.0;
   bool must_touch = false;  // points have penetrated where none was thought to touch
   for (int round = 0; round < round_limit; ++round) {
     find_residual(stage);
-    watch_single_precision(stage, solution);
+    watch_single_precision();
     const bool touches = zones_.are_made() && (must_touch || presses_at_start_ || near_.some_may_touch(stage));
     if (touches) {
       zones_.solve(stage, residual_, guess_, solution);
@@ -268,7 +267,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
       find_reactions(stage, solution);
       residual_ += reactions_;
     }
-    if (target == 0.0) target = options_.tolerance * forces(stage, solution);
+    if (target == 0.0) target = options_.tolerance * forces(stage);
     const double norm = gradients_.norm(*preconditioner_, residual_);
     if (norm <= target) {
       if (layer_) layer_->find_motion(*stage.rows, solution, guess_, solution.contact_increment);
