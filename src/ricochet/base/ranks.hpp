@@ -1,11 +1,17 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/base/types.hpp"
 
-/// @file A body that is divided among processes, its ranks. Here is what the rest of the library asks of them, or will
-/// (`accumulate`, once there are several); one process alone answers with what it was given.
+/// @file A body that is divided among processes, its ranks. Here is what the rest of the library asks of them; one
+/// process alone answers with what it was given. All functions that are about more than one rank are called by all, and
+/// wait for them.
 namespace ricochet {
 
 /// How the number of the whole body comes from those of the ranks.
@@ -21,7 +27,16 @@ enum class Reduction : char {
 /// force, and any energy, is a sum over ranks of what each computes alone.
 class Ranks {
  public:
+  template <class Number>
+  using ForEach = std::vector<std::vector<Number>>;  ///< rank by rank
+
   virtual ~Ranks() = default;
+  [[nodiscard]] virtual int rank() const { return 0; }
+  [[nodiscard]] virtual int size() const { return 1; }
+  [[nodiscard]] bool are_several() const { return size() > 1; }
+  /// The one that speaks for all: to people and in files.
+  [[nodiscard]] bool is_first() const { return rank() == 0; }
+
   /// The numbers of the whole body from those of this rank, in place; one exchange for all.
   virtual void reduce(std::span<double> /* values */, std::span<const Reduction> /* by */) const {}
   /// Makes an additive force consistent: as many numbers for each node as there are.
@@ -32,11 +47,19 @@ class Ranks {
   /// The nodes for which another rank speaks, ascending: what they have in a sum over all nodes is taken off again.
   [[nodiscard]] virtual std::span<const Index> not_owned() const { return {}; }
 
+  /// Of a node of this rank in the whole body.
+  [[nodiscard]] virtual std::int64_t number_of(Index node) const { return node; }
+  /// What each rank has for each, handed over: of the result, too, there is one for every rank.
+  [[nodiscard]] virtual ForEach<double> exchange(ForEach<double> to_each) const { return to_each; }
+  [[nodiscard]] virtual ForEach<std::int64_t> exchange(ForEach<std::int64_t> to_each) const { return to_each; }
+
   [[nodiscard]] double sum(double value) const { return reduced(value, Reduction::sum); }
   [[nodiscard]] double minimum(double value) const { return reduced(value, Reduction::minimum); }
   [[nodiscard]] double maximum(double value) const { return reduced(value, Reduction::maximum); }
   /// On some rank.
   [[nodiscard]] bool any(bool value) const { return maximum(value ? 1.0 : 0.0) > 0.0; }
+  /// What each rank does for itself. Where it throws an Error on some rank all throw that of the first one.
+  void together(const std::function<void()>& work) const;
 
  private:
   [[nodiscard]] double reduced(double value, Reduction by) const {

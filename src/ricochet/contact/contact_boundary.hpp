@@ -97,9 +97,10 @@ struct ContactBoundary {
   /// Between bodies that slide far: 1. Their rows of `trace` are those of c alone: what they see changes with the
   /// motion.
   std::vector<char> slides_far;
-  std::vector<Index> reachable_nodes;  ///< of both surfaces of these
-  bool touches_itself = false;         ///< some of these have one surface, of which points may be left out
-  double out_of_sight = 0.0;           ///< the gap of such a point where it faces nothing
+  std::vector<Index> reachable_nodes;   ///< of both surfaces of these
+  bool touches_itself = false;          ///< some of these have one surface, of which points may be left out
+  bool has_friction_elsewhere = false;  ///< at points of other ranks
+  double out_of_sight = 0.0;            ///< the gap of such a point where it faces nothing
   std::vector<Index> opposite_node;  ///< per ContactPair, one of the opposite surface of a pair that slides far, or −1
 
   // Per node of the contact boundary (once per obstacle or pair), for what is reported node by node:
@@ -115,7 +116,7 @@ struct ContactBoundary {
 
   [[nodiscard]] Index size() const { return initial_gap.size(); }
   [[nodiscard]] bool has_friction() const {
-    return (friction_coefficient.array() > 0.0).any() || (friction_bound.array() > 0.0).any();
+    return has_friction_elsewhere || (friction_coefficient.array() > 0.0).any() || (friction_bound.array() > 0.0).any();
   }
   [[nodiscard]] bool follows_motion() const { return geometry != nullptr; }
   /// Calls visit(node, c_ij) for the nodes that a point sees.

@@ -8,6 +8,8 @@
 /// @file Where the contact conditions come from when they follow the motion.
 namespace ricochet {
 
+struct ContactPart;  // contact_part.hpp
+
 /// Where a step began.
 struct StepStart {
   const Vector& displacement;
@@ -55,6 +57,8 @@ class ContactGeometry {
   [[nodiscard]] virtual Vector row_values(const ContactRows&) const { return {}; }
   /// Makes them those that had these normals (d × points), gaps and values.
   virtual void restore(const Points& normals, const Vector& gap, const Vector& row_values, ContactRows& rows) const = 0;
+  /// The same of some points and nodes, in their numbers; null where that is not to be had.
+  [[nodiscard]] virtual std::unique_ptr<ContactGeometry> cut(const ContactPart&) const { return nullptr; }
 };
 
 /// Several of them, each of points and nodes of its own.

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "ricochet/contact/contact_directions.hpp"
+#include "ricochet/contact/contact_part.hpp"
 
 namespace ricochet {
 
@@ -137,6 +138,8 @@ class CurvedContact final : public ContactGeometry {
     });
   }
 
+  [[nodiscard]] std::unique_ptr<ContactGeometry> cut(const ContactPart& part) const override;
+
  private:
   [[nodiscard]] Index dimension() const { return data_.node_positions.rows(); }
   /// visit(the last 2d entries of a row) for the row of G and those of B_T of each point at a rigid body that moves
@@ -202,6 +205,36 @@ class CurvedContact final : public ContactGeometry {
   mutable Vector gap_;         ///< at the look before
   mutable long revision_ = 0;  ///< of the last update: no two rows that differ have the same
 };
+
+std::unique_ptr<ContactGeometry> CurvedContact::cut(const ContactPart& part) const {
+  const auto is_free_body = [](const Obstacle* obstacle) { return obstacle->free_motion() != nullptr; };
+  if (std::any_of(data_.obstacles.begin(), data_.obstacles.end(), is_free_body)) return nullptr;
+  const auto place_in = [](const std::vector<Index>& numbers, Index number) {
+    const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
+    return found != numbers.end() && *found == number ? found - numbers.begin() : Index{-1};
+  };
+  CurvedContactData own;
+  own.obstacles = data_.obstacles;
+  for (CurvedContactData::Point point : data_.points) {
+    point.number = place_in(part.points, point.number);
+    if (point.number >= 0) own.points.push_back(point);
+  }
+  for (CurvedContactData::Node node : data_.nodes) {
+    node.entry = place_in(part.entries, node.entry);
+    node.node = part.place_of[static_cast<std::size_t>(node.node)];
+    if (node.entry >= 0) own.nodes.push_back(node);
+  }
+  own.node_positions.resize(data_.node_positions.rows(), part.nodes);
+  for (std::size_t node = 0; node < part.place_of.size(); ++node) {
+    if (part.place_of[node] >= 0)
+      own.node_positions.col(part.place_of[node]) = data_.node_positions.col(static_cast<Index>(node));
+  }
+  own.node_normals.resize(data_.node_normals.rows(), static_cast<Index>(part.entries.size()));
+  for (std::size_t i = 0; i < part.entries.size(); ++i)
+    own.node_normals.col(static_cast<Index>(i)) = data_.node_normals.col(part.entries[i]);
+  own.trace = cut_trace(data_.trace, part);
+  return std::make_unique<CurvedContact>(std::move(own));
+}
 
 }  // namespace
 

@@ -44,11 +44,12 @@ void Communicator::swap(std::vector<Message>& messages) const {
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
 
-std::vector<std::vector<std::int64_t>> Communicator::exchange(
-    const std::vector<std::vector<std::int64_t>>& to_each) const {
+template <class Number>
+std::vector<std::vector<Number>> Communicator::exchange_any(const std::vector<std::vector<Number>>& to_each) const {
+  const MPI_Datatype type = std::is_same_v<Number, double> ? MPI_DOUBLE : MPI_INT64_T;
   const auto ranks = static_cast<std::size_t>(size_);
   std::vector<int> counts_out(ranks), counts_in(ranks), begins_out(ranks), begins_in(ranks);
-  std::vector<std::int64_t> out, in;
+  std::vector<Number> out, in;
   for (std::size_t r = 0; r < ranks; ++r) {
     begins_out[r] = static_cast<int>(out.size());
     out.insert(out.end(), to_each[r].begin(), to_each[r].end());
@@ -59,12 +60,21 @@ std::vector<std::vector<std::int64_t>> Communicator::exchange(
   MPI_Alltoall(counts_out.data(), 1, MPI_INT, counts_in.data(), 1, MPI_INT, handle_->ranks);
   std::exclusive_scan(counts_in.begin(), counts_in.end(), begins_in.begin(), 0);
   in.resize(static_cast<std::size_t>(begins_in.back() + counts_in.back()));
-  MPI_Alltoallv(out.data(), counts_out.data(), begins_out.data(), MPI_INT64_T, in.data(), counts_in.data(),
-                begins_in.data(), MPI_INT64_T, handle_->ranks);
-  std::vector<std::vector<std::int64_t>> result(ranks);
+  MPI_Alltoallv(out.data(), counts_out.data(), begins_out.data(), type, in.data(), counts_in.data(), begins_in.data(),
+                type, handle_->ranks);
+  std::vector<std::vector<Number>> result(ranks);
   for (std::size_t r = 0; r < ranks; ++r)
     result[r].assign(in.begin() + begins_in[r], in.begin() + begins_in[r] + counts_in[r]);
   return result;
+}
+
+std::vector<std::vector<std::int64_t>> Communicator::exchange(
+    const std::vector<std::vector<std::int64_t>>& to_each) const {
+  return exchange_any(to_each);
+}
+
+std::vector<std::vector<double>> Communicator::exchange(const std::vector<std::vector<double>>& to_each) const {
+  return exchange_any(to_each);
 }
 
 std::vector<double> Communicator::gather(std::span<const double> values) const {

@@ -33,6 +33,7 @@ class Communicator {
   /// What each rank has for each: `to_each` has one entry per rank, and so has the result, by whom it comes from.
   [[nodiscard]] std::vector<std::vector<std::int64_t>> exchange(
       const std::vector<std::vector<std::int64_t>>& to_each) const;
+  [[nodiscard]] std::vector<std::vector<double>> exchange(const std::vector<std::vector<double>>& to_each) const;
   /// The same numbers of every rank, rank after rank.
   [[nodiscard]] std::vector<double> gather(std::span<const double> values) const;
   /// Sends and receives at once. Only the ranks that are named take part; each names the others.
@@ -40,6 +41,8 @@ class Communicator {
 
  private:
   struct Handle;  ///< MPI's
+  template <class Number>
+  [[nodiscard]] std::vector<std::vector<Number>> exchange_any(const std::vector<std::vector<Number>>& to_each) const;
   explicit Communicator(std::shared_ptr<Handle> handle);
 
   std::shared_ptr<Handle> handle_;

@@ -44,7 +44,7 @@ std::map<int, std::vector<std::int64_t>> find_sharers(const Communicator& ranks,
 }  // namespace
 
 NodeExchange::NodeExchange(const Communicator& ranks, const std::vector<std::int64_t>& numbers, std::int64_t count)
-    : ranks_(ranks), nodes_(static_cast<Index>(numbers.size())) {
+    : ranks_(ranks), numbers_(numbers), nodes_(static_cast<Index>(numbers.size())) {
   std::unordered_map<std::int64_t, Index> node_of;
   for (std::size_t node = 0; node < numbers.size(); ++node) node_of.emplace(numbers[node], static_cast<Index>(node));
   if (node_of.size() != numbers.size()) throw std::logic_error("a rank has a node twice");

@@ -26,6 +26,8 @@ class NodeExchange {
   [[nodiscard]] bool is_owned(Index node) const {
     return !std::binary_search(not_owned_.begin(), not_owned_.end(), node);
   }
+  /// In the whole body, per node.
+  [[nodiscard]] const std::vector<std::int64_t>& numbers() const { return numbers_; }
   [[nodiscard]] Index owned_count() const { return nodes_ - static_cast<Index>(not_owned_.size()); }
   [[nodiscard]] const std::vector<Index>& not_owned() const { return not_owned_; }
   [[nodiscard]] std::size_t neighbour_count() const { return neighbours_.size(); }
@@ -43,6 +45,7 @@ class NodeExchange {
   void send_all(const Values& values, Index per_node) const;
 
   Communicator ranks_;
+  std::vector<std::int64_t> numbers_;
   std::vector<Neighbour> neighbours_;      ///< by rank
   mutable std::vector<Message> messages_;  ///< with each
   std::vector<Index> shared_;              ///< nodes that some neighbour has, each once

@@ -119,6 +119,7 @@ Piece cut_piece(const Mesh& mesh, const DisplacementSpace& space, const std::vec
   piece.cell_number = std::move(of_cells.numbers);
   piece.facet_number = std::move(of_facets.numbers);
 
+  piece.mesh.is_piece = true;
   piece.mesh.source = mesh.source;
   piece.mesh.dimension = mesh.dimension;
   piece.mesh.degree = mesh.degree;

@@ -1,5 +1,6 @@
 #include "ricochet/fem/connected_bodies.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
@@ -87,6 +88,25 @@ std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies&
   }
   for (std::size_t b = 0; b < count; ++b)
     result.push_back((highest[b] - lowest[b]).head(nodes.rows()).maxCoeff() / speed[b]);
+  return result;
+}
+
+BodiesOfMesh describe_bodies(const Body& body) {
+  BodiesOfMesh result;
+  result.connected = find_connected_bodies(*body.space);
+  result.names = names_of_bodies(*body.mesh, result.connected);
+  result.crossing_times = wave_crossing_times(body, result.connected);
+  std::vector<Eigen::AlignedBox3d> boxes(static_cast<std::size_t>(result.connected.count));
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  const Points& nodes = body.space->nodes;
+  for (Index node = 0; node < nodes.cols(); ++node) {
+    const int number = result.connected.of_node[static_cast<std::size_t>(node)];
+    if (number < 0) continue;  // of a rigid body
+    position.head(nodes.rows()) = nodes.col(node);
+    boxes[static_cast<std::size_t>(number)].extend(position);
+  }
+  for (const Eigen::AlignedBox3d& box : boxes) result.sizes.push_back(box.diagonal().norm());
+  result.boundary = boundary_facets(body.space->cells);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ricochet/fem/assembly.hpp"
+#include "ricochet/mesh/boundary_facets.hpp"
 
 /// @file The bodies of a mesh: sets of cells that hang together by nodes, or are tied.
 namespace ricochet {
@@ -25,6 +26,16 @@ struct ConnectedBodies {
 /// Per body: the time in which a compression wave runs along the longest side of the box around it, at the speed of its
 /// slowest material. Nothing that happens at one end is known at the other one sooner.
 [[nodiscard]] std::vector<double> wave_crossing_times(const Body& body, const ConnectedBodies& bodies);
+
+/// What a run asks about the bodies of its mesh: of the whole, whatever part of it is here.
+struct BodiesOfMesh {
+  ConnectedBodies connected;
+  std::vector<std::string> names;
+  std::vector<double> crossing_times;  ///< wave_crossing_times
+  std::vector<double> sizes;           ///< the diagonal of the box around each
+  std::vector<CellFacet> boundary;     ///< of the space's cells that are here
+};
+[[nodiscard]] BodiesOfMesh describe_bodies(const Body& body);
 
 /// Times that a compression wave takes through the height of cells, ascending.
 [[nodiscard]] std::vector<double> cell_crossing_times(const Body& body);

@@ -1,9 +1,25 @@
 #include "ricochet/linear_algebra/anderson_acceleration.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace ricochet {
+
+void AndersonAcceleration::divide(const Ranks& ranks, Vector is_counted) {
+  ranks_ = &ranks;
+  is_counted_ = std::move(is_counted);
+}
+
+template <class One, class Other>
+double AndersonAcceleration::dot(const One& one, const Other& other) const {
+  return ranks_->are_several() ? ranks_->sum(one.cwiseProduct(is_counted_).dot(other)) : one.dot(other);
+}
+
+template <class Values>
+double AndersonAcceleration::norm(const Values& values) const {
+  return ranks_->are_several() ? std::sqrt(dot(values, values)) : values.norm();
+}
 
 void AndersonAcceleration::advance(const Vector& point, const Vector& image, Vector& next) {
   if (residual_changes_.rows() != image.size()) {
@@ -35,23 +51,23 @@ void AndersonAcceleration::combine(Vector& next) {
   Index count = 0;
   for (Index age = 0; age < kept_; ++age) {
     const Index column = (newest_ - age + depth_) % depth_;
-    const double length = residual_changes_.col(column).norm();
+    const double length = norm(residual_changes_.col(column));
     if (length == 0.0) continue;
     auto direction = directions_.col(count), move = moves_.col(count);
     direction = residual_changes_.col(column) / length;
     move = image_changes_.col(column) / length;
     for (int pass = 0; pass < 2; ++pass) {
       for (Index k = 0; k < count; ++k) {
-        const double part = directions_.col(k).dot(direction);
+        const double part = dot(directions_.col(k), direction);
         direction -= part * directions_.col(k);
         move -= part * moves_.col(k);
       }
     }
-    const double own = direction.norm();
+    const double own = norm(direction);
     if (own <= same_direction) continue;
     direction /= own;
     move /= own;
-    const double weight = direction.dot(left_);
+    const double weight = dot(direction, left_);
     left_ -= weight * direction;
     next -= weight * move;
     ++count;

@@ -8,6 +8,7 @@
 
 #include "ricochet/base/dense_decompositions.hpp"
 #include "ricochet/base/error.hpp"
+#include "ricochet/linear_algebra/conjugate_gradients.hpp"
 
 namespace ricochet {
 
@@ -16,34 +17,43 @@ namespace {
 constexpr double failure_probability = 1e-9;
 
 /// Uniformly distributed on the sphere.
-Vector start_vector(Index size) {
-  std::mt19937_64 generator(20110901);
+Vector start_vector(Index size, const Ranks& ranks, int d) {
+  std::mt19937_64 generator(20110901 + static_cast<std::uint64_t>(ranks.rank()));
   std::normal_distribution<double> normal;
   Vector start(size);
   for (Index i = 0; i < size; ++i) start[i] = normal(generator);
-  return start / start.norm();
+  for (const Index node : ranks.not_owned()) start.segment(node * d, d).setZero();
+  ranks.accumulate(start);
+  return start / std::sqrt(dot_product(start, start, ranks, d));
 }
 
 }  // namespace
 
 EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(const Vector&, Vector&)>& multiply,
                                           double spread) {
+  return bound_largest_eigenvalue(size, multiply, spread, one_rank(), 1);
+}
+
+EigenvalueBounds bound_largest_eigenvalue(Index size, const std::function<void(const Vector&, Vector&)>& multiply,
+                                          double spread, const Ranks& ranks, int d) {
   EigenvalueBounds bounds;
-  if (size == 0) return bounds;
-  const double odds = 1.648 * std::sqrt(static_cast<double>(size)) / failure_probability;
+  const double all = ranks.sum(static_cast<double>(size - d * static_cast<Index>(ranks.not_owned().size())));
+  if (all == 0.0) return bounds;
+  const double odds = 1.648 * std::sqrt(all) / failure_probability;
+  const auto dot = [&](const Vector& one, const Vector& other) { return dot_product(one, other, ranks, d); };
   const auto enough = static_cast<Index>(std::ceil(0.5 * (1.0 + std::log(odds) / std::sqrt(spread))));
   Vector previous = Vector::Zero(size);
-  Vector current = start_vector(size);
+  Vector current = start_vector(size, ranks, d);
   Vector next(size);
   std::vector<double> diagonal, beside;  // of the tridiagonal projection
   // Without reorthogonalization: rounding repeats Ritz values that have converged, it makes none beyond the spectrum.
   while (true) {
     multiply(current, next);
     ++bounds.products;
-    diagonal.push_back(current.dot(next));
+    diagonal.push_back(dot(current, next));
     if (!beside.empty()) next -= beside.back() * previous;
     next -= diagonal.back() * current;
-    const double length = next.norm();
+    const double length = std::sqrt(dot(next, next));
     const double largest = *std::max_element(diagonal.begin(), diagonal.end());
     // An invariant space is exhausted: it holds a part of every eigenvector.
     const bool exhausted = !(length > 64.0 * std::numeric_limits<double>::epsilon() * largest);

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "ricochet/base/types.hpp"
+#include "ricochet/base/ranks.hpp"
 
 /// @file Bounds of the largest eigenvalue of an operator that is known by its products alone.
 namespace ricochet {
@@ -22,6 +22,10 @@ struct EigenvalueBounds {
 [[nodiscard]] EigenvalueBounds bound_largest_eigenvalue(Index size,
                                                         const std::function<void(const Vector&, Vector&)>& multiply,
                                                         double spread = 0.02);
+/// Of several ranks each has d numbers at each of its nodes; products are consistent.
+[[nodiscard]] EigenvalueBounds bound_largest_eigenvalue(Index size,
+                                                        const std::function<void(const Vector&, Vector&)>& multiply,
+                                                        double spread, const Ranks& ranks, int d);
 
 /// A Ritz value θ ≤ λ_max of such an operator from some products, from a guess of the eigenvector, which need not have
 /// unit length and is not zero; leaves the unit Ritz vector there. Lanczos' method with vectors that are made

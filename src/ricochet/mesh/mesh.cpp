@@ -85,7 +85,7 @@ const Group& Mesh::group(const std::string& name, int dimension) const {
   const Group* found = find_group(name, dimension);
   if (found == nullptr) fail_missing(*this, name, dimension);
   const bool has_members = dimension == this->dimension || dimension == this->dimension - 1;
-  if (has_members && found->members.empty()) {
+  if (has_members && found->members.empty() && !is_piece) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: the group \"{}\" of {} is empty: the file names it, but no element is in it", source,
                             name, entity_name(dimension, this->dimension)));

@@ -74,6 +74,7 @@ struct Mesh {
   std::vector<CellBlock> facets;  ///< facets that belong to a group, one block per shape; each is a facet of a cell
   std::vector<Group> groups;      ///< of every dimension
   std::vector<MeshPart> parts;    ///< of a mesh of several files, in their order; else none
+  bool is_piece = false;          ///< of a mesh that is divided: groups may have nothing here
 
   [[nodiscard]] Index node_count() const { return nodes.cols(); }
   [[nodiscard]] Index cell_count() const;

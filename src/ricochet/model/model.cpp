@@ -276,7 +276,9 @@ std::string scheme_text(const TimeSection& time) {
   return numbers.empty() ? time.scheme : fmt::format("{} ({})", time.scheme, numbers);
 }
 
-std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
+namespace {
+
+std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* times) {
   auto model = std::make_unique<Model>();
   Timer timer;
   require_mesh_files(input);
@@ -305,7 +307,7 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   add_supports(input, *model);
   add_contacts(input, *model);
   double model_seconds = timer.restart();
-  assemble_operators(input, *model);
+  assemble_operators(input, *model, with_forces);
   const double assembly_seconds = timer.restart();
   add_loads(input, *model);
   add_initial_conditions(input, *model);
@@ -314,12 +316,26 @@ std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
   warn_of_torn_ties(*model);
   check_body_overlaps(input, *model);
   check_obstacles(input, *model);
+  model->bodies = describe_bodies(model->body);
   add_standing_columns(input, *model);
-  add_probes(input, *model);
+  find_probes(input, *model);
+  add_sensors(input, *model);
+  model->sizes = {model->space.cell_node_count(), model->mesh.cell_count(), model->space.dof_count(),
+                  model->problem.contact.size(), model->problem.supports.size()};
   model->rotation = std::make_unique<RotationGauge>(model->body);
   model_seconds += timer.restart();
   if (times != nullptr) *times = {read_seconds, model_seconds, assembly_seconds};
   return model;
+}
+
+}  // namespace
+
+std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times) {
+  return build(input, true, times);
+}
+
+std::unique_ptr<Model> build_model_without_forces(const Case& input, BuildTimes* times) {
+  return build(input, false, times);
 }
 
 }  // namespace ricochet

@@ -7,6 +7,7 @@
 
 #include "ricochet/case/case.hpp"
 #include "ricochet/contact/body_contact.hpp"
+#include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/mesh/read_mesh.hpp"
 #include "ricochet/simulation/history.hpp"
 #include "ricochet/simulation/starting_state.hpp"
@@ -15,6 +16,19 @@
 
 /// @file A case together with its mesh: everything a run needs, built and checked.
 namespace ricochet {
+
+/// What a [[probe]] has found in the mesh.
+struct WatchedPlaces {
+  std::vector<Probe> probes;      ///< nodes, those of segments too
+  std::vector<Vector> positions;  ///< of each
+  std::vector<Columns> columns;   ///< of the sensor of each
+  std::vector<Index> nodes;       ///< of a boundary
+};
+
+/// Of the whole body, whatever part of it is here.
+struct ModelSizes {
+  Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
+};
 
 struct Model {
   Mesh mesh;
@@ -25,15 +39,18 @@ struct Model {
   TiedNodes tied;                        ///< nodes of surfaces that are glued to others
   std::vector<PairFacing> pair_facings;  ///< of each; nothing of those with obstacles
   SemidiscreteProblem problem;
+  ModelSizes sizes;
   std::string mass_built;  ///< the name of the construction; for "equivalent" the one that it chose
   InitialConditions initial;
-  bool contains_rotations = true;                ///< false: degree 1 on curved cells, or axisymmetric
-  std::vector<Probe> probes;                     ///< the nodes that are watched, those of segments too
+  bool contains_rotations = true;  ///< false: degree 1 on curved cells, or axisymmetric
+  BodiesOfMesh bodies;
+  std::vector<WatchedPlaces> watched;            ///< of each [[probe]]
   std::vector<std::shared_ptr<Sensor>> sensors;  ///< with a column in history.csv
   HistoryBodies history_bodies;                  ///< with columns of their own
   /// Those with a file of their own, by the steps between its rows.
   std::map<long, std::vector<std::shared_ptr<Sensor>>> sampled_sensors;
   std::unique_ptr<RotationGauge> rotation;
+  std::shared_ptr<const void> kept;  ///< what its ranks are, where the body is divided
 
   Model() = default;
   Model(const Model&) = delete;  // body points into this
@@ -83,5 +100,9 @@ struct BuildTimes {
 /// Reads the mesh and builds the semi-discrete problem. Throws Error(invalid_input) with file:line:column of the entry
 /// of the case that does not fit the mesh, and what there is instead.
 [[nodiscard]] std::unique_ptr<Model> build_model(const Case& input, BuildTimes* times = nullptr);
+
+/// The same without the forces that cells make (K, and damping by it): of a body that is divided before these are
+/// assembled.
+[[nodiscard]] std::unique_ptr<Model> build_model_without_forces(const Case& input, BuildTimes* times = nullptr);
 
 }  // namespace ricochet

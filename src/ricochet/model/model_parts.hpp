@@ -69,7 +69,10 @@ void add_contacts(const Case& input, Model& model);
 void check_facing(const Case& input, std::size_t number, const Model& model);
 /// Refuses bodies that overlap where the run starts.
 void check_body_overlaps(const Case& input, const Model& model);
-void assemble_operators(const Case& input, Model& model);
+/// Mass, and, unless they come later, the forces of cells; then checks of the scheme.
+void assemble_operators(const Case& input, Model& model, bool with_forces);
+/// The internal force and damping by stiffness.
+void assemble_forces(const Case& input, Model& model);
 void add_loads(const Case& input, Model& model);
 void add_initial_conditions(const Case& input, Model& model);
 /// Checks velocities and spins of bodies.
@@ -78,7 +81,10 @@ void check_motions(const Case& input, int dimension);
 void add_motions(const Case& input, Model& model);
 /// Columns of history.csv that follow from the bodies and their contacts.
 void add_standing_columns(const Case& input, Model& model);
-void add_probes(const Case& input, Model& model);
+/// What each [[probe]] is about, with what is to say about that.
+void find_probes(const Case& input, Model& model);
+/// The sensors of what was found.
+void add_sensors(const Case& input, Model& model);
 /// The obstacle of a section, with its motion.
 [[nodiscard]] std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection& section, int dimension);
 /// The largest distance between neighbouring nodes of these facets, to half of it where there are nodes between.

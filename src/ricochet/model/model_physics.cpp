@@ -123,6 +123,10 @@ void warn_of_jumping_supports(const Case& input, const Scheme& scheme) {
   }
 }
 
+bool is_any_positive(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
+}
+
 /// Forces of Cη U̇ are not those of a turned body.
 void refuse_stiffness_damping(const Case& input, const Model& model) {
   for (std::size_t i = 0; i < model.body.materials.size(); ++i) {
@@ -135,7 +139,25 @@ void refuse_stiffness_damping(const Case& input, const Model& model) {
 
 }  // namespace
 
-void assemble_operators(const Case& input, Model& model) {
+void assemble_forces(const Case& input, Model& model) {
+  const NodeGraph graph = node_graph(model.space);
+  const int d = model.mesh.dimension;
+  const auto stiffness = [&](const std::vector<double>& weight) {
+    SparseMatrix matrix = assemble_stiffness(model.body, graph, weight);
+    return model.tied.empty() ? matrix : model.tied.condense(matrix, d);
+  };
+  if (has_finite_strain(model.body)) {
+    refuse_stiffness_damping(input, model);
+    model.problem.internal_force = std::make_shared<FiniteElasticity>(model.body, graph);
+  } else {
+    model.problem.internal_force = std::make_shared<LinearElasticity>(stiffness({}), model.space.nodes);
+  }
+  std::vector<double> damping;
+  for (const Material& material : model.body.materials) damping.push_back(material.stiffness_damping);
+  if (is_any_positive(damping)) model.problem.damping.set_stiffness_part(stiffness(damping), model.space.nodes);
+}
+
+void assemble_operators(const Case& input, Model& model, bool with_forces) {
   const NodeGraph graph = node_graph(model.space);
   const int d = model.mesh.dimension;
   const auto condensed = [&](SparseMatrix matrix, int components) {
@@ -181,29 +203,18 @@ void assemble_operators(const Case& input, Model& model) {
   if (construction->removes_contact_inertia())
     warn_of_heaped_inertia(input, choice.name, *choice.mass, consistent.diagonal());
   choice.mass.reset();
-  const auto is_linear = [](const Material& material) { return material.law->is_linear(); };
-  if (std::all_of(model.body.materials.begin(), model.body.materials.end(), is_linear)) {
-    model.problem.internal_force =
-        std::make_shared<LinearElasticity>(condensed(assemble_stiffness(model.body, graph), d), model.space.nodes);
+  if (with_forces) {
+    assemble_forces(input, model);
   } else {
-    refuse_stiffness_damping(input, model);
-    model.problem.internal_force = std::make_shared<FiniteElasticity>(model.body, graph);
+    model.problem.internal_force = std::make_shared<LinearElasticity>(
+        SparseMatrix(model.space.dof_count(), model.space.dof_count()), model.space.nodes);
   }
-  std::vector<double> mass_damping, stiffness_damping;
-  for (const Material& material : model.body.materials) {
-    mass_damping.push_back(material.mass_damping);
-    stiffness_damping.push_back(material.stiffness_damping);
-  }
-  const auto any = [](const std::vector<double>& values) {
-    return std::any_of(values.begin(), values.end(), [](double v) { return v > 0.0; });
-  };
-  if (any(mass_damping))
+  std::vector<double> mass_damping;
+  for (const Material& material : model.body.materials) mass_damping.push_back(material.mass_damping);
+  if (is_any_positive(mass_damping))
     model.problem.damping.set_mass_part(
         resized(expand_to_components(build(scalar_mass(mass_damping), mass_damping), d), model.space.dof_count()),
         model.space.nodes);
-  if (any(stiffness_damping))
-    model.problem.damping.set_stiffness_part(condensed(assemble_stiffness(model.body, graph, stiffness_damping), d),
-                                             model.space.nodes);
   add_ground(input, model);
   finish_problem(model.problem, mass, construction->removes_contact_inertia());
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);

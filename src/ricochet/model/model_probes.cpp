@@ -20,28 +20,25 @@ constexpr double on_segment = 1e-6;
 /// Of more bodies than these momenta have no columns: rows would be about nothing else.
 constexpr int most_bodies = 20;
 
-class ProbeMaker {
+/// Places of the mesh that probes are about.
+class ProbeFinder {
  public:
-  ProbeMaker(const Case& input, Model& model) : input_(input), model_(model) {}
+  ProbeFinder(const Case& input, Model& model) : input_(input), model_(model) {}
 
-  void make(std::size_t number) {
+  WatchedPlaces find(std::size_t number) {
+    places_ = {};
     const ProbeSection& section = input_.probes[number];
     const std::string key = fmt::format("probe.{}", number);
     if (!section.at.empty()) add_point(section);
     if (!section.from.empty()) add_segment(section, key);
     if (!section.boundary.empty()) add_boundary(section, key);
-    if (!section.group.empty()) add_group(section, key);
-    if (section.contact) add_contact(section, key);
+    if (section.contact) check_contact(section, key);
+    return std::move(places_);
   }
 
  private:
-  void add(const ProbeSection& section, std::shared_ptr<Sensor> sensor) {
-    auto& sensors = section.every > 0 ? model_.sampled_sensors[section.every] : model_.sensors;
-    sensors.push_back(std::move(sensor));
-  }
-
-  void add_node(const ProbeSection& section, const std::string& name, Index node, double distance) {
-    Probe probe{name, node, distance, -1};
+  void add_node(const std::string& name, Index node, double distance) {
+    Probe probe{name, node, distance, -1, model_.space.number[static_cast<std::size_t>(node)]};
     const auto& nodes = model_.problem.contact.nodes;
     const auto entries = std::count(nodes.begin(), nodes.end(), node);
     if (entries > 0) probe.contact_node = std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
@@ -54,13 +51,14 @@ class ProbeMaker {
           "probe \"{}\" is at a node of {} contacts: its gap, pressure and reaction are those with {}", name, entries,
           model_.contact_pairs[pair].opponent(model_.problem.contact.is_opposite[first] != 0)));
     }
-    add(section, make_point_sensor(model_.problem, probe));
-    model_.probes.push_back(probe);
+    places_.columns.push_back(make_point_sensor(model_.problem, probe)->columns());
+    places_.probes.push_back(std::move(probe));
+    places_.positions.emplace_back(model_.space.nodes.col(node));
   }
 
   void add_point(const ProbeSection& section) {
     const NearestNode nearest = nearest_node(model_.space, vector_of(section.at));
-    add_node(section, section.name, nearest.node, nearest.distance);
+    add_node(section.name, nearest.node, nearest.distance);
     const double body_size = extent(model_.space.nodes);
     const std::string message =
         fmt::format("probe \"{}\": the nearest node is {:.3g} away", section.name, nearest.distance);
@@ -102,7 +100,7 @@ class ProbeMaker {
       return std::pair(a.along, a.number) < std::pair(b.along, b.number);
     });
     for (std::size_t i = 0; i < found.size(); ++i)
-      add_node(section, fmt::format("{}.{}", section.name, i), found[i].node, found[i].distance);
+      add_node(fmt::format("{}.{}", section.name, i), found[i].node, found[i].distance);
     log::info(fmt::format("probe \"{}\": {} along the segment", section.name, counted(found.size(), "node")));
   }
 
@@ -116,8 +114,57 @@ class ProbeMaker {
                       "are inside of one body",
                       section.name, section.boundary));
     }
-    const Vector about = section.about.empty() ? Vector(Vector::Zero(model_.mesh.dimension)) : vector_of(section.about);
-    add(section, make_boundary_sensor(section.name, model_.problem, nodes, about));
+    places_.nodes = nodes;
+  }
+
+  void check_contact(const ProbeSection& section, const std::string& key) {
+    const auto count = static_cast<long>(input_.contacts.size());
+    if (*section.contact >= count) {
+      refuse(input_, key + ".contact",
+             fmt::format("there is no contact {}: the case has {} of them, numbered from 0", *section.contact, count));
+    }
+    const ContactPair& pair = model_.contact_pairs[static_cast<std::size_t>(*section.contact)];
+    if (pair.tied) {
+      refuse(input_, key + ".contact",
+             fmt::format("contact {} is tied: it has no contact points whose forces could be watched; use a probe with "
+                         "\"group\" for stresses near the surface",
+                         *section.contact));
+    }
+  }
+
+  const Case& input_;
+  Model& model_;
+  WatchedPlaces places_;
+};
+
+class SensorMaker {
+ public:
+  SensorMaker(const Case& input, Model& model) : input_(input), model_(model) {}
+
+  void make(std::size_t number) {
+    const ProbeSection& section = input_.probes[number];
+    const WatchedPlaces& places = model_.watched[number];
+    for (std::size_t i = 0; i < places.probes.size(); ++i) {
+      const Probe& probe = places.probes[i];
+      add(section, probe.node < 0 ? make_absent_sensor(places.columns[i]) : make_point_sensor(model_.problem, probe));
+    }
+    if (!section.boundary.empty()) {
+      const Vector about =
+          section.about.empty() ? Vector(Vector::Zero(model_.mesh.dimension)) : vector_of(section.about);
+      add(section, make_boundary_sensor(section.name, model_.problem, places.nodes, about));
+    }
+    if (!section.group.empty()) add_group(section, fmt::format("probe.{}", number));
+    if (section.contact) {
+      const ContactPair& pair = model_.contact_pairs[static_cast<std::size_t>(*section.contact)];
+      add(section,
+          make_contact_sensor(section.name, model_.problem, static_cast<int>(*section.contact), pair.exchanged));
+    }
+  }
+
+ private:
+  void add(const ProbeSection& section, std::shared_ptr<Sensor> sensor) {
+    auto& sensors = section.every > 0 ? model_.sampled_sensors[section.every] : model_.sensors;
+    sensors.push_back(std::move(sensor));
   }
 
   void add_group(const ProbeSection& section, const std::string& key) {
@@ -132,22 +179,6 @@ class ProbeMaker {
     add(section, make_cell_group_sensor(section.name, model_.body, group.members, *model_.problem.ranks));
   }
 
-  void add_contact(const ProbeSection& section, const std::string& key) {
-    const auto count = static_cast<long>(input_.contacts.size());
-    if (*section.contact >= count) {
-      refuse(input_, key + ".contact",
-             fmt::format("there is no contact {}: the case has {} of them, numbered from 0", *section.contact, count));
-    }
-    const ContactPair& pair = model_.contact_pairs[static_cast<std::size_t>(*section.contact)];
-    if (pair.tied) {
-      refuse(input_, key + ".contact",
-             fmt::format("contact {} is tied: it has no contact points whose forces could be watched; use a probe with "
-                         "\"group\" for stresses near the surface",
-                         *section.contact));
-    }
-    add(section, make_contact_sensor(section.name, model_.problem, static_cast<int>(*section.contact), pair.exchanged));
-  }
-
   const Case& input_;
   Model& model_;
 };
@@ -160,10 +191,10 @@ std::string label_of(const std::string& name, int number) {
 }
 
 HistoryBodies bodies_of_history(const Model& model) {
-  ConnectedBodies bodies = find_connected_bodies(model.space);
+  const ConnectedBodies& bodies = model.bodies.connected;
   if (bodies.count < 2 || bodies.count > most_bodies) return {};
   HistoryBodies result;
-  const std::vector<std::string> names = names_of_bodies(model.mesh, bodies);
+  const std::vector<std::string>& names = model.bodies.names;
   std::set<std::string> taken;
   for (const MeshPart& part : model.mesh.parts) taken.insert(part.name);
   for (int body = 0; body < bodies.count; ++body) {
@@ -173,7 +204,7 @@ HistoryBodies bodies_of_history(const Model& model) {
     while (std::find(result.labels.begin(), result.labels.end(), label) != result.labels.end()) label += "_";
     result.labels.push_back(std::move(label));
   }
-  result.of_node = std::move(bodies.of_node);
+  result.of_node = bodies.of_node;
   return result;
 }
 
@@ -196,8 +227,13 @@ Columns history_columns(const Model& model) {
   return HistoryRecorder::columns_of(model.problem, model.sensors, model.history_bodies);
 }
 
-void add_probes(const Case& input, Model& model) {
-  ProbeMaker maker(input, model);
+void find_probes(const Case& input, Model& model) {
+  ProbeFinder finder(input, model);
+  for (std::size_t i = 0; i < input.probes.size(); ++i) model.watched.push_back(finder.find(i));
+}
+
+void add_sensors(const Case& input, Model& model) {
+  SensorMaker maker(input, model);
   for (std::size_t i = 0; i < input.probes.size(); ++i) maker.make(i);
 }
 

@@ -151,6 +151,8 @@ LinearizationError linearization_error(const SemidiscreteProblem& problem, const
     error.beyond_all_rounding = std::max(error.beyond_all_rounding,
                                          wrong - 2.0 * (rounding + stage.gap_factor * motion.gap_change_rounding[i]));
   }
+  error.beyond_rounding = problem.ranks->maximum(error.beyond_rounding);
+  error.beyond_all_rounding = problem.ranks->maximum(error.beyond_all_rounding);
   return error;
 }
 

@@ -22,6 +22,7 @@ class Damping {
   void set_ground_part(const Vector& coefficients) { ground_ = coefficients; }
 
   [[nodiscard]] bool is_absent() const { return !mass_part_ && !stiffness_part_ && ground_.size() == 0; }
+  [[nodiscard]] const NodeMatrix* mass_part() const { return mass_part_ ? &*mass_part_ : nullptr; }
   [[nodiscard]] bool has_stiffness_part() const { return stiffness_part_.has_value(); }
   /// `force` = C `velocity`; two vectors. Needs a part.
   void evaluate(const Vector& velocity, Vector& force) const;

@@ -46,7 +46,8 @@ struct SemidiscreteProblem {
 
   /// Dofs without inertia: those of the contact nodes when the mass is an equivalent one, else none. Ascending.
   std::vector<Index> massless_dofs;
-  std::vector<char> is_massless;  ///< per dof
+  std::vector<char> is_massless;                                       ///< per dof
+  bool has_massless_elsewhere = false, has_contact_elsewhere = false;  ///< such dofs, on other ranks
   /// Dofs of the contact nodes that no support holds, ascending.
   std::vector<Index> contact_dofs;
 
@@ -60,7 +61,10 @@ struct SemidiscreteProblem {
     return is_of_free_body(node) && (nodes.cols() - node) % 2 == 1;
   }
   [[nodiscard]] bool has_damping() const { return !damping.is_absent(); }
-  [[nodiscard]] bool has_singular_mass() const { return !massless_dofs.empty(); }
+  [[nodiscard]] bool has_singular_mass() const { return has_massless_elsewhere || !massless_dofs.empty(); }
+  /// Of all ranks, which ask together.
+  [[nodiscard]] bool has_diagonal_mass() const { return !ranks->any(!mass.is_diagonal()); }
+  [[nodiscard]] bool has_contact_dofs() const { return has_contact_elsewhere || !contact_dofs.empty(); }
   /// What values per dof are on contact_dofs, and the other way. (Eigen's indexed views copy their indices.)
   void take_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const;
   void put_contact(const Eigen::Ref<const Vector>& on_contact, Vector& values) const;

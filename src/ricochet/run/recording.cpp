@@ -30,7 +30,7 @@ HistoryWriter open_history(const std::string& path, const std::vector<std::strin
 
 /// Of those of the mesh, and of the rigid bodies that move freely.
 std::vector<std::string> names_of_all_bodies(const Case& input, const Model& model) {
-  std::vector<std::string> names = names_of_bodies(model.mesh, find_connected_bodies(model.space));
+  std::vector<std::string> names = model.bodies.names;
   for (std::size_t i = 0; i < input.obstacles.size(); ++i) {
     if (model.obstacles[i]->free_motion() != nullptr) names.push_back(input.obstacles[i].name);
   }
@@ -38,10 +38,8 @@ std::vector<std::string> names_of_all_bodies(const Case& input, const Model& mod
 }
 
 ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, const State& state) {
-  ConnectedBodies bodies = find_connected_bodies(model.space);
-  std::vector<double> separation = wave_crossing_times(model.body, bodies);
-  ImpactRecorder impacts(model.problem, scheme, state, model.contact_pairs, std::move(bodies.of_node),
-                         std::move(separation));
+  ImpactRecorder impacts(model.problem, scheme, state, model.contact_pairs, model.bodies.connected.of_node,
+                         model.bodies.crossing_times);
   if (!model.initial.static_equilibrium)
     impacts.begin_inside(points_inside(model.problem, model.initial.displacement).points);
   return impacts;
@@ -61,7 +59,7 @@ PenetrationWatch make_penetration_watch(const Case& input, const Model& model) {
   std::vector<NamedObstacle> obstacles;
   for (std::size_t i = 0; i < input.obstacles.size(); ++i)
     obstacles.push_back({input.obstacles[i].name, model.obstacles[i].get()});
-  return {model.body, model.problem, model.contact_pairs, obstacles};
+  return {model.body, model.problem, model.contact_pairs, obstacles, model.bodies};
 }
 
 std::string sampled_name(long every) {

@@ -63,11 +63,11 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.all_steps = step_count(input.time);
   summary.dimension = model.mesh.dimension;
   summary.degree = model.space.degree;
-  summary.nodes = model.space.cell_node_count();
-  summary.cells = model.mesh.cell_count();
-  summary.dofs = model.space.dof_count();
-  summary.contact_points = model.problem.contact.size();
-  summary.supported_dofs = model.problem.supports.size();
+  summary.nodes = model.sizes.nodes;
+  summary.cells = model.sizes.cells;
+  summary.dofs = model.sizes.dofs;
+  summary.contact_points = model.sizes.contact_points;
+  summary.supported_dofs = model.sizes.supported_dofs;
   summary.factor_entries = simulation.factor_entries();
   const std::vector<ChosenMethod>& methods = simulation.methods();
   const auto iterative = std::find_if(methods.begin(), methods.end(), [](const ChosenMethod& chosen) {
@@ -82,11 +82,13 @@ RunSummary describe_run(const Case& input, const Model& model, const Scheme& sch
   summary.force_instant = scheme.force_instant();
   summary.contacts = describe_contacts(input);
   for (std::size_t i = 0; i < summary.contacts.size(); ++i) summary.contacts[i].facing = describe_facing(model, i);
-  summary.probes = model.probes;
-  for (Probe& probe : summary.probes) {
-    const Vector at = model.space.nodes.col(probe.node);
-    summary.probe_positions.emplace_back(at.data(), at.data() + at.size());
-    probe.node = model.space.number[static_cast<std::size_t>(probe.node)];
+  for (const WatchedPlaces& places : model.watched) {
+    for (std::size_t i = 0; i < places.probes.size(); ++i) {
+      Probe& probe = summary.probes.emplace_back(places.probes[i]);
+      probe.node = probe.number;
+      const Vector& at = places.positions[i];
+      summary.probe_positions.emplace_back(at.data(), at.data() + at.size());
+    }
   }
   return summary;
 }

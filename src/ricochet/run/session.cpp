@@ -33,7 +33,7 @@ Session::~Session() = default;
 void Session::build(BuildTimes* times) {
   if (model_ != nullptr) return;
   const log::CollectWarnings collect(warnings_);
-  model_ = build_model(input_, times);
+  model_ = builder_ ? builder_(input_, times) : build_model(input_, times);
 }
 
 Model& Session::model() {

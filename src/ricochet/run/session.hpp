@@ -41,6 +41,10 @@ class Session {
   Session(const Session&) = delete;  // its parts keep references to each other
   Session& operator=(const Session&) = delete;
 
+  /// Builds models in another way than build_model, with the same errors. Before anything is built.
+  using ModelBuilder = std::function<std::unique_ptr<Model>(const Case&, BuildTimes*)>;
+  void set_model_builder(ModelBuilder builder) { builder_ = std::move(builder); }
+
   [[nodiscard]] const Case& input() const { return input_; }
   /// All that were said for this session, in order.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
@@ -110,6 +114,7 @@ class Session {
   Case input_;
   std::vector<std::string> changes_;  ///< that input_ was read with
   std::vector<std::string> warnings_;
+  ModelBuilder builder_;  ///< none: build_model
   std::unique_ptr<Model> model_;
   std::unique_ptr<Scheme> scheme_;
   std::unique_ptr<Simulation> simulation_;

@@ -24,7 +24,7 @@ void require_contact_inertia(const SemidiscreteProblem& problem, const std::stri
 
 void require_explicit(const SemidiscreteProblem& problem, const std::string& scheme) {
   require_linear(*problem.internal_force, "scheme \"" + scheme + "\"");
-  if (!problem.has_singular_mass() && problem.mass.is_diagonal()) return;
+  if (!problem.has_singular_mass() && problem.has_diagonal_mass()) return;
   throw Error(ErrorKind::invalid_input,
               fmt::format("scheme \"{}\" is explicit and needs a diagonal mass with inertia at every node; set "
                           "mass.type = \"lumped\", or use scheme \"reduced-kane\", which takes the equivalent mass",

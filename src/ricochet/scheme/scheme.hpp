@@ -76,6 +76,8 @@ class Scheme {
   /// And its steps relax the stress of branches beside the laws (viscous_force.hpp), and say what that dissipates.
   [[nodiscard]] virtual bool takes_relaxation() const { return false; }
   /// Rigid bodies that move by the forces on them (free_motion.hpp) are part of its steps.
+  /// Of a body that is divided among ranks: all that it does is what each does with its part, and stages.
+  [[nodiscard]] virtual bool takes_ranks() const { return true; }
   [[nodiscard]] virtual bool takes_free_bodies() const { return false; }
   /// Then its steps change the angular momentum about current positions by the moments of outer forces alone, about the
   /// positions where these act.

@@ -19,20 +19,6 @@ std::vector<const Obstacle*> obstacles_of(const std::vector<NamedObstacle>& name
   return result;
 }
 
-/// Diagonal of the box around each body.
-std::vector<double> sizes_of_bodies(const Points& nodes, const ConnectedBodies& bodies) {
-  std::vector<Eigen::AlignedBox3d> boxes(static_cast<std::size_t>(bodies.count));
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  for (Index node = 0; node < nodes.cols(); ++node) {
-    if (bodies.of_node[static_cast<std::size_t>(node)] < 0) continue;  // of a rigid body
-    position.head(nodes.rows()) = nodes.col(node);
-    boxes[static_cast<std::size_t>(bodies.of_node[static_cast<std::size_t>(node)])].extend(position);
-  }
-  std::vector<double> result;
-  for (const Eigen::AlignedBox3d& box : boxes) result.push_back(box.diagonal().norm());
-  return result;
-}
-
 /// Of the body that a node belongs to, per node.
 std::vector<double> sizes_at_nodes(const std::vector<double>& size_of_body, const ConnectedBodies& bodies) {
   std::vector<double> result;
@@ -79,22 +65,20 @@ const UnwatchedPenetration* PenetrationReport::deepest() const {
 
 PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& problem,
                                    const std::vector<ContactPair>& pairs, const std::vector<NamedObstacle>& obstacles)
-    : PenetrationWatch(body, problem, pairs, obstacles, boundary_facets(body.space->cells)) {}
+    : PenetrationWatch(body, problem, pairs, obstacles, describe_bodies(body)) {}
 
 PenetrationWatch::PenetrationWatch(const Body& body, const SemidiscreteProblem& problem,
                                    const std::vector<ContactPair>& pairs, const std::vector<NamedObstacle>& obstacles,
-                                   const std::vector<CellFacet>& boundary)
+                                   BodiesOfMesh bodies)
     : body_(body),
       pairs_(pairs),
       named_(obstacles),
-      bodies_(find_connected_bodies(*body.space)),
-      size_of_body_(sizes_of_bodies(problem.nodes, bodies_)),
-      name_of_body_(names_of_bodies(*body.mesh, bodies_)),
-      size_(sizes_at_nodes(size_of_body_, bodies_)),
-      obstacles_(problem, body.space->cells, boundary, obstacles_of(obstacles), size_),
-      passages_(problem, nodes_of(boundary, body.space->cells), obstacles_of(obstacles)),
-      body_watch_(problem.nodes, body.space->cells, boundary, bodies_, size_,
-                  kept_nodes(body, problem.contact, pairs, bodies_.of_node)),
+      bodies_(std::move(bodies)),
+      size_(sizes_at_nodes(bodies_.sizes, bodies_.connected)),
+      obstacles_(problem, body.space->cells, bodies_.boundary, obstacles_of(obstacles), size_),
+      passages_(problem, nodes_of(bodies_.boundary, body.space->cells), obstacles_of(obstacles)),
+      body_watch_(problem.nodes, body.space->cells, bodies_.boundary, bodies_.connected, size_,
+                  kept_nodes(body, problem.contact, pairs, bodies_.connected.of_node)),
       problem_(problem),
       told_obstacle_(obstacles.size(), 0),
       told_passage_(obstacles.size(), 0) {
@@ -200,7 +184,7 @@ std::vector<std::string> PenetrationWatch::contacts_between(int first, int secon
   const auto holds = [&](const std::vector<Index>& facets, int body) {
     const std::vector<Index> nodes = facet_nodes(*body_.space, facets);
     return std::any_of(nodes.begin(), nodes.end(),
-                       [&](Index node) { return bodies_.of_node[static_cast<std::size_t>(node)] == body; });
+                       [&](Index node) { return bodies_.connected.of_node[static_cast<std::size_t>(node)] == body; });
   };
   for (const ContactPair& pair : pairs_) {
     if (!pair.has_two_sides()) continue;
@@ -232,8 +216,7 @@ std::string PenetrationWatch::advice(std::size_t obstacle) const {
 }
 
 bool PenetrationWatch::is_on_boundary(Index node) const {
-  const std::vector<CellFacet> boundary = boundary_facets(body_.space->cells);
-  return std::any_of(boundary.begin(), boundary.end(), [&](const CellFacet& facet) {
+  return std::any_of(bodies_.boundary.begin(), bodies_.boundary.end(), [&](const CellFacet& facet) {
     const std::vector<Index> nodes = nodes_of_facet(body_.space->cells, facet);
     return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
   });
@@ -255,8 +238,8 @@ UnwatchedPenetration PenetrationWatch::describe(const DeepestPoint& deepest, con
   UnwatchedPenetration result;
   double size = size_[static_cast<std::size_t>(deepest.node)];
   for (const int body : bodies) {
-    result.bodies.push_back(name_of_body_[static_cast<std::size_t>(body)]);
-    size = std::min(size, size_of_body_[static_cast<std::size_t>(body)]);
+    result.bodies.push_back(bodies_.names[static_cast<std::size_t>(body)]);
+    size = std::min(size, bodies_.sizes[static_cast<std::size_t>(body)]);
   }
   result.depth = deepest.depth;
   result.relative_depth = deepest.depth / size;
@@ -269,14 +252,14 @@ UnwatchedPenetration PenetrationWatch::describe(const DeepestPoint& deepest, con
 
 UnwatchedPenetration PenetrationWatch::in_obstacle(std::size_t obstacle) const {
   const DeepestPoint& deepest = obstacles_.deepest()[obstacle];
-  UnwatchedPenetration result = describe(deepest, {bodies_.of_node[static_cast<std::size_t>(deepest.node)]});
+  UnwatchedPenetration result = describe(deepest, {bodies_.connected.of_node[static_cast<std::size_t>(deepest.node)]});
   result.obstacle = named_[obstacle].name;
   return result;
 }
 
 UnwatchedPenetration PenetrationWatch::through_obstacle(std::size_t obstacle) const {
   const DeepestPoint& deepest = passages_.passages()[obstacle];
-  UnwatchedPenetration result = describe(deepest, {bodies_.of_node[static_cast<std::size_t>(deepest.node)]});
+  UnwatchedPenetration result = describe(deepest, {bodies_.connected.of_node[static_cast<std::size_t>(deepest.node)]});
   result.obstacle = named_[obstacle].name;
   result.passed_through = true;
   return result;

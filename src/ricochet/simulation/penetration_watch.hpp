@@ -23,6 +23,9 @@ class PenetrationWatch {
   /// Keeps references to body and problem.
   PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
                    const std::vector<NamedObstacle>& obstacles);
+  /// With what is known of the bodies.
+  PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
+                   const std::vector<NamedObstacle>& obstacles, BodiesOfMesh bodies);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
@@ -43,8 +46,6 @@ class PenetrationWatch {
     std::string name;
     std::vector<Index> nodes;  ///< sorted
   };
-  PenetrationWatch(const Body& body, const SemidiscreteProblem& problem, const std::vector<ContactPair>& pairs,
-                   const std::vector<NamedObstacle>& obstacles, const std::vector<CellFacet>& boundary);
   [[nodiscard]] bool is_on_boundary(Index node) const;
   [[nodiscard]] std::vector<std::string> groups_of(Index node) const;
   [[nodiscard]] std::vector<double> place_of(const Eigen::Vector3d& place) const;
@@ -67,9 +68,7 @@ class PenetrationWatch {
   const Body& body_;
   const std::vector<ContactPair>& pairs_;
   std::vector<NamedObstacle> named_;
-  ConnectedBodies bodies_;
-  std::vector<double> size_of_body_;
-  std::vector<std::string> name_of_body_;
+  BodiesOfMesh bodies_;
   std::vector<double> size_;  ///< of its body, per node
   ObstacleWatch obstacles_;
   PassageWatch passages_;

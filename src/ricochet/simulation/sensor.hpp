@@ -33,6 +33,9 @@ class Sensor {
 /// Motion of a node and, on the contact boundary, its gap, pressure and contact force.
 [[nodiscard]] std::unique_ptr<Sensor> make_point_sensor(const SemidiscreteProblem& problem, const Probe& probe);
 
+/// With these columns, all zero: of a node that other ranks have.
+[[nodiscard]] std::unique_ptr<Sensor> make_absent_sensor(Columns columns);
+
 /// Force and moment on the body of what supports and obstacles do to the nodes of some facets. Moments are about
 /// `about`, with reference positions. Loads that are given are not part of it.
 [[nodiscard]] std::unique_ptr<Sensor> make_boundary_sensor(const std::string& name, const SemidiscreteProblem& problem,

@@ -178,12 +178,13 @@ void Simulation::guard_passages() {
       guards_.emplace_back(problem_, std::move(others), std::vector{obstacle}, PassageWatch::Of::contact_points);
   }
   for (PassageWatch& guard : guards_) guard.look(state_);
+  has_guards_ = problem_.ranks->any(!guards_.empty());
 }
 
 /// No node goes through an obstacle in a step that can be shorter.
 void Simulation::take_step(bool is_shortest) {
   goes_through_ = false;
-  const bool is_guarded = !guards_.empty() && !is_shortest;
+  const bool is_guarded = has_guards_ && !is_shortest;
   if (is_guarded) unguarded_ = state_;
   solve_step();
   const double end = state_.time + scheme_.step();
@@ -256,8 +257,9 @@ double Simulation::take_controlled_step() {
       if (problem.kind() != ErrorKind::not_converged || !control_->shorten()) throw;
       continue;
     }
-    const double energy = 0.5 * problem_.mass.form(state_.velocity) +
-                          stored_energy(*problem_.internal_force, state_.displacement, state_.internal_strain);
+    const double energy =
+        problem_.ranks->sum(0.5 * problem_.mass.form(state_.velocity) +
+                            stored_energy(*problem_.internal_force, state_.displacement, state_.internal_strain));
     if (control_->accept(before_, state_, energy)) return energy;
     state_ = before_;
   }
@@ -349,7 +351,7 @@ void Simulation::advance(const std::function<void(const State&)>& each_part) {
   state_.step += 1;
   state_.time = control_ ? control_->time() : static_cast<double>(state_.step) * whole_step_;
   if (!in_parts) end_part(each_part);
-  if (control_) control_->watch(energy, account_->of_method(state_));
+  if (control_) control_->watch(energy, problem_.ranks->sum(account_->of_method(state_)));
 }
 
 }  // namespace ricochet

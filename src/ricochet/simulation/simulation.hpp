@@ -96,6 +96,7 @@ class Simulation : private StageSolve {
   double whole_step_;  ///< without control
   long cut_steps_ = 0;
   std::vector<PassageWatch> guards_;  ///< of contact nodes, each for the obstacle that they touch
+  bool has_guards_ = false;           ///< here or on other ranks
   State unguarded_;                   ///< the start of a step, where there are guards
   bool goes_through_ = false;         ///< the last attempt was refused for that
   State before_;                      ///< an attempt, with control

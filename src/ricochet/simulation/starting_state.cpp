@@ -109,18 +109,23 @@ std::vector<char> resting_points(const SemidiscreteProblem& problem, const State
 /// A diagonal mass needs no factorization where no contact point is at rest on its obstacle. False when it does.
 bool find_acceleration_pointwise(const SemidiscreteProblem& problem, const Vector& support_acceleration,
                                  const std::vector<char>& resting, State& state) {
-  if (std::find(resting.begin(), resting.end(), 1) != resting.end() || !problem.mass.is_diagonal()) return false;
-  const Vector mass = problem.mass.diagonal();
+  const bool rests = std::find(resting.begin(), resting.end(), 1) != resting.end();
+  if (problem.ranks->any(rests) || !problem.has_diagonal_mass()) return false;
+  Vector mass = problem.mass.diagonal();
+  problem.ranks->accumulate(mass);
   Vector acceleration = residual_force(problem, state.displacement, state.velocity);
+  problem.ranks->accumulate(acceleration);
+  bool lacks_inertia = false;
   for (Index dof = 0; dof < mass.size(); ++dof) {
     if (problem.is_massless[static_cast<std::size_t>(dof)] != 0 || problem.is_tied_dof(dof)) {
       acceleration[dof] = 0.0;
     } else if (mass[dof] > 0.0) {
       acceleration[dof] /= mass[dof];
     } else if (!problem.supports.contains(dof)) {
-      return false;
+      lacks_inertia = true;
     }
   }
+  if (problem.ranks->any(lacks_inertia)) return false;
   for (Index i = 0; i < problem.supports.size(); ++i) {
     acceleration[problem.supports.dofs()[static_cast<std::size_t>(i)]] = support_acceleration[i];
   }

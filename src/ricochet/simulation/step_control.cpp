@@ -62,7 +62,7 @@ bool StepControl::accept(const State& before, const State& after, double energy)
   // An attempt that blows up must not be judged by its own energy.
   const double scale =
       largest_energy_ > 0.0 ? std::clamp(energy, largest_energy_, most_growth * largest_energy_) : energy;
-  const double own = 0.5 * problem_.mass.form(change_);
+  const double own = problem_.ranks->sum(0.5 * problem_.mass.form(change_));
   error_ = own != 0.0 ? h * h / (6.0 * (h + step_before_)) * std::sqrt(own / scale) / options_.tolerance : 0.0;
   if (!std::isfinite(energy) || !std::isfinite(error_)) error_ = std::numeric_limits<double>::infinity();
   const bool grown = level_ < last_level_;

@@ -251,6 +251,7 @@ void CondensedContact::solve(const Stage& stage, Vector& y, StageSolution& solut
 
 /// False: nothing can touch.
 bool CondensedContact::choose_candidates(const Stage& stage) {
+  candidates_.look_at(stage);
   if (!must_ask_ && !candidates_.some_may_touch(stage)) return false;
   if (const std::vector<Index> kept = candidates_.worth_keeping(stage); !kept.empty()) start_again_with(kept);
   if (const std::vector<Index> near = candidates_.approaching(stage); !near.empty()) take_up(near);

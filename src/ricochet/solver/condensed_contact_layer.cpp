@@ -117,7 +117,8 @@ void CondensedContact::use_end_weight(double theta) {
 }
 
 void CondensedContact::take_starting_points(const Stage& stage) {
-  std::vector<Index> pressing = pressing_at_start(layer_.get(), stage);
+  std::vector<Index> pressing;
+  if (layer_) pressing = pressing_at_start(layer_->mean(), stage);
   must_ask_ = must_ask_ || !pressing.empty();
   std::erase_if(pressing, [&](Index point) { return candidates_.number(point) >= 0; });
   if (!pressing.empty()) take_up(pressing);

@@ -54,13 +54,13 @@ void ContactCandidates::load_history(const Snapshot& snapshot, const std::string
   closed_ = static_cast<std::size_t>(snapshot.integers(name + ".closed", 0, static_cast<Index>(number_.size())).at(0));
 }
 
-/// In the units of y: what stages have moved points by, or what this one must, where points are inside at δ = 0.
-double ContactCandidates::reach(const Stage& stage) const {
+/// What stages have moved points by, or what this one must, where points are inside at δ = 0.
+void ContactCandidates::look_at(const Stage& stage) {
   double deepest = 0.0;
   for (Index i = 0; i < stage.gap_offset.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] != 0) deepest = std::max(deepest, -stage.gap_offset[i]);
   }
-  return reserve * std::max(ranks_->maximum(deepest), stage.gap_factor * largest_motion_);
+  reach_ = reserve * std::max(ranks_->maximum(deepest), stage.gap_factor * largest_motion_);
 }
 
 bool ContactCandidates::is_below(const Stage& stage, Index point, double limit, bool candidates) const {
@@ -75,9 +75,8 @@ std::size_t ContactCandidates::count_below(const Stage& stage, double limit, boo
 }
 
 bool ContactCandidates::some_may_touch(const Stage& stage) const {
-  const double limit = reach(stage);
   for (Index i = 0; i < stage.gap_offset.size(); ++i) {
-    if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= limit) return true;
+    if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= reach_) return true;
   }
   return false;
 }
@@ -91,7 +90,7 @@ bool ContactCandidates::are_too_many() const {
 }
 
 std::vector<Index> ContactCandidates::nearest(const Stage& stage) const {
-  const double limit = ahead * reach(stage);
+  const double limit = ahead * reach_;
   std::vector<Index> result;
   for (Index i = 0; i < stage.gap_offset.size(); ++i) {
     if (stage.eligible[static_cast<std::size_t>(i)] != 0 && stage.gap_offset[i] <= limit) result.push_back(i);
@@ -107,7 +106,7 @@ std::vector<Index> ContactCandidates::nearest(const Stage& stage) const {
 }
 
 std::vector<Index> ContactCandidates::approaching(const Stage& stage) const {
-  if (count_below(stage, reach(stage), false) == 0) return {};
+  if (count_below(stage, reach_, false) == 0) return {};
   std::vector<Index> result = nearest(stage);
   std::erase_if(result, [&](Index point) { return number(point) >= 0; });
   return result;
@@ -142,7 +141,7 @@ void ContactCandidates::learn(const Stage& stage, const Vector& motion, std::siz
 
 std::vector<Index> ContactCandidates::worth_keeping(const Stage& stage) {
   if (points_.size() <= few_points) return {};
-  const std::size_t near = std::min(count_below(stage, ahead * reach(stage), true), most());
+  const std::size_t near = std::min(count_below(stage, ahead * reach_, true), most());
   const bool oversized = points_.size() > oversize * std::max(near, few_points);
   oversized_stages_ = oversized ? oversized_stages_ + 1 : 0;
   if (oversized_stages_ < patience && !are_too_many()) return {};

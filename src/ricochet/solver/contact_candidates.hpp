@@ -27,6 +27,8 @@ class ContactCandidates {
   void save_history(Snapshot& snapshot, const std::string& name) const;
   void load_history(const Snapshot& snapshot, const std::string& name);
 
+  /// Before a stage is asked about: how far it may move points. All ranks come here together.
+  void look_at(const Stage& stage);
   /// Some eligible point may touch in this stage: its y at δ = 0 is within reach of what stages have moved points by.
   [[nodiscard]] bool some_may_touch(const Stage& stage) const;
   /// Points that may touch and are no candidates, with those near them in time, so that the set does not grow in every
@@ -36,7 +38,7 @@ class ContactCandidates {
   /// After a stage with these G δ (per point): eligible points that penetrate by more than rounding, of many the
   /// deepest. Candidates are looked at only where they were `left_out` of the stage. Empty: the stage is solved.
   [[nodiscard]] std::vector<Index> penetrating(const Stage& stage, const Vector& motion, bool left_out) const;
-  /// Remembers how far a solved stage has moved points, and that so many carry a force.
+  /// Remembers how far a solved stage has moved points, and that so many carry a force. All ranks together.
   void learn(const Stage& stage, const Vector& motion, std::size_t closed);
   /// Many more candidates than points near the obstacle, for long, or very many: those that are worth keeping. Empty:
   /// nothing to do.
@@ -47,7 +49,6 @@ class ContactCandidates {
   [[nodiscard]] std::vector<Index> nearest(const Stage& stage) const;
 
  private:
-  [[nodiscard]] double reach(const Stage& stage) const;
   /// The point is eligible, a candidate or not, and its gap at δ = 0 is at most `limit`.
   [[nodiscard]] bool is_below(const Stage& stage, Index point, double limit, bool candidates) const;
   [[nodiscard]] std::size_t count_below(const Stage& stage, double limit, bool candidates) const;
@@ -57,6 +58,7 @@ class ContactCandidates {
   std::vector<Index> points_;
   std::vector<Index> number_;  ///< per point
   double largest_motion_ = 0.0;
+  double reach_ = 0.0;  ///< in the units of y
   std::size_t closed_ = 0;
   int oversized_stages_ = 0;
 };

@@ -52,9 +52,9 @@ class ContactLayer {
 };
 
 /// Points that press at the start of a step are part of the path of a mean, wherever they go.
-inline std::vector<Index> pressing_at_start(const ContactLayer* layer, const Stage& stage) {
+inline std::vector<Index> pressing_at_start(ReactionMean mean, const Stage& stage) {
   std::vector<Index> result;
-  if (layer == nullptr || layer->mean() == ReactionMean::end) return result;
+  if (mean == ReactionMean::end) return result;
   for (Index i = 0; i < stage.start_normal_reaction.size(); ++i) {
     if (stage.start_normal_reaction[i] > 0.0 && stage.eligible[static_cast<std::size_t>(i)] != 0) result.push_back(i);
   }

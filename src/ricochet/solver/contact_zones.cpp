@@ -16,14 +16,6 @@ namespace {
 
 /// Contact points of the smallest clusters that are tried: fewer are no work.
 constexpr std::size_t least_cluster = 256;
-/// Of nodes around the points that asked for zones.
-constexpr int reserve_layers = 3;
-/// What R does to the contact has decayed to a tenth behind so many cells that a wave crosses in a step.
-constexpr double layers_per_cell_crossed = 1.2;
-constexpr int least_layers = 2;
-/// Where a wave crosses more, rounds are cheaper than zones that grow with the cube of their layers.
-constexpr int most_layers = 12;
-
 /// Of the contact problems, which are dense: their entries. Where layers are many and points few, clusters have nearly
 /// the same points around them, and one zone is less.
 double dense_work(const std::vector<ContactZone::Extent>& zones) {
@@ -35,59 +27,18 @@ double dense_work(const std::vector<ContactZone::Extent>& zones) {
 
 }  // namespace
 
-double cells_crossed(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                     const StageProduct& product, const std::vector<Index>& nodes) {
-  if (coefficients.mass == 0.0) return std::numeric_limits<double>::infinity();
-  Vector inertia;
-  problem.mass.multiply(Vector::Ones(problem.dof_count()), inertia);
-  const Vector elastic = product.diagonal() - coefficients.mass * problem.mass.diagonal();
-  double stiff = 0.0, heavy = 0.0;
-  for (const Index node : nodes) {
-    for (Index dof = node * problem.dimension; dof < (node + 1) * problem.dimension; ++dof) {
-      if (!(inertia[dof] > 0.0)) continue;
-      stiff += elastic[dof];
-      heavy += coefficients.mass * inertia[dof];
-    }
-  }
-  return heavy > 0.0 ? std::sqrt(std::max(stiff, 0.0) / heavy) : std::numeric_limits<double>::infinity();
-}
-
 ContactZones::ContactZones(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                           const std::vector<char>& solved, const StageProduct& product, bool all_points,
-                           FactoredStage* layer)
+                           const std::vector<char>& solved, const StageProduct& product, PointsNearby& nearby,
+                           bool all_points, FactoredStage* layer)
     : problem_(problem),
       coefficients_(coefficients),
       solved_(solved),
       product_(product),
+      nearby_(nearby),
       all_points_(all_points),
       layer_(layer) {
   correction_.setZero(problem.dof_count());
-}
-
-const MatrixGraph& ContactZones::graph() {
-  if (graph_.size() == 0) graph_ = MatrixGraph(problem_.internal_force->tangent(), problem_.dimension);
-  return graph_;
-}
-
-std::vector<Index> ContactZones::nodes_of(const std::vector<Index>& points) const {
-  std::vector<Index> nodes;
-  for (const Index point : points)
-    problem_.contact.visit_nodes(point, [&](Index node, double) { nodes.push_back(node); });
-  return nodes;
-}
-
-std::vector<Index> ContactZones::with_neighbours(const std::vector<Index>& points) {
-  std::vector<char> reached(static_cast<std::size_t>(problem_.nodes.cols()), 0);
-  for (const Index node : layers_around(graph(), nodes_of(points), reserve_layers).nodes)
-    reached[static_cast<std::size_t>(node)] = 1;
-  std::vector<Index> result;
-  for (Index point = 0; point < problem_.contact.size(); ++point) {
-    bool inside = false;
-    problem_.contact.visit_nodes(
-        point, [&](Index node, double) { inside = inside || reached[static_cast<std::size_t>(node)] != 0; });
-    if (inside) result.push_back(point);
-  }
-  return result;
+  if (layer != nullptr) motion_layer_ = std::make_unique<ContactLayer>(problem, coefficients, *layer);
 }
 
 void ContactZones::clear() {
@@ -104,7 +55,7 @@ std::vector<ContactZone::Extent> ContactZones::divide(const std::vector<Index>& 
   };
   std::unordered_map<Index, Owner> owners;
   for (std::vector<Index>& cluster : cluster_points(problem_, points, most)) {
-    const NodeLayers reached = layers_around(graph(), nodes_of(cluster), layers_);
+    const NodeLayers reached = layers_around(nearby_.graph(), nearby_.nodes_of(cluster), layers_);
     for (std::size_t i = 0; i < reached.nodes.size(); ++i) {
       Owner& owner = owners.try_emplace(reached.nodes[i], Owner{zones.size(), reached.layer[i]}).first->second;
       if (reached.layer[i] < owner.layer) owner = {zones.size(), reached.layer[i]};
@@ -129,12 +80,7 @@ std::vector<ContactZone::Extent> ContactZones::divide(const std::vector<Index>& 
 
 void ContactZones::make(const std::vector<Index>& points) {
   clear();
-  if (layers_ == 0) {
-    const std::vector<Index> near = layers_around(graph(), nodes_of(points), reserve_layers).nodes;
-    const double crossed = cells_crossed(problem_, coefficients_, product_, near);
-    layers_ = static_cast<int>(
-        std::clamp(std::ceil(layers_per_cell_crossed * crossed), 1.0 * least_layers, 1.0 * most_layers));
-  }
+  if (layers_ == 0) layers_ = nearby_.layers_to_solve(points, coefficients_, product_);
   // A layer of the stage makes the motion of a contact node depend on all reactions near it.
   std::vector<ContactZone::Extent> extents = divide(points, points.size());
   if (layer_ == nullptr) {
@@ -179,7 +125,7 @@ void ContactZones::save(Snapshot& snapshot, const std::string& name) const {
 }
 
 void ContactZones::load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) {
-  layers_ = static_cast<int>(snapshot.integers(name + ".layers", least_layers, most_layers).at(0));
+  layers_ = static_cast<int>(snapshot.integers(name + ".layers", 1, PointsNearby::most_layers).at(0));
   make(points);
   for (std::size_t i = 0; i < zones_.size(); ++i) zones_[i]->load(snapshot, fmt::format("{}.{}", name, i));
 }

@@ -3,8 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "ricochet/linear_algebra/matrix_graph.hpp"
 #include "ricochet/solver/contact_zone.hpp"
+#include "ricochet/solver/near_contact.hpp"
+#include "ricochet/solver/points_nearby.hpp"
 #include "ricochet/solver/stage_product.hpp"
 
 /// @file The parts of a body near its contact, each solved directly, all from the same residual.
@@ -15,48 +16,50 @@ namespace ricochet {
 /// are nearer to its own points than to those of other zones: a restricted additive Schwarz method. All nodes of a
 /// point are moved by its zone, so contact and friction hold to rounding. Many points are then no large dense problem,
 /// and the price of contact grows as their number.
-class ContactZones {
+class ContactZones final : public NearContact {
  public:
-  /// Keeps references to the problem and the product; `solved` tells per dof whether the stage solves for it.
+  /// Keeps references to the problem, the product and the graph; `solved` tells per dof whether the stage solves for
+  /// it.
   ContactZones(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-               const std::vector<char>& solved, const StageProduct& product, bool all_points, FactoredStage* layer);
+               const std::vector<char>& solved, const StageProduct& product, PointsNearby& nearby, bool all_points,
+               FactoredStage* layer);
 
-  /// For these points, and no others.
-  void make(const std::vector<Index>& points);
-  void clear();
-  [[nodiscard]] bool are_made() const { return !zones_.empty(); }
-  /// Points with some node within a few layers of those of the given ones, and these: a contact that grows should not
-  /// ask for other zones in every step. Ascending.
-  [[nodiscard]] std::vector<Index> with_neighbours(const std::vector<Index>& points);
+  void make(const std::vector<Index>& points) override;
+  void clear() override;
+  [[nodiscard]] bool are_made() const override { return !zones_.empty(); }
+  [[nodiscard]] std::vector<Index> with_neighbours(const std::vector<Index>& points) override {
+    return nearby_.points_around(points);
+  }
+  void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
+  void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
+                   Vector& motion) override {
+    motion_layer_->find_motion(rows, solution, increment, motion);
+  }
 
-  /// With the residual b − A x of the whole body, reactions left out: x near the contact, and the reactions.
-  void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution);
-
-  /// Of nodes around the points of a zone; 0 before any were made.
+  /// Of nodes around the points of a zone, from now on; 0: as many as the wave crosses cells, found with the next ones.
+  void set_layers(int layers) { layers_ = layers; }
   [[nodiscard]] int layers() const { return layers_; }
   [[nodiscard]] std::size_t count() const { return zones_.size(); }
 
-  void save(Snapshot& snapshot, const std::string& name) const;
-  /// Zones for these points, as they were saved.
-  void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points);
-  void report() const;
-  void observe(const ContactObserver& observer);
-  [[nodiscard]] double contact_seconds() const;
-  [[nodiscard]] std::size_t factor_entries() const;
+  void save(Snapshot& snapshot, const std::string& name) const override;
+  void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override;
+  void report() const override;
+  void observe(const ContactObserver& observer) override;
+  [[nodiscard]] double contact_seconds() const override;
+  [[nodiscard]] std::size_t factor_entries() const override;
 
  private:
-  [[nodiscard]] const MatrixGraph& graph();
   [[nodiscard]] std::vector<ContactZone::Extent> divide(const std::vector<Index>& points, std::size_t most);
-  [[nodiscard]] std::vector<Index> nodes_of(const std::vector<Index>& points) const;
 
   const SemidiscreteProblem& problem_;
   OperatorCoefficients coefficients_;
   const std::vector<char>& solved_;
   const StageProduct& product_;
+  PointsNearby& nearby_;
   bool all_points_;
   FactoredStage* layer_;
-  int layers_ = 0;     ///< 0: not known yet
-  MatrixGraph graph_;  ///< of cells: an equivalent mass has neighbours farther away
+  std::unique_ptr<ContactLayer> motion_layer_;  ///< null: the stage has none
+  int layers_ = 0;                              ///< 0: not known yet
   std::vector<std::unique_ptr<ContactZone>> zones_;
   ContactObserver observer_;
   double earlier_contact_seconds_ = 0.0;
@@ -64,11 +67,5 @@ class ContactZones {
   Vector correction_, motion_, slip_;  ///< and G x and B_T x of the start
   StageSolution solution_;             ///< of one zone
 };
-
-/// The cells that a pressure wave crosses in the step of A = αM + κK near these nodes, √(Σ κ K_ii / Σ α m_i) with the
-/// sums m of the rows of M, over the dofs with inertia. On tetrahedra of degree 1 with α = 4/h², κ = 1 it is that
-/// within a twentieth. Infinite without inertia.
-[[nodiscard]] double cells_crossed(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                                   const StageProduct& product, const std::vector<Index>& nodes);
 
 }  // namespace ricochet

@@ -1,5 +1,3 @@
-#include <numeric>
-
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/factored_stage.hpp"
 #include "ricochet/solver/stage_operator.hpp"
@@ -8,15 +6,6 @@
 namespace ricochet {
 
 namespace {
-
-/// A's rows of supported dofs.
-SparseRowMatrix supported_rows(const SemidiscreteProblem& problem, const SparseMatrix& matrix) {
-  std::vector<int> every(static_cast<std::size_t>(problem.dof_count())), support(every.size(), -1);
-  std::iota(every.begin(), every.end(), 0);
-  for (Index i = 0; i < problem.supports.size(); ++i)
-    support[static_cast<std::size_t>(problem.supports.dofs()[static_cast<std::size_t>(i)])] = static_cast<int>(i);
-  return extract(matrix, support, problem.supports.size(), every, problem.dof_count());
-}
 
 /// A on some dofs; empties `matrix` where these are all.
 SparseMatrix on_dofs(const SemidiscreteProblem& problem, const std::vector<int>& dofs, SparseMatrix& matrix) {

@@ -7,6 +7,7 @@
 #include "ricochet/linear_algebra/block_jacobi.hpp"
 #include "ricochet/linear_algebra/single_gradients.hpp"
 #include "ricochet/solver/contact_zones.hpp"
+#include "ricochet/solver/gathered_zones.hpp"
 #include "ricochet/solver/stage_operator.hpp"
 #include "ricochet/solver/stage_product.hpp"
 #include "ricochet/solver/stage_solver.hpp"
@@ -30,21 +31,22 @@ constexpr double astray = 10.0;
 class IterativeStage final : public StageSolver {
  public:
   IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                 const StepSolverOptions& options, FactoredStage* layer);
+                 const StepSolverOptions& options, FactoredStage* layer, GatheredContact* gathered);
 
   void solve(const Stage& stage, StageSolution& solution) override;
   void refactorize(const Vector& displacement) override;
   void show_contact() const override {
-    if (touches_) zones_.report();
+    if (touches_) zones_->report();
   }
-  void observe_contact(const ContactObserver& observer) override { zones_.observe(observer); }
+  void observe_contact(const ContactObserver& observer) override { zones_->observe(observer); }
   void save(Snapshot& snapshot, const std::string& name) const override;
   void load(const Snapshot& snapshot, const std::string& name) override;
-  [[nodiscard]] double contact_seconds() const override { return zones_.contact_seconds(); }
-  [[nodiscard]] std::size_t factor_entries() const override { return zones_.factor_entries(); }
+  [[nodiscard]] double contact_seconds() const override { return zones_->contact_seconds(); }
+  [[nodiscard]] std::size_t factor_entries() const override { return zones_->factor_entries(); }
 
  private:
   void begin(const Stage& stage, StageSolution& solution);
+  [[nodiscard]] bool are_outside(const std::vector<Index>& points) const;
   void make_zones(const Stage& stage, const std::vector<Index>& points);
   void find_residual(const Stage& stage);
   void find_reactions(const Stage& stage, const StageSolution& solution);
@@ -58,17 +60,18 @@ class IterativeStage final : public StageSolver {
   const SemidiscreteProblem& problem_;
   OperatorCoefficients coefficients_;
   StepSolverOptions options_;
-  std::unique_ptr<ContactLayer> layer_;  ///< of A_c; null: none
-  std::vector<char> solved_;             ///< per dof
-  std::vector<int> unsolved_;            ///< dofs
-  StageProduct product_;                 ///< with A
+  std::vector<char> solved_;   ///< per dof
+  std::vector<int> unsolved_;  ///< dofs
+  StageProduct product_;       ///< with A
   std::unique_ptr<Preconditioner> preconditioner_;
   ConjugateGradients gradients_;
   std::unique_ptr<SingleGradients> single_;  ///< null where A is not stored in blocks
   bool single_is_trusted_ = true;            ///< in this stage
   double promised_ = 0.0;                    ///< the norm of the residual that they ended with
   ContactCandidates near_;                   ///< the points that the zones are made for
-  ContactZones zones_;
+  PointsNearby nearby_;
+  std::unique_ptr<NearContact> zones_;
+  bool may_touch_ = false;         ///< some point may, in this stage
   bool presses_at_start_ = false;  ///< points whose reactions at the start of the step are part of a mean
   bool touches_ = false;           ///< the last stage had a contact problem
   Vector displacement_;            ///< of the tangent; empty: the undeformed body
@@ -79,14 +82,20 @@ class IterativeStage final : public StageSolver {
 };
 
 IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                               const StepSolverOptions& options, FactoredStage* layer)
+                               const StepSolverOptions& options, FactoredStage* layer, GatheredContact* gathered)
     : problem_(problem),
       coefficients_(coefficients),
       options_(options),
       gradients_(problem.dimension, *problem.ranks),
       near_(problem.contact.size(), *problem.ranks),
-      zones_(problem, coefficients, solved_, product_, options.all_points, layer) {
-  if (layer != nullptr) layer_ = std::make_unique<ContactLayer>(problem, coefficients, *layer);
+      nearby_(problem) {
+  if (gathered != nullptr) {
+    zones_ =
+        make_gathered_zones(problem, coefficients, solved_, product_, nearby_, options.all_points, *gathered, layer);
+  } else {
+    zones_ =
+        std::make_unique<ContactZones>(problem, coefficients, solved_, product_, nearby_, options.all_points, layer);
+  }
   const auto count = static_cast<std::size_t>(problem.dof_count());
   solved_.assign(count, 0);
   for (const int dof : solved_dofs(problem, coefficients.dofs)) solved_[static_cast<std::size_t>(dof)] = 1;
@@ -105,9 +114,10 @@ void IterativeStage::refactorize(const Vector& displacement) {
   single_.reset();
   product_ = StageProduct(problem_, coefficients_, matrix, displacement);
   preconditioner_ = make_block_jacobi(matrix, problem_.dimension, solved_, *problem_.ranks);
-  if (const NodeMatrix* blocks = product_.matrix(); blocks != nullptr && !blocks->is_scalar())
+  const NodeMatrix* const blocks = product_.matrix();
+  if (!problem_.ranks->any(blocks == nullptr || blocks->is_scalar()))
     single_ = std::make_unique<SingleGradients>(*blocks, solved_, *problem_.ranks);
-  zones_.clear();
+  zones_->clear();
   near_.clear();
 }
 
@@ -115,23 +125,28 @@ void IterativeStage::mask(Vector& values) const {
   for (const int dof : unsolved_) values[dof] = 0.0;
 }
 
+/// Some of them are in no zone.
+bool IterativeStage::are_outside(const std::vector<Index>& points) const {
+  return std::any_of(points.begin(), points.end(), [&](Index point) { return near_.number(point) < 0; });
+}
+
 /// For these points and those near them, and those of the last zones unless they have become too many: a body that
 /// rolls leaves them behind.
 void IterativeStage::make_zones(const Stage& stage, const std::vector<Index>& wanted) {
   std::vector<Index> points = wanted;
-  if (near_.are_too_many()) {
+  if (problem_.ranks->any(near_.are_too_many())) {
     const std::vector<Index> nearest = near_.nearest(stage);
     points.insert(points.end(), nearest.begin(), nearest.end());
     near_.clear();
   }
-  points = zones_.with_neighbours(points);
+  points = zones_->with_neighbours(points);
   points.insert(points.end(), near_.points().begin(), near_.points().end());
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
   near_.clear();
   near_.take_up(points);
   try {
-    zones_.make(points);
+    zones_->make(points);
   } catch (const Error& problem) {
     // The tangent of a place that an iteration leads to is no fault of the case.
     if (problem.kind() != ErrorKind::invalid_input || displacement_.size() == 0) throw;
@@ -144,10 +159,10 @@ void IterativeStage::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".previous", previous_);
   snapshot.save(name + ".has_previous", has_previous_);
   near_.save_history(snapshot, name + ".near");
-  snapshot.save(name + ".has_zone", zones_.are_made());
-  if (!zones_.are_made()) return;
+  snapshot.save(name + ".has_zone", zones_->are_made());
+  if (!zones_->are_made()) return;
   snapshot.save(name + ".near.points", near_.points());
-  zones_.save(snapshot, name + ".zones");
+  zones_->save(snapshot, name + ".zones");
 }
 
 void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
@@ -158,7 +173,7 @@ void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
     const std::vector<Index>& points = snapshot.integers(name + ".near.points", 0, problem_.contact.size() - 1);
     near_.clear();
     near_.take_up(points);
-    zones_.load(snapshot, name + ".zones", points);
+    zones_->load(snapshot, name + ".zones", points);
   }
   near_.load_history(snapshot, name + ".near");
 }
@@ -178,14 +193,17 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
   solution.clear_mean();
   solution.iterations = 0;
-  const std::vector<Index> pressing = pressing_at_start(layer_.get(), stage);
-  presses_at_start_ = !pressing.empty();
-  if (near_.some_may_touch(stage)) {
-    if (const std::vector<Index> approaching = near_.approaching(stage); !approaching.empty())
-      make_zones(stage, approaching);
+  std::vector<Index> pressing;
+  if (coefficients_.layer >= 0) pressing = pressing_at_start(coefficients_.mean, stage);
+  const Ranks& ranks = *problem_.ranks;
+  presses_at_start_ = ranks.any(!pressing.empty());
+  near_.look_at(stage);
+  may_touch_ = ranks.any(near_.some_may_touch(stage));
+  if (may_touch_) {
+    const std::vector<Index> approaching = near_.approaching(stage);
+    if (ranks.any(!approaching.empty())) make_zones(stage, approaching);
   }
-  const auto is_outside = [&](Index point) { return near_.number(point) < 0; };
-  if (std::any_of(pressing.begin(), pressing.end(), is_outside)) make_zones(stage, pressing);
+  if (presses_at_start_ && ranks.any(are_outside(pressing))) make_zones(stage, pressing);
 }
 
 /// Of a force of which each rank has a part, the whole, on the dofs that are solved for.
@@ -260,9 +278,9 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   for (int round = 0; round < round_limit; ++round) {
     find_residual(stage);
     watch_single_precision();
-    const bool touches = zones_.are_made() && (must_touch || presses_at_start_ || near_.some_may_touch(stage));
+    const bool touches = zones_->are_made() && (must_touch || presses_at_start_ || may_touch_);
     if (touches) {
-      zones_.solve(stage, residual_, guess_, solution);
+      zones_->solve(stage, residual_, guess_, solution);
       find_residual(stage);
       find_reactions(stage, solution);
       residual_ += reactions_;
@@ -270,16 +288,16 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
     if (target == 0.0) target = options_.tolerance * forces(stage);
     const double norm = gradients_.norm(*preconditioner_, residual_);
     if (norm <= target) {
-      if (layer_) layer_->find_motion(*stage.rows, solution, guess_, solution.contact_increment);
-      stage.rows->normal_motion(layer_ ? solution.contact_increment : guess_, motion_);
+      const bool has_layer = coefficients_.layer >= 0;
+      if (has_layer) zones_->find_motion(*stage.rows, solution, guess_, solution.contact_increment);
+      stage.rows->normal_motion(has_layer ? solution.contact_increment : guess_, motion_);
       const std::vector<Index> penetrating = near_.penetrating(stage, motion_, !touches);
-      if (penetrating.empty()) {
+      if (!problem_.ranks->any(!penetrating.empty())) {
         touches_ = touches;
         return end(stage, solution);
       }
       must_touch = true;
-      if (std::any_of(penetrating.begin(), penetrating.end(), [&](Index p) { return near_.number(p) < 0; }))
-        make_zones(stage, penetrating);
+      if (problem_.ranks->any(are_outside(penetrating))) make_zones(stage, penetrating);
       target = 0.0;
       continue;
     }
@@ -313,8 +331,9 @@ void IterativeStage::end(const Stage& stage, StageSolution& solution) {
 
 std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
                                                   const OperatorCoefficients& coefficients,
-                                                  const StepSolverOptions& options, FactoredStage* layer) {
-  return std::make_unique<IterativeStage>(problem, coefficients, options, layer);
+                                                  const StepSolverOptions& options, FactoredStage* layer,
+                                                  GatheredContact* gathered) {
+  return std::make_unique<IterativeStage>(problem, coefficients, options, layer, gathered);
 }
 
 }  // namespace ricochet

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
@@ -48,6 +49,14 @@ std::vector<int> solved_dofs(const SemidiscreteProblem& problem, StageDofs dofs)
     if (solved_for(dof)) result.push_back(static_cast<int>(dof));
   }
   return result;
+}
+
+SparseRowMatrix supported_rows(const SemidiscreteProblem& problem, const SparseMatrix& matrix) {
+  std::vector<int> every(static_cast<std::size_t>(problem.dof_count())), support(every.size(), -1);
+  std::iota(every.begin(), every.end(), 0);
+  for (Index i = 0; i < problem.supports.size(); ++i)
+    support[static_cast<std::size_t>(problem.supports.dofs()[static_cast<std::size_t>(i)])] = static_cast<int>(i);
+  return extract(matrix, support, problem.supports.size(), every, problem.dof_count());
 }
 
 void prescribe(const SemidiscreteProblem& problem, const Stage& stage, Vector& increment) {

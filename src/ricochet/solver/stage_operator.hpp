@@ -23,6 +23,9 @@ namespace ricochet {
 [[noreturn]] void refuse_operator(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                                   Index dof);
 
+/// Of a matrix on all dofs its rows of supported ones: supports × dofs.
+[[nodiscard]] SparseRowMatrix supported_rows(const SemidiscreteProblem& problem, const SparseMatrix& matrix);
+
 /// Writes what a stage prescribes to its supported dofs. `increment`: per dof.
 void prescribe(const SemidiscreteProblem& problem, const Stage& stage, Vector& increment);
 

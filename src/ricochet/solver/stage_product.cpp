@@ -10,7 +10,9 @@ StageProduct::StageProduct(const SemidiscreteProblem& problem, const OperatorCoe
   const bool is_damped = coefficients.damping != 0.0 && problem.has_damping();
   if (coefficients.mass != 0.0 && coefficients.stiffness != 0.0 && !is_damped) {
     SparseMatrix stiffness = stage_stiffness(problem, coefficients, displacement);
-    if (static_cast<double>(matrix.nonZeros()) > most_growth_by_mass * static_cast<double>(stiffness.nonZeros())) {
+    // Ranks do alike.
+    const double entries = problem.ranks->sum(static_cast<double>(matrix.nonZeros()));
+    if (entries > most_growth_by_mass * problem.ranks->sum(static_cast<double>(stiffness.nonZeros()))) {
       stiffness *= coefficients.stiffness;
       matrix_ = NodeMatrix(stiffness, problem.dimension);
       mass_ = &problem.mass;

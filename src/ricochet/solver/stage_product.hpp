@@ -19,6 +19,9 @@ class StageProduct {
   StageProduct(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, const SparseMatrix& matrix,
                const Vector& displacement = {});
 
+  /// A given matrix, symmetric to the bit, with d dofs per node.
+  StageProduct(const SparseMatrix& matrix, int d) : matrix_(matrix, d) {}
+
   /// y = A x. Allocates on the first call only.
   void multiply(const Vector& x, Vector& y) const;
   /// The rows and columns of these nodes, ascending, of A.

@@ -13,6 +13,7 @@
 namespace ricochet {
 
 class FactoredStage;
+class GatheredContact;
 
 class StageSolver {
  public:
@@ -51,10 +52,18 @@ struct AnalysedOperator {
                                                              const StepSolverOptions& options,
                                                              FactoredStage* layer = nullptr);
 
-/// Conjugate gradients on all dofs around a direct solve near the contact.
+/// Conjugate gradients on all dofs around a direct solve near the contact. `gathered`: where there are several ranks,
+/// and contact on some; kept. The layer is then that of its home.
 [[nodiscard]] std::unique_ptr<StageSolver> make_iterative_stage(const SemidiscreteProblem& problem,
                                                                 const OperatorCoefficients& coefficients,
                                                                 const StepSolverOptions& options,
-                                                                FactoredStage* layer = nullptr);
+                                                                FactoredStage* layer = nullptr,
+                                                                GatheredContact* gathered = nullptr);
+
+/// Several ranks: a stage on the dofs of contact nodes, by a factor on one of them. Keeps a reference to `gathered`.
+[[nodiscard]] std::unique_ptr<StageSolver> make_gathered_stage(const SemidiscreteProblem& problem,
+                                                               const OperatorCoefficients& coefficients,
+                                                               const StepSolverOptions& options,
+                                                               GatheredContact& gathered);
 
 }  // namespace ricochet

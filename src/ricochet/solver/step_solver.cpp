@@ -8,6 +8,7 @@
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/solver/choose_method.hpp"
+#include "ricochet/solver/gathered_contact.hpp"
 #include "ricochet/solver/newton_rounds.hpp"
 #include "ricochet/solver/stage_solver.hpp"
 #include "ricochet/solver/tangent_rounds.hpp"
@@ -45,7 +46,16 @@ class StagesStepSolver final : public StepSolver {
                    const StepSolverOptions& options)
       : problem_(problem), operators_(operators), rounds_(problem), newton_(problem) {
     if (!problem.internal_force->is_linear()) frame_ = std::make_unique<TurnedFrame>(problem);
-    for (const OperatorCoefficients& coefficients : operators) add_stage(problem, coefficients, options);
+    const bool is_divided = problem.ranks->are_several();
+    if (is_divided && problem.ranks->any(problem.contact.size() > 0))
+      gathered_ = std::make_unique<GatheredContact>(problem);
+    for (const OperatorCoefficients& coefficients : operators) {
+      if (is_divided) {
+        add_divided_stage(problem, coefficients, options);
+      } else {
+        add_stage(problem, coefficients, options);
+      }
+    }
   }
 
   void solve(std::size_t number, Stage& stage, StageSolution& solution) override {
@@ -155,6 +165,19 @@ class StagesStepSolver final : public StepSolver {
     for (std::size_t i = 0; i < stages_.size(); ++i)
       stages_[i]->refactorize(operators_[i].dofs == StageDofs::contact ? of_contact_nodes : displacement);
   }
+  /// Of a body on several ranks there is no factor, but on the dofs of contact nodes.
+  void add_divided_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
+                         const StepSolverOptions& options) {
+    if (coefficients.dofs == StageDofs::contact) {
+      stages_.push_back(make_gathered_stage(problem, coefficients, options, *gathered_));
+      methods_.push_back({.method = SolverMethod::direct, .reason = "on one of the processes"});
+      return;
+    }
+    FactoredStage* const layer =
+        coefficients.layer >= 0 ? stages_.at(static_cast<std::size_t>(coefficients.layer))->factored() : nullptr;
+    stages_.push_back(make_iterative_stage(problem, coefficients, options, layer, gathered_.get()));
+    methods_.push_back({.method = SolverMethod::iterative, .reason = "the body is divided among processes"});
+  }
   void add_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                  const StepSolverOptions& options) {
     const SolverMethod before = options.chosen.empty() ? SolverMethod::automatic : options.chosen[methods_.size()];
@@ -198,6 +221,7 @@ class StagesStepSolver final : public StepSolver {
   FollowerPressure::Instant pressure_at_;  ///< likewise
   TangentRounds rounds_;
   NewtonRounds newton_;
+  std::unique_ptr<GatheredContact> gathered_;  ///< of several ranks, where there is contact
   std::vector<std::unique_ptr<StageSolver>> stages_;
   std::vector<ChosenMethod> methods_;
 };

@@ -32,6 +32,16 @@ constexpr int last_rounds = 60;
 
 }  // namespace
 
+TangentRounds::TangentRounds(const SemidiscreteProblem& problem) : problem_(problem) {
+  if (!problem.ranks->are_several()) return;
+  Vector is_counted(static_cast<Index>(problem.contact_dofs.size()));
+  for (Index i = 0; i < is_counted.size(); ++i) {
+    const Index node = problem.contact_dofs[static_cast<std::size_t>(i)] / problem.dimension;
+    is_counted[i] = problem.ranks->is_owned(node) ? 1.0 : 0.0;
+  }
+  acceleration_.divide(*problem.ranks, std::move(is_counted));
+}
+
 void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution) {
   int iterations = solution.iterations, last_progress = 0, last_start = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -46,7 +56,8 @@ void TangentRounds::follow_motion(StageSolver& solver, Stage& stage, StageSoluti
       last_progress = round;
     }
     const bool is_last = round == most_rounds || round - last_progress > patience_of_rounds;
-    const double of_rounding = error / stage.gap_offset_rounding.maxCoeff();
+    const Vector& rounding = stage.gap_offset_rounding;
+    const double of_rounding = error / problem_.ranks->maximum(rounding.size() > 0 ? rounding.maxCoeff() : 0.0);
     if (round >= patient_rounds && round - last_progress >= patience_of_rounding && of_rounding <= rounding_left) break;
     if (round >= last_rounds && of_rounding <= most_rounding_left) break;
     // What faces what changes from round to round: it is held, and the next round solves what is then linear.

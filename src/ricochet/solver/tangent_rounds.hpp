@@ -13,7 +13,7 @@ namespace ricochet {
 /// they do not settle by themselves.
 class TangentRounds {
  public:
-  explicit TangentRounds(const SemidiscreteProblem& problem) : problem_(problem) {}
+  explicit TangentRounds(const SemidiscreteProblem& problem);
   /// From a stage that was solved once. Throws Error(not_converged).
   void follow_motion(StageSolver& solver, Stage& stage, StageSolution& solution);
 

@@ -13,7 +13,7 @@ constexpr const char* increment_ahead = "increment_ahead";
 }  // namespace
 
 std::optional<double> CentralScheme::stability_limit(const SemidiscreteProblem& problem) const {
-  if (stiffness_ != 0.0 || problem.has_singular_mass() || !problem.mass.is_diagonal()) return std::nullopt;
+  if (stiffness_ != 0.0 || problem.has_singular_mass() || !problem.has_diagonal_mass()) return std::nullopt;
   return central_difference_limit(problem);
 }
 

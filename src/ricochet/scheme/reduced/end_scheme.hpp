@@ -26,7 +26,7 @@ class EndScheme : public Scheme {
   [[nodiscard]] double acting_instant() const override { return -0.5; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] std::optional<ReactionMean> acting_reactions(const SemidiscreteProblem& problem) const override {
-    return problem.contact_dofs.empty() ? std::nullopt : std::optional(mean(problem));
+    return !problem.has_contact_dofs() ? std::nullopt : std::optional(mean(problem));
   }
 
   void advance(const SemidiscreteProblem& problem, State& state, StageSolve& stages, Vector& increment) override {
@@ -44,7 +44,7 @@ class EndScheme : public Scheme {
   /// What acts over a step where there is a contact dof.
   [[nodiscard]] virtual ReactionMean mean(const SemidiscreteProblem& problem) const = 0;
   [[nodiscard]] ReactionMean mean_of(const SemidiscreteProblem& problem) const {
-    return problem.contact_dofs.empty() ? ReactionMean::end : mean(problem);
+    return !problem.has_contact_dofs() ? ReactionMean::end : mean(problem);
   }
 
   MasslessLayer layer_;

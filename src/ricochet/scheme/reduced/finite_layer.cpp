@@ -50,7 +50,7 @@ std::vector<OperatorCoefficients> FiniteLayer::operators(const SemidiscreteProbl
                                                          ReactionMean mean) {
   OperatorCoefficients midpoint{.mass = 4.0 / (step * step), .stiffness = 1.0, .damping = 2.0 / step};
   midpoint.relaxation_step = step;
-  if (problem.contact_dofs.empty()) return {midpoint};
+  if (!problem.has_contact_dofs()) return {midpoint};
   midpoint.layer = static_cast<int>(MasslessLayer::layer_stage);
   midpoint.mean = mean;
   OperatorCoefficients layer{.mass = 0.0, .stiffness = 1.0, .damping = 0.0, .dofs = StageDofs::contact};
@@ -309,7 +309,7 @@ const StageSolution& FiniteLayer::solve_round(const SemidiscreteProblem& problem
   last_middle_ = middle_;
   last_end_ = end_;
   balance(problem, step, state, stage);
-  if (problem.contact_dofs.empty()) {
+  if (!problem.has_contact_dofs()) {
     stage.eligible.clear();
     stage.motion.reset();
   } else {
@@ -336,7 +336,7 @@ void FiniteLayer::advance(const SemidiscreteProblem& problem, ReactionMean mean,
     if (!converged_ && progress_.wants_acceleration() && advice == NewtonProgress::Advice::go_on)
       accelerate(problem, state);
     converged_ = converged_ || advice == NewtonProgress::Advice::done;
-    if (!problem.contact_dofs.empty()) follow_start(problem, step, state, stages, stage, solution);
+    if (problem.has_contact_dofs()) follow_start(problem, step, state, stages, stage, solution);
     const bool near = round.correction <= near_solution * round.increment || converged_;
     halve_where_inverted(problem, step, state, near);
     try {

@@ -60,12 +60,14 @@ void MasslessLayer::find_damping(const SemidiscreteProblem& problem) {
   if (!problem.has_damping()) return;
   ContactStiffness damping;
   damping.analyse(problem, 0.0, 1.0);
-  const double size = damping.rows().norm();
+  // Of the parts that ranks have; C_c = ηK_c holds for each or not at all.
+  const auto norm = [&](const SparseRowMatrix& rows) { return std::sqrt(problem.ranks->sum(rows.squaredNorm())); };
+  const double size = norm(damping.rows());
   if (size == 0.0) return;
   damps_ = true;
-  eta_ = size / stiffness_.rows().norm();
+  eta_ = size / norm(stiffness_.rows());
   const SparseRowMatrix difference = damping.rows() - eta_ * stiffness_.rows();
-  one_damping_ = difference.norm() <= same_damping * size;
+  one_damping_ = norm(difference) <= same_damping * size;
   if (one_damping_) return;
   layer_rows_.analyse(problem, 1.0, 2.0 / step_);
   log::info(
@@ -79,7 +81,7 @@ std::vector<OperatorCoefficients> MasslessLayer::operators(const SemidiscretePro
   const double h = step_;
   if (finite_) return FiniteLayer::operators(problem, h, mean);
   OperatorCoefficients midpoint{.mass = 4.0 / (h * h), .stiffness = 1.0, .damping = 2.0 / h};
-  if (problem.contact_dofs.empty()) return {midpoint};
+  if (!problem.has_contact_dofs()) return {midpoint};
   const OperatorCoefficients layer{
       .mass = 0.0, .stiffness = 1.0, .damping = one_damping_ ? 1.0 / h : 2.0 / h, .dofs = StageDofs::contact};
   midpoint.layer = static_cast<int>(layer_stage);
@@ -140,7 +142,7 @@ void MasslessLayer::advance(const SemidiscreteProblem& problem, ReactionMean mea
     return;
   }
   const double h = step_;
-  const bool has_layer = !problem.contact_dofs.empty();
+  const bool has_layer = problem.has_contact_dofs();
   Stage& stage = stages.stage(midpoint_stage(problem));
   balance(problem, state, stage);
   contact_base_ = state.displacement + h * state.velocity;  // of the end, at δ = 0
@@ -234,7 +236,7 @@ MasslessLayer::LayerWork MasslessLayer::layer_work(const SemidiscreteProblem& pr
 /// −ΔLᵀK_cc⁻¹Hᵀ(ρ̄_path − ½(ρ₀+ρ)) of the rest. With the nodal forces a = Hᵀ(ρ̄ − ½ρ) + ½r₀ that layer_work has left.
 double MasslessLayer::load_work_of_mean(const SemidiscreteProblem& problem, double mu, double at_end,
                                         StageSolve& stages) {
-  if (load_change_.isZero(0.0)) return 0.0;
+  if (!problem.ranks->any(!load_change_.isZero(0.0))) return 0.0;
   const Vector& place = solve_layer(problem, load_change_, stages);
   double of_reactions = 0.0, of_change = 0.0;
   for (std::size_t i = 0; i < problem.contact_dofs.size(); ++i) {
@@ -254,7 +256,7 @@ void MasslessLayer::correct(const SemidiscreteProblem& problem, ReactionMean mea
     corrections_ = {.load_work = work.load, .numerical_dissipation = 0.5 * of_layer_.dot(row_force_)};
     return;
   }
-  const bool touches = solution.mean_normal_reaction.size() > 0;
+  const bool touches = problem.ranks->any(solution.mean_normal_reaction.size() > 0);
   const double mu = touches ? solution.end_weight : 0.0;
   corrections_ = {.load_work = load_work_of_mean(problem, mu, work.load, stages)};
   if (touches) {

@@ -61,7 +61,7 @@ class MasslessLayer {
   [[nodiscard]] const ContactStiffness& stiffness() const { return stiffness_; }
   /// Number of the midpoint's stage.
   [[nodiscard]] static std::size_t midpoint_stage(const SemidiscreteProblem& problem) {
-    return problem.contact_dofs.empty() ? 0 : layer_stage + 1;
+    return !problem.has_contact_dofs() ? 0 : layer_stage + 1;
   }
   static constexpr std::size_t layer_stage = 0;
   /// Forces on contact nodes alone, per contact dof, that nothing else moves: the right-hand side of the layer's stage.

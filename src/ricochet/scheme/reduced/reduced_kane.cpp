@@ -22,7 +22,7 @@ class ReducedKane final : public EndScheme {
 
   void analyse(const SemidiscreteProblem& problem) override {
     EndScheme::analyse(problem);
-    if (weight_ == "end" || problem.contact_dofs.empty() || has_mean(problem)) return;
+    if (weight_ == "end" || !problem.has_contact_dofs() || has_mean(problem)) return;
     if (weight_ == "automatic" && problem.contact.has_friction()) return;
     if (std::exchange(told_, true)) return;  // `validate` analyses first, and then starts a run
     log::info(fmt::format("time.reaction_weight = \"{}\": the reactions at the end of each step act, since {}", weight_,

@@ -42,7 +42,7 @@ class ReducedMidpoint final : public Scheme {
       return;
     }
     const double h = step(), middle = state.time + 0.5 * h;
-    const bool has_layer = !problem.contact_dofs.empty();
+    const bool has_layer = problem.has_contact_dofs();
     const std::size_t number = MasslessLayer::midpoint_stage(problem);
     Stage& stage = stages.stage(number);
     layer_.balance(problem, state, stage);
@@ -68,7 +68,7 @@ class ReducedMidpoint final : public Scheme {
 
  private:
   static ReactionMean mean(const SemidiscreteProblem& problem) {
-    return problem.contact_dofs.empty() ? ReactionMean::end : ReactionMean::path;
+    return !problem.has_contact_dofs() ? ReactionMean::end : ReactionMean::path;
   }
   /// The contact nodes at the end: K_cc δ = L₁ + Gᵀr₁ − (K u)_c, from where the step left them.
   void settle(const SemidiscreteProblem& problem, const State& state, StageSolve& stages, Vector& increment) {

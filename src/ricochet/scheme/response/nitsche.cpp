@@ -20,6 +20,7 @@ namespace {
 /// A step needs one dense problem of all contact points: it is for a few hundred.
 class Nitsche final : public ForcedMidpoint {
  public:
+  [[nodiscard]] bool takes_ranks() const override { return false; }
   Nitsche(double step, double penalty) : ForcedMidpoint(step, "nitsche"), penalty_(penalty) {}
 
   void analyse(const SemidiscreteProblem& problem) override {

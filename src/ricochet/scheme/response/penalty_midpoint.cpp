@@ -18,6 +18,7 @@ namespace {
 /// that are or come inside.
 class PenaltyMidpoint final : public ForcedMidpoint {
  public:
+  [[nodiscard]] bool takes_ranks() const override { return false; }
   PenaltyMidpoint(double step, double penalty) : ForcedMidpoint(step, "penalty-midpoint"), penalty_(penalty) {}
 
   void analyse(const SemidiscreteProblem& problem) override {

@@ -8,8 +8,10 @@ namespace ricochet {
 void ExplicitMotion::analyse(const SemidiscreteProblem& problem, double step) {
   mass_ = problem.mass.diagonal();
   damping_ = problem.has_damping() ? Vector(problem.damping.matrix().diagonal()) : Vector();
+  ranks_ = problem.ranks;
   inverse_mass_ = mass_;
   if (problem.has_damping()) inverse_mass_ += (0.5 * step) * damping_;
+  ranks_->accumulate(inverse_mass_);
   for (const Index dof : problem.supports.dofs()) inverse_mass_[dof] = 0.0;
   for (double& m : inverse_mass_) m = m > 0.0 ? 1.0 / m : 0.0;
 }
@@ -57,9 +59,17 @@ void ExplicitMotion::move(const SemidiscreteProblem& problem, const Vector& corr
   }
 }
 
-/// One pass over memory.
-void ExplicitMotion::accelerate(const Vector& force, const Vector& load, double step, State& state) const {
+/// One pass over memory, on one rank.
+void ExplicitMotion::accelerate(const Vector& force, const Vector& load, double step, State& state) {
   const double half = 0.5 * step;
+  if (ranks_->are_several()) {
+    residual_ = load - force;
+    if (damping_.size() > 0) residual_ -= damping_.cwiseProduct(state.velocity);
+    ranks_->accumulate(residual_);
+    state.acceleration = inverse_mass_.cwiseProduct(residual_);
+    state.velocity += half * state.acceleration;
+    return;
+  }
   const Index count = force.size();
   const double* const l = load.data();
   const double* const f = force.data();

@@ -9,7 +9,7 @@ class ExplicitMotion {
  public:
   /// For a diagonal mass and damping.
   void analyse(const SemidiscreteProblem& problem, double step);
-  /// Diagonals of M and C; the latter empty without damping.
+  /// Diagonals of M and C, of this rank; the latter empty without damping.
   [[nodiscard]] const Vector& mass() const { return mass_; }
   [[nodiscard]] const Vector& damping() const { return damping_; }
 
@@ -19,12 +19,13 @@ class ExplicitMotion {
   /// dofs, and supported dofs go where the state's memory says. `increment` receives U^{n+1} − Uⁿ.
   void move(const SemidiscreteProblem& problem, const Vector& correction, double step, State& state, Vector& increment);
   /// A^{n+1} from (M + (h/2)C) A = L − K U − C V^{n+½} and V^{n+1} = V^{n+½} + (h/2)A^{n+1}; `force` is K U.
-  void accelerate(const Vector& force, const Vector& load, double step, State& state) const;
+  void accelerate(const Vector& force, const Vector& load, double step, State& state);
 
  private:
+  const Ranks* ranks_ = &one_rank();
   Vector mass_, damping_;
   Vector inverse_mass_;  ///< (M + (h/2)C)⁻¹ where there is mass and no support, else 0
-  Vector support_increment_;
+  Vector support_increment_, residual_;
 };
 
 }  // namespace ricochet

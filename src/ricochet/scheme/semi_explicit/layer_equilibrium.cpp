@@ -43,7 +43,7 @@ void LayerEquilibrium::start(State& state) const {
 }
 
 void LayerEquilibrium::renew_where_slow(const SemidiscreteProblem& problem, State& state, StageSolve& stages) {
-  if (problem.contact_dofs.empty() || progress_.rounds() <= many_rounds) return;
+  if (!problem.has_contact_dofs() || progress_.rounds() <= many_rounds) return;
   double& from = state.memory.at(layer_renewal)[0];
   if (static_cast<double>(state.step) < from) return;
   from = static_cast<double>(state.step) + kept_steps;
@@ -88,7 +88,7 @@ void LayerEquilibrium::require(const SemidiscreteProblem& problem, const State& 
 const StageSolution* LayerEquilibrium::solve(const SemidiscreteProblem& problem, const State& state, const Vector& load,
                                              double step, StageSolve& stages, StepEquations& equations,
                                              Vector& increment, Vector& end) {
-  if (problem.contact_dofs.empty()) return nullptr;
+  if (!problem.has_contact_dofs()) return nullptr;
   stages.follow(end);
   if (problem.has_moving_obstacles()) {
     middle_ = state.displacement + 0.5 * increment;

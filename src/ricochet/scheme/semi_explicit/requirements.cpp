@@ -11,7 +11,7 @@ namespace ricochet {
 
 void require_semi_explicit(const SemidiscreteProblem& problem, const std::string& scheme) {
   const char* const advice = "set mass.type = \"equivalent-lumped\", or use scheme \"newmark\", which takes any mass";
-  if (!problem.mass.is_diagonal()) {
+  if (!problem.has_diagonal_mass()) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("scheme \"{}\" needs a diagonal mass without inertia on the contact nodes, and "
                             "this one is not diagonal; {}",

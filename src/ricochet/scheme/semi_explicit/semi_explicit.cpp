@@ -49,7 +49,7 @@ class SemiExplicit final : public Scheme {
   explicit SemiExplicit(double step, bool at_any_step = false) : Scheme(step), at_any_step_(at_any_step) {}
 
   [[nodiscard]] std::vector<OperatorCoefficients> operators(const SemidiscreteProblem& problem) const override {
-    if (problem.contact_dofs.empty()) return {};
+    if (!problem.has_contact_dofs()) return {};
     return {{0.0, 1.0, 0.0, StageDofs::contact}};
   }
   [[nodiscard]] WorkRule work_rule() const override { return {0.5, 0.5}; }
@@ -60,7 +60,7 @@ class SemiExplicit final : public Scheme {
   [[nodiscard]] long history_every() const override { return 2; }
   [[nodiscard]] bool suits_singular_mass() const override { return true; }
   [[nodiscard]] std::optional<double> stability_limit(const SemidiscreteProblem& problem) const override {
-    return problem.mass.is_diagonal() ? std::optional(central_difference_limit(problem)) : std::nullopt;
+    return problem.has_diagonal_mass() ? std::optional(central_difference_limit(problem)) : std::nullopt;
   }
 
   void analyse(const SemidiscreteProblem& problem) override {
@@ -121,7 +121,7 @@ class SemiExplicit final : public Scheme {
  private:
   /// None where there is no contact dof.
   const StageSolution* solve_contact(const SemidiscreteProblem& problem, const State& state, StageSolve& stages) {
-    if (problem.contact_dofs.empty()) return nullptr;
+    if (!problem.has_contact_dofs()) return nullptr;
     contact_.require(problem, state, state.memory.at(force_memory), load(problem), state.memory.at(supported_next),
                      step(), equations_, stages.stage(0));
     return &stages.solve(0);

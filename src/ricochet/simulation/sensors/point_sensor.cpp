@@ -55,7 +55,8 @@ class PointSensor final : public Sensor {
       const double gap = observation.gap[probe_.contact_node];
       row.push_back(part * (std::isnan(gap) ? problem_.contact.out_of_sight : gap));
     }
-    for (const double value : {part * observation.pressure[probe_.contact_node], normal_force}) row.push_back(value);
+    // Of the force and the pressure each rank has what its contact points do.
+    for (const double value : {observation.pressure[probe_.contact_node], normal_force}) row.push_back(value);
     force -= normal_force * normal;
     append(force, row);
   }

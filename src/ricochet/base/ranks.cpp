@@ -1,0 +1,30 @@
+#include "ricochet/base/ranks.hpp"
+
+namespace ricochet {
+
+void Ranks::together(const std::function<void()>& work) const {
+  if (!are_several()) {
+    work();
+    return;
+  }
+  std::optional<Error> own;
+  try {
+    work();
+  } catch (const Error& problem) {
+    own = problem;
+  }
+  if (!any(own.has_value())) return;
+  ForEach<std::int64_t> told(static_cast<std::size_t>(size()));
+  if (own) {
+    const std::string text = own->what();
+    std::vector<std::int64_t> message{static_cast<std::int64_t>(own->kind())};
+    message.insert(message.end(), text.begin(), text.end());
+    std::fill(told.begin(), told.end(), message);
+  }
+  for (const std::vector<std::int64_t>& message : exchange(std::move(told))) {
+    if (message.empty()) continue;
+    throw Error(static_cast<ErrorKind>(message.front()), std::string(message.begin() + 1, message.end()));
+  }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,146 @@
+#include "ricochet/distributed/cut_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/base/timer.hpp"
+#include "ricochet/distributed/cut_problem.hpp"
+#include "ricochet/distributed/mpi_ranks.hpp"
+#include "ricochet/distributed/refusals.hpp"
+#include "ricochet/fem/assembly.hpp"
+#include "ricochet/model/model_parts.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// What a rank's model lives with.
+struct OwnRanks {
+  OwnRanks(const Communicator& ranks, const std::vector<std::int64_t>& numbers, Index count)
+      : nodes(ranks, numbers, count), as_ranks(ranks, nodes) {}
+  NodeExchange nodes;
+  MpiRanks as_ranks;
+};
+
+/// Per number of the whole its place in an ascending list, or −1.
+Index place_in(const std::vector<Index>& numbers, Index number) {
+  const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
+  return found != numbers.end() && *found == number ? found - numbers.begin() : -1;
+}
+
+std::vector<Index> places_in(const std::vector<Index>& members, const std::vector<Index>& numbers) {
+  std::vector<Index> result;
+  for (const Index member : members) {
+    const Index place = place_in(numbers, member);
+    if (place >= 0) result.push_back(place);
+  }
+  return result;
+}
+
+/// Facets of cells, with their numbers in the blocks of the piece.
+std::vector<CellFacet> cut_facets(const std::vector<CellFacet>& facets, const std::vector<CellBlock>& whole,
+                                  const std::vector<CellBlock>& own, const std::vector<Index>& cell_number) {
+  std::vector<Index> first_of_whole(1, 0), first_of_own(1, 0);
+  for (const CellBlock& block : whole) first_of_whole.push_back(first_of_whole.back() + block.size());
+  for (const CellBlock& block : own) first_of_own.push_back(first_of_own.back() + block.size());
+  std::vector<CellFacet> result;
+  for (const CellFacet& facet : facets) {
+    const Index place = place_in(cell_number, first_of_whole[facet.block] + facet.cell);
+    if (place >= 0) result.push_back({facet.block, place - first_of_own[facet.block], facet.local});
+  }
+  return result;
+}
+
+template <class Value>
+std::vector<Value> chosen(const std::vector<Value>& values, const std::vector<Index>& taken) {
+  std::vector<Value> result;
+  if (values.empty()) return result;
+  for (const Index i : taken) result.push_back(values[static_cast<std::size_t>(i)]);
+  return result;
+}
+
+void cut_bodies(const BodiesOfMesh& whole, const Model& whole_model, const Piece& piece, BodiesOfMesh& own) {
+  own = whole;
+  own.connected.of_node = chosen(whole.connected.of_node, piece.node_number);
+  own.connected.of_cell = chosen(whole.connected.of_cell, piece.cell_number);
+  own.boundary = cut_facets(whole.boundary, whole_model.space.cells, piece.space.cells, piece.cell_number);
+}
+
+void cut_watched(const std::vector<WatchedPlaces>& whole, const Piece& piece, const ContactBoundary& contact,
+                 const ContactBoundary& own, std::vector<WatchedPlaces>& result) {
+  result = whole;
+  for (WatchedPlaces& places : result) {
+    places.nodes = places_in(places.nodes, piece.node_number);
+    for (Probe& probe : places.probes) {
+      const Index node = probe.node, entry = probe.contact_node;
+      probe.node = place_in(piece.node_number, node);
+      if (probe.node < 0 || entry < 0) continue;
+      // Entries keep their order: of those of the node, the same.
+      const auto first = std::find(contact.nodes.begin(), contact.nodes.end(), node) - contact.nodes.begin();
+      probe.contact_node =
+          std::find(own.nodes.begin(), own.nodes.end(), probe.node) - own.nodes.begin() + (entry - first);
+    }
+  }
+}
+
+std::unique_ptr<Model> cut_model(Model& whole, const Communicator& ranks, const DivisionOptions& options) {
+  const Division division(whole.space, whole.problem,
+                          partition_cells(whole.mesh, ranks.size(), options.method, options.seed));
+  Piece piece =
+      cut_piece(whole.mesh, whole.space, division.rank_of_cell(), ranks.rank(), division.more_nodes(ranks.rank()));
+  auto kept = std::make_shared<OwnRanks>(ranks, piece.node_number, whole.space.node_count());
+
+  auto model = std::make_unique<Model>();
+  model->problem = cut_problem(whole.problem, division, piece, ranks.rank());
+  model->problem.ranks = &kept->as_ranks;
+  model->kept = kept;
+  if (const NodeMatrix* damping = whole.problem.damping.mass_part(); damping != nullptr)
+    model->problem.damping.set_mass_part(cut_matrix(*damping, division, piece, ranks.rank()), model->problem.nodes);
+  model->sizes = whole.sizes;
+  model->mass_built = whole.mass_built;
+  model->contains_rotations = whole.contains_rotations;
+  model->initial.static_equilibrium = whole.initial.static_equilibrium;
+  model->initial.displacement = cut_values(whole.initial.displacement, piece, whole.problem.dimension);
+  model->initial.velocity = cut_values(whole.initial.velocity, piece, whole.problem.dimension);
+  model->history_bodies.labels = whole.history_bodies.labels;
+  model->history_bodies.of_node = chosen(whole.history_bodies.of_node, piece.node_number);
+  cut_bodies(whole.bodies, whole, piece, model->bodies);
+  cut_watched(whole.watched, piece, whole.problem.contact, model->problem.contact, model->watched);
+  model->contact_pairs = whole.contact_pairs;
+  for (ContactPair& pair : model->contact_pairs) pair.facets = places_in(pair.facets, piece.facet_number);
+  model->pair_facings = whole.pair_facings;
+  model->obstacles = std::move(whole.obstacles);
+  model->body = whole.body;
+  model->body.tied = nullptr;
+  model->body.cell_material = chosen(whole.body.cell_material, piece.cell_number);
+  model->mesh = std::move(piece.mesh);
+  model->space = std::move(piece.space);
+  model->body.mesh = &model->mesh;
+  model->body.space = &model->space;
+  return model;
+}
+
+}  // namespace
+
+std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator& ranks, const DivisionOptions& options,
+                                           BuildTimes* times) {
+  refuse_undividable_case(input);
+  std::unique_ptr<Model> whole = build_model_without_forces(input, times);
+  refuse_undividable_model(input, *whole);
+  Timer timer;
+  std::unique_ptr<Model> model = cut_model(*whole, ranks, options);
+  whole.reset();
+  if (times != nullptr) times->model += timer.restart();
+  assemble_forces(input, *model);
+  if (times != nullptr) times->assembly += timer.restart();
+  add_loads(input, *model);
+  add_sensors(input, *model);
+  model->rotation = std::make_unique<RotationGauge>(model->body);
+  if (times != nullptr) times->model += timer.seconds();
+  return model;
+}
+
+}  // namespace ricochet

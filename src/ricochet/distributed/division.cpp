@@ -1,0 +1,92 @@
+#include "ricochet/distributed/division.hpp"
+
+#include <algorithm>
+
+namespace ricochet {
+
+namespace {
+
+/// Lists of ranks per node from pairs of both, in one array.
+void put_together(std::vector<std::pair<Index, int>>& pairs, Index nodes, std::vector<std::size_t>& begin,
+                  std::vector<int>& ranks) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  begin.assign(static_cast<std::size_t>(nodes) + 1, 0);
+  ranks.clear();
+  for (const auto& [node, rank] : pairs) {
+    ++begin[static_cast<std::size_t>(node) + 1];
+    ranks.push_back(rank);
+  }
+  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+}
+
+}  // namespace
+
+Division::Division(const DisplacementSpace& space, const SemidiscreteProblem& problem, std::vector<int> rank_of_cell)
+    : rank_of_cell_(std::move(rank_of_cell)) {
+  const int size = rank_of_cell_.empty() ? 1 : *std::max_element(rank_of_cell_.begin(), rank_of_cell_.end()) + 1;
+  more_nodes_.resize(static_cast<std::size_t>(size));
+  {
+    std::vector<std::pair<Index, int>> pairs;
+    std::size_t number = 0;
+    for (const CellBlock& block : space.cells) {
+      for (Index cell = 0; cell < block.size(); ++cell, ++number) {
+        for (int k = 0; k < block.nodes_per_cell; ++k) pairs.emplace_back(block.cell(cell)[k], rank_of_cell_[number]);
+      }
+    }
+    put_together(pairs, space.node_count(), begin_, ranks_);
+  }
+  std::vector<std::vector<Index>> more(static_cast<std::size_t>(size));
+  for (Index point = 0; point < problem.contact.size(); ++point) {
+    const int rank = owner(problem.contact.first_own_node(point));
+    rank_of_point_.push_back(rank);
+    problem.contact.visit_nodes(point, [&](Index node, double) {
+      if (!has(rank, node)) more[static_cast<std::size_t>(rank)].push_back(node);
+    });
+  }
+  give(more);
+  for (auto& nodes : more) nodes.clear();
+  const NodePattern& pattern = problem.mass.pattern();
+  pattern.visit_rows(0, pattern.parts(), [&](int node, Index first_block, const RowGroup& group) {
+    for (Index block = first_block; block < first_block + group.blocks_per_row(); ++block) {
+      const int other = pattern.column[static_cast<std::size_t>(block)];
+      if (rank_of_pair(node, other) >= 0) continue;
+      more[static_cast<std::size_t>(owner(std::min(node, other)))].push_back(std::max(node, other));
+    }
+  });
+  give(more);
+}
+
+bool Division::has(int rank, Index node) const {
+  const std::span<const int> ranks = ranks_of(node);
+  return std::binary_search(ranks.begin(), ranks.end(), rank);
+}
+
+int Division::rank_of_pair(Index one, Index other) const {
+  for (const int rank : ranks_of(one)) {
+    if (has(rank, other)) return rank;
+  }
+  return -1;
+}
+
+void Division::give(const std::vector<std::vector<Index>>& more) {
+  if (std::all_of(more.begin(), more.end(), [](const auto& nodes) { return nodes.empty(); })) return;
+  const auto nodes = static_cast<Index>(begin_.size()) - 1;
+  std::vector<std::pair<Index, int>> pairs;
+  for (Index node = 0; node < nodes; ++node) {
+    for (const int rank : ranks_of(node)) pairs.emplace_back(node, rank);
+  }
+  for (std::size_t rank = 0; rank < more.size(); ++rank) {
+    for (const Index node : more[rank]) {
+      pairs.emplace_back(node, static_cast<int>(rank));
+      more_nodes_[rank].push_back(node);
+    }
+  }
+  put_together(pairs, nodes, begin_, ranks_);
+  for (auto& own : more_nodes_) {
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+  }
+}
+
+}  // namespace ricochet

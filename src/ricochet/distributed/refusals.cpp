@@ -1,0 +1,45 @@
+#include "ricochet/distributed/refusals.hpp"
+
+#include <fmt/format.h>
+
+#include "ricochet/model/model_parts.hpp"
+
+namespace ricochet {
+
+namespace {
+
+[[noreturn]] void refuse_several(const Case& input, const std::string& key, const std::string& what) {
+  refuse(input, key, what + " cannot be run by several processes yet: take `ricochet run`, on one machine");
+}
+
+}  // namespace
+
+void refuse_undividable_case(const Case& input) {
+  if (input.solver.method == "direct") {
+    refuse(input, "solver.method",
+           "several processes solve steps by iterations, without a factor of the whole body: set solver.method = "
+           "\"iterative\" or leave it out, or take `ricochet run`");
+  }
+  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
+    const ContactSection& contact = input.contacts[i];
+    if (!contact.against.empty()) refuse_several(input, fmt::format("contact.{}.against", i), "contact between bodies");
+  }
+  for (const ObstacleSection& obstacle : input.obstacles) {
+    if (obstacle.is_free())
+      refuse_several(input, "obstacle." + obstacle.name, "an obstacle that moves by the forces on it");
+  }
+  if (input.initial.static_equilibrium) refuse_several(input, "initial.displacement", "a start in static equilibrium");
+  if (!make_scheme(input.time)->takes_ranks())
+    refuse_several(input, "time.scheme", fmt::format("scheme \"{}\"", input.time.scheme));
+}
+
+void refuse_undividable_model(const Case& input, const Model& whole) {
+  if (has_finite_strain(whole.body)) refuse_several(input, "material", "a body of finite strain");
+  if (whole.bodies.connected.count > 1) {
+    refuse_several(
+        input, input.parts.empty() ? "mesh.file" : "part",
+        fmt::format("{} bodies, which nobody would keep from going through each other,", whole.bodies.connected.count));
+  }
+}
+
+}  // namespace ricochet

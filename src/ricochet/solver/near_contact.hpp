@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "ricochet/base/snapshot.hpp"
+#include "ricochet/problem/stage.hpp"
+#include "ricochet/solver/contact/contact_solver.hpp"
+
+/// @file What a stage that is solved by iterations solves directly: the body near its contact.
+namespace ricochet {
+
+/// All ranks call these functions together, each with the contact points that are its own.
+class NearContact {
+ public:
+  virtual ~NearContact() = default;
+  /// For these points, and no others. Throws Error(invalid_input) where A is not positive definite.
+  virtual void make(const std::vector<Index>& points) = 0;
+  virtual void clear() = 0;
+  [[nodiscard]] virtual bool are_made() const = 0;
+  /// Points with some node within a few layers of those of the given ones, and these: a contact that grows should not
+  /// ask for other zones in every step. Ascending.
+  [[nodiscard]] virtual std::vector<Index> with_neighbours(const std::vector<Index>& points) = 0;
+
+  /// With the residual b − A x of the whole body, reactions left out: x near the contact, and the reactions.
+  virtual void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) = 0;
+  /// Where the stage has a layer: the contact motion m of the last solution (stage.hpp) on contact nodes, from δ per
+  /// dof.
+  virtual void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
+                           Vector& motion) = 0;
+
+  virtual void save(Snapshot& snapshot, const std::string& name) const = 0;
+  /// Zones for these points, as they were saved.
+  virtual void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) = 0;
+  virtual void report() const = 0;
+  virtual void observe(const ContactObserver& observer) = 0;
+  [[nodiscard]] virtual double contact_seconds() const = 0;
+  [[nodiscard]] virtual std::size_t factor_entries() const = 0;
+};
+
+}  // namespace ricochet

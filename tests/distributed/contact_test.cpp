@@ -1,0 +1,177 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ricochet/base/log.hpp"
+#include "ricochet/distributed/cut_model.hpp"
+#include "ricochet/run/session.hpp"
+#include "support/case_run.hpp"
+
+// Bodies in pieces that meet obstacles: contact points anywhere, and obstacles across the boundaries of ranks.
+
+namespace ricochet {
+namespace {
+
+struct ContactCase {
+  const char* name;
+  int dimension;
+  const char* contact;   ///< more keys of [[contact]]
+  const char* obstacle;  ///< of type, place and motion
+  const char* rest;      ///< [mass], [time] and what else there is
+  double allowed;        ///< relative to the largest value of a column
+};
+
+constexpr const char* floor_2d = "type = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.05, 1.0]\n";
+constexpr const char* floor_3d = "type = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.02, 0.03, 1.0]\n";
+constexpr const char* ball_2d = "type = \"sphere\"\ncentre = [0.45, -2.0]\nradius = 2.0\nside = \"outside\"\n";
+
+std::string toml_of(const ContactCase& test, const std::string& mesh) {
+  const bool flat = test.dimension == 2;
+  return "[mesh]\nfile = \"" + mesh +
+         "\"\n[[material]]\ngroup = \"block\"\ndensity = 1000.0\nyoung = 1.0e6\npoisson = 0.3\n[obstacle.floor]\n" +
+         test.obstacle + "[[contact]]\ngroup = \"bottom\"\nobstacle = \"floor\"\n" + test.contact +
+         "[load]\ngravity = " + (flat ? "[0.0, -10.0]" : "[0.0, 0.0, -10.0]") +
+         "\n[initial]\nvelocity = " + (flat ? "[1.0, -2.0]" : "[1.0, 0.0, -2.0]") +
+         "\ndisplacement = " + (flat ? "[0.0, 0.003]" : "[0.0, 0.0, 0.003]") +
+         "\n[solver]\nmethod = \"iterative\"\ntolerance = 1e-12\n[[probe]]\nname = \"corner\"\nat = " +
+         (flat ? "[0.0, 0.0]" : "[0.0, 0.0, 0.0]") +
+         "\n[[probe]]\nname = \"all\"\ngroup = \"block\"\n[[probe]]\nname = \"wall\"\nboundary = \"bottom\"\n"
+         "[[probe]]\nname = \"floor\"\ncontact = 0\n" +
+         test.rest + (std::string(test.rest).find("step =") == std::string::npos ? "step = 2e-3\n" : "") +
+         "end = 0.06\n";
+}
+
+std::string mesh_of(int dimension) {
+  return dimension == 2
+             ? test_support::mesh_geometry("ranks-2d",
+                                           "Rectangle(1)={0,0,0,1,0.5}; Physical Surface(\"block\")={1}; Physical "
+                                           "Curve(\"bottom\")={1}; Physical Curve(\"side\")={4};",
+                                           0.07, 1)
+             : test_support::mesh_geometry("ranks-3d",
+                                           "Box(1)={0,0,0,1,0.8,0.4}; Physical Volume(\"block\")={1}; Physical "
+                                           "Surface(\"bottom\")={5}; Physical Surface(\"side\")={1};",
+                                           0.15, 1);
+}
+
+class Contact : public testing::TestWithParam<std::tuple<ContactCase, PartitionMethod>> {};
+
+TEST_P(Contact, IsThatOfOneRank) {
+  const auto& [test, method] = GetParam();
+  log::set_level(log::Level::error);
+  const Communicator world = Communicator::world();
+  const auto wait = [&] { (void)world.gather(std::vector<double>{0.0}); };
+  std::string path;
+  // One makes the files that all read.
+  for (int rank = 0; rank < world.size(); ++rank) {
+    if (rank == world.rank()) path = test_support::write_temporary("case.toml", toml_of(test, mesh_of(test.dimension)));
+    wait();
+  }
+  Session whole(path), own(path);
+  own.set_model_builder([&, method = method](const Case& input, BuildTimes*) {
+    return build_divided_model(input, world, {.method = method, .seed = 5});
+  });
+  const auto recorder_of = [](Session& session) {
+    const Model& model = session.model();
+    return HistoryRecorder(model.problem, *model.rotation, model.sensors, model.history_bodies);
+  };
+  HistoryRecorder expected = recorder_of(whole), found = recorder_of(own);
+  ASSERT_EQ(expected.columns(), found.columns());
+  std::vector<std::vector<double>> expected_rows, rows;
+  double most_points = 0.0;
+  const std::size_t active = column_index(expected.columns(), "active_contacts");
+  const auto take_rows = [&] {
+    expected_rows.push_back(expected.row(whole.state(), whole.simulation().account()));
+    rows.push_back(found.row(own.state(), own.simulation().account()));
+    most_points = std::max(most_points, expected_rows.back()[active]);
+  };
+  take_rows();
+  while (whole.step()) {
+    ASSERT_TRUE(own.step());
+    take_rows();
+  }
+  EXPECT_GT(most_points, 2.0);  // there is contact
+  const auto largest = [&](const std::string& name) {
+    const std::size_t column = column_index(expected.columns(), name);
+    double result = 0.0;
+    for (const auto& row : expected_rows) result = std::max(result, std::abs(row[column]));
+    return result;
+  };
+  // What is zero but for rounding has that of what it is a part of.
+  const double energy = largest("kinetic_energy"), force = largest("corner.reaction_normal");
+  for (std::size_t column = 0; column < expected.columns().size(); ++column) {
+    const std::string& name = expected.columns()[column];
+    if (name == "iterations") continue;
+    double scale = largest(name), error = 0.0;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      error = std::max(error, std::abs(rows[i][column] - expected_rows[i][column]));
+    if (name.ends_with("_work") || name.ends_with("_residual") || name.ends_with("_dissipation")) scale = energy;
+    if (name.find("reaction_tangential") != std::string::npos) scale = force;
+    if (name == "max_penetration") scale = 1e-3;
+    EXPECT_LE(error, test.allowed * scale) << name;
+  }
+}
+
+const char* const newmark = "[mass]\ntype = \"equivalent\"\n[time]\nscheme = \"newmark\"\npreset = \"textbook-half\"\n";
+const char* const kane = "[mass]\ntype = \"equivalent\"\n[time]\nscheme = \"reduced-kane\"\n";
+const char* const midpoint = "[mass]\ntype = \"consistent\"\n[time]\nscheme = \"midpoint\"\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Contact,
+    testing::Combine(testing::Values(ContactCase{"newmark", 2, "", floor_2d, newmark, 1e-9},
+                                     ContactCase{"kane", 2, "friction = 0.3\n", floor_2d, kane, 1e-9},
+                                     ContactCase{"kane3d", 3, "friction = 0.3\n", floor_3d, kane, 1e-9},
+                                     ContactCase{"dual3d", 3, "friction = 0.3\nmultipliers = \"dual\"\n", floor_3d,
+                                                 newmark, 1e-9},
+                                     ContactCase{"p1", 2, "multipliers = \"p1\"\n", floor_2d, kane, 1e-9},
+                                     ContactCase{"midpoint", 2, "friction = 0.2\n", floor_2d, midpoint, 1e-9},
+                                     ContactCase{"cylinder", 2, "friction = 0.2\n", ball_2d, kane, 1e-8}),
+                     testing::Values(PartitionMethod::graph, PartitionMethod::random)),
+    [](const auto& info) {
+      return std::get<0>(info.param).name +
+             std::string(std::get<1>(info.param) == PartitionMethod::random ? "random" : "graph");
+    });
+
+/// Frictionless, on a plane.
+constexpr const char* other_schemes[][2] = {
+    {"contact-stabilized", "consistent"},
+    {"kane", "consistent"},
+    {"laursen-chawla", "consistent"},
+    {"klr-conserving", "consistent"},
+    {"bathe", "equivalent"},
+    {"reduced-midpoint", "equivalent"},
+    {"mean-reaction", "equivalent"},
+    {"semi-explicit", "equivalent-lumped"},
+    {"hht-alpha", "equivalent"},
+    {"wbz-alpha", "equivalent"},
+    {"generalized-alpha", "equivalent"},
+    {"nonsmooth-generalized-alpha", "consistent"},
+    {"moreau-jean", "consistent"},
+    {"paoli-schatzman", "lumped"},
+    {"taylor-flanagan", "lumped"},
+    {"cd-lagrange", "lumped"},
+};
+
+std::vector<ContactCase> cases_of_schemes() {
+  static std::vector<std::string> texts;
+  std::vector<ContactCase> result;
+  for (const auto& [scheme, mass] : other_schemes) {
+    const bool is_explicit = std::string(mass).ends_with("lumped");
+    texts.push_back(std::string("[mass]\ntype = \"") + mass + "\"\n[time]\nscheme = \"" + scheme + "\"\n" +
+                    (is_explicit ? "step = 2e-4\n" : "step = 2e-3\n"));
+  }
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    result.push_back({other_schemes[i][0], 2, "", floor_2d, texts[i].c_str(), 1e-9});
+  return result;
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, Contact,
+                         testing::Combine(testing::ValuesIn(cases_of_schemes()),
+                                          testing::Values(PartitionMethod::graph)),
+                         [](const auto& info) {
+                           std::string name = std::get<0>(info.param).name;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace ricochet
