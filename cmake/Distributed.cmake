@@ -16,3 +16,10 @@ target_link_libraries(ricochet_distributed PUBLIC ricochet::ricochet MPI::MPI_CX
 target_include_directories(ricochet_distributed SYSTEM PRIVATE ${PTSCOTCH_INCLUDE_DIR})
 target_precompile_headers(ricochet_distributed REUSE_FROM ricochet_contact)
 ricochet_unity_groups(ricochet_distributed 40)
+
+add_executable(ricochet_mpi ${CMAKE_SOURCE_DIR}/apps/ricochet-mpi/main.cpp)
+set_target_properties(ricochet_mpi PROPERTIES OUTPUT_NAME ricochet-mpi INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+target_link_libraries(ricochet_mpi PRIVATE ricochet_commands ricochet_distributed)
+target_compile_options(ricochet_mpi PRIVATE $<$<CONFIG:Release>:-O1>)
+install(TARGETS ricochet_distributed LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT mpi NAMELINK_SKIP)
+install(TARGETS ricochet_mpi RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT mpi)

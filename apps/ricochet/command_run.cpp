@@ -94,9 +94,11 @@ int run(const RunArguments& given) {
         (std::filesystem::path("out") / std::filesystem::path(arguments.case_file).stem()).string();
   }
   if (options.quiet) log::set_run_name(options.output_directory);
+  options.ranks = arguments.ranks;
   Session session(arguments.case_file, arguments.overrides);
+  session.set_model_builder(arguments.builder);
   const RunSummary summary = run_case(session, options);
-  print_summary(summary, options.output_directory);
+  if (arguments.ranks->is_first()) print_summary(summary, options.output_directory);
   if (summary.status == "interrupted") return 128 + stop_signal();
   for (const ExpectationResult& e : summary.expectations) {
     if (e.checked && !e.holds) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/run/session.hpp"
+
 /// @file The sub-commands, one file each. Each returns the exit status, or throws ricochet::Error which carries it.
 namespace ricochet::program {
 
@@ -15,6 +17,9 @@ struct RunArguments {
   bool quiet = false;
   std::optional<std::string> export_contact;  ///< steps, like 10,20,50:60
   std::string export_contact_to;              ///< directory; empty: contact/ in the output directory
+  // Of several processes:
+  const Ranks* ranks = &one_rank();
+  Session::ModelBuilder builder = {};  ///< none: build_model
 };
 
 struct ValidateArguments {

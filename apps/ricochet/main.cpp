@@ -16,6 +16,7 @@
 #include "completion.hpp"
 #include "described_command.hpp"
 #include "manual_page.hpp"
+#include "process_memory.hpp"
 #include "ricochet/base/blas.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
@@ -357,30 +358,11 @@ int run_program(int argc, char** argv) {
   }
 }
 
-/// Where memory is limited, OpenBLAS must not have threads of its own: it starts them when it is loaded, and one that
-/// gets no memory asks for it for ever, takes what others have given back, and does not end.
-void restart_without_blas_threads(char** argv) {
-  const char* const threads = std::getenv("OPENBLAS_NUM_THREADS");
-  if (!memory_is_limited() || (threads != nullptr && std::string_view(threads) == "1")) return;
-  setenv("OPENBLAS_NUM_THREADS", "1", 1);
-  execv("/proc/self/exe", argv);
-}
-
-/// Matrices of contact points come and go in every round of a step. Memory that is given back to the system each time,
-/// and comes back as pages of zeros, costs as much as the products.
-void keep_memory() {
-#ifdef __GLIBC__
-  constexpr int kept = 1 << 30;
-  mallopt(M_MMAP_THRESHOLD, kept);
-  mallopt(M_TRIM_THRESHOLD, kept);
-#endif
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  restart_without_blas_threads(argv);
-  keep_memory();
+  ricochet::program::restart_without_blas_threads(argv);
+  ricochet::program::keep_memory();
   ricochet::program::open_closed_streams();
   return run_program(argc, argv);
 }

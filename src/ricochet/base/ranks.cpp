@@ -27,4 +27,18 @@ void Ranks::together(const std::function<void()>& work) const {
   }
 }
 
+std::vector<std::string> Ranks::texts_of_all(const std::string& own) const {
+  ForEach<std::int64_t> told(static_cast<std::size_t>(size()));
+  told.front().assign(own.begin(), own.end());
+  std::vector<std::string> result;
+  for (const std::vector<std::int64_t>& text : exchange(std::move(told))) result.emplace_back(text.begin(), text.end());
+  return is_first() ? result : std::vector<std::string>{};
+}
+
+void Ranks::sum(std::span<double> values) const {
+  if (!are_several()) return;
+  const std::vector<Reduction> by(values.size(), Reduction::sum);
+  reduce(values, by);
+}
+
 }  // namespace ricochet

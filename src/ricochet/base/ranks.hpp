@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ricochet/base/error.hpp"
@@ -52,6 +53,15 @@ class Ranks {
   /// What each rank has for each, handed over: of the result, too, there is one for every rank.
   [[nodiscard]] virtual ForEach<double> exchange(ForEach<double> to_each) const { return to_each; }
   [[nodiscard]] virtual ForEach<std::int64_t> exchange(ForEach<std::int64_t> to_each) const { return to_each; }
+
+  /// What every rank has, for all.
+  [[nodiscard]] ForEach<double> of_all(const std::vector<double>& own) const {
+    return exchange(ForEach<double>(static_cast<std::size_t>(size()), own));
+  }
+  /// Texts of all ranks, for the first; of the others, none.
+  [[nodiscard]] std::vector<std::string> texts_of_all(const std::string& own) const;
+  /// Sums of several numbers, in place.
+  void sum(std::span<double> values) const;
 
   [[nodiscard]] double sum(double value) const { return reduced(value, Reduction::sum); }
   [[nodiscard]] double minimum(double value) const { return reduced(value, Reduction::minimum); }

@@ -2,8 +2,11 @@
 
 #include <mpi.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 #include "ricochet/base/error.hpp"
 
@@ -29,6 +32,32 @@ Communicator Communicator::world() {
   auto handle = std::make_shared<Handle>();
   handle->ranks = MPI_COMM_WORLD;
   return Communicator(std::move(handle));
+}
+
+Processes::Processes(int& count, char**& arguments) {
+  int provided = 0;
+  MPI_Init_thread(&count, &arguments, MPI_THREAD_FUNNELED, &provided);
+}
+
+Processes::~Processes() {
+  MPI_Finalize();
+}
+
+bool Processes::all_arrive(double seconds) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Ibarrier(MPI_COMM_WORLD, &request);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  int done = 0;
+  do {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  } while (done == 0 && std::chrono::steady_clock::now() < end);
+  return done != 0;
+}
+
+void Processes::end_all(int status) {
+  MPI_Abort(MPI_COMM_WORLD, status);
+  std::_Exit(status);
 }
 
 void Communicator::swap(std::vector<Message>& messages) const {

@@ -10,6 +10,21 @@
 /// @file What ranks say to each other. All functions are called by all ranks, and wait for them.
 namespace ricochet {
 
+/// The processes of this program: they begin together and end together.
+class Processes {
+ public:
+  Processes(int& count, char**& arguments);
+  /// Waits for the others.
+  ~Processes();
+  Processes(const Processes&) = delete;
+  Processes& operator=(const Processes&) = delete;
+
+  /// True where all have come here within so many seconds.
+  [[nodiscard]] static bool all_arrive(double seconds);
+  /// Ends all at once, with this exit status.
+  [[noreturn]] static void end_all(int status);
+};
+
 /// How much has been sent by this rank so far.
 struct Traffic {
   std::int64_t messages = 0, bytes = 0;

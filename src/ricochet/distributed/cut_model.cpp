@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/text.hpp"
@@ -86,6 +87,23 @@ void cut_watched(const std::vector<WatchedPlaces>& whole, const Piece& piece, co
   }
 }
 
+/// Keeps, on the first rank, what is needed to write the mesh.
+std::unique_ptr<const Model::Written> what_is_written(Model& whole, const Piece& piece, int rank) {
+  auto result = std::make_unique<Model::Written>();
+  result->node_rows = piece.space.number;
+  result->cell_rows = piece.cell_number;
+  if (rank != 0) return result;
+  result->space = std::move(whole.space);
+  result->body = whole.body;
+  result->body.mesh = nullptr;
+  result->body.space = &result->space;
+  result->problem.dimension = whole.problem.dimension;
+  result->problem.nodes = result->space.nodes;
+  result->problem.obstacles = whole.problem.obstacles;
+  result->problem.contact.facets = whole.problem.contact.facets;
+  return result;
+}
+
 std::unique_ptr<Model> cut_model(Model& whole, const Communicator& ranks, const DivisionOptions& options) {
   const Division division(whole.space, whole.problem,
                           partition_cells(whole.mesh, ranks.size(), options.method, options.seed));
@@ -116,6 +134,9 @@ std::unique_ptr<Model> cut_model(Model& whole, const Communicator& ranks, const 
   model->body = whole.body;
   model->body.tied = nullptr;
   model->body.cell_material = chosen(whole.body.cell_material, piece.cell_number);
+  model->written = what_is_written(whole, piece, ranks.rank());
+  // Here its own nodes are all that there are.
+  std::iota(piece.space.number.begin(), piece.space.number.end(), Index{0});
   model->mesh = std::move(piece.mesh);
   model->space = std::move(piece.space);
   model->body.mesh = &model->mesh;

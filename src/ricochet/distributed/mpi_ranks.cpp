@@ -4,7 +4,7 @@ namespace ricochet {
 
 /// Numbers of all ranks come to each, which takes them in the order of the ranks: the same bits everywhere, whatever
 /// way messages went. A NaN of any rank is one of all.
-void MpiRanks::reduce(std::span<double> values, std::span<const Reduction> by) const {
+void WorldRanks::reduce(std::span<double> values, std::span<const Reduction> by) const {
   if (ranks_.size() == 1) return;
   const std::vector<double> all = ranks_.gather(values);
   for (std::size_t i = 0; i < values.size(); ++i) {

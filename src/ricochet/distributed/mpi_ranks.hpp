@@ -6,21 +6,14 @@
 /// @file The ranks of a run, as the rest of the library sees them.
 namespace ricochet {
 
-class MpiRanks final : public Ranks {
+/// Without a body.
+class WorldRanks : public Ranks {
  public:
-  /// Keeps a reference to the exchange. Its nodes are those of the vectors of forces.
-  MpiRanks(const Communicator& ranks, const NodeExchange& nodes) : ranks_(ranks), nodes_(nodes) {}
+  explicit WorldRanks(const Communicator& ranks) : ranks_(ranks) {}
 
   [[nodiscard]] int rank() const override { return ranks_.rank(); }
   [[nodiscard]] int size() const override { return ranks_.size(); }
   void reduce(std::span<double> values, std::span<const Reduction> by) const override;
-  void accumulate(Vector& force) const override { nodes_.accumulate(force); }
-  void accumulate(Eigen::VectorXf& force) const override { nodes_.accumulate(force); }
-  [[nodiscard]] bool is_owned(Index node) const override { return nodes_.is_owned(node); }
-  [[nodiscard]] std::span<const Index> not_owned() const override { return nodes_.not_owned(); }
-  [[nodiscard]] std::int64_t number_of(Index node) const override {
-    return nodes_.numbers()[static_cast<std::size_t>(node)];
-  }
   [[nodiscard]] ForEach<double> exchange(ForEach<double> to_each) const override { return ranks_.exchange(to_each); }
   [[nodiscard]] ForEach<std::int64_t> exchange(ForEach<std::int64_t> to_each) const override {
     return ranks_.exchange(to_each);
@@ -28,6 +21,22 @@ class MpiRanks final : public Ranks {
 
  private:
   Communicator ranks_;
+};
+
+class MpiRanks final : public WorldRanks {
+ public:
+  /// Keeps a reference to the exchange. Its nodes are those of the vectors of forces.
+  MpiRanks(const Communicator& ranks, const NodeExchange& nodes) : WorldRanks(ranks), nodes_(nodes) {}
+
+  void accumulate(Vector& force) const override { nodes_.accumulate(force); }
+  void accumulate(Eigen::VectorXf& force) const override { nodes_.accumulate(force); }
+  [[nodiscard]] bool is_owned(Index node) const override { return nodes_.is_owned(node); }
+  [[nodiscard]] std::span<const Index> not_owned() const override { return nodes_.not_owned(); }
+  [[nodiscard]] std::int64_t number_of(Index node) const override {
+    return nodes_.numbers()[static_cast<std::size_t>(node)];
+  }
+
+ private:
   const NodeExchange& nodes_;
 };
 

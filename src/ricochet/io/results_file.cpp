@@ -5,6 +5,7 @@
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/file_lock.hpp"
 #include "ricochet/io/frame_output.hpp"
+#include "ricochet/io/gathered_fields.hpp"
 #include "ricochet/io/results_format.hpp"
 
 namespace ricochet {
@@ -32,9 +33,14 @@ class LockedFrames {
 
 struct ResultsWriter::Implementation {
   Implementation(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                 const ResultsOptions& options, const Snapshot* snapshot, const std::string& name);
+                 const ResultsOptions& options, const Snapshot* snapshot, const std::string& name,
+                 const WholeBody& whole);
+  void open(const FrameOutputContext& context, ResultsFormat format);
 
+  const Ranks& ranks;
   std::vector<std::unique_ptr<FieldSource>> sources;
+  std::unique_ptr<GatheredFields> gathered;  ///< of several ranks
+  long frame_count = 0;
   std::vector<Field> fields;
   std::string lock_path;
   std::optional<FileLock> lock;
@@ -43,52 +49,74 @@ struct ResultsWriter::Implementation {
 
 ResultsWriter::Implementation::Implementation(const std::string& directory, const Body& body,
                                               const SemidiscreteProblem& problem, const ResultsOptions& options,
-                                              const Snapshot* snapshot, const std::string& name)
-    : sources(make_field_sources({body, problem, wanted_fields(options.fields)})),
+                                              const Snapshot* snapshot, const std::string& name, const WholeBody& whole)
+    : ranks(*problem.ranks),
+      sources(make_field_sources({body, problem, wanted_fields(options.fields)})),
       lock_path(directory + "/" + lock_of_results(options.format)) {
   for (const auto& source : sources) {
     for (const Field& field : source->fields()) fields.push_back(field);
   }
-  const FrameOutputContext context{directory, body, problem, fields, options.file, snapshot, name};
-  const auto open = [&] {
-    output = options.format == ResultsFormat::vtkhdf ? make_vtkhdf_output(context) : make_xdmf_output(context);
+  if (!ranks.are_several()) {
+    open({directory, body, problem, fields, options.file, snapshot, name}, options.format);
+    return;
+  }
+  if (snapshot != nullptr) frame_count = snapshot->integer(name + ".frame_count");
+  gathered =
+      std::make_unique<GatheredFields>(ranks, fields, whole.node_rows, whole.cell_rows, whole.nodes, whole.cells);
+  ranks.together([&] {
+    if (!ranks.is_first()) return;
+    open({directory, *whole.body, *whole.problem, gathered->fields(), options.file, snapshot, name}, options.format);
+  });
+}
+
+void ResultsWriter::Implementation::open(const FrameOutputContext& context, ResultsFormat format) {
+  const auto make = [&] {
+    output = format == ResultsFormat::vtkhdf ? make_vtkhdf_output(context) : make_xdmf_output(context);
   };
-  if (snapshot == nullptr) {
-    open();
+  if (context.snapshot == nullptr) {
+    make();
     return;
   }
   lock.emplace(lock_path);
   const LockedFrames locked(*lock);
-  open();
+  make();
 }
 
 ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                             const ResultsOptions& options)
-    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, nullptr, "")) {}
+                             const ResultsOptions& options, const WholeBody& whole)
+    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, nullptr, "", whole)) {}
 
 ResultsWriter::ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                             const ResultsOptions& options, const Snapshot& snapshot, const std::string& name)
-    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, &snapshot, name)) {}
+                             const ResultsOptions& options, const Snapshot& snapshot, const std::string& name,
+                             const WholeBody& whole)
+    : implementation_(std::make_unique<Implementation>(directory, body, problem, options, &snapshot, name, whole)) {}
 
 ResultsWriter::~ResultsWriter() = default;
 
 void ResultsWriter::write(const State& state) {
   Implementation& own = *implementation_;
   for (const auto& source : own.sources) source->evaluate(state);
-  if (!own.lock) own.lock.emplace(own.lock_path);  // the file is there by now
-  const LockedFrames locked(*own.lock);
-  own.output->write(state);
+  if (own.gathered) own.gathered->gather();
+  ++own.frame_count;
+  own.ranks.together([&] {
+    if (!own.output) return;
+    if (!own.lock) own.lock.emplace(own.lock_path);  // the file is there by now
+    const LockedFrames locked(*own.lock);
+    own.output->write(state);
+  });
 }
 
 long ResultsWriter::frames() const {
-  return implementation_->output->frames();
+  return implementation_->output ? implementation_->output->frames() : implementation_->frame_count;
 }
 
 void ResultsWriter::save(Snapshot& snapshot, const std::string& name) const {
-  implementation_->output->save(snapshot, name);
+  if (implementation_->gathered) snapshot.save(name + ".frame_count", std::int64_t{implementation_->frame_count});
+  if (implementation_->output) implementation_->output->save(snapshot, name);
 }
 
 void ResultsWriter::sync() const {
+  if (!implementation_->output) return;
   for (const std::string& path : implementation_->output->paths()) sync_to_disk(path);
 }
 

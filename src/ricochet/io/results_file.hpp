@@ -23,15 +23,25 @@ struct ResultsOptions {
   ResultsFormat format = ResultsFormat::xdmf;
 };
 
+/// What is written of a body of which each rank has a part: the first one writes the whole.
+struct WholeBody {
+  const Body* body = nullptr;  ///< on the first rank: space and mesh of all
+  const SemidiscreteProblem* problem = nullptr;
+  std::vector<Index> node_rows, cell_rows;  ///< where those of this rank are
+  Index nodes = 0, cells = 0;               ///< of all
+};
+
 class ResultsWriter {
  public:
-  /// Opens the files in the directory. Keeps references to body and problem. Throws Error(file_access).
+  /// Opens the files in the directory. Keeps references to body and problem. Throws Error(file_access). `whole`: where
+  /// there are several ranks; all write together.
   ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                const ResultsOptions& options);
+                const ResultsOptions& options, const WholeBody& whole = {});
   /// Goes on after the frames that were there when save() was called; the files will have the bytes of a run that was
   /// never interrupted. Throws Error(file_access) where they are not those files.
   ResultsWriter(const std::string& directory, const Body& body, const SemidiscreteProblem& problem,
-                const ResultsOptions& options, const Snapshot& snapshot, const std::string& name);
+                const ResultsOptions& options, const Snapshot& snapshot, const std::string& name,
+                const WholeBody& whole = {});
   ~ResultsWriter();
   ResultsWriter(const ResultsWriter&) = delete;
   ResultsWriter& operator=(const ResultsWriter&) = delete;

@@ -16,6 +16,7 @@
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/failure_bundle.hpp"
+#include "ricochet/io/rank_checkpoints.hpp"
 
 namespace ricochet {
 
@@ -33,7 +34,8 @@ int open_directory(const std::string& path) {
 
 }  // namespace
 
-RunDirectory::RunDirectory(std::string path) : path_(std::move(path)) {
+RunDirectory::RunDirectory(std::string path, bool holds) : path_(std::move(path)) {
+  if (!holds) return;
   std::error_code problem;
   at_interruption_.emplace([&] { is_new_ = fs::create_directories(path_, problem); },
                            [this] {
@@ -101,6 +103,7 @@ std::vector<std::string> RunDirectory::left_behind(long step) const {
   for (const CheckpointFile& checkpoint : checkpoint_files(path_)) {
     if (checkpoint.step > step) result.push_back(checkpoint.path);
   }
+  for (const std::string& file : rank_checkpoint_files(path_, step)) result.push_back(file);
   return result;
 }
 
@@ -115,7 +118,8 @@ bool RunDirectory::is_in_use(const std::string& path) {
 bool holds_run(const std::string& directory) {
   std::error_code ignored;
   return fs::exists(fs::path(directory) / "summary.json", ignored) ||
-         (fs::is_directory(directory, ignored) && !checkpoint_files(directory).empty());
+         (fs::is_directory(directory, ignored) &&
+          (!checkpoint_files(directory).empty() || ranks_of_checkpoints(directory) > 0));
 }
 
 void remove_files(const std::vector<std::string>& files) {

@@ -13,7 +13,8 @@ class RunDirectory {
  public:
   /// Makes the directory where it is missing, and keeps other runs out of it until this object or the process ends,
   /// however it ends. Throws Error(file_access): it cannot be made or written to, or another run is in it.
-  explicit RunDirectory(std::string path);
+  /// `holds`: false on ranks other than the first, which has it for all.
+  explicit RunDirectory(std::string path, bool holds = true);
   /// Removes the directory again where this object has made it and nothing has been written into it.
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;

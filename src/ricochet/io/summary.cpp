@@ -269,9 +269,13 @@ RunSummary read_summary_of_run(const std::string& directory) {
 RunSummary read_summary(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw Error(ErrorKind::file_access, fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
+  return summary_from_json({std::istreambuf_iterator<char>(file), {}}, path);
+}
+
+RunSummary summary_from_json(const std::string& text, const std::string& path) {
   RunSummary s;
   try {
-    const Json json = Json::parse({std::istreambuf_iterator<char>(file), {}});
+    const Json json = Json::parse(text);
     s.status = json.at("status");
     s.message = json.at("message");
     s.steered = json.value("steered_by_program", false);

@@ -200,6 +200,8 @@ struct RunSummary {
 void write_summary(const std::string& path, const RunSummary& summary);
 /// Throws Error(file_access) or Error(invalid_input).
 [[nodiscard]] RunSummary read_summary(const std::string& path);
+/// The same of a text; `path` is for messages.
+[[nodiscard]] RunSummary summary_from_json(const std::string& text, const std::string& path);
 /// That of the run in a directory. Throws likewise; messages say what is in the directory.
 [[nodiscard]] RunSummary read_summary_of_run(const std::string& directory);
 /// A number of a summary by its dotted path ("extrema.total_energy.maximum", "steps"). Throws Error(invalid_input).

@@ -51,6 +51,14 @@ struct Model {
   std::map<long, std::vector<std::shared_ptr<Sensor>>> sampled_sensors;
   std::unique_ptr<RotationGauge> rotation;
   std::shared_ptr<const void> kept;  ///< what its ranks are, where the body is divided
+  /// Of a divided body: where its nodes and cells are in what is written, and on the first rank the whole.
+  struct Written {
+    std::vector<Index> node_rows, cell_rows;
+    DisplacementSpace space;
+    Body body;
+    SemidiscreteProblem problem;  ///< nodes, obstacles and the facets of contact
+  };
+  std::unique_ptr<const Written> written;
 
   Model() = default;
   Model(const Model&) = delete;  // body points into this

@@ -52,7 +52,7 @@ void MethodWatch::enter_step(const State& state, double of_method) {
 
 /// Steps in which nothing presses have a weight, too, but it acts on nothing.
 void MethodWatch::enter_weight(const StepForces& forces) {
-  if (!(forces.mean_normal_reaction.array() > 0.0).any()) return;
+  if (!ranks_->any((forces.mean_normal_reaction.array() > 0.0).any())) return;
   if (forces.end_weight == 1.0) {  // a mean that was found has less
     ++end_steps_;
     return;

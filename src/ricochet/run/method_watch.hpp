@@ -13,7 +13,8 @@ namespace ricochet {
 class MethodWatch {
  public:
   /// Of a scheme that lets such reactions act; none: it has no choice.
-  explicit MethodWatch(std::optional<ReactionMean> acting) : acting_(acting) {}
+  explicit MethodWatch(std::optional<ReactionMean> acting, const Ranks& ranks = one_rank())
+      : acting_(acting), ranks_(&ranks) {}
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
@@ -27,6 +28,7 @@ class MethodWatch {
   void enter_weight(const StepForces& forces);
 
   std::optional<ReactionMean> acting_;
+  const Ranks* ranks_;
   double least_ = 0.0, largest_ = 0.0, last_ = 0.0;  ///< of what the method has put in
   double least_weight_ = std::numeric_limits<double>::infinity(), largest_weight_ = -least_weight_;
   long mean_steps_ = 0, end_steps_ = 0;

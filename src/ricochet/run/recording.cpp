@@ -23,9 +23,17 @@ long default_frames(long steps, Index dofs) {
   return std::lround(std::min(most, least + static_cast<double>(steps) * static_cast<double>(dofs) / work_per_frame));
 }
 
-HistoryWriter open_history(const std::string& path, const std::vector<std::string>& columns, const Snapshot* snapshot,
-                           const std::string& name) {
-  return snapshot != nullptr ? HistoryWriter(path, *snapshot, name) : HistoryWriter(path, columns);
+/// On the first rank.
+std::unique_ptr<HistoryWriter> open_history(const Ranks& ranks, const std::string& path,
+                                            const std::vector<std::string>& columns, const Snapshot* snapshot,
+                                            const std::string& name) {
+  std::unique_ptr<HistoryWriter> result;
+  ranks.together([&] {
+    if (!ranks.is_first()) return;
+    result = snapshot != nullptr ? std::make_unique<HistoryWriter>(path, *snapshot, name)
+                                 : std::make_unique<HistoryWriter>(path, columns);
+  });
+  return result;
 }
 
 /// Of those of the mesh, and of the rigid bodies that move freely.
@@ -50,9 +58,13 @@ std::unique_ptr<ResultsWriter> open_results(const OutputSection& output, const M
   const ResultsOptions options{output.fields,
                                {output.single_precision, output.compression},
                                output.vtkhdf ? ResultsFormat::vtkhdf : ResultsFormat::xdmf};
+  WholeBody whole;
+  if (model.written)
+    whole = {&model.written->body,     &model.written->problem, model.written->node_rows,
+             model.written->cell_rows, model.sizes.nodes,       model.sizes.cells};
   if (snapshot != nullptr)
-    return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, *snapshot, "results");
-  return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options);
+    return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, *snapshot, "results", whole);
+  return std::make_unique<ResultsWriter>(directory, model.body, model.problem, options, whole);
 }
 
 PenetrationWatch make_penetration_watch(const Case& input, const Model& model) {
@@ -111,25 +123,27 @@ bool FieldSchedule::includes(const State& state) {
 
 Recording::Recording(const Case& input, const Model& model, const Scheme& scheme, const State& state,
                      const std::string& directory, long steps, std::size_t factor_entries, const Snapshot* snapshot)
-    : fields_(input, steps, model.problem.dof_count(), snapshot),
+    : fields_(input, steps, model.sizes.dofs, snapshot),
       results_(fields_.any() ? open_results(input.output, model, directory, snapshot) : nullptr),
       recorder_(model.problem, *model.rotation, model.sensors, model.history_bodies),
-      history_(open_history(directory + "/history.csv", recorder_.columns(), snapshot, "history")),
+      history_(
+          open_history(*model.problem.ranks, directory + "/history.csv", recorder_.columns(), snapshot, "history")),
       checks_(input, model, scheme, state, recorder_.columns(), snapshot),
       model_(model),
       body_names_(names_of_all_bodies(input, model)),
       impacts_(make_impact_recorder(model, scheme, state)),
-      peak_stress_(model.body, step_work(model.body, factor_entries)),
+      peak_stress_(model.body, *model.problem.ranks, step_work(model.body, factor_entries)),
       penetration_(make_penetration_watch(input, model)),
       sliding_(model.body, model.problem, model.contact_pairs),
       late_(model.body, model.problem, model.contact_pairs),
-      rotation_(model.body, column_index(recorder_.columns(), "max_rotation")),
-      method_(scheme.acting_reactions(model.problem)),
+      rotation_(model.body, *model.problem.ranks, column_index(recorder_.columns(), "max_rotation")),
+      method_(scheme.acting_reactions(model.problem), *model.problem.ranks),
       history_every_(input.output.history_every.value_or(scheme.history_every())) {
   for (const auto& [every, sensors] : model.sampled_sensors) {
     SensorRecorder recorder(model.problem, sensors);
-    HistoryWriter file =
-        open_history(directory + "/" + sampled_name(every) + ".csv", recorder.columns(), snapshot, sampled_name(every));
+    std::unique_ptr<HistoryWriter> file =
+        open_history(*model.problem.ranks, directory + "/" + sampled_name(every) + ".csv", recorder.columns(), snapshot,
+                     sampled_name(every));
     sampled_.push_back({every, std::move(recorder), std::move(file)});
   }
   if (snapshot == nullptr) return;
@@ -143,16 +157,21 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
   method_.load(*snapshot, "method");
 }
 
+/// Of all ranks.
+double Recording::of_method(const State& state, EnergyAccount& account) const {
+  return model_.problem.ranks->sum(account.of_method(state));
+}
+
 void Recording::enter_part(const State& state, EnergyAccount& account) {
   checks_.enter_part(state);
   penetration_.look_at_part(state);
-  impacts_.enter_step(state, account.of_method(state));
+  impacts_.enter_step(state, of_method(state, account));
 }
 
 void Recording::record(const State& state, EnergyAccount& account) {
   Timer timer;
   if (state.step > 0) {
-    method_.enter_step(state, account.of_method(state));
+    method_.enter_step(state, of_method(state, account));
   }
   const bool is_frame = results_ && fields_.includes(state);
   peak_stress_.enter(state, is_frame);
@@ -163,7 +182,7 @@ void Recording::record(const State& state, EnergyAccount& account) {
   late_.look(state);
   watch_seconds_ += watch_timer.seconds();
   for (Sampled& sampled : sampled_) {
-    if (state.step % sampled.every == 0) sampled.file.write(sampled.recorder.row(state));
+    if (state.step % sampled.every == 0) write_row_of(sampled, state);
   }
   if (is_frame) results_->write(state);
   if (since_flush_.seconds() > flush_interval) {
@@ -177,7 +196,7 @@ void Recording::record_end(const State& state, EnergyAccount& account) {
   Timer timer;
   if (state.step % history_every_ != 0) write_row(state, account);
   for (Sampled& sampled : sampled_) {
-    if (state.step % sampled.every != 0) sampled.file.write(sampled.recorder.row(state));
+    if (state.step % sampled.every != 0) write_row_of(sampled, state);
   }
   if (results_ && !fields_.is_last(state)) {
     peak_stress_.enter_frame(state);
@@ -193,23 +212,37 @@ void Recording::record_end(const State& state, EnergyAccount& account) {
 void Recording::write_row(const State& state, EnergyAccount& account) {
   const std::vector<double>& row = recorder_.row(state, account);
   check_finite(row);
-  history_.write(row);
+  model_.problem.ranks->together([&] {
+    if (history_) history_->write(row);
+  });
   digest_.add(row);
   rotation_.watch(row, state);
   checks_.watch(row, state);
 }
 
+void Recording::write_row_of(Sampled& sampled, const State& state) {
+  const std::vector<double>& row = sampled.recorder.row(state);
+  model_.problem.ranks->together([&] {
+    if (sampled.file) sampled.file->write(row);
+  });
+}
+
 void Recording::flush() {
-  history_.flush();
-  for (Sampled& sampled : sampled_) sampled.file.flush();
+  if (history_) history_->flush();
+  for (Sampled& sampled : sampled_) {
+    if (sampled.file) sampled.file->flush();
+  }
 }
 
 void Recording::save(Snapshot& snapshot) {
-  history_.sync();
-  history_.save(snapshot, "history");
+  if (history_) {
+    history_->sync();
+    history_->save(snapshot, "history");
+  }
   for (Sampled& sampled : sampled_) {
-    sampled.file.sync();
-    sampled.file.save(snapshot, sampled_name(sampled.every));
+    if (!sampled.file) continue;
+    sampled.file->sync();
+    sampled.file->save(snapshot, sampled_name(sampled.every));
   }
   if (results_) {
     results_->sync();

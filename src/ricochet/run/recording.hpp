@@ -72,6 +72,7 @@ class Recording {
   [[nodiscard]] double watch_seconds() const { return watch_seconds_; }
 
  private:
+  [[nodiscard]] double of_method(const State& state, EnergyAccount& account) const;
   void write_row(const State& state, EnergyAccount& account);
   void check_finite(const std::vector<double>& row) const;
   void describe_bodies(RunSummary& summary) const;
@@ -81,13 +82,14 @@ class Recording {
   std::unique_ptr<ResultsWriter>
       results_;  ///< first: looks whether the fields are what was written, and changes nothing else
   HistoryRecorder recorder_;
-  HistoryWriter history_;
+  std::unique_ptr<HistoryWriter> history_;  ///< on the first rank
   /// Probes with an interval of their own.
   struct Sampled {
     long every;
     SensorRecorder recorder;
-    HistoryWriter file;
+    std::unique_ptr<HistoryWriter> file;  ///< on the first rank
   };
+  void write_row_of(Sampled& sampled, const State& state);
   std::vector<Sampled> sampled_;
   HistoryDigest digest_;
   RunChecks checks_;

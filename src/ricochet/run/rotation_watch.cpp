@@ -26,8 +26,9 @@ std::string spurious_strain(double rotation) {
                      100.0 * (1.0 - std::cos(rotation)));
 }
 
-RotationWatch::RotationWatch(const Body& body, std::size_t column)
+RotationWatch::RotationWatch(const Body& body, const Ranks& ranks, std::size_t column)
     : body_(body),
+      ranks_(ranks),
       column_(column),
       limit_(has_finite_strain(body) ? std::numeric_limits<double>::infinity() : rotation_limit) {
   // No rotation is larger than pi.
@@ -75,7 +76,7 @@ void RotationWatch::watch(const std::vector<double>& row, const State& state) {
       "here on its forces and rebounds are wrong; an impact that had ended before is not affected. "
       "A law of finite strain (law = \"neo-hookean\" in [[material]]) holds for any rotation",
       row[1], rotation, rotation_limit, spurious_strain(rotation),
-      100.0 * largest_green_strain(body_, state.displacement)));
+      100.0 * ranks_.maximum(largest_green_strain(body_, state.displacement))));
 }
 
 }  // namespace ricochet

@@ -15,8 +15,8 @@ namespace ricochet {
 
 class RotationWatch {
  public:
-  /// `column`: of max_rotation in a row. At finite strain there is no limit. Keeps a reference.
-  RotationWatch(const Body& body, std::size_t column);
+  /// `column`: of max_rotation in a row. At finite strain there is no limit. Keeps references.
+  RotationWatch(const Body& body, const Ranks& ranks, std::size_t column);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
@@ -34,6 +34,7 @@ class RotationWatch {
     double time, rotation;
   };
   const Body& body_;
+  const Ranks& ranks_;
   std::size_t column_;
   double limit_;
   std::vector<Noted> growth_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -11,6 +12,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/io/checkpoint.hpp"
 #include "ricochet/io/line_checksums.hpp"
+#include "ricochet/io/rank_checkpoints.hpp"
 #include "ricochet/run/old_run.hpp"
 #include "ricochet/run/run_description.hpp"
 #include "ricochet/run/run_identity.hpp"
@@ -52,7 +54,8 @@ Run::Run(Session& session, const RunOptions& options)
     : session_(session),
       input_(session.input()),
       options_(options),
-      directory_(options.output_directory),
+      ranks_(*options.ranks),
+      directory_(options.output_directory, options.ranks->is_first()),
       steps_(session.steps()),
       of_reading_(static_cast<std::ptrdiff_t>(session.warnings().size())),
       at_interruption_([this] { end_early(); }) {}
@@ -62,16 +65,18 @@ void Run::begin() {
   log::set_run_name(options_.quiet ? options_.output_directory : "");
   check_export(input_, options_, steps_);
   if (options_.resume) {
-    has_nothing_to_do_ = is_complete();
+    ranks_.together([&] { has_nothing_to_do_ = is_complete(); });
     if (has_nothing_to_do_) return;
     find_checkpoint();
   } else if (!options_.force) {
-    refuse_old_run(directory_, options_);
+    ranks_.together([&] {
+      if (ranks_.is_first()) refuse_old_run(directory_, options_);
+    });
   }
   begin_session();
   open_files();
-  progress_.emplace(input_.time.adaptive ? 0 : steps_, input_.time.end, options_.quiet, session_.state().step,
-                    session_.state().time);
+  progress_.emplace(input_.time.adaptive ? 0 : steps_, input_.time.end, options_.quiet || !ranks_.is_first(),
+                    session_.state().step, session_.state().time);
   since_checkpoint_.restart();
 }
 
@@ -111,19 +116,39 @@ bool Run::is_complete() {
   log::info(fmt::format("{}: this run is complete, there is nothing to resume", options_.output_directory));
   if (!options_.export_contact.empty())
     log::warning("--export-contact: the run is complete, nothing more is exported; make it again with --force");
-  summary_.expectations = check_expectations(input_, options_.output_directory, to_json(summary_));
+  if (ranks_.is_first())
+    summary_.expectations = check_expectations(input_, options_.output_directory, to_json(summary_));
   return true;
 }
 
 void Run::find_checkpoint() {
-  snapshot_ = newest_checkpoint(options_.output_directory);
+  if (ranks_.are_several()) {
+    snapshot_ = newest_rank_checkpoint(ranks_, options_.output_directory);
+  } else {
+    refuse_run_of_ranks();
+    snapshot_ = newest_checkpoint(options_.output_directory);
+  }
+  ranks_.together([&] { look_at_checkpoint(); });
+}
+
+/// One process cannot put their parts together.
+void Run::refuse_run_of_ranks() const {
+  const int ranks = ranks_of_checkpoints(options_.output_directory);
+  if (ranks == 0) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{0}: this run is one of {1} processes, and goes on with as many: mpirun -n {1} ricochet-mpi "
+                          "run --resume {0}",
+                          options_.output_directory, ranks));
+}
+
+void Run::look_at_checkpoint() {
   if (snapshot_) {
     require_same_case(input_, *snapshot_, options_.output_directory);
     const double reached = snapshot_->real("state.time");
     if (input_.time.adaptive ? input_.time.end < reached - input_.time.smallest
                              : steps_ < static_cast<long>(snapshot_->integer("state.step")))
       refuse_earlier_end(reached);
-    require_same_files(options_.output_directory, *snapshot_);
+    if (ranks_.is_first()) require_same_files(options_.output_directory, *snapshot_);
     if (!options_.resume_load && Session::is_steered(*snapshot_)) {
       throw Error(
           ErrorKind::invalid_input,
@@ -168,9 +193,9 @@ void Run::begin_session() {
   session_.build(&build);
   times_.add_build(build);
   check_expected_quantities(input_, session_.model());
-  if (session_.model().problem.dof_count() >= large_body) {
-    log::info(fmt::format("{}, {}; preparing the steps", counted(session_.model().problem.dof_count(), "dof"),
-                          counted(session_.model().problem.contact.size(), "contact point")));
+  if (session_.model().sizes.dofs >= large_body) {
+    log::info(fmt::format("{}, {}; preparing the steps", counted(session_.model().sizes.dofs, "dof"),
+                          counted(session_.model().sizes.contact_points, "contact point")));
   }
   const auto built = static_cast<std::ptrdiff_t>(session_.warnings().size());
   Timer timer;
@@ -199,7 +224,9 @@ void Run::begin_session() {
     log::info("resumed after " + step_in_words());
   } else {
     const std::lock_guard files(files_);
-    replace_old_run(directory_, options_, summary_);
+    ranks_.together([&] {
+      if (ranks_.is_first()) replace_old_run(directory_, options_, summary_);
+    });
     reported_ = summary_;
   }
   warn_of_end(input_.time);
@@ -216,7 +243,7 @@ void Run::open_files() {
     summary_.message = problem.what();
     summary_.steps = session_.simulation().state().step;
     try {
-      write_summary(summary_path(), summary_);
+      write_own_summary(summary_);
     } catch (const Error&) {  // what has failed first is what a user must hear
     }
     throw;
@@ -237,7 +264,9 @@ void Run::start_recording() {
                      snapshot_ ? &*snapshot_ : nullptr);
   if (!snapshot_) recording_->record(session_.simulation().state(), session_.simulation().account());
   // Only now, when the run has found its files as it left them.
-  if (snapshot_) remove_files(directory_.left_behind(session_.simulation().state().step));
+  ranks_.together([&] {
+    if (snapshot_ && ranks_.is_first()) remove_files(directory_.left_behind(session_.simulation().state().step));
+  });
   snapshot_.reset();
   contact_before_ = session_.simulation().contact_seconds();
   report_progress();
@@ -263,7 +292,7 @@ bool Run::take_step() {
     end_steps();
   } catch (const Error& problem) {
     failure_ = problem;
-    if (problem.kind() == ErrorKind::not_converged) write_failure_bundle(step_);
+    if (problem.kind() == ErrorKind::not_converged && !ranks_.are_several()) write_failure_bundle(step_);
   }
   has_ended_ = true;
   return false;
@@ -271,7 +300,9 @@ bool Run::take_step() {
 
 /// False: a signal asks for the end.
 bool Run::advance() {
-  if (const int signal = options_.stop_signal ? options_.stop_signal() : 0; signal != 0) {
+  // What any of the ranks is told.
+  const int own_signal = options_.stop_signal ? options_.stop_signal() : 0;
+  if (const int signal = static_cast<int>(ranks_.maximum(own_signal)); signal != 0) {
     stop(signal);
     return false;
   }
@@ -292,8 +323,12 @@ bool Run::advance() {
   const bool checkpoint_is_due =
       (output.checkpoint_every > 0 && simulation.state().step % output.checkpoint_every == 0) ||
       (output.checkpoint_seconds > 0.0 && since_checkpoint_.seconds() >= output.checkpoint_seconds);
-  if (!session_.at_end() && checkpoint_is_due) write_checkpoint();
-  if (since_report_.seconds() >= report_interval) report_progress();
+  // By the first one's clock.
+  std::array<double, 2> due{ranks_.is_first() && checkpoint_is_due ? 1.0 : 0.0,
+                            ranks_.is_first() && since_report_.seconds() >= report_interval ? 1.0 : 0.0};
+  ranks_.sum(due);
+  if (!session_.at_end() && due[0] > 0.0) write_checkpoint();
+  if (due[1] > 0.0) report_progress();
   return true;
 }
 

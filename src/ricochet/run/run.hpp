@@ -43,6 +43,8 @@ class Run {
  private:
   [[nodiscard]] bool is_complete();
   void find_checkpoint();
+  void refuse_run_of_ranks() const;
+  void look_at_checkpoint();
   [[noreturn]] void refuse_earlier_end(double reached) const;
   void begin_simulation();
   void begin_session();
@@ -61,13 +63,17 @@ class Run {
   void write_failure_bundle(long step);
   void report_progress();
   [[nodiscard]] RunTimes times_until_now() const;
-  void describe_progress(RunSummary& summary) const;
+  void describe_progress(RunSummary& summary);
   void write_end();
   [[nodiscard]] std::string summary_path() const { return directory_.file("summary.json"); }
+
+  void gather_from_ranks(RunSummary& summary);
+  void write_own_summary(const RunSummary& summary) const;
 
   Session& session_;
   const Case& input_;
   const RunOptions& options_;
+  const Ranks& ranks_;
   RunDirectory directory_;
   long steps_;
   std::ptrdiff_t of_reading_;  ///< warnings that there were before

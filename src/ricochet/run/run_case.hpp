@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ricochet/base/ranks.hpp"
 #include "ricochet/case/case.hpp"
 #include "ricochet/io/contact_export.hpp"
 #include "ricochet/io/summary.hpp"
@@ -33,6 +34,8 @@ struct RunOptions {
   std::string case_path = {};
   /// What --set has changed in the case, for a --resume that is not told again.
   std::vector<std::string> settings = {};
+  /// The processes that run the case together, each with its part of the body (Session::set_model_builder).
+  const Ranks* ranks = &one_rank();
 };
 
 /// Runs a case and writes history.csv, results.h5, results.xdmf, summary.json and checkpoints, and contact problems

@@ -32,7 +32,7 @@ bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, co
     deformation = rounding * problem.nodes.reshaped();
   }
   const Vector magnitude = deformation.cwiseAbs();
-  const double terms = magnitude.dot(stiffness.cwiseAbs() * magnitude);
+  const double terms = problem.ranks->sum(magnitude.dot(stiffness.cwiseAbs() * magnitude));
   return energy <= 1e-14 * terms;
 }
 

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 
 #include "ricochet/base/log.hpp"
 #include "ricochet/base/run_name.hpp"
 #include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/rank_checkpoints.hpp"
+#include "ricochet/run/rank_findings.hpp"
 #include "ricochet/run/run.hpp"
 #include "ricochet/run/run_identity.hpp"
 #include "ricochet/run/run_judgement.hpp"
@@ -59,6 +62,7 @@ void Run::interrupt(const std::string& how) {
 /// On another thread, while this run is in the middle of something that takes too long. What is on the disk is good
 /// enough for --resume at any time; if the files are at rest, more is kept of the run.
 void Run::end_early() {
+  if (ranks_.are_several()) return;  // the others are in the middle of something, too
   const std::unique_lock files(files_, longest_wait);
   if (!files || !reported_) return;
   RunSummary& summary = *reported_;
@@ -77,6 +81,7 @@ void Run::end_early() {
 /// Where a step takes longer than anybody should wait who wants to stop the run: a checkpoint of the state before it
 /// can then be written at any time.
 void Run::keep_state_before_step() {
+  if (ranks_.are_several()) return;
   const bool wanted = step_seconds_ >= long_step && snapshot_seconds_ <= snapshot_share * step_seconds_;
   if (!wanted && !before_step_) return;
   const std::lock_guard files(files_);
@@ -110,13 +115,17 @@ Snapshot Run::take_snapshot() {
 void Run::write_checkpoint() {
   const Timer timer;
   const long step = session_.simulation().state().step;
-  ricochet::write_checkpoint(options_.output_directory, step, take_snapshot());
+  if (ranks_.are_several()) {
+    write_rank_checkpoint(ranks_, options_.output_directory, step, take_snapshot());
+  } else {
+    ricochet::write_checkpoint(options_.output_directory, step, take_snapshot());
+  }
   summary_.checkpoint_step = step;
   times_.checkpoints += timer.seconds();
   since_checkpoint_.restart();
 }
 
-void Run::describe_progress(RunSummary& summary) const {
+void Run::describe_progress(RunSummary& summary) {
   recording_->describe(summary);
   summary.steered = session_.is_steered();
   summary.factor_entries = session_.simulation().factor_entries();
@@ -132,7 +141,28 @@ void Run::describe_progress(RunSummary& summary) const {
   summary.timings = times.phases();
   summary.processor_seconds = times.processor();
   summary.time_per_step = summary.steps > 0 ? times.steps / static_cast<double>(summary.steps) : 0.0;
+  gather_from_ranks(summary);
   summary.warnings = session_.warnings();
+}
+
+/// What ranks have found in their parts of the body. Warnings are said by the first.
+void Run::gather_from_ranks(RunSummary& summary) {
+  if (!ranks_.are_several()) return;
+  summary.warnings = session_.warnings();
+  for (const std::string& text : ranks_.texts_of_all(ranks_.is_first() ? "" : to_json(summary))) {
+    if (text.empty()) continue;
+    const RunSummary other = summary_from_json(text, "what another process says");
+    merge_findings(other, summary);
+    for (const std::string& warning : other.warnings) {
+      const std::vector<std::string>& said = session_.warnings();
+      if (std::find(said.begin(), said.end(), warning) == said.end()) log::warning(warning);
+    }
+  }
+}
+
+/// On the first rank.
+void Run::write_own_summary(const RunSummary& summary) const {
+  if (ranks_.is_first()) write_summary(summary_path(), summary);
 }
 
 /// For those who look at a run that goes on.
@@ -140,7 +170,7 @@ void Run::report_progress() {
   RunSummary summary = summary_;
   summary.status = "running";
   describe_progress(summary);
-  write_summary(summary_path(), summary);
+  ranks_.together([&] { write_own_summary(summary); });
   reported_ = std::move(summary);
   since_report_.restart();
 }
@@ -166,7 +196,7 @@ void Run::write_end() {
     summary_.warnings = session_.warnings();
   }
   if (contact_export_) summary_.contact_export = contact_export_->report();
-  if (summary_.status == "done")
+  if (summary_.status == "done" && ranks_.is_first())
     summary_.expectations = check_expectations(input_, options_.output_directory, to_json(summary_));
   const auto attempt = [this](const auto& write) {
     try {
@@ -177,7 +207,7 @@ void Run::write_end() {
     }
   };
   attempt([this] { recording_->flush(); });
-  attempt([this] { write_summary(summary_path(), summary_); });
+  attempt([this] { write_own_summary(summary_); });
 }
 
 }  // namespace ricochet

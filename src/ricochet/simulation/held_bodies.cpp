@@ -8,14 +8,24 @@ namespace ricochet {
 
 namespace {
 
-/// The rigid motions of a body at its supported dofs, in units of its size: supported dofs × motions.
-Matrix supported_motions(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
+/// Of the rigid motions R of a body at its supported dofs, in units of its size, RᵀR. Ranks ask together.
+Matrix square_of_supported_motions(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
   const Index d = problem.dimension;
-  const Points places = problem.nodes(Eigen::all, members);
-  const Vector centre = places.rowwise().mean();
-  const double size = (places.colwise() - centre).colwise().norm().maxCoeff();
-  std::vector<Vector> rows;
+  const Ranks& ranks = *problem.ranks;
+  Vector sum = Vector::Zero(d + 1);
   for (const Index node : members) {
+    if (!ranks.is_owned(node)) continue;
+    sum.head(d) += problem.nodes.col(node);
+    sum[d] += 1.0;
+  }
+  ranks.sum({sum.data(), static_cast<std::size_t>(sum.size())});
+  const Vector centre = sum.head(d) / sum[d];
+  double size = 0.0;
+  for (const Index node : members) size = std::max(size, (problem.nodes.col(node) - centre).norm());
+  size = ranks.maximum(size);
+  Matrix result = Matrix::Zero(problem.axisymmetric ? 1 : d == 2 ? 3 : 6, problem.axisymmetric ? 1 : d == 2 ? 3 : 6);
+  for (const Index node : members) {
+    if (!ranks.is_owned(node)) continue;
     Eigen::Vector3d arm = Eigen::Vector3d::Zero();
     arm.head(d) = (problem.nodes.col(node) - centre) / size;
     for (Index k = 0; k < d; ++k) {
@@ -24,11 +34,11 @@ Matrix supported_motions(const SemidiscreteProblem& problem, const std::vector<I
       Vector row = Vector::Zero(d == 2 ? 3 : 6);
       row[k] = 1.0;
       d == 2 ? void(row[2] = moment[2]) : void(row.tail(3) = moment);
-      rows.push_back(problem.axisymmetric ? Vector(row.segment(1, 1)) : row);
+      if (problem.axisymmetric) row = row.segment(1, 1).eval();
+      result += row * row.transpose();
     }
   }
-  Matrix result = Matrix::Zero(static_cast<Index>(rows.size()), problem.axisymmetric ? 1 : d == 2 ? 3 : 6);
-  for (std::size_t i = 0; i < rows.size(); ++i) result.row(static_cast<Index>(i)) = rows[i];
+  ranks.sum({result.data(), static_cast<std::size_t>(result.size())});
   return result;
 }
 
@@ -36,18 +46,18 @@ Matrix supported_motions(const SemidiscreteProblem& problem, const std::vector<I
 
 bool are_held_by_supports(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
   constexpr double negligible = 1e-8;
-  const Matrix motions = supported_motions(problem, members);
-  const Vector sizes = symmetric_eigenvalues(Matrix(motions.transpose() * motions));
+  const Vector sizes = symmetric_eigenvalues(square_of_supported_motions(problem, members));
   return sizes[0] > negligible * sizes[sizes.size() - 1];
 }
 
 bool are_held_at_rest(const SemidiscreteProblem& problem, const std::vector<Index>& members) {
   const Index d = problem.dimension;
+  bool moves = false;
   for (const Index node : members) {
-    for (Index dof = node * d; dof < (node + 1) * d; ++dof) {
-      if (problem.supports.contains(dof) && problem.supports.expression(dof).depends_on_time()) return false;
-    }
+    for (Index dof = node * d; dof < (node + 1) * d; ++dof)
+      moves = moves || (problem.supports.contains(dof) && problem.supports.expression(dof).depends_on_time());
   }
+  if (problem.ranks->any(moves)) return false;
   return are_held_by_supports(problem, members);
 }
 

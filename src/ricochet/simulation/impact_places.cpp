@@ -47,6 +47,7 @@ void ImpactRecorder::find_places(const std::vector<ContactPair>& pairs) {
       order.enter(exchanged ? body : own, exchanged ? own : body, pair_of(point));
     }
   }
+  add_places_of_ranks(pairs);
   for (Index point = 0; point < contact.size(); ++point) {
     const int own = own_body(point);
     if (!contact.between_bodies(point)) {
@@ -58,6 +59,32 @@ void ImpactRecorder::find_places(const std::vector<ContactPair>& pairs) {
         add_part(point, own, body, "", part);
       } else {
         add_part(point, body, own, "", -part);
+      }
+    }
+  }
+}
+
+/// Of several ranks all have the places of all, in one order: bodies, and pairs with obstacles.
+void ImpactRecorder::add_places_of_ranks(const std::vector<ContactPair>& pairs) {
+  if (!problem_.ranks->are_several()) return;
+  const ContactBoundary& contact = problem_.contact;
+  for (int body = 0; body < static_cast<int>(rigid_.bodies().size()); ++body) {
+    for (std::size_t pair = 0; pair < pairs.size(); ++pair) {
+      double points = 0.0;
+      for (Index point = 0; point < contact.size(); ++point) {
+        const bool is_of_pair = contact.pair[static_cast<std::size_t>(point)] == static_cast<int>(pair);
+        points += is_of_pair && rigid_.body_of_node(contact.first_own_node(point)) == body ? 1.0 : 0.0;
+      }
+      const long count = std::lround(problem_.ranks->sum(points));
+      if (count == 0) continue;
+      const std::string& obstacle = pairs[pair].obstacle_name;
+      const auto found = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
+        return place.body == body && place.obstacle == obstacle;
+      });
+      if (found == places_.end()) {
+        places_.push_back({body, -1, obstacle, count, false});
+      } else {
+        found->points += count;
       }
     }
   }
@@ -81,7 +108,7 @@ void ImpactRecorder::add_part(Index point, int body, int other, const std::strin
   parts_.push_back({point, static_cast<std::size_t>(found - places_.begin()), part});
   if (found == places_.end()) {
     places_.push_back({body, other, obstacle, 1, false});
-  } else {
+  } else if (!problem_.ranks->are_several()) {
     ++found->points;
   }
 }
@@ -90,6 +117,7 @@ void ImpactRecorder::begin_inside(const std::vector<Index>& points) {
   for (const PointPart& each : parts_) {
     if (std::find(points.begin(), points.end(), each.point) != points.end()) places_[each.place].begins_inside = true;
   }
+  for (Place& place : places_) place.begins_inside = problem_.ranks->any(place.begins_inside);
 }
 
 }  // namespace ricochet

@@ -94,6 +94,39 @@ void ImpactRecorder::find_forces(const StepForces& acting, const ObstacleMotion&
     force.travel += pressing * travel.normal[point];
     force.sliding.head(d) += pressing * acting.rows->along_tangents(point, travel.tangential);
   }
+  add_up_ranks(forces);
+}
+
+/// Of equal forces the first rank's leads.
+void ImpactRecorder::add_up_ranks(std::vector<Force>& forces) const {
+  if (!problem_.ranks->are_several()) return;
+  constexpr std::size_t sums = 12, numbers = sums + 4;
+  std::vector<double> own;
+  for (const Force& force : forces) {
+    own.insert(own.end(), force.all.data(), force.all.data() + 3);
+    own.insert(own.end(), force.normal.data(), force.normal.data() + 3);
+    own.insert(own.end(), force.sliding.data(), force.sliding.data() + 3);
+    own.insert(own.end(), {force.pressing, force.travel, static_cast<double>(force.points), force.leading_size});
+    const Three place = force.leading >= 0 ? place_of(force.leading) : Three{};
+    own.insert(own.end(), place.begin(), place.end());
+  }
+  for (Force& force : forces) force = Force{};
+  for (const std::vector<double>& of_rank : problem_.ranks->of_all(own)) {
+    const double* at = of_rank.data();
+    for (Force& force : forces) {
+      force.all += Eigen::Map<const Eigen::Vector3d>(at);
+      force.normal += Eigen::Map<const Eigen::Vector3d>(at + 3);
+      force.sliding += Eigen::Map<const Eigen::Vector3d>(at + 6);
+      force.pressing += at[9];
+      force.travel += at[10];
+      force.points += std::lround(at[11]);
+      if (at[sums] > force.leading_size) {
+        force.leading_size = at[sums];
+        std::copy_n(at + sums + 1, 3, force.leading_place.begin());
+      }
+      at += numbers;
+    }
+  }
 }
 
 /// What is left of a point's force, and of its obstacle's motion, over the ring: of rings that press on a cone, the
@@ -256,7 +289,7 @@ void ImpactRecorder::begin(Interval& interval, double time, const Force& first) 
   const bool in_first_step = time < first_step_;
   interval.from_inside = in_first_step && places_[static_cast<std::size_t>(place)].begins_inside ? 1.0 : 0.0;
   interval.intervals = 1.0;
-  interval.first_place = place_of(first.leading);
+  interval.first_place = first.leading >= 0 ? place_of(first.leading) : first.leading_place;
   const Place& at = places_[static_cast<std::size_t>(interval.place)];
   interval.before = motion_of(at.body);
   if (at.other >= 0) interval.other_before = motion_of(at.other);

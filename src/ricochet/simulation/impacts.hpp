@@ -89,7 +89,7 @@ class ImpactRecorder {
     long points;
     bool begins_inside = false;
   };
-  /// Resultants of the points of a place at an instant.
+  /// Resultants of the points of a place at an instant, of those on all ranks.
   struct Force {
     Eigen::Vector3d all = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
     double pressing = 0.0, travel = 0.0;
@@ -97,6 +97,7 @@ class ImpactRecorder {
     long points = 0;            ///< that carry a force
     Index leading = -1;         ///< the point of the largest force, the first of equals
     double leading_size = 0.0;  ///< of that force, of one point
+    Three leading_place{};      ///< of the point, in the reference configuration
     [[nodiscard]] bool any() const { return points > 0; }
     /// What the largest force of an impact, and the largest of several forces in a step, are told by.
     [[nodiscard]] double size() const { return all.norm(); }
@@ -118,9 +119,11 @@ class ImpactRecorder {
   };
   class BodyOrder;
   void find_places(const std::vector<ContactPair>& pairs);
+  void add_places_of_ranks(const std::vector<ContactPair>& pairs);
   [[nodiscard]] int free_body_of(Index point) const;
   void add_part(Index point, int body, int other, const std::string& obstacle, double part);
   void find_forces(const StepForces& acting, const ObstacleMotion& travel, std::vector<Force>& forces) const;
+  void add_up_ranks(std::vector<Force>& forces) const;
   void find_other_forces();
   void add_along_axis(Index point, double part, const SpaceVector& own, const StepForces& acting,
                       const ObstacleMotion& travel, Force& force) const;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 
 #include "ricochet/simulation/sensor.hpp"
 
@@ -46,7 +47,7 @@ void MomentumAccount::take_positions(const Vector& displacement) {
     positions_.col(body->centre_node()) = body->centre(displacement);
     positions_.col(body->rotation_node()).setZero();
   }
-  arm_ = std::max(arm_, positions_.colwise().norm().maxCoeff());
+  arm_ = std::max(arm_, problem_.ranks->maximum(positions_.colwise().norm().maxCoeff()));
   constant_load_ = of_nodes(problem_.loads.constant());
 }
 
@@ -88,7 +89,16 @@ Resultant MomentumAccount::of_nodes(const Vector& force) const {
     const SpaceVector torque = body->torque(force);
     result.moment.tail(torque.size()) += torque;
   }
-  return result;
+  return whole(result);
+}
+
+/// Of forces, those of all ranks.
+Resultant MomentumAccount::whole(Resultant part) const {
+  if (!problem_.ranks->are_several()) return part;
+  std::array<double, 6> numbers{};
+  Eigen::Map<Eigen::Matrix<double, 6, 1>>(numbers.data()) << part.force, part.moment;
+  problem_.ranks->sum(numbers);
+  return {Eigen::Map<const Eigen::Vector3d>(numbers.data()), Eigen::Map<const Eigen::Vector3d>(numbers.data() + 3)};
 }
 
 /// The forces of a point are those of all its rows, and are taken node by node: between bodies at finite strain, where
@@ -144,16 +154,18 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
     contact.force += left.force;
     contact.moment += left.moment;
   }
-  include(contact);
+  include(whole(contact));
+  double size_of_supports = 0.0;
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
     const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];
     if (!problem_.is_rotation_node(dof / d))
       add(supports, in_space(positions_.col(dof / d)), forces.support_reaction[i] * Eigen::Vector3d::Unit(dof % d));
-    sum.size += std::abs(forces.support_reaction[i]);
+    size_of_supports += std::abs(forces.support_reaction[i]);
   }
+  sum.size += problem_.ranks->sum(size_of_supports);
   for (const auto& body : problem_.free_bodies)
     supports.moment.tail(body->gyration().size()) += held_torque(*body, forces);
-  include(supports);
+  include(whole(supports));
   if (forces.varying_load.size() > 0) include(of_nodes(forces.varying_load));
   if (forces.damping_force.size() > 0) include(of_nodes(forces.damping_force), -1.0);
   return sum;

@@ -52,6 +52,7 @@ class MomentumAccount {
   [[nodiscard]] Sum resultant(const StepForces& forces);
   [[nodiscard]] Sum of_springs();
   [[nodiscard]] Resultant algorithmic(const State& state);
+  [[nodiscard]] Resultant whole(Resultant part) const;
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;
   void take_positions(const Vector& displacement);
   void add_impulse(double weight, const Resultant& resultant);

@@ -37,15 +37,18 @@ double step_work(const Body& body, std::size_t factor_entries) {
   return 2.0 * static_cast<double>(factor_entries) + per_dof * static_cast<double>(body.space->dof_count());
 }
 
-PeakStress::PeakStress(const Body& body, double step_work)
-    : body_(body), stress_(body), looks_per_step_(std::min(1.0, share * step_work / look_work(body))) {}
+PeakStress::PeakStress(const Body& body, const Ranks& ranks, double step_work)
+    : body_(body),
+      ranks_(ranks),
+      stress_(body),
+      looks_per_step_(std::min(1.0, share * ranks.sum(step_work) / ranks.sum(look_work(body)))) {}
 
 void PeakStress::enter(const State& state, bool is_frame) {
   ++result_.states;
   // Half of the looks come regularly; the others are saved until contact presses harder than it did.
   since_look_ += looks_per_step_ < 1.0 ? 0.5 * looks_per_step_ : 1.0;
   saved_ += 0.5 * looks_per_step_;
-  const double press = state.forces.normal_reaction.sum();
+  const double press = ranks_.sum(state.forces.normal_reaction.sum());
   const bool presses_harder = press > (1.0 + harder) * hardest_press_;
   if (is_frame || since_look_ >= 1.0) {
     since_look_ = 0.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ricochet/base/ranks.hpp"
 #include "ricochet/base/snapshot.hpp"
 #include "ricochet/fem/stress.hpp"
 #include "ricochet/scheme/state.hpp"
@@ -19,7 +20,8 @@ class PeakStress {
   static constexpr double share = 0.05;
 
   /// `step_work`: how much a step does, see step_work(). Keeps a reference to the body.
-  PeakStress(const Body& body, double step_work);
+  /// Of a body that is divided: the largest of the cells of this rank, at the same looks on all.
+  PeakStress(const Body& body, const Ranks& ranks, double step_work);
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 
@@ -33,6 +35,7 @@ class PeakStress {
   void look(const State& state);
 
   const Body& body_;
+  const Ranks& ranks_;
   CellStress stress_;
   double looks_per_step_;       ///< that may be taken
   double saved_ = 0.0;          ///< looks for states that press harder

@@ -16,10 +16,13 @@ RigidBodies::RigidBodies(const SemidiscreteProblem& problem, std::vector<int> bo
       motion_(static_cast<std::size_t>(count)) {
   std::vector<double> nodes(static_cast<std::size_t>(count), 0.0);
   for (Index node = 0; node < problem_.cell_node_count(); ++node) {
+    if (!problem.ranks->is_owned(node)) continue;
     const auto b = static_cast<std::size_t>(this->body_of_node(node));
     origin_[b].head(problem.dimension) += problem.nodes.col(node);
     nodes[b] += 1.0;
   }
+  sum_over_ranks(origin_);
+  problem.ranks->sum(nodes);
   for (std::size_t b = 0; b < nodes.size(); ++b) origin_[b] /= nodes[b];
   find_held();
   if (problem.axisymmetric) {
@@ -53,8 +56,12 @@ void RigidBodies::add_free_bodies() {
   motion_.resize(bodies_.size());
 }
 
+void RigidBodies::sum_over_ranks(std::vector<Eigen::Vector3d>& values) const {
+  if (!values.empty()) problem_.ranks->sum({values.front().data(), 3 * values.size()});
+}
+
 void RigidBodies::find_held() {
-  if (problem_.supports.size() == 0) return;
+  if (!problem_.ranks->any(problem_.supports.size() > 0)) return;
   std::vector<std::vector<Index>> members(bodies_.size());
   for (Index node = 0; node < problem_.cell_node_count(); ++node)
     members[static_cast<std::size_t>(body_of_node(node))].push_back(node);
@@ -92,6 +99,8 @@ void RigidBodies::measure() {
       if (k == 0) bodies_[b].mass += own[0];
       moment[b] += at.cross(own);
     });
+    sum_over_ranks(moment);
+    for (std::size_t b = 0; k == 0 && b < bodies_.size(); ++b) bodies_[b].mass = problem_.ranks->sum(bodies_[b].mass);
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       if (k == 0) offset[b][1] = -moment[b][2] / bodies_[b].mass;
       if (k == 0) offset[b][2] = moment[b][1] / bodies_[b].mass;
@@ -104,6 +113,7 @@ void RigidBodies::measure() {
       bodies_[b].inertia.col(k) += at.cross(own);
     });
   }
+  for (RigidBody& body : bodies_) problem_.ranks->sum({body.inertia.data(), 9});
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     RigidBody& body = bodies_[b];
     body.centre = origin_[b] + offset[b];
@@ -129,6 +139,8 @@ void RigidBodies::measure_round_axis() {
     across[b] += places[node * 2] * moments[node * 2];
     squared[b] += places[node * 2 + 1] * moments[node * 2 + 1];
   }
+  for (std::vector<double>* const each : {&along, &squared, &across}) problem_.ranks->sum(*each);
+  for (RigidBody& body : bodies_) body.mass = problem_.ranks->sum(body.mass);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const double offset = along[b] / bodies_[b].mass;
     bodies_[b].centre = origin_[b] + offset * Eigen::Vector3d::UnitY();
@@ -175,6 +187,11 @@ const std::vector<RigidMotionState>& RigidBodies::motion(const Vector& velocity,
     motion_[b].velocity += own;
     motion_[b].spin += from_centre.cross(own);
     motion_[b].kinetic_energy += 0.5 * momentum_.segment(node * d, d).dot(velocity.segment(node * d, d));
+  }
+  for (std::size_t b = 0; problem_.ranks->are_several() && b < origin_.size(); ++b) {
+    problem_.ranks->sum({motion_[b].velocity.data(), 3});
+    problem_.ranks->sum({motion_[b].spin.data(), 3});
+    motion_[b].kinetic_energy = problem_.ranks->sum(motion_[b].kinetic_energy);
   }
   for (std::size_t b = 0; b < origin_.size(); ++b) {
     const RigidBody& body = bodies_[b];

@@ -23,6 +23,7 @@ class RigidBodies {
 
  private:
   [[nodiscard]] Eigen::Vector3d arm(Index node) const;
+  void sum_over_ranks(std::vector<Eigen::Vector3d>& values) const;
   void find_held();
   void add_free_bodies();
   void measure();

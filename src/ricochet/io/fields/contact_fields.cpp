@@ -37,6 +37,8 @@ class ContactFields final : public FieldSource {
     return static_cast<std::size_t>(space_.number[static_cast<std::size_t>(node)]);
   }
   void evaluate_friction(const State& state);
+  void add_up_pressures();
+  void agree_on_status();
 
   const DisplacementSpace& space_;
   const SemidiscreteProblem& problem_;
@@ -45,6 +47,8 @@ class ContactFields final : public FieldSource {
   std::vector<double> pressure_, traction_, gap_;
   std::vector<int> status_;
   Vector node_gap_, node_pressure_, node_traction_;
+  Index entries_per_node_ = 1;  ///< of the contact boundary, at most
+  Vector per_node_;
 };
 
 void ContactFields::evaluate(const State& state) {
@@ -54,6 +58,7 @@ void ContactFields::evaluate(const State& state) {
   const ContactBoundary& contact = problem_.contact;
   problem_.node_gaps(state.displacement, state.time, node_gap_);
   contact.recover_pressure(state.forces.normal_reaction, node_pressure_);
+  add_up_pressures();
   for (Index i = 0; i < node_gap_.size(); ++i) {
     const std::size_t node = number(contact.nodes[static_cast<std::size_t>(i)]);
     pressure_[node] = std::max(pressure_[node], node_pressure_[i]);
@@ -74,7 +79,47 @@ void ContactFields::evaluate(const State& state) {
       if (value != 0.0) take(point);
     });
   }
+  agree_on_status();
   if (has_friction_) evaluate_friction(state);
+}
+
+/// Each rank knows what its own points do. Entries of a node are the same ones on all of its ranks, in one order.
+void ContactFields::add_up_pressures() {
+  const Ranks& ranks = *problem_.ranks;
+  if (!ranks.are_several()) return;
+  const std::vector<Index>& nodes = problem_.contact.nodes;
+  Index most = 1, same = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    same = i > 0 && nodes[i] == nodes[i - 1] ? same + 1 : 1;
+    most = std::max(most, same);
+  }
+  entries_per_node_ = static_cast<Index>(ranks.maximum(static_cast<double>(most)));
+  per_node_.setZero(space_.node_count() * entries_per_node_);
+  const auto place = [&](std::size_t i) {
+    same = i > 0 && nodes[i] == nodes[i - 1] ? same + 1 : 0;
+    return nodes[i] * entries_per_node_ + same;
+  };
+  for (std::size_t i = 0; i < nodes.size(); ++i) per_node_[place(i)] = node_pressure_[static_cast<Index>(i)];
+  ranks.accumulate(per_node_);
+  for (std::size_t i = 0; i < nodes.size(); ++i) node_pressure_[static_cast<Index>(i)] = per_node_[place(i)];
+}
+
+/// The largest of those of the ranks, as of several contacts.
+void ContactFields::agree_on_status() {
+  const Ranks& ranks = *problem_.ranks;
+  if (!ranks.are_several()) return;
+  constexpr int kinds = 4;  // open, and what a point may do
+  per_node_.setZero(space_.node_count() * kinds);
+  for (Index node = 0; node < space_.node_count(); ++node) {
+    const int status = status_[number(node)];
+    if (status >= 0) per_node_[node * kinds + status] = 1.0;
+  }
+  ranks.accumulate(per_node_);
+  for (Index node = 0; node < space_.node_count(); ++node) {
+    for (int status = 0; status < kinds; ++status) {
+      if (per_node_[node * kinds + status] > 0.0) status_[number(node)] = status;
+    }
+  }
 }
 
 /// The friction traction on the body, in stress units: −t r_T of the points, recovered at the nodes like pressures.
@@ -90,6 +135,7 @@ void ContactFields::evaluate_friction(const State& state) {
           sign * value * state.forces.rows->along_tangents(point, state.forces.tangential_reaction);
     });
   }
+  problem_.ranks->accumulate(node_traction_);
   take_vector(space_, node_traction_, traction_);
 }
 

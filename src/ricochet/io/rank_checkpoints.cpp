@@ -1,0 +1,171 @@
+#include "ricochet/io/rank_checkpoints.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
+#include "ricochet/base/text.hpp"
+#include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/durable_file.hpp"
+
+namespace ricochet {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kept_manifests = 2;
+
+struct Manifest {
+  std::string path;
+  long step = 0;
+  std::vector<std::string> checksums;  ///< by rank; empty: it cannot be read
+};
+
+std::string folder_of(const std::string& directory) {
+  return (fs::path(directory) / "ranks").string();
+}
+
+std::string folder_of_rank(const std::string& directory, int rank) {
+  return (fs::path(folder_of(directory)) / fmt::format("{:04}", rank)).string();
+}
+
+std::string checkpoint_path(const std::string& directory, int rank, long step) {
+  return (fs::path(folder_of_rank(directory, rank)) / fmt::format("checkpoint-{:09}.ckpt", step)).string();
+}
+
+/// The last four bytes of a checkpoint are the CRC-32 of all before.
+std::string checksum_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  unsigned char bytes[4] = {};
+  if (!file || file.tellg() < 4 || !file.seekg(-4, std::ios::end) || !file.read(reinterpret_cast<char*>(bytes), 4))
+    return "";
+  return fmt::format("{:02x}{:02x}{:02x}{:02x}", bytes[3], bytes[2], bytes[1], bytes[0]);
+}
+
+std::string text_of(const Manifest& manifest) {
+  std::string text = fmt::format("ricochet checkpoint\nranks {}\nstep {}\n", manifest.checksums.size(), manifest.step);
+  for (std::size_t rank = 0; rank < manifest.checksums.size(); ++rank)
+    text += fmt::format("{:04} {}\n", rank, manifest.checksums[rank]);
+  return text;
+}
+
+Manifest read_manifest(const std::string& path, long step) {
+  Manifest manifest{path, step, {}};
+  std::ifstream file(path);
+  std::string line;
+  std::vector<std::string> lines;
+  // No manifest has more lines than there can be ranks.
+  while (lines.size() < 1'000'000 && std::getline(file, line)) lines.push_back(line);
+  if (lines.size() < 4) return manifest;
+  for (std::size_t i = 3; i < lines.size(); ++i)
+    manifest.checksums.push_back(lines[i].substr(std::min<std::size_t>(5, lines[i].size())));
+  std::ostringstream whole;
+  for (const std::string& each : lines) whole << each << '\n';
+  if (whole.str() != text_of(manifest)) manifest.checksums.clear();
+  return manifest;
+}
+
+/// Newest first.
+std::vector<Manifest> manifests(const std::string& directory) {
+  std::vector<Manifest> result;
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(directory), problem)) {
+    const std::string name = entry.path().filename().string();
+    const auto step = between(name, "checkpoint-", ".manifest");
+    if (step && is_digits(*step, 9, 15))
+      result.push_back(read_manifest(entry.path().string(), std::stol(std::string(*step))));
+  }
+  std::sort(result.begin(), result.end(), [](const Manifest& a, const Manifest& b) { return a.step > b.step; });
+  return result;
+}
+
+}  // namespace
+
+void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, long step, const Snapshot& snapshot) {
+  ranks.together([&] {
+    std::error_code problem;
+    const std::string own = folder_of_rank(directory, ranks.rank());
+    fs::create_directories(own, problem);
+    if (problem)
+      throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", own, problem.message()));
+    write_checkpoint(own, step, snapshot);
+  });
+  ranks.together([&] {
+    if (!ranks.is_first()) return;
+    Manifest manifest{
+        (fs::path(folder_of(directory)) / fmt::format("checkpoint-{:09}.manifest", step)).string(), step, {}};
+    for (int rank = 0; rank < ranks.size(); ++rank)
+      manifest.checksums.push_back(checksum_of(checkpoint_path(directory, rank, step)));
+    write_durably(manifest.path, text_of(manifest));
+    const std::vector<Manifest> all = manifests(directory);
+    for (std::size_t i = kept_manifests; i < all.size(); ++i) {
+      std::error_code problem;
+      fs::remove(all[i].path, problem);
+    }
+  });
+}
+
+std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::string& directory) {
+  for (const Manifest& manifest : manifests(directory)) {
+    const auto size = static_cast<std::size_t>(ranks.size());
+    if (!manifest.checksums.empty() && manifest.checksums.size() != size) {
+      throw Error(ErrorKind::invalid_input,
+                  fmt::format("{0}: this run is one of {1}, and goes on with as many: mpirun -n {1} ricochet-mpi run "
+                              "--resume {0}",
+                              directory, counted(manifest.checksums.size(), "process", "processes")));
+    }
+    std::optional<Snapshot> snapshot;
+    std::string why = "the manifest is damaged";
+    if (!manifest.checksums.empty()) {
+      const std::string path = checkpoint_path(directory, ranks.rank(), manifest.step);
+      try {
+        if (checksum_of(path) != manifest.checksums[static_cast<std::size_t>(ranks.rank())])
+          throw Error(ErrorKind::invalid_input, fmt::format("{}: it is not the file of the manifest", path));
+        snapshot = read_checkpoint(path);
+      } catch (const Error& problem) {
+        why = problem.what();
+      }
+    }
+    if (!ranks.any(!snapshot)) return snapshot;
+    if (!snapshot) log::warning(fmt::format("{}: this checkpoint cannot be used: {}", manifest.path, why));
+  }
+  return std::nullopt;
+}
+
+int ranks_of_checkpoints(const std::string& directory) {
+  for (const Manifest& manifest : manifests(directory)) {
+    if (!manifest.checksums.empty()) return static_cast<int>(manifest.checksums.size());
+  }
+  return 0;
+}
+
+std::vector<std::string> rank_checkpoint_files(const std::string& directory, long after_step) {
+  std::vector<std::string> result, folders;
+  for (const Manifest& manifest : manifests(directory)) {
+    if (manifest.step > after_step) result.push_back(manifest.path);
+  }
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(directory), problem)) {
+    if (!entry.is_directory(problem) || !is_digits(entry.path().filename().string(), 4, 9)) continue;
+    folders.push_back(entry.path().string());
+    for (const CheckpointFile& file : checkpoint_files(entry.path().string())) {
+      if (file.step > after_step) result.push_back(file.path);
+    }
+    for (const fs::directory_entry& file : fs::directory_iterator(entry.path(), problem)) {
+      if (file.path().extension() == ".new") result.push_back(file.path().string());
+    }
+  }
+  if (after_step >= 0) return result;
+  result.insert(result.end(), folders.begin(), folders.end());
+  if (fs::exists(folder_of(directory), problem)) result.push_back(folder_of(directory));
+  return result;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ricochet/base/ranks.hpp"
+#include "ricochet/base/snapshot.hpp"
+
+/// @file Checkpoints of a run on several ranks: a file of each, and a manifest that says when all are there.
+///
+/// In the run's directory ranks/NNNN/checkpoint-SSSSSSSSS.ckpt are those of rank NNNN (checkpoint.hpp), and
+/// ranks/checkpoint-SSSSSSSSS.manifest, a text, names them:
+///   ricochet checkpoint
+///   ranks 4
+///   step 120
+///   0000 1f3870be        the CRC-32 at the end of each file
+namespace ricochet {
+
+/// On the disk when it returns, on all ranks; the last two are kept. Throws Error(file_access) on all.
+void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, long step, const Snapshot& snapshot);
+
+/// This rank's part of the newest one that all ranks can read and of which all files are those of its manifest. A
+/// warning names what cannot be used. None: there is none. Throws Error(invalid_input) where it is one of another
+/// number of ranks.
+[[nodiscard]] std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::string& directory);
+
+/// The number of ranks of the run in this directory, by its newest manifest; 0: there is none.
+[[nodiscard]] int ranks_of_checkpoints(const std::string& directory);
+
+/// Manifests and checkpoints of steps after this one; of step −1 all, and the folders.
+[[nodiscard]] std::vector<std::string> rank_checkpoint_files(const std::string& directory, long after_step);
+
+}  // namespace ricochet
