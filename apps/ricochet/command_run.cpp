@@ -99,7 +99,8 @@ int run(const RunArguments& given) {
   session.set_model_builder(arguments.builder);
   const RunSummary summary = run_case(session, options);
   if (arguments.ranks->is_first()) print_summary(summary, options.output_directory);
-  if (summary.status == "interrupted") return 128 + stop_signal();
+  // Whichever process was told.
+  if (summary.status == "interrupted") return 128 + static_cast<int>(arguments.ranks->maximum(stop_signal()));
   for (const ExpectationResult& e : summary.expectations) {
     if (e.checked && !e.holds) {
       throw Error(ErrorKind::expectation,

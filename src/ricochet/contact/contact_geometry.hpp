@@ -8,7 +8,7 @@
 /// @file Where the contact conditions come from when they follow the motion.
 namespace ricochet {
 
-struct ContactPart;  // contact_part.hpp
+struct ContactCut;  // contact_cut.hpp
 
 /// Where a step began.
 struct StepStart {
@@ -58,7 +58,7 @@ class ContactGeometry {
   /// Makes them those that had these normals (d × points), gaps and values.
   virtual void restore(const Points& normals, const Vector& gap, const Vector& row_values, ContactRows& rows) const = 0;
   /// The same of some points and nodes, in their numbers; null where that is not to be had.
-  [[nodiscard]] virtual std::unique_ptr<ContactGeometry> cut(const ContactPart&) const { return nullptr; }
+  [[nodiscard]] virtual std::unique_ptr<ContactGeometry> cut(const ContactCut&) const { return nullptr; }
 };
 
 /// Several of them, each of points and nodes of its own.

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "ricochet/contact/contact_cut.hpp"
 #include "ricochet/contact/contact_directions.hpp"
-#include "ricochet/contact/contact_part.hpp"
 
 namespace ricochet {
 
@@ -138,7 +138,7 @@ class CurvedContact final : public ContactGeometry {
     });
   }
 
-  [[nodiscard]] std::unique_ptr<ContactGeometry> cut(const ContactPart& part) const override;
+  [[nodiscard]] std::unique_ptr<ContactGeometry> cut(const ContactCut& part) const override;
 
  private:
   [[nodiscard]] Index dimension() const { return data_.node_positions.rows(); }
@@ -206,7 +206,7 @@ class CurvedContact final : public ContactGeometry {
   mutable long revision_ = 0;  ///< of the last update: no two rows that differ have the same
 };
 
-std::unique_ptr<ContactGeometry> CurvedContact::cut(const ContactPart& part) const {
+std::unique_ptr<ContactGeometry> CurvedContact::cut(const ContactCut& part) const {
   const auto is_free_body = [](const Obstacle* obstacle) { return obstacle->free_motion() != nullptr; };
   if (std::any_of(data_.obstacles.begin(), data_.obstacles.end(), is_free_body)) return nullptr;
   const auto place_in = [](const std::vector<Index>& numbers, Index number) {

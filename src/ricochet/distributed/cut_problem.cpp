@@ -1,6 +1,6 @@
 #include "ricochet/distributed/cut_problem.hpp"
 
-#include "ricochet/contact/contact_part.hpp"
+#include "ricochet/contact/contact_cut.hpp"
 
 namespace ricochet {
 
@@ -12,8 +12,8 @@ std::vector<Index> places_in(const std::vector<Index>& numbers, Index count) {
   return result;
 }
 
-ContactPart contact_part(const SemidiscreteProblem& whole, const Division& division, const Piece& piece, int rank) {
-  ContactPart part;
+ContactCut contact_part(const SemidiscreteProblem& whole, const Division& division, const Piece& piece, int rank) {
+  ContactCut part;
   for (Index point = 0; point < whole.contact.size(); ++point) {
     if (division.rank_of_point(point) == rank) part.points.push_back(point);
   }

@@ -8,7 +8,7 @@ namespace ricochet {
 
 /// All of it but what cells make, the internal force, the damping and the loads: a mass, supports, contact. Entries of
 /// the mass go to one rank each. Obstacles are those of the whole. Throws Error(invalid_input) where the contact cannot
-/// be divided (contact_part.hpp).
+/// be divided (contact_cut.hpp).
 [[nodiscard]] SemidiscreteProblem cut_problem(const SemidiscreteProblem& whole, const Division& division,
                                               const Piece& piece, int rank);
 

@@ -117,9 +117,9 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
     const auto size = static_cast<std::size_t>(ranks.size());
     if (!manifest.checksums.empty() && manifest.checksums.size() != size) {
       throw Error(ErrorKind::invalid_input,
-                  fmt::format("{0}: this run is one of {1}, and goes on with as many: mpirun -n {1} ricochet-mpi run "
-                              "--resume {0}",
-                              directory, counted(manifest.checksums.size(), "process", "processes")));
+                  fmt::format("{0}: this run is one of {1} processes, and goes on with as many: mpirun -n {1} "
+                              "ricochet-mpi run --resume {0}",
+                              directory, manifest.checksums.size()));
     }
     std::optional<Snapshot> snapshot;
     std::string why = "the manifest is damaged";

@@ -37,7 +37,7 @@ double step_work(const Body& body, std::size_t factor_entries) {
   return 2.0 * static_cast<double>(factor_entries) + per_dof * static_cast<double>(body.space->dof_count());
 }
 
-PeakStress::PeakStress(const Body& body, const Ranks& ranks, double step_work)
+PeakStress::PeakStress(const Body& body, double step_work, const Ranks& ranks)
     : body_(body),
       ranks_(ranks),
       stress_(body),

@@ -21,7 +21,7 @@ class PeakStress {
 
   /// `step_work`: how much a step does, see step_work(). Keeps a reference to the body.
   /// Of a body that is divided: the largest of the cells of this rank, at the same looks on all.
-  PeakStress(const Body& body, const Ranks& ranks, double step_work);
+  PeakStress(const Body& body, double step_work, const Ranks& ranks = one_rank());
   void save(Snapshot& snapshot, const std::string& name) const;
   void load(const Snapshot& snapshot, const std::string& name);
 

@@ -1,4 +1,4 @@
-#include "ricochet/contact/contact_part.hpp"
+#include "ricochet/contact/contact_cut.hpp"
 
 #include <algorithm>
 
@@ -61,12 +61,12 @@ std::vector<Index> places(const std::vector<Index>& taken, Index count) {
 
 }  // namespace
 
-SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactPart& part) {
+SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactCut& part) {
   return cut_matrix(whole, part.points, part.nodes,
                     [&](Index node) { return part.place_of[static_cast<std::size_t>(node)]; });
 }
 
-ContactRows cut_rows(const ContactRows& whole, const ContactPart& part) {
+ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
   const Index d = whole.dimension();
   const auto place_of_dof = [&](Index dof) {
     const Index node = part.place_of[static_cast<std::size_t>(dof / d)];
@@ -87,7 +87,7 @@ ContactRows cut_rows(const ContactRows& whole, const ContactPart& part) {
   return rows;
 }
 
-ContactBoundary cut_contact(const ContactBoundary& whole, const ContactPart& part) {
+ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part) {
   if (whole.net.size() > 0 && whole.net.minCoeff() == 0.0)
     throw Error(ErrorKind::invalid_input, "contact between bodies cannot be divided");
   const auto place_of_node = [&](Index node) { return part.place_of[static_cast<std::size_t>(node)]; };

@@ -5,7 +5,7 @@
 /// @file Some points and nodes of a contact boundary, as a boundary of their own.
 namespace ricochet {
 
-struct ContactPart {
+struct ContactCut {
   std::vector<Index> points;       ///< of the whole boundary, ascending
   std::vector<Index> entries;      ///< of ContactBoundary::nodes, ascending
   std::vector<Index> place_of;     ///< per node of the whole space: its number here, or −1
@@ -16,12 +16,12 @@ struct ContactPart {
 /// The rows of the points reach nodes that are here. Nodes of the boundary know the pressure of the points that are
 /// here; from parts that have all points, each once, it adds up. Throws Error(invalid_input) where the contact is one
 /// between bodies.
-[[nodiscard]] ContactBoundary cut_contact(const ContactBoundary& whole, const ContactPart& part);
+[[nodiscard]] ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part);
 
 /// The same of a trace, points × nodes.
-[[nodiscard]] SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactPart& part);
+[[nodiscard]] SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactCut& part);
 
 /// The same of rows, whose columns are dofs.
-[[nodiscard]] ContactRows cut_rows(const ContactRows& whole, const ContactPart& part);
+[[nodiscard]] ContactRows cut_rows(const ContactRows& whole, const ContactCut& part);
 
 }  // namespace ricochet
