@@ -343,7 +343,10 @@ int run_program(int argc, char** argv) {
     std::fprintf(stderr, "ricochet: %s\n", log::with_run_name(problem.what()).c_str());
     return problem.exit_status();
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "ricochet: %s\n", log::with_run_name("out of memory; use a coarser mesh").c_str());
+    std::fprintf(stderr, "ricochet: %s\n",
+                 log::with_run_name(
+                     "out of memory; use a coarser mesh, or ricochet-mpi on several machines (docs/distributed.md)")
+                     .c_str());
     return static_cast<int>(ErrorKind::not_converged);
   } catch (const std::filesystem::filesystem_error& problem) {
     std::fprintf(stderr, "ricochet: %s: %s\n", problem.path1().c_str(), problem.code().message().c_str());

@@ -111,6 +111,9 @@ class Results(Distributed):
             own = self.summary(name)
             for key in ("status", "nodes", "cells", "dofs", "contact_points", "frames", "steps"):
                 self.assertEqual(own[key], one[key], key)
+            self.assertIsNone(one["processes"])
+            self.assertEqual(own["processes"]["count"], ranks)
+            self.assertGreater(own["processes"]["messages_per_step"], 1.0)
             self.assertEqual(len(own["impacts"]), len(one["impacts"]))
             for mine, theirs in zip(own["impacts"], one["impacts"]):
                 self.assertAlmostEqual(mine["begin"], theirs["begin"], places=12)

@@ -23,6 +23,12 @@ enum class Reduction : char {
   same,  ///< every rank has the number already
 };
 
+/// What a rank has sent to others so far.
+struct Traffic {
+  std::int64_t messages = 0, bytes = 0;
+  std::int64_t reductions = 0;  ///< that it took part in
+};
+
 /// Motions (displacements, velocities, …) are consistent: all ranks that share a node have the same values there.
 /// Forces are additive: the force at a shared node is the sum of what its ranks have. So the product of a motion and a
 /// force, and any energy, is a sum over ranks of what each computes alone.
@@ -48,6 +54,7 @@ class Ranks {
   /// The nodes for which another rank speaks, ascending: what they have in a sum over all nodes is taken off again.
   [[nodiscard]] virtual std::span<const Index> not_owned() const { return {}; }
 
+  [[nodiscard]] virtual Traffic traffic() const { return {}; }
   /// Of a node of this rank in the whole body.
   [[nodiscard]] virtual std::int64_t number_of(Index node) const { return node; }
   /// What each rank has for each, handed over: of the result, too, there is one for every rank.

@@ -25,11 +25,6 @@ class Processes {
   [[noreturn]] static void end_all(int status);
 };
 
-/// How much has been sent by this rank so far.
-struct Traffic {
-  std::int64_t messages = 0, bytes = 0;
-};
-
 /// To another rank, and from it: as many numbers as there is room for.
 struct Message {
   int rank = 0;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/memory.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/distributed/cut_problem.hpp"
@@ -154,8 +155,10 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
   Timer timer;
   std::unique_ptr<Model> model = cut_model(*whole, ranks, options);
   whole.reset();
+  release_freed_memory();
   if (times != nullptr) times->model += timer.restart();
   assemble_forces(input, *model);
+  release_freed_memory();
   if (times != nullptr) times->assembly += timer.restart();
   add_loads(input, *model);
   add_sensors(input, *model);

@@ -6,6 +6,7 @@ namespace ricochet {
 /// way messages went. A NaN of any rank is one of all.
 void WorldRanks::reduce(std::span<double> values, std::span<const Reduction> by) const {
   if (ranks_.size() == 1) return;
+  ++traffic_.reductions;
   const std::vector<double> all = ranks_.gather(values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     double result = all[i];

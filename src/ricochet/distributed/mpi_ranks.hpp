@@ -14,13 +14,28 @@ class WorldRanks : public Ranks {
   [[nodiscard]] int rank() const override { return ranks_.rank(); }
   [[nodiscard]] int size() const override { return ranks_.size(); }
   void reduce(std::span<double> values, std::span<const Reduction> by) const override;
-  [[nodiscard]] ForEach<double> exchange(ForEach<double> to_each) const override { return ranks_.exchange(to_each); }
-  [[nodiscard]] ForEach<std::int64_t> exchange(ForEach<std::int64_t> to_each) const override {
+  [[nodiscard]] ForEach<double> exchange(ForEach<double> to_each) const override {
+    count(to_each);
     return ranks_.exchange(to_each);
   }
+  [[nodiscard]] ForEach<std::int64_t> exchange(ForEach<std::int64_t> to_each) const override {
+    count(to_each);
+    return ranks_.exchange(to_each);
+  }
+  [[nodiscard]] Traffic traffic() const override { return traffic_; }
 
  private:
+  template <class Number>
+  void count(const ForEach<Number>& to_each) const {
+    for (std::size_t rank = 0; rank < to_each.size(); ++rank) {
+      if (to_each[rank].empty() || static_cast<int>(rank) == ranks_.rank()) continue;
+      ++traffic_.messages;
+      traffic_.bytes += static_cast<std::int64_t>(sizeof(Number) * to_each[rank].size());
+    }
+  }
+
   Communicator ranks_;
+  mutable Traffic traffic_;
 };
 
 class MpiRanks final : public WorldRanks {
@@ -30,6 +45,12 @@ class MpiRanks final : public WorldRanks {
 
   void accumulate(Vector& force) const override { nodes_.accumulate(force); }
   void accumulate(Eigen::VectorXf& force) const override { nodes_.accumulate(force); }
+  [[nodiscard]] Traffic traffic() const override {
+    Traffic sum = WorldRanks::traffic();
+    sum.messages += nodes_.traffic().messages;
+    sum.bytes += nodes_.traffic().bytes;
+    return sum;
+  }
   [[nodiscard]] bool is_owned(Index node) const override { return nodes_.is_owned(node); }
   [[nodiscard]] std::span<const Index> not_owned() const override { return nodes_.not_owned(); }
   [[nodiscard]] std::int64_t number_of(Index node) const override {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ricochet/base/ranks.hpp"
 #include "ricochet/distributed/communicator.hpp"
 
 /// @file Nodes that several ranks have.

@@ -28,6 +28,12 @@ void refuse_undividable_case(const Case& input) {
     if (obstacle.is_free())
       refuse_several(input, "obstacle." + obstacle.name, "an obstacle that moves by the forces on it");
   }
+  // They take cells of other processes.
+  for (const std::string& name : input.output.fields) {
+    if (name.starts_with("nodal_") || name == "all")
+      refuse_several(input, "output.fields",
+                     fmt::format("the field \"{}\"{}", name, name == "all" ? ", with stresses at nodes," : ""));
+  }
   if (input.initial.static_equilibrium) refuse_several(input, "initial.displacement", "a start in static equilibrium");
   if (!make_scheme(input.time)->takes_ranks())
     refuse_several(input, "time.scheme", fmt::format("scheme \"{}\"", input.time.scheme));

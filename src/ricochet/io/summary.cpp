@@ -38,6 +38,18 @@ Json extrema_to_json(const RunSummary& summary) {
   return result;
 }
 
+/// null where there is one.
+Json processes_to_json(const RunSummary& summary) {
+  if (!summary.processes) return {};
+  const ProcessReport& p = *summary.processes;
+  return {{"count", p.count},
+          {"least_dofs", p.least_dofs},
+          {"most_dofs", p.most_dofs},
+          {"messages_per_step", p.messages_per_step},
+          {"bytes_per_step", p.bytes_per_step},
+          {"reductions_per_step", p.reductions_per_step}};
+}
+
 Json probes_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (std::size_t i = 0; i < summary.probes.size(); ++i) {
@@ -208,6 +220,7 @@ std::string to_json(const RunSummary& s) {
                {"history_every", s.history_every},
                {"solver", s.solver},
                {"solver_reason", s.solver_reason},
+               {"processes", processes_to_json(s)},
                {"factor_entries", s.factor_entries},
                {"time_step", s.step},
                {"adaptive_steps", adaptive_steps_to_json(s)},
@@ -297,6 +310,11 @@ RunSummary summary_from_json(const std::string& text, const std::string& path) {
     s.history_every = json.value("history_every", 1L);
     s.solver = json.value("solver", "");
     s.solver_reason = json.value("solver_reason", "");
+    if (const Json processes = json.value("processes", Json()); processes.is_object()) {
+      s.processes = ProcessReport{processes.at("count"),          processes.at("least_dofs"),
+                                  processes.at("most_dofs"),      processes.at("messages_per_step"),
+                                  processes.at("bytes_per_step"), processes.at("reductions_per_step")};
+    }
     s.step = json.at("time_step");
     s.end_time = json.at("end_time");
     const Json& critical = json.at("critical_time_step");

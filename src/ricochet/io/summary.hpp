@@ -84,6 +84,13 @@ struct RotationReport {
 };
 
 /// The largest von Mises stress of a run, and where it was.
+/// Of several processes, and of what they send in a step the most that one of them does.
+struct ProcessReport {
+  int count = 0;
+  long least_dofs = 0, most_dofs = 0;  ///< of each, shared ones too
+  double messages_per_step = 0.0, bytes_per_step = 0.0, reductions_per_step = 0.0;
+};
+
 struct PeakStressDescription {
   PeakStressResult peak;
   std::vector<double> place;  ///< centre of the cell, reference configuration
@@ -129,9 +136,10 @@ struct RunSummary {
   int degree = 1;
   Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
   std::size_t factor_entries = 0;
-  std::string solver = "direct";      ///< or "iterative"
-  std::string solver_reason;          ///< why that one
-  double step = 0.0, end_time = 0.0;  ///< of adaptive steps the longest possible
+  std::string solver = "direct";                ///< or "iterative"
+  std::string solver_reason;                    ///< why that one
+  std::optional<ProcessReport> processes = {};  ///< none where there is one
+  double step = 0.0, end_time = 0.0;            ///< of adaptive steps the longest possible
   double critical_step =
       std::numeric_limits<double>::infinity();  ///< above it the scheme is unstable; none if infinite
   std::optional<AdaptiveSteps> adaptive = {};   ///< none where all steps are of one length, `step`

@@ -10,6 +10,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
+#include "ricochet/base/memory.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/fem/exterior_facets.hpp"
@@ -278,6 +279,17 @@ std::string scheme_text(const TimeSection& time) {
 
 namespace {
 
+/// Iterations take so many bytes per dof at the peak, and factors more.
+void warn_of_memory(const Model& model) {
+  constexpr double least_per_dof = 2400.0;
+  const double needed = least_per_dof * static_cast<double>(model.space.dof_count()), there = physical_memory();
+  if (needed <= there) return;
+  log::warning(fmt::format(
+      "{} need some {:.3g} GB, and this machine has {:.3g} GB for them: `ricochet-mpi` divides a body among "
+      "several machines (docs/distributed.md)",
+      counted(model.space.dof_count(), "dof"), 1e-9 * needed, 1e-9 * there));
+}
+
 std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* times) {
   auto model = std::make_unique<Model>();
   Timer timer;
@@ -290,6 +302,7 @@ std::unique_ptr<Model> build(const Case& input, bool with_forces, BuildTimes* ti
   place_on_axis(input, model->mesh);
   complete_groups(input, model->mesh);
   model->space = make_displacement_space(model->mesh, input.mesh.degree);
+  if (with_forces) warn_of_memory(*model);
   model->contains_rotations = input.mesh.degree > 1 || !is_curved(model->mesh);
   if (is_axisymmetric(input)) {
     model->contains_rotations = false;

@@ -68,6 +68,7 @@ class Run {
   [[nodiscard]] std::string summary_path() const { return directory_.file("summary.json"); }
 
   void gather_from_ranks(RunSummary& summary);
+  void describe_processes(RunSummary& summary) const;
   void write_own_summary(const RunSummary& summary) const;
 
   Session& session_;
@@ -88,6 +89,8 @@ class Run {
   std::optional<Recording> recording_;
   std::optional<Progress> progress_;
   double contact_before_ = 0.0;
+  Traffic traffic_before_;  ///< of what came before the steps
+  long first_step_ = 0;     ///< of this process, or the one that the run goes on from
   RunSummary summary_;
   std::optional<Error> failure_;
   Timer since_checkpoint_, since_report_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 
 #include "ricochet/base/log.hpp"
@@ -145,9 +146,25 @@ void Run::describe_progress(RunSummary& summary) {
   summary.warnings = session_.warnings();
 }
 
+void Run::describe_processes(RunSummary& summary) const {
+  const Traffic now = session_.model().problem.ranks->traffic();
+  const auto steps = static_cast<double>(std::max(1L, session_.simulation().state().step - first_step_));
+  const auto most_per_step = [&](std::int64_t after, std::int64_t before) {
+    return ranks_.maximum(static_cast<double>(after - before)) / steps;
+  };
+  const auto dofs = static_cast<double>(session_.model().problem.dof_count());
+  summary.processes = ProcessReport{ranks_.size(),
+                                    std::lround(ranks_.minimum(dofs)),
+                                    std::lround(ranks_.maximum(dofs)),
+                                    most_per_step(now.messages, traffic_before_.messages),
+                                    most_per_step(now.bytes, traffic_before_.bytes),
+                                    most_per_step(now.reductions, traffic_before_.reductions)};
+}
+
 /// What ranks have found in their parts of the body. Warnings are said by the first.
 void Run::gather_from_ranks(RunSummary& summary) {
   if (!ranks_.are_several()) return;
+  describe_processes(summary);
   summary.warnings = session_.warnings();
   for (const std::string& text : ranks_.texts_of_all(ranks_.is_first() ? "" : to_json(summary))) {
     if (text.empty()) continue;
