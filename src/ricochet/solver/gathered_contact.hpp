@@ -38,7 +38,16 @@ class GatheredContact {
 
  private:
   void gather_boundary();
+  void read_boundary();
+  [[nodiscard]] std::shared_ptr<ContactRows> empty_rows() const;
   void gather_rows(const ContactRows& rows);
+  [[nodiscard]] std::shared_ptr<ContactRows> read_rows() const;
+  void tell_points(const Stage& stage, const std::vector<Index>& points, std::vector<double>& message) const;
+  void read_points(Stage& at_home) const;
+  void tell_solution(const StageSolution& at_home, int rank, const std::vector<std::int64_t>& points,
+                     std::vector<double>& message) const;
+  void read_solution(const std::vector<double>& message, const std::vector<Index>& points,
+                     StageSolution& solution) const;
 
   const SemidiscreteProblem& problem_;
   int d_;
