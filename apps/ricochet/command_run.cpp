@@ -38,11 +38,7 @@ void print_summary(const RunSummary& s, const std::string& directory) {
   print_impacts(s, most_impacts_shown);
   print_peak_stress(s);
   fmt::print("{}\n", deformation_text(s));
-  if (s.processes) {
-    const ProcessReport& p = *s.processes;
-    fmt::print("  {} processes of {} to {} dofs; each sends at most {:.3g} messages and {:.3g} MB in a step\n", p.count,
-               p.least_dofs, p.most_dofs, p.messages_per_step, 1e-6 * p.bytes_per_step);
-  }
+  print_processes(s);
   fmt::print("  {:.3g} ms per step, {} in all\n", 1e3 * s.time_per_step,
              s.timings.empty() ? "" : duration_text(s.timings.back().second));
   print_expectations(s.expectations);

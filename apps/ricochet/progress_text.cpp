@@ -108,4 +108,11 @@ void describe_checkpoint(const std::string& path) {
   }
 }
 
+void print_processes(const RunSummary& s) {
+  if (!s.processes) return;
+  const ProcessReport& p = *s.processes;
+  fmt::print("  {} processes of {} to {} dofs; each sends at most {:.3g} messages and {:.3g} MB in a step\n", p.count,
+             p.least_dofs, p.most_dofs, p.messages_per_step, 1e-6 * p.bytes_per_step);
+}
+
 }  // namespace ricochet::program
