@@ -1,5 +1,6 @@
 """ricochet-mpi as a user launches it: what it writes, what it refuses, and how it ends."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -54,9 +55,13 @@ def own_lines(text):
 
 
 def processes_of(process):
-    """Those of a mpirun, by their command and parent."""
-    found = subprocess.run(["pgrep", "-P", str(process.pid)], text=True, stdout=subprocess.PIPE).stdout.split()
-    return [int(pid) for pid in found]
+    """Those that a mpirun has begun, in the order of their ranks."""
+    found = []
+    for folder in pathlib.Path("/proc").iterdir():
+        with contextlib.suppress(OSError):
+            if folder.name.isdigit() and int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1]) == process.pid:
+                found.append(int(folder.name))
+    return sorted(found)
 
 
 class Distributed(TestCase):
