@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "ricochet/distributed/cut_problem.hpp"
 #include "ricochet/distributed/mpi_ranks.hpp"
 #include "ricochet/distributed/partition.hpp"
 #include "ricochet/distributed/piece.hpp"
@@ -47,12 +48,7 @@ class CutBody {
 
  protected:
   /// Of a vector on the whole body, what this rank has.
-  [[nodiscard]] Vector part_of(const Vector& whole) const {
-    Vector result(piece_.space.dof_count());
-    for (std::size_t i = 0; i < piece_.node_number.size(); ++i)
-      result.segment(static_cast<Index>(i) * d_, d_) = whole.segment(piece_.node_number[i] * d_, d_);
-    return result;
-  }
+  [[nodiscard]] Vector part_of(const Vector& whole) const { return cut_values(whole, piece_, d_); }
 
   Communicator world_;
   std::unique_ptr<MeshedBody> whole_;

@@ -17,19 +17,13 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "end_to_end"))
 import unittest  # noqa: E402
 
+import interrupted_runs  # noqa: E402
 from harness import DISC, SOURCE, TIME_LIMIT, History, TestCase, run, settings, wait_for, with_more  # noqa: E402
 
 PROGRAM = os.environ["RICOCHET_MPI_PROGRAM"]
 MPIRUN = os.environ["RICOCHET_MPIRUN"]
 
-PROBES = """
-[[probe]]
-name = "ground"
-contact = 0
-[[probe]]
-name = "body"
-group = "body"
-every = 3
+PROBES = interrupted_runs.PROBES + """
 [[probe]]
 name = "wall"
 boundary = "boundary"

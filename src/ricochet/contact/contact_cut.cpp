@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/selection.hpp"
 
 namespace ricochet {
 
@@ -32,39 +33,14 @@ std::vector<Index> rows_of(const std::vector<Index>& points, Index per) {
   return result;
 }
 
-Vector chosen(const Vector& values, const std::vector<Index>& taken) {
-  Vector result(static_cast<Index>(taken.size()));
-  for (std::size_t i = 0; i < taken.size(); ++i) result[static_cast<Index>(i)] = values[taken[i]];
-  return result;
-}
-
-Points chosen_columns(const Points& values, const std::vector<Index>& taken) {
-  Points result(values.rows(), static_cast<Index>(taken.size()));
-  for (std::size_t i = 0; i < taken.size(); ++i) result.col(static_cast<Index>(i)) = values.col(taken[i]);
-  return result;
-}
-
-template <class Value>
-std::vector<Value> chosen(const std::vector<Value>& values, const std::vector<Index>& taken) {
-  std::vector<Value> result;
-  if (values.empty()) return result;
-  for (const Index i : taken) result.push_back(values[static_cast<std::size_t>(i)]);
-  return result;
-}
-
-/// Per number of the whole its place among the taken ones, or −1.
-std::vector<Index> places(const std::vector<Index>& taken, Index count) {
-  std::vector<Index> result(static_cast<std::size_t>(count), -1);
-  for (std::size_t i = 0; i < taken.size(); ++i) result[static_cast<std::size_t>(taken[i])] = static_cast<Index>(i);
-  return result;
-}
-
 }  // namespace
 
 SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactCut& part) {
   return cut_matrix(whole, part.points, part.nodes,
                     [&](Index node) { return part.place_of[static_cast<std::size_t>(node)]; });
 }
+
+namespace {
 
 ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
   const Index d = whole.dimension();
@@ -87,11 +63,13 @@ ContactRows cut_rows(const ContactRows& whole, const ContactCut& part) {
   return rows;
 }
 
+}  // namespace
+
 ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part) {
   if (whole.net.size() > 0 && whole.net.minCoeff() == 0.0)
     throw Error(ErrorKind::invalid_input, "contact between bodies cannot be divided");
   const auto place_of_node = [&](Index node) { return part.place_of[static_cast<std::size_t>(node)]; };
-  const std::vector<Index> point_place = places(part.points, whole.size());
+  const std::vector<Index> point_place = places_of_all(part.points, whole.size());
   ContactBoundary own;
   own.dimension = whole.dimension;
   for (const Index facet : whole.facets) {

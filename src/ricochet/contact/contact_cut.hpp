@@ -21,7 +21,4 @@ struct ContactCut {
 /// The same of a trace, points × nodes.
 [[nodiscard]] SparseRowMatrix cut_trace(const SparseRowMatrix& whole, const ContactCut& part);
 
-/// The same of rows, whose columns are dofs.
-[[nodiscard]] ContactRows cut_rows(const ContactRows& whole, const ContactCut& part);
-
 }  // namespace ricochet

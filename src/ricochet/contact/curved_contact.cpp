@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "ricochet/base/selection.hpp"
 #include "ricochet/contact/contact_cut.hpp"
 #include "ricochet/contact/contact_directions.hpp"
 
@@ -209,10 +210,6 @@ class CurvedContact final : public ContactGeometry {
 std::unique_ptr<ContactGeometry> CurvedContact::cut(const ContactCut& part) const {
   const auto is_free_body = [](const Obstacle* obstacle) { return obstacle->free_motion() != nullptr; };
   if (std::any_of(data_.obstacles.begin(), data_.obstacles.end(), is_free_body)) return nullptr;
-  const auto place_in = [](const std::vector<Index>& numbers, Index number) {
-    const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
-    return found != numbers.end() && *found == number ? found - numbers.begin() : Index{-1};
-  };
   CurvedContactData own;
   own.obstacles = data_.obstacles;
   for (CurvedContactData::Point point : data_.points) {
@@ -229,9 +226,7 @@ std::unique_ptr<ContactGeometry> CurvedContact::cut(const ContactCut& part) cons
     if (part.place_of[node] >= 0)
       own.node_positions.col(part.place_of[node]) = data_.node_positions.col(static_cast<Index>(node));
   }
-  own.node_normals.resize(data_.node_normals.rows(), static_cast<Index>(part.entries.size()));
-  for (std::size_t i = 0; i < part.entries.size(); ++i)
-    own.node_normals.col(static_cast<Index>(i)) = data_.node_normals.col(part.entries[i]);
+  own.node_normals = chosen_columns(data_.node_normals, part.entries);
   own.trace = cut_trace(data_.trace, part);
   return std::make_unique<CurvedContact>(std::move(own));
 }

@@ -7,6 +7,7 @@
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/memory.hpp"
+#include "ricochet/base/selection.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/distributed/cut_problem.hpp"
@@ -27,21 +28,6 @@ struct OwnRanks {
   MpiRanks as_ranks;
 };
 
-/// Per number of the whole its place in an ascending list, or −1.
-Index place_in(const std::vector<Index>& numbers, Index number) {
-  const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
-  return found != numbers.end() && *found == number ? found - numbers.begin() : -1;
-}
-
-std::vector<Index> places_in(const std::vector<Index>& members, const std::vector<Index>& numbers) {
-  std::vector<Index> result;
-  for (const Index member : members) {
-    const Index place = place_in(numbers, member);
-    if (place >= 0) result.push_back(place);
-  }
-  return result;
-}
-
 /// Facets of cells, with their numbers in the blocks of the piece.
 std::vector<CellFacet> cut_facets(const std::vector<CellFacet>& facets, const std::vector<CellBlock>& whole,
                                   const std::vector<CellBlock>& own, const std::vector<Index>& cell_number) {
@@ -53,14 +39,6 @@ std::vector<CellFacet> cut_facets(const std::vector<CellFacet>& facets, const st
     const Index place = place_in(cell_number, first_of_whole[facet.block] + facet.cell);
     if (place >= 0) result.push_back({facet.block, place - first_of_own[facet.block], facet.local});
   }
-  return result;
-}
-
-template <class Value>
-std::vector<Value> chosen(const std::vector<Value>& values, const std::vector<Index>& taken) {
-  std::vector<Value> result;
-  if (values.empty()) return result;
-  for (const Index i : taken) result.push_back(values[static_cast<std::size_t>(i)]);
   return result;
 }
 

@@ -1,23 +1,18 @@
 #include "ricochet/distributed/cut_problem.hpp"
 
+#include "ricochet/base/selection.hpp"
 #include "ricochet/contact/contact_cut.hpp"
 
 namespace ricochet {
 
 namespace {
 
-std::vector<Index> places_in(const std::vector<Index>& numbers, Index count) {
-  std::vector<Index> result(static_cast<std::size_t>(count), -1);
-  for (std::size_t i = 0; i < numbers.size(); ++i) result[static_cast<std::size_t>(numbers[i])] = static_cast<Index>(i);
-  return result;
-}
-
 ContactCut contact_part(const SemidiscreteProblem& whole, const Division& division, const Piece& piece, int rank) {
   ContactCut part;
   for (Index point = 0; point < whole.contact.size(); ++point) {
     if (division.rank_of_point(point) == rank) part.points.push_back(point);
   }
-  part.place_of = places_in(piece.node_number, whole.nodes.cols());
+  part.place_of = places_of_all(piece.node_number, whole.nodes.cols());
   part.nodes = static_cast<Index>(piece.node_number.size());
   for (std::size_t entry = 0; entry < whole.contact.nodes.size(); ++entry) {
     if (part.place_of[static_cast<std::size_t>(whole.contact.nodes[entry])] >= 0)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ricochet/base/selection.hpp"
 #include "ricochet/fem/exterior_facets.hpp"
 
 namespace ricochet {
@@ -64,22 +65,6 @@ class Renumbering {
   std::vector<Index> place_;
 };
 
-Points columns(const Points& all, const std::vector<Index>& taken) {
-  Points result(all.rows(), static_cast<Index>(taken.size()));
-  for (std::size_t i = 0; i < taken.size(); ++i) result.col(static_cast<Index>(i)) = all.col(taken[i]);
-  return result;
-}
-
-/// The members that are among `numbers` (ascending), by their places there.
-std::vector<Index> places_of(const std::vector<Index>& members, const std::vector<Index>& numbers) {
-  std::vector<Index> result;
-  for (const Index member : members) {
-    const auto at = std::lower_bound(numbers.begin(), numbers.end(), member);
-    if (at != numbers.end() && *at == member) result.push_back(at - numbers.begin());
-  }
-  return result;
-}
-
 std::vector<char> facets_of_rank(const Mesh& mesh, const std::vector<int>& rank_of_cell, int rank) {
   std::vector<Index> all(static_cast<std::size_t>(mesh.facet_count()));
   std::iota(all.begin(), all.end(), Index{0});
@@ -95,7 +80,7 @@ void cut_mesh_nodes(const Mesh& whole, Mesh& mesh) {
   const std::vector<Index> nodes = places.finish();
   places.apply(mesh.cells);
   places.apply(mesh.facets);
-  mesh.nodes = columns(whole.nodes, nodes);
+  mesh.nodes = chosen_columns(whole.nodes, nodes);
   for (const Index node : nodes) mesh.node_tags.push_back(whole.node_tags[static_cast<std::size_t>(node)]);
   for (const MeshPart& part : whole.parts) {
     MeshPart& own = mesh.parts.emplace_back();
@@ -127,11 +112,11 @@ Piece cut_piece(const Mesh& mesh, const DisplacementSpace& space, const std::vec
   piece.mesh.facets = std::move(of_facets.blocks);
   cut_mesh_nodes(mesh, piece.mesh);
   for (std::size_t i = 0; i < mesh.parts.size(); ++i)
-    piece.mesh.parts[i].cells = places_of(mesh.parts[i].cells, piece.cell_number);
+    piece.mesh.parts[i].cells = places_in(mesh.parts[i].cells, piece.cell_number);
   for (const Group& group : mesh.groups) {
     const bool is_of_cells = group.dimension == mesh.dimension;
     piece.mesh.groups.push_back({group.name, group.tag, group.dimension,
-                                 places_of(group.members, is_of_cells ? piece.cell_number : piece.facet_number)});
+                                 places_in(group.members, is_of_cells ? piece.cell_number : piece.facet_number)});
   }
 
   piece.space.dimension = space.dimension;
@@ -144,7 +129,7 @@ Piece cut_piece(const Mesh& mesh, const DisplacementSpace& space, const std::vec
   const std::vector<Index> nodes = places.finish();
   places.apply(piece.space.cells);
   places.apply(piece.space.facets);
-  piece.space.nodes = columns(space.nodes, nodes);
+  piece.space.nodes = chosen_columns(space.nodes, nodes);
   for (const Index node : nodes) piece.space.number.push_back(space.number[static_cast<std::size_t>(node)]);
   piece.node_number.assign(nodes.begin(), nodes.end());
   return piece;

@@ -114,16 +114,9 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
 
 std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::string& directory) {
   for (const Manifest& manifest : manifests(directory)) {
-    const auto size = static_cast<std::size_t>(ranks.size());
-    if (!manifest.checksums.empty() && manifest.checksums.size() != size) {
-      throw Error(ErrorKind::invalid_input,
-                  fmt::format("{0}: this run is one of {1} processes, and goes on with as many: mpirun -n {1} "
-                              "ricochet-mpi run --resume {0}",
-                              directory, manifest.checksums.size()));
-    }
     std::optional<Snapshot> snapshot;
-    std::string why = "the manifest is damaged";
-    if (!manifest.checksums.empty()) {
+    std::string why = "the manifest is damaged, or of another run";
+    if (manifest.checksums.size() == static_cast<std::size_t>(ranks.size())) {
       const std::string path = checkpoint_path(directory, ranks.rank(), manifest.step);
       try {
         if (checksum_of(path) != manifest.checksums[static_cast<std::size_t>(ranks.rank())])
@@ -144,6 +137,15 @@ int ranks_of_checkpoints(const std::string& directory) {
     if (!manifest.checksums.empty()) return static_cast<int>(manifest.checksums.size());
   }
   return 0;
+}
+
+void require_ranks_of_checkpoints(const std::string& directory, int ranks) {
+  const int own = ranks_of_checkpoints(directory);
+  if (own == 0 || own == ranks) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{0}: this run is one of {1} processes, and goes on with as many: mpirun -n {1} ricochet-mpi "
+                          "run --resume {0}",
+                          directory, own));
 }
 
 std::vector<std::string> rank_checkpoint_files(const std::string& directory, long after_step) {

@@ -21,12 +21,14 @@ namespace ricochet {
 void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, long step, const Snapshot& snapshot);
 
 /// This rank's part of the newest one that all ranks can read and of which all files are those of its manifest. A
-/// warning names what cannot be used. None: there is none. Throws Error(invalid_input) where it is one of another
-/// number of ranks.
+/// warning names what cannot be used. None: there is none.
 [[nodiscard]] std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::string& directory);
 
 /// The number of ranks of the run in this directory, by its newest manifest; 0: there is none.
 [[nodiscard]] int ranks_of_checkpoints(const std::string& directory);
+
+/// Throws Error(invalid_input) where that is another number than this: only as many put the parts together.
+void require_ranks_of_checkpoints(const std::string& directory, int ranks);
 
 /// Manifests and checkpoints of steps after this one; of step −1 all, and the folders.
 [[nodiscard]] std::vector<std::string> rank_checkpoint_files(const std::string& directory, long after_step);

@@ -122,23 +122,10 @@ bool Run::is_complete() {
 }
 
 void Run::find_checkpoint() {
-  if (ranks_.are_several()) {
-    snapshot_ = newest_rank_checkpoint(ranks_, options_.output_directory);
-  } else {
-    refuse_run_of_ranks();
-    snapshot_ = newest_checkpoint(options_.output_directory);
-  }
+  const std::string& directory = options_.output_directory;
+  require_ranks_of_checkpoints(directory, ranks_.size());
+  snapshot_ = ranks_.are_several() ? newest_rank_checkpoint(ranks_, directory) : newest_checkpoint(directory);
   ranks_.together([&] { look_at_checkpoint(); });
-}
-
-/// One process cannot put their parts together.
-void Run::refuse_run_of_ranks() const {
-  const int ranks = ranks_of_checkpoints(options_.output_directory);
-  if (ranks == 0) return;
-  throw Error(ErrorKind::invalid_input,
-              fmt::format("{0}: this run is one of {1} processes, and goes on with as many: mpirun -n {1} ricochet-mpi "
-                          "run --resume {0}",
-                          options_.output_directory, ranks));
 }
 
 void Run::look_at_checkpoint() {

@@ -43,7 +43,6 @@ class Run {
  private:
   [[nodiscard]] bool is_complete();
   void find_checkpoint();
-  void refuse_run_of_ranks() const;
   void look_at_checkpoint();
   [[noreturn]] void refuse_earlier_end(double reached) const;
   void begin_simulation();

@@ -127,6 +127,10 @@ void ContactZones::save(Snapshot& snapshot, const std::string& name) const {
 void ContactZones::load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) {
   layers_ = static_cast<int>(snapshot.integers(name + ".layers", 1, PointsNearby::most_layers).at(0));
   make(points);
+  load_made(snapshot, name);
+}
+
+void ContactZones::load_made(const Snapshot& snapshot, const std::string& name) {
   for (std::size_t i = 0; i < zones_.size(); ++i) zones_[i]->load(snapshot, fmt::format("{}.{}", name, i));
 }
 

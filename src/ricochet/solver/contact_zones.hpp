@@ -27,9 +27,6 @@ class ContactZones final : public NearContact {
   void make(const std::vector<Index>& points) override;
   void clear() override;
   [[nodiscard]] bool are_made() const override { return !zones_.empty(); }
-  [[nodiscard]] std::vector<Index> with_neighbours(const std::vector<Index>& points) override {
-    return nearby_.points_around(points);
-  }
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
   void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                    Vector& motion) override {
@@ -43,6 +40,8 @@ class ContactZones final : public NearContact {
 
   void save(Snapshot& snapshot, const std::string& name) const override;
   void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override;
+  /// The same of zones that are made.
+  void load_made(const Snapshot& snapshot, const std::string& name);
   void report() const override;
   void observe(const ContactObserver& observer) override;
   [[nodiscard]] double contact_seconds() const override;

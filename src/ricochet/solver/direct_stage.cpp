@@ -38,13 +38,12 @@ class DirectStage final : public StageSolver {
 
  private:
   [[nodiscard]] const Vector& right_hand_side(const Stage& stage);
-  void recover_support_reaction(const Stage& stage, StageSolution& solution);
 
   const SemidiscreteProblem& problem_;
   OperatorCoefficients coefficients_;
   SparseRowMatrix supported_;  ///< A's rows of supported dofs: supports × dofs
   FactoredStage stage_;
-  Vector right_hand_side_, supported_force_, contact_force_;
+  Vector right_hand_side_, contact_force_;
 };
 
 DirectStage::DirectStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
@@ -58,19 +57,6 @@ void DirectStage::refactorize(const Vector& displacement) {
   SparseMatrix matrix = combine_operator(problem_, coefficients_, displacement);
   supported_ = supported_rows(problem_, matrix);
   stage_.refactorize(problem_, coefficients_, on_dofs(problem_, solved_dofs(problem_, coefficients_.dofs), matrix));
-}
-
-void DirectStage::recover_support_reaction(const Stage& stage, StageSolution& solution) {
-  const std::vector<Index>& dofs = problem_.supports.dofs();
-  solution.support_reaction.resize(problem_.supports.size());
-  if (dofs.empty()) return;
-  contact_force_.setZero(problem_.dof_count());
-  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), contact_force_);
-  supported_force_.noalias() = supported_ * solution.increment;
-  for (Index i = 0; i < problem_.supports.size(); ++i) {
-    const Index dof = dofs[static_cast<std::size_t>(i)];
-    solution.support_reaction[i] = supported_force_[i] - stage.right_hand_side[dof] - contact_force_[dof];
-  }
 }
 
 /// b − A_fs δ_s.
@@ -87,7 +73,7 @@ void DirectStage::solve(const Stage& stage, StageSolution& solution) {
   if (solution.increment.size() != problem_.dof_count()) solution.increment.setZero(problem_.dof_count());
   prescribe(problem_, stage, solution.increment);
   stage_.solve(stage, right_hand_side(stage), solution, solution.increment);
-  recover_support_reaction(stage, solution);
+  find_support_reaction(problem_, stage, supported_, contact_force_, solution);
 }
 
 }  // namespace

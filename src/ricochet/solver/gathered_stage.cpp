@@ -44,7 +44,7 @@ class GatheredStage final : public StageSolver {
   GatheredContact& contact_;
   SparseRowMatrix supported_;  ///< this rank's part of A's rows of supported dofs: supports × dofs
   std::vector<Index> points_;  ///< that take part
-  Vector right_hand_side_, held_, supported_force_, contact_force_;
+  Vector right_hand_side_, held_, contact_force_;
   // At home:
   std::unique_ptr<SemidiscreteProblem> near_;
   std::unique_ptr<StageSolver> stage_;
@@ -105,16 +105,7 @@ void GatheredStage::solve(const Stage& stage, StageSolution& solution) {
   // What is held at a contact node is no part of what is solved for.
   prescribe(problem_, stage, solution.increment);
   contact_.spread(near_solution_, points_, solution);
-  const std::vector<Index>& dofs = problem_.supports.dofs();
-  solution.support_reaction.resize(problem_.supports.size());
-  if (dofs.empty()) return;
-  contact_force_.setZero(problem_.dof_count());
-  stage.rows->add_force(solution.acting_normal(), solution.acting_tangential(), contact_force_);
-  supported_force_.noalias() = supported_ * solution.increment;
-  for (Index i = 0; i < problem_.supports.size(); ++i) {
-    const Index dof = dofs[static_cast<std::size_t>(i)];
-    solution.support_reaction[i] = supported_force_[i] - stage.right_hand_side[dof] - contact_force_[dof];
-  }
+  find_support_reaction(problem_, stage, supported_, contact_force_, solution);
 }
 
 }  // namespace

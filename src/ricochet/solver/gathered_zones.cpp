@@ -25,9 +25,6 @@ class GatheredZones final : public NearContact {
   void make(const std::vector<Index>& points) override;
   void clear() override;
   [[nodiscard]] bool are_made() const override { return are_made_; }
-  [[nodiscard]] std::vector<Index> with_neighbours(const std::vector<Index>& points) override {
-    return nearby_.points_around(points);
-  }
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
   void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                    Vector& motion) override;
@@ -38,7 +35,7 @@ class GatheredZones final : public NearContact {
   void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override {
     make(points);
     problem_.ranks->together([&] {
-      if (zones_) zones_->load(snapshot, name, points_at_home_);
+      if (zones_) zones_->load_made(snapshot, name);
     });
   }
   void report() const override {

@@ -139,7 +139,7 @@ void IterativeStage::make_zones(const Stage& stage, const std::vector<Index>& wa
     points.insert(points.end(), nearest.begin(), nearest.end());
     near_.clear();
   }
-  points = zones_->with_neighbours(points);
+  points = nearby_.points_around(points);
   points.insert(points.end(), near_.points().begin(), near_.points().end());
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());

@@ -17,9 +17,6 @@ class NearContact {
   virtual void make(const std::vector<Index>& points) = 0;
   virtual void clear() = 0;
   [[nodiscard]] virtual bool are_made() const = 0;
-  /// Points with some node within a few layers of those of the given ones, and these: a contact that grows should not
-  /// ask for other zones in every step. Ascending.
-  [[nodiscard]] virtual std::vector<Index> with_neighbours(const std::vector<Index>& points) = 0;
 
   /// With the residual b − A x of the whole body, reactions left out: x near the contact, and the reactions.
   virtual void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) = 0;

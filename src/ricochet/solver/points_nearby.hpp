@@ -26,7 +26,8 @@ class PointsNearby {
   [[nodiscard]] std::vector<Index> nodes_of(const std::vector<Index>& points) const;
   /// Nodes within so many layers of those of the points of all ranks. Ascending.
   [[nodiscard]] std::vector<Index> nodes_around(const std::vector<Index>& points, int layers);
-  /// Points with some node within a few layers of those of the given ones, and these. Ascending.
+  /// Points with some node within a few layers of those of the given ones, and these: a contact that grows should not
+  /// ask for other zones in every step. Ascending.
   [[nodiscard]] std::vector<Index> points_around(const std::vector<Index>& points);
   /// Layers of nodes around points in which what the rest of the body does to their contact has decayed, for
   /// A = αM + κK of this product.

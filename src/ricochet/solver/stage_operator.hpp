@@ -26,6 +26,11 @@ namespace ricochet {
 /// Of a matrix on all dofs its rows of supported ones: supports × dofs.
 [[nodiscard]] SparseRowMatrix supported_rows(const SemidiscreteProblem& problem, const SparseMatrix& matrix);
 
+/// The reactions of supports that a solution asks for, A_s δ − b − Hᵀρ̄ with the rows of supported_rows(). Ranks have a
+/// part each. `contact_force`: work space.
+void find_support_reaction(const SemidiscreteProblem& problem, const Stage& stage, const SparseRowMatrix& supported,
+                           Vector& contact_force, StageSolution& solution);
+
 /// Writes what a stage prescribes to its supported dofs. `increment`: per dof.
 void prescribe(const SemidiscreteProblem& problem, const Stage& stage, Vector& increment);
 

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "ricochet/base/types.hpp"
+
+/// @file Some of many: lists of numbers, and what belongs to them.
+namespace ricochet {
+
+template <class Value>
+[[nodiscard]] std::vector<Value> chosen(const std::vector<Value>& values, const std::vector<Index>& taken) {
+  std::vector<Value> result;
+  if (values.empty()) return result;
+  result.reserve(taken.size());
+  for (const Index i : taken) result.push_back(values[static_cast<std::size_t>(i)]);
+  return result;
+}
+[[nodiscard]] inline Vector chosen(const Vector& values, const std::vector<Index>& taken) {
+  return values(taken);
+}
+[[nodiscard]] inline Points chosen_columns(const Points& values, const std::vector<Index>& taken) {
+  return values(Eigen::all, taken);
+}
+
+/// The place of a number in an ascending list, or −1.
+[[nodiscard]] inline Index place_in(const std::vector<Index>& numbers, Index number) {
+  const auto found = std::lower_bound(numbers.begin(), numbers.end(), number);
+  return found != numbers.end() && *found == number ? found - numbers.begin() : Index{-1};
+}
+/// Of those that are in it, in their order.
+[[nodiscard]] inline std::vector<Index> places_in(const std::vector<Index>& members,
+                                                  const std::vector<Index>& numbers) {
+  std::vector<Index> result;
+  for (const Index member : members) {
+    if (const Index place = place_in(numbers, member); place >= 0) result.push_back(place);
+  }
+  return result;
+}
+/// For each number below `count` its place in a list, or −1.
+[[nodiscard]] inline std::vector<Index> places_of_all(const std::vector<Index>& numbers, Index count) {
+  std::vector<Index> result(static_cast<std::size_t>(count), -1);
+  for (std::size_t i = 0; i < numbers.size(); ++i) result[static_cast<std::size_t>(numbers[i])] = static_cast<Index>(i);
+  return result;
+}
+
+}  // namespace ricochet
