@@ -78,7 +78,7 @@ void MomentumAccount::load(const Snapshot& snapshot, const std::string& name) {
   arm_ = numbers[20];
 }
 
-Resultant MomentumAccount::of_nodes(const Vector& force) const {
+Resultant MomentumAccount::part_of_nodes(const Vector& force) const {
   const Index d = problem_.dimension;
   Resultant result;
   for (Index node = 0; node < problem_.nodes.cols(); ++node) {
@@ -89,16 +89,26 @@ Resultant MomentumAccount::of_nodes(const Vector& force) const {
     const SpaceVector torque = body->torque(force);
     result.moment.tail(torque.size()) += torque;
   }
-  return whole(result);
+  return result;
 }
 
-/// Of forces, those of all ranks.
-Resultant MomentumAccount::whole(Resultant part) const {
-  if (!problem_.ranks->are_several()) return part;
-  std::array<double, 6> numbers{};
-  Eigen::Map<Eigen::Matrix<double, 6, 1>>(numbers.data()) << part.force, part.moment;
-  problem_.ranks->sum(numbers);
-  return {Eigen::Map<const Eigen::Vector3d>(numbers.data()), Eigen::Map<const Eigen::Vector3d>(numbers.data() + 3)};
+Resultant MomentumAccount::of_nodes(const Vector& force) const {
+  Resultant result = part_of_nodes(force);
+  add_up_ranks({&result, 1});
+  return result;
+}
+
+/// In one exchange for all.
+void MomentumAccount::add_up_ranks(std::span<Resultant> parts) const {
+  if (!problem_.ranks->are_several()) return;
+  std::array<double, 6 * most_parts> numbers{};
+  const auto at = [&numbers](std::size_t i) { return Eigen::Map<Eigen::Vector3d>(numbers.data() + 3 * i); };
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    at(2 * i) = parts[i].force;
+    at(2 * i + 1) = parts[i].moment;
+  }
+  problem_.ranks->sum({numbers.data(), 6 * parts.size()});
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {at(2 * i), at(2 * i + 1)};
 }
 
 /// The forces of a point are those of all its rows, and are taken node by node: between bodies at finite strain, where
@@ -124,7 +134,7 @@ Resultant MomentumAccount::between_bodies(const StepForces& forces) {
   const Vector* const place = scheme_.has_couples_between_bodies() ? scheme_.place_of_forces() : nullptr;
   if (place != nullptr && place->size() == problem_.dof_count() && problem_.contact.follows_motion())
     problem_.contact.geometry->add_couples(*place, *forces.rows, normal_, tangential_, force_);
-  return of_nodes(force_);
+  return part_of_nodes(force_);
 }
 
 MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
@@ -135,7 +145,8 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
     sum.total.moment += sign * part.moment;
     sum.size += part.force.norm();
   };
-  Resultant contact, supports;
+  std::array<Resultant, most_parts> parts;
+  Resultant &contact = parts[0], &supports = parts[1];
   bool presses_bodies = false;
   for (Index i = 0; i < forces.acting_normal().size(); ++i) {
     // Under Tresca's law a point without pressure may still carry friction.
@@ -154,7 +165,6 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
     contact.force += left.force;
     contact.moment += left.moment;
   }
-  include(whole(contact));
   double size_of_supports = 0.0;
   for (Index i = 0; i < forces.support_reaction.size(); ++i) {
     const Index dof = problem_.supports.dofs()[static_cast<std::size_t>(i)];
@@ -162,12 +172,18 @@ MomentumAccount::Sum MomentumAccount::resultant(const StepForces& forces) {
       add(supports, in_space(positions_.col(dof / d)), forces.support_reaction[i] * Eigen::Vector3d::Unit(dof % d));
     size_of_supports += std::abs(forces.support_reaction[i]);
   }
-  sum.size += problem_.ranks->sum(size_of_supports);
   for (const auto& body : problem_.free_bodies)
     supports.moment.tail(body->gyration().size()) += held_torque(*body, forces);
-  include(whole(supports));
-  if (forces.varying_load.size() > 0) include(of_nodes(forces.varying_load));
-  if (forces.damping_force.size() > 0) include(of_nodes(forces.damping_force), -1.0);
+  const bool varies = forces.varying_load.size() > 0, is_damped = forces.damping_force.size() > 0;
+  if (varies) parts[2] = part_of_nodes(forces.varying_load);
+  if (is_damped) parts[3] = part_of_nodes(forces.damping_force);
+  parts[4].force[0] = size_of_supports;
+  add_up_ranks(parts);
+  include(contact);
+  sum.size += parts[4].force[0];
+  include(supports);
+  if (varies) include(parts[2]);
+  if (is_damped) include(parts[3], -1.0);
   return sum;
 }
 

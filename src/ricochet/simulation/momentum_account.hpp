@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "ricochet/scheme/scheme.hpp"
 
 /// @file Impulses of the forces that act on the body: what changes its momentum.
@@ -52,7 +54,10 @@ class MomentumAccount {
   [[nodiscard]] Sum resultant(const StepForces& forces);
   [[nodiscard]] Sum of_springs();
   [[nodiscard]] Resultant algorithmic(const State& state);
-  [[nodiscard]] Resultant whole(Resultant part) const;
+  /// Of a resultant: contact, supports, loads, damping, and in the last one the size of the supports' forces.
+  static constexpr std::size_t most_parts = 5;
+  [[nodiscard]] Resultant part_of_nodes(const Vector& force) const;
+  void add_up_ranks(std::span<Resultant> parts) const;
   [[nodiscard]] Resultant of_nodes(const Vector& force) const;
   void take_positions(const Vector& displacement);
   void add_impulse(double weight, const Resultant& resultant);
