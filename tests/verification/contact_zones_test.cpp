@@ -37,7 +37,7 @@ struct Zones {
   explicit Zones(const CaseRun& run, const std::vector<char>& solved, double longer = 1.0)
       : coefficients{run.session().scheme().operators(run.problem()).back()}, nearby(run.problem()) {
     coefficients.mass /= longer * longer;
-    product = StageProduct(run.problem(), coefficients, combine_operator(run.problem(), coefficients));
+    product = StageProduct(run.problem(), coefficients);
     zones = std::make_unique<ContactZones>(run.problem(), coefficients, solved, product, nearby, false, nullptr);
   }
   OperatorCoefficients coefficients;

@@ -11,18 +11,8 @@ namespace {
 template <int d>
 class BlockJacobi final : public Preconditioner {
  public:
-  BlockJacobi(const SparseMatrix& matrix, const std::vector<char>& solved, const Ranks& ranks)
-      : inverse_(static_cast<std::size_t>(matrix.cols() / d)) {
-    Vector blocks = Vector::Zero(matrix.cols() * d);
-    for (Index node = 0; node < nodes(); ++node) {
-      Eigen::Map<Block> block(blocks.data() + node * d * d);
-      for (int k = 0; k < d; ++k) {
-        for (SparseMatrix::InnerIterator entry(matrix, node * d + k); entry; ++entry) {
-          if (entry.row() / d == node) block(entry.row() % d, k) = entry.value();
-        }
-      }
-    }
-    ranks.accumulate(blocks);
+  BlockJacobi(const Vector& blocks, const std::vector<char>& solved)
+      : inverse_(static_cast<std::size_t>(blocks.size() / (d * d))) {
     for (Index node = 0; node < nodes(); ++node) {
       Block block = Eigen::Map<const Block>(blocks.data() + node * d * d);
       for (int k = 0; k < d; ++k) {
@@ -52,10 +42,9 @@ class BlockJacobi final : public Preconditioner {
 
 }  // namespace
 
-std::unique_ptr<Preconditioner> make_block_jacobi(const SparseMatrix& matrix, int d, const std::vector<char>& solved,
-                                                  const Ranks& ranks) {
-  if (d == 2) return std::make_unique<BlockJacobi<2>>(matrix, solved, ranks);
-  return std::make_unique<BlockJacobi<3>>(matrix, solved, ranks);
+std::unique_ptr<Preconditioner> make_block_jacobi(const Vector& blocks, int d, const std::vector<char>& solved) {
+  if (d == 2) return std::make_unique<BlockJacobi<2>>(blocks, solved);
+  return std::make_unique<BlockJacobi<3>>(blocks, solved);
 }
 
 }  // namespace ricochet

@@ -25,6 +25,27 @@ MatrixGraph::MatrixGraph(const SparseMatrix& matrix, int d) {
   }
 }
 
+MatrixGraph::MatrixGraph(const NodePattern& pattern) : begin_(pattern.node.size() + 1, 0) {
+  const auto each = [&](const auto& enter) {
+    pattern.visit_rows(0, pattern.parts(), [&](int node, Index first_block, const RowGroup& group) {
+      for (Index k = 0; k < group.blocks_per_row(); ++k) {
+        const int other = pattern.column[static_cast<std::size_t>(first_block + k)];
+        enter(node, other);
+        if (k < group.two_sided) enter(other, node);
+      }
+    });
+  };
+  each([&](int node, int) { ++begin_[static_cast<std::size_t>(node) + 1]; });
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  neighbour_.resize(static_cast<std::size_t>(begin_.back()));
+  std::vector<Index> next(begin_.begin(), begin_.end() - 1);
+  each([&](int node, int other) {
+    neighbour_[static_cast<std::size_t>(next[static_cast<std::size_t>(node)]++)] = other;
+  });
+  for (std::size_t i = 0; i + 1 < begin_.size(); ++i)
+    std::sort(neighbour_.begin() + begin_[i], neighbour_.begin() + begin_[i + 1]);
+}
+
 std::vector<Index> NodeLayers::ascending() const {
   std::vector<Index> result = nodes;
   std::sort(result.begin(), result.end());

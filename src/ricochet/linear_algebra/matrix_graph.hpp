@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ricochet/base/types.hpp"
+#include "ricochet/linear_algebra/node_pattern.hpp"
 
 /// @file Nodes and their neighbours, as a matrix sees them.
 namespace ricochet {
@@ -13,6 +14,7 @@ class MatrixGraph {
   MatrixGraph() = default;
   /// Of a matrix with a symmetric pattern and d rows per node: nodes that share an entry are neighbours.
   MatrixGraph(const SparseMatrix& matrix, int d);
+  explicit MatrixGraph(const NodePattern& pattern);
 
   [[nodiscard]] Index size() const { return static_cast<Index>(begin_.size()) - 1; }
   /// Ascending; the node itself is among them.

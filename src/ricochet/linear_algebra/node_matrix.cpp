@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "ricochet/base/node_order.hpp"
@@ -74,6 +75,47 @@ void NodeMatrix::read_values(const SparseMatrix& matrix) {
   });
 }
 
+NodeMatrix::NodeMatrix(const std::vector<Term>& terms) : dimension_(terms.front().matrix->dimension_) {
+  std::vector<const NodePattern*> patterns;
+  std::vector<PatternRows> rows;
+  for (const Term& term : terms) {
+    patterns.push_back(&term.matrix->pattern_);
+    rows.push_back(term.matrix->pattern_.rows());
+    stride_ = std::max(stride_, term.matrix->stride_);
+  }
+  pattern_ = joined_pattern(patterns);
+  values_.assign(pattern_.column.size() * static_cast<std::size_t>(stride_) + 1, 0.0);
+  const auto add = [&](const Term& term, const PatternRow& row, Index first_block, Index count) {
+    // Columns ascend in both, and those of a term are among those of the sum.
+    Index block = first_block;
+    for (Index own = row.first_block; own < row.first_block + count; ++own, ++block) {
+      const int column = term.matrix->pattern_.column[static_cast<std::size_t>(own)];
+      while (pattern_.column[static_cast<std::size_t>(block)] != column) ++block;
+      term.matrix->add_block(own, term.factor, stride_, values_.data() + block * stride_);
+    }
+  };
+  parallel_ranges(pattern_.parts(), [&](Index first, Index last) {
+    pattern_.visit_rows(first, last, [&](int node, Index first_block, const RowGroup& group) {
+      for (std::size_t i = 0; i < terms.size(); ++i) {
+        PatternRow row = rows[i][static_cast<std::size_t>(node)];
+        add(terms[i], row, first_block, row.two_sided);
+        row.first_block += row.two_sided;
+        add(terms[i], row, first_block + group.two_sided, row.one_sided);
+      }
+    });
+  });
+}
+
+/// Adds one block times a factor to one of so many numbers.
+void NodeMatrix::add_block(Index block, double factor, Index stride, double* sum) const {
+  const double* own = values_.data() + block * stride_;
+  if (stride == stride_) {
+    for (Index k = 0; k < stride; ++k) sum[k] += factor * own[k];
+  } else {
+    for (Index k = 0; k < stride; k += dimension_ + 1) sum[k] += factor * own[0];
+  }
+}
+
 std::size_t NodeMatrix::bytes() const {
   return sizeof(double) * values_.size() + pattern_.bytes();
 }
@@ -109,6 +151,27 @@ void NodeMatrix::visit_blocks(const Enter& enter) const {
   });
 }
 
+double NodeMatrix::magnitude_form(const Vector& x) const {
+  const int d = dimension_;
+  double sum = 0.0;
+  pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
+    for (Index k = 0; k < group.blocks_per_row(); ++k) {
+      const double* const block = values_.data() + (first_block + k) * stride_;
+      const Index row = Index{node} * d;
+      const Index column = Index{pattern_.column[static_cast<std::size_t>(first_block + k)]} * d;
+      double own = 0.0;
+      for (int a = 0; a < d; ++a) {
+        for (int b = 0; b < d; ++b) {
+          if (is_scalar() && a != b) continue;
+          own += std::abs(x[row + a] * block[is_scalar() ? 0 : b * d + a] * x[column + b]);
+        }
+      }
+      sum += k < group.two_sided ? 2.0 * own : own;
+    }
+  });
+  return sum;
+}
+
 Vector NodeMatrix::diagonal() const {
   const int d = dimension_;
   Vector result = Vector::Zero(size());
@@ -116,6 +179,18 @@ Vector NodeMatrix::diagonal() const {
     if (row != column) return;
     const Index first = Index{row} * d;
     for (int a = 0; a < d; ++a) result[first + a] = block[is_scalar() ? 0 : a * d + a];
+  });
+  return result;
+}
+
+Vector NodeMatrix::diagonal_blocks() const {
+  const Index d = dimension_, size_of_block = d * d;
+  Vector result = Vector::Zero(size() * d);
+  pattern_.visit_rows(0, pattern_.parts(), [&](int node, Index first_block, const RowGroup& group) {
+    for (Index k = first_block + group.two_sided; k < first_block + group.blocks_per_row(); ++k) {
+      if (pattern_.column[static_cast<std::size_t>(k)] == node)
+        add_block(k, 1.0, size_of_block, result.data() + node * size_of_block);
+    }
   });
   return result;
 }

@@ -20,10 +20,18 @@ namespace ricochet {
 /// 45 % of the compressed columns of the whole matrix in two and 40 % in three dimensions.
 class NodeMatrix {
  public:
+  /// A matrix times a factor, of a sum.
+  struct Term {
+    double factor = 1.0;
+    const NodeMatrix* matrix = nullptr;
+  };
+
   NodeMatrix() = default;
   /// From a symmetric matrix stored whole, with d dofs per node. Only what is on one side of the diagonal is read of
   /// some entries, so it must be symmetric to the bit.
   NodeMatrix(const SparseMatrix& matrix, int d);
+  /// Σ factor · matrix, in the order of the terms, at least one, all of the same nodes.
+  explicit NodeMatrix(const std::vector<Term>& terms);
 
   [[nodiscard]] Index size() const { return static_cast<Index>(pattern_.node.size()) * dimension_; }
   [[nodiscard]] int dimension() const { return dimension_; }
@@ -39,7 +47,11 @@ class NodeMatrix {
   /// xᵀ A x, without A x: faster than the product.
   [[nodiscard]] double form(const Vector& x) const;
 
+  /// |x|ᵀ |A| |x|.
+  [[nodiscard]] double magnitude_form(const Vector& x) const;
   [[nodiscard]] Vector diagonal() const;
+  /// The blocks on the diagonal, d² numbers per node.
+  [[nodiscard]] Vector diagonal_blocks() const;
   /// True when no entry off the diagonal is other than zero.
   [[nodiscard]] bool is_diagonal() const;
   /// The matrix as it was given: whole, in compressed columns.
@@ -51,6 +63,7 @@ class NodeMatrix {
   template <class Enter>
   void visit_blocks(const Enter& enter) const;
   void read_values(const SparseMatrix& matrix);
+  void add_block(Index block, double factor, Index stride, double* sum) const;
 
   int dimension_ = 2;
   Index stride_ = 1;  ///< numbers per block: d², or 1

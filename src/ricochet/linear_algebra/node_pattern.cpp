@@ -10,11 +10,11 @@ namespace ricochet {
 
 namespace {
 
-/// The blocks that are stored for one row after another.
-class RowPattern {
+/// The blocks that are stored for one row of a matrix after another.
+class RowOfMatrix {
  public:
   /// Looks at `columns` columns of the matrix per node: its d components, or 1 where they are alike.
-  RowPattern(const SparseMatrix& matrix, int columns, int d) : matrix_(matrix), columns_(columns), d_(d) {}
+  RowOfMatrix(const SparseMatrix& matrix, int columns, int d) : matrix_(matrix), columns_(columns), d_(d) {}
 
   /// Of a node of the part [begin, end).
   void read(Index node, Index begin, Index end) {
@@ -55,6 +55,38 @@ class RowPattern {
   std::vector<int> nodes_, two_sided_, one_sided_;
 };
 
+/// Those of one row of any of some patterns of the same nodes.
+class RowOfPatterns {
+ public:
+  RowOfPatterns(const std::vector<const NodePattern*>& patterns, const std::vector<PatternRows>& rows)
+      : patterns_(patterns), rows_(rows) {}
+
+  void read(Index node, Index /*begin*/, Index /*end*/) {
+    two_sided_.clear();
+    one_sided_.clear();
+    for (std::size_t i = 0; i < patterns_.size(); ++i) {
+      const PatternRow row = rows_[i][static_cast<std::size_t>(node)];
+      const auto first = patterns_[i]->column.begin() + row.first_block;
+      join(first, first + row.two_sided, two_sided_);
+      join(first + row.two_sided, first + row.two_sided + row.one_sided, one_sided_);
+    }
+  }
+  [[nodiscard]] const std::vector<int>& two_sided() const { return two_sided_; }
+  [[nodiscard]] const std::vector<int>& one_sided() const { return one_sided_; }
+
+ private:
+  using Iterator = std::vector<int>::const_iterator;
+  void join(Iterator begin, Iterator end, std::vector<int>& columns) {
+    joined_.clear();
+    std::set_union(columns.begin(), columns.end(), begin, end, std::back_inserter(joined_));
+    columns.swap(joined_);
+  }
+
+  const std::vector<const NodePattern*>& patterns_;
+  const std::vector<PatternRows>& rows_;
+  std::vector<int> two_sided_, one_sided_, joined_;
+};
+
 /// Of one row.
 struct Counts {
   Index two_sided = 0, one_sided = 0;
@@ -78,27 +110,23 @@ Index group_rows(const std::vector<Counts>& counts, NodePattern& pattern) {
   return blocks;
 }
 
-}  // namespace
-
-std::size_t NodePattern::bytes() const {
-  return sizeof(int) * (node.size() + column.size()) + sizeof(RowGroup) * groups.size();
-}
-
-NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike) {
+/// `first_reader`: of rows; each thread has a copy.
+template <class Reader>
+NodePattern pattern_of_rows(Index node_count, const Reader& first_reader) {
   NodePattern pattern;
-  pattern.part_begins = node_parts(matrix.cols() / d);
+  pattern.part_begins = node_parts(node_count);
   const std::vector<Index>& begins = pattern.part_begins;
   const auto nodes = static_cast<std::size_t>(begins.back());
   const auto each_part = [&](const auto& enter) {
     parallel_ranges(pattern.parts(), [&](Index first, Index last) {
-      RowPattern row(matrix, alike ? 1 : d, d);
+      Reader row = first_reader;
       for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last); ++part) enter(part, row);
     });
   };
   std::vector<Counts> counts(nodes);
   pattern.node.resize(nodes);
   std::iota(pattern.node.begin(), pattern.node.end(), 0);
-  each_part([&](std::size_t part, RowPattern& row) {
+  each_part([&](std::size_t part, Reader& row) {
     const Index begin = begins[part], end = begins[part + 1];
     for (Index node = begin; node < end; ++node) {
       row.read(node, begin, end);
@@ -110,7 +138,7 @@ NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike) {
     });
   });
   pattern.column.resize(static_cast<std::size_t>(group_rows(counts, pattern)));
-  each_part([&](std::size_t part, RowPattern& row) {
+  each_part([&](std::size_t part, Reader& row) {
     for (Index g = pattern.part_groups[part]; g < pattern.part_groups[part + 1]; ++g) {
       const RowGroup& group = pattern.groups[static_cast<std::size_t>(g)];
       auto to = pattern.column.begin() + group.first_block;
@@ -122,6 +150,30 @@ NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike) {
     }
   });
   return pattern;
+}
+
+}  // namespace
+
+std::size_t NodePattern::bytes() const {
+  return sizeof(int) * (node.size() + column.size()) + sizeof(RowGroup) * groups.size();
+}
+
+PatternRows NodePattern::rows() const {
+  PatternRows result(node.size());
+  visit_rows(0, parts(), [&](int of_row, Index first_block, const RowGroup& group) {
+    result[static_cast<std::size_t>(of_row)] = {first_block, group.two_sided, group.one_sided};
+  });
+  return result;
+}
+
+NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike) {
+  return pattern_of_rows(matrix.cols() / d, RowOfMatrix(matrix, alike ? 1 : d, d));
+}
+
+NodePattern joined_pattern(const std::vector<const NodePattern*>& patterns) {
+  std::vector<PatternRows> rows;
+  for (const NodePattern* pattern : patterns) rows.push_back(pattern->rows());
+  return pattern_of_rows(static_cast<Index>(patterns.front()->node.size()), RowOfPatterns(patterns, rows));
 }
 
 }  // namespace ricochet

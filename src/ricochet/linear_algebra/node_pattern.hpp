@@ -18,6 +18,12 @@ struct RowGroup {
   [[nodiscard]] Index end_row() const { return first_row + rows; }
 };
 
+/// The blocks of one row.
+struct PatternRow {
+  Index first_block = 0, two_sided = 0, one_sided = 0;
+};
+using PatternRows = std::vector<PatternRow>;  ///< per node
+
 /// The rows of a part are sorted by their numbers of blocks: a loop whose length changes from row to row makes the
 /// processor guess wrongly at the end of each, which costs as much as the products. A part is small enough for its
 /// vectors to stay in the near caches in any order of its rows.
@@ -30,6 +36,7 @@ struct NodePattern {
 
   [[nodiscard]] Index parts() const { return static_cast<Index>(part_begins.size()) - 1; }
   [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] PatternRows rows() const;
   /// Calls enter(node of the row, its first block, the group with its numbers of blocks) for the rows of these parts.
   template <class Enter>
   void visit_rows(Index first_part, Index end_part, const Enter& enter) const {
@@ -46,5 +53,8 @@ struct NodePattern {
 /// Of a symmetric matrix with d dofs per node, stored whole and compressed. Where `alike`, it is m ⊗ I and only the
 /// columns of the first components are read.
 [[nodiscard]] NodePattern node_pattern(const SparseMatrix& matrix, int d, bool alike);
+
+/// The blocks that any of some patterns of the same nodes has.
+[[nodiscard]] NodePattern joined_pattern(const std::vector<const NodePattern*>& patterns);
 
 }  // namespace ricochet

@@ -29,29 +29,11 @@ Square<d> masked(const double* values, const std::vector<char>& solved, Index ro
   return block;
 }
 
-/// The blocks on the diagonal, of all ranks.
-template <int d>
-Vector diagonal_blocks(const NodeMatrix& matrix, const Ranks& ranks) {
-  const NodePattern& pattern = matrix.pattern();
-  Vector result = Vector::Zero(matrix.size() * d);
-  pattern.visit_rows(0, pattern.parts(), [&](int node, Index first_block, const RowGroup& group) {
-    for (Index k = first_block + group.two_sided; k < first_block + group.blocks_per_row(); ++k) {
-      if (pattern.column[static_cast<std::size_t>(k)] == node)
-        result.segment<d * d>(Index{node} * d * d) =
-            Eigen::Map<const Vector>(matrix.values().data() + k * d * d, d * d);
-    }
-  });
-  ranks.accumulate(result);
-  return result;
-}
-
 /// L⁻¹ per node; a block that is not positive definite is taken for one: conjugate gradients will say so.
 template <int d>
-void invert_factors(const NodeMatrix& matrix, const std::vector<char>& solved, const Ranks& ranks,
-                    std::vector<float>& result) {
-  const Vector blocks = diagonal_blocks<d>(matrix, ranks);
+void invert_factors(const Vector& blocks, const std::vector<char>& solved, std::vector<float>& result) {
   result.assign(static_cast<std::size_t>(blocks.size()) + 1, 0.0F);
-  parallel_ranges(matrix.size() / d, [&](Index begin, Index end) {
+  parallel_ranges(blocks.size() / (d * d), [&](Index begin, Index end) {
     for (Index node = begin; node < end; ++node) {
       Square<d> own = masked<d>(blocks.data() + node * d * d, solved, node, node);
       for (int a = 0; a < d; ++a) {
@@ -99,13 +81,14 @@ auto with_dimension(int d, const Work& work) {
 
 }  // namespace
 
-SingleGradients::SingleGradients(const NodeMatrix& matrix, const std::vector<char>& solved, const Ranks& ranks)
+SingleGradients::SingleGradients(const NodeMatrix& matrix, const Vector& diagonal_blocks,
+                                 const std::vector<char>& solved, const Ranks& ranks)
     : matrix_(matrix), ranks_(ranks) {
   if (matrix.dimension() == 2) {
-    invert_factors<2>(matrix, solved, ranks, inverse_factor_);
+    invert_factors<2>(diagonal_blocks, solved, inverse_factor_);
     scale_blocks<2>(matrix, solved, inverse_factor_, values_);
   } else {
-    invert_factors<3>(matrix, solved, ranks, inverse_factor_);
+    invert_factors<3>(diagonal_blocks, solved, inverse_factor_);
     scale_blocks<3>(matrix, solved, inverse_factor_, values_);
   }
   for (Numbers* numbers : {&x_, &residual_, &direction_, &image_}) numbers->setZero(matrix.size());

@@ -13,9 +13,11 @@ namespace ricochet {
 /// to a few digits; a caller that takes its residual in double precision and asks again gets the others.
 class SingleGradients {
  public:
-  /// Of a matrix in blocks, which is referred to; `solved` per dof: rows and columns of the others are left out.
-  /// Of several ranks each has a part of the matrix, and the whole of the vectors at its nodes.
-  SingleGradients(const NodeMatrix& matrix, const std::vector<char>& solved, const Ranks& ranks = one_rank());
+  /// Of a matrix in blocks, which is referred to, and its blocks on the diagonal, d² numbers per node; `solved` per
+  /// dof: rows and columns of the others are left out. Of several ranks each has a part of the matrix, and the whole of
+  /// the vectors and of the diagonal at its nodes.
+  SingleGradients(const NodeMatrix& matrix, const Vector& diagonal_blocks, const std::vector<char>& solved,
+                  const Ranks& ranks = one_rank());
 
   /// Adds to x an approximation of A⁻¹ r, after iterations that take √(rᵀD⁻¹r) down to this part of it, as they see it
   /// themselves.

@@ -62,7 +62,7 @@ void normalize(const SparseMatrix& mass, MassFrames& frames, MassBody& body) {
 MassFrames mass_frames(const SparseMatrix& mass, const Points& nodes) {
   MassFrames frames;
   frames.monomials.setZero(nodes.rows() + 1, nodes.cols());
-  for (std::vector<Index>& members : graph_components(mass, 1)) {
+  for (std::vector<Index>& members : graph_components(MatrixGraph(mass, 1))) {
     // Tied nodes: those that they follow have their mass.
     const bool has_mass = members.size() > 1 || mass.col(members.front()).nonZeros() > 0;
     if (!has_mass) continue;

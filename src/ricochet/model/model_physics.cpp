@@ -195,13 +195,14 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
     return with_cells(from, weight, [&] { return construction->build(mass_input); });
   };
   if (!choice.mass) choice.mass = build(consistent);
-  const SparseMatrix mass = with_free_bodies(model, expand_to_components(*choice.mass, d));
   if (!choice.reason.empty()) {
     log::info(fmt::format("the mass \"{}\" of {} contact nodes is built as \"{}\": {}", input.mass.type,
                           mass_input.contact_nodes.size(), choice.name, choice.reason));
   }
   if (construction->removes_contact_inertia())
     warn_of_heaped_inertia(input, choice.name, *choice.mass, consistent.diagonal());
+  finish_problem(model.problem, with_free_bodies(model, expand_to_components(*choice.mass, d)),
+                 construction->removes_contact_inertia());
   choice.mass.reset();
   if (with_forces) {
     assemble_forces(input, model);
@@ -216,7 +217,6 @@ void assemble_operators(const Case& input, Model& model, bool with_forces) {
         resized(expand_to_components(build(scalar_mass(mass_damping), mass_damping), d), model.space.dof_count()),
         model.space.nodes);
   add_ground(input, model);
-  finish_problem(model.problem, mass, construction->removes_contact_inertia());
   const std::unique_ptr<Scheme> scheme = make_scheme(input.time);
   if (!model.problem.internal_force->is_linear() && !scheme->takes_nonlinear_force()) {
     refuse(input, "time.scheme",

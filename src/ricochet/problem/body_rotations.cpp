@@ -31,7 +31,7 @@ Tensor orthogonal_factor(Tensor matrix) {
 BodyRotations::BodyRotations(const SemidiscreteProblem& problem)
     : problem_(problem), body_of_node_(static_cast<std::size_t>(problem.nodes.cols()), -1) {
   const int d = problem.dimension;
-  for (const std::vector<Index>& members : graph_components(problem.internal_force->tangent(), d)) {
+  for (const std::vector<Index>& members : graph_components(problem.internal_force->graph(d))) {
     if (members.size() == 1 && problem.is_tied_dof(members.front() * d)) continue;
     if (problem.is_of_free_body(members.front())) continue;
     Body body;

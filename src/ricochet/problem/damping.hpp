@@ -24,6 +24,10 @@ class Damping {
   [[nodiscard]] bool is_absent() const { return !mass_part_ && !stiffness_part_ && ground_.size() == 0; }
   [[nodiscard]] const NodeMatrix* mass_part() const { return mass_part_ ? &*mass_part_ : nullptr; }
   [[nodiscard]] bool has_stiffness_part() const { return stiffness_part_.has_value(); }
+  [[nodiscard]] const NodeMatrix* stiffness_part() const {
+    return stiffness_part_ ? stiffness_part_->constant_tangent() : nullptr;
+  }
+  [[nodiscard]] const Vector& ground_part() const { return ground_; }  ///< empty: none
   /// `force` = C `velocity`; two vectors. Needs a part.
   void evaluate(const Vector& velocity, Vector& force) const;
   /// C, dofs × dofs, made anew by every call. Needs a part.

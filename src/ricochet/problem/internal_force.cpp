@@ -14,7 +14,7 @@ void require_linear(const InternalForce& internal_force, const std::string& who)
 namespace {
 
 [[noreturn]] void throw_linear() {
-  throw std::logic_error("what is asked for is of internal forces at finite strain");
+  throw std::logic_error("what is asked for is of internal forces of another kind");
 }
 
 }  // namespace
@@ -36,6 +36,20 @@ double InternalForce::energy(const Vector& displacement, const Vector&) const {
   return energy(displacement);
 }
 
+double InternalForce::energy_terms(const Vector&) const {
+  throw_linear();
+}
+
+Vector InternalForce::stiffness_diagonal() const {
+  const NodeMatrix* const kept = constant_tangent();
+  return kept != nullptr ? kept->diagonal() : Vector(tangent().diagonal());
+}
+
+MatrixGraph InternalForce::graph(int d) const {
+  const NodeMatrix* const kept = constant_tangent();
+  return kept != nullptr ? MatrixGraph(kept->pattern()) : MatrixGraph(tangent(), d);
+}
+
 LinearElasticity::LinearElasticity(const SparseMatrix& stiffness, const Points& nodes)
     : rigid_(nodes, stiffness), stiffness_(stiffness, static_cast<int>(nodes.rows())) {}
 
@@ -51,6 +65,11 @@ void LinearElasticity::strain_force(const Vector&, const Vector& increment, Vect
 double LinearElasticity::energy(const Vector& displacement) const {
   rigid_.remove(displacement, deformation_);
   return 0.5 * stiffness_.form(deformation_);
+}
+
+double LinearElasticity::energy_terms(const Vector& displacement) const {
+  rigid_.remove(displacement, deformation_);
+  return stiffness_.magnitude_form(deformation_);
 }
 
 double LinearElasticity::energy(const Vector& displacement, const Vector& force) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/base/types.hpp"
+#include "ricochet/linear_algebra/matrix_graph.hpp"
 #include "ricochet/linear_algebra/node_matrix.hpp"
 #include "ricochet/problem/rigid_motion.hpp"
 
@@ -46,6 +47,14 @@ class InternalForce {
   /// which takes the time of some tens of evaluations: ask once, and do not keep it longer than needed.
   [[nodiscard]] virtual SparseMatrix tangent(const Vector& displacement) const = 0;
   [[nodiscard]] SparseMatrix tangent() const { return tangent(Vector()); }
+  /// The tangent, where it is the same everywhere and kept; else null.
+  [[nodiscard]] virtual const NodeMatrix* constant_tangent() const { return nullptr; }
+  /// Of the undeformed body: the diagonal of K, and the nodes that its entries join, d dofs each.
+  [[nodiscard]] Vector stiffness_diagonal() const;
+  [[nodiscard]] MatrixGraph graph(int d) const;
+  /// Σ |u_i| |K_ij| |u_j| over the part of U that is no rigid motion: energies round as it does. Only where the force
+  /// is linear.
+  [[nodiscard]] virtual double energy_terms(const Vector& displacement) const;
 };
 
 /// Throws Error(invalid_input) that names who needs it, unless the force is linear.
@@ -63,6 +72,8 @@ class LinearElasticity final : public InternalForce {
   [[nodiscard]] bool is_linear() const override { return true; }
   using InternalForce::tangent;
   [[nodiscard]] SparseMatrix tangent(const Vector&) const override { return stiffness_.whole(); }
+  [[nodiscard]] const NodeMatrix* constant_tangent() const override { return &stiffness_; }
+  [[nodiscard]] double energy_terms(const Vector& displacement) const override;
 
  private:
   RigidMotion rigid_;

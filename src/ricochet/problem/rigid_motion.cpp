@@ -56,7 +56,7 @@ RigidMotion::RigidMotion(const Points& nodes, const SparseMatrix& stiffness)
 
 /// Fills bodies_, positions_ and body_of_node_.
 void RigidMotion::find_bodies(const Points& nodes, const SparseMatrix& stiffness) {
-  std::vector<std::vector<Index>> components = graph_components(stiffness, nodes.rows());
+  std::vector<std::vector<Index>> components = graph_components(MatrixGraph(stiffness, static_cast<int>(nodes.rows())));
   if (components.size() > 1) body_of_node_.resize(static_cast<std::size_t>(nodes.cols()));
   for (std::vector<Index>& members : components) {
     std::sort(members.begin(), members.end());

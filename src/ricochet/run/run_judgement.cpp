@@ -22,18 +22,17 @@ constexpr double strain_limit = 0.1;
 
 bool is_rounding_of_energy(double energy, const SemidiscreteProblem& problem, const State& state) {
   // Energies are those of displacements less their rigid part (LinearElasticity), and round as these do.
-  const SparseMatrix stiffness = problem.internal_force->tangent();
-  Vector deformation;
-  if (problem.internal_force->is_linear()) {
-    RigidMotion(problem.nodes, stiffness).remove(state.displacement, deformation);
+  const InternalForce& force = *problem.internal_force;
+  double terms = 0.0;
+  if (force.is_linear()) {
+    terms = force.energy_terms(state.displacement);
   } else {
     // Strains are differences of positions, which are rounded: so many strains of that size.
     constexpr double rounding = 1e-14;
-    deformation = rounding * problem.nodes.reshaped();
+    const Vector magnitude = rounding * problem.nodes.reshaped().cwiseAbs();
+    terms = magnitude.dot(force.tangent().cwiseAbs() * magnitude);
   }
-  const Vector magnitude = deformation.cwiseAbs();
-  const double terms = problem.ranks->sum(magnitude.dot(stiffness.cwiseAbs() * magnitude));
-  return energy <= 1e-14 * terms;
+  return energy <= 1e-14 * problem.ranks->sum(terms);
 }
 
 /// Energy that no real body loses, in an impact whose step is long for its waves.

@@ -26,7 +26,7 @@ constexpr double left_of_forces = 1e-10;
 
 /// Whether no body can move as a whole for all that its supports say.
 bool all_are_held_by_supports(const SemidiscreteProblem& problem) {
-  for (const std::vector<Index>& members : graph_components(problem.internal_force->tangent(), problem.dimension)) {
+  for (const std::vector<Index>& members : graph_components(problem.internal_force->graph(problem.dimension))) {
     if (members.size() == 1 && problem.is_tied_dof(members.front() * problem.dimension)) continue;
     if (!are_held_by_supports(problem, members)) return false;
   }
@@ -34,7 +34,7 @@ bool all_are_held_by_supports(const SemidiscreteProblem& problem) {
 }
 
 double proximal_coefficient(const SemidiscreteProblem& problem) {
-  const Vector stiffness = problem.internal_force->tangent().diagonal(), mass = problem.mass.diagonal();
+  const Vector stiffness = problem.internal_force->stiffness_diagonal(), mass = problem.mass.diagonal();
   double lowest = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < mass.size(); ++i) {
     if (mass[i] > 0.0 && stiffness[i] > 0.0) lowest = std::min(lowest, stiffness[i] / mass[i]);

@@ -290,7 +290,7 @@ std::optional<UnheldMotion> find_unheld_motion(const SemidiscreteProblem& proble
   Vector load;
   problem.loads.total(0.0, load);
   std::optional<UnheldMotion> worst;
-  for (const std::vector<Index>& members : graph_components(problem.internal_force->tangent(), problem.dimension)) {
+  for (const std::vector<Index>& members : graph_components(problem.internal_force->graph(problem.dimension))) {
     const std::optional<UnheldMotion> found = find_in_body(problem, members, load, frictionless);
     if (found && (!worst || found->unbalanced > worst->unbalanced)) worst = found;
   }

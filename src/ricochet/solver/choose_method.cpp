@@ -66,9 +66,9 @@ double product_in(const std::vector<Index>& body, int d, const Vector& x, const 
 /// The largest ratio uᵀDu/uᵀAu of the shears u of a body, over the bodies: D is A's diagonal, without what M has off
 /// its own.
 double softness(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                const SparseMatrix& stiffness) {
+                const NodeMatrix& stiffness) {
   const int d = problem.dimension;
-  const std::vector<std::vector<Index>> bodies = graph_components(stiffness, d);
+  const std::vector<std::vector<Index>> bodies = graph_components(MatrixGraph(stiffness.pattern()));
   const Vector inertia = row_sums(problem.mass);
   const Vector diagonal = coefficients.mass * inertia + coefficients.stiffness * stiffness.diagonal();
   double result = 0.0;
@@ -109,17 +109,19 @@ void compare(const SparseCholesky::Prediction& predicted, double solves, const I
 IterationEstimate estimate_iterations(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                                       double tolerance) {
   const int d = problem.dimension;
-  const SparseMatrix stiffness = problem.internal_force->tangent();
+  const NodeMatrix* const kept = problem.internal_force->constant_tangent();
+  const NodeMatrix tangent = kept != nullptr ? NodeMatrix() : NodeMatrix(problem.internal_force->tangent(), d);
+  const NodeMatrix& stiffness = kept != nullptr ? *kept : tangent;
   // Of A beside its diagonal blocks: as of the matrix of a simplex, at most the number of its nodes.
   const double largest_eigenvalue = d + 1.0;
   const double condition = std::max(1.0, largest_eigenvalue * softness(problem, coefficients, stiffness));
   const auto nodes = static_cast<double>(problem.nodes.cols());
-  const double blocks = 0.5 * (static_cast<double>(stiffness.nonZeros()) / (d * d) + nodes);
+  const auto blocks = static_cast<double>(stiffness.pattern().column.size());
   IterationEstimate result;
   result.iterations = 0.5 * std::sqrt(condition) * std::log(2.0 / tolerance);
   const double product = blocks * (8.0 * d * d + 4.0);
   // Of a mass that couples many more nodes than K (stage_product.hpp) iterations are in double precision.
-  if (static_cast<double>(problem.mass.pattern().column.size()) > most_growth_by_mass * blocks) {
+  if (keeps_mass_apart(problem, stiffness)) {
     result.bytes = product + static_cast<double>(problem.mass.bytes()) + 8.0 * nodes * d * (d + vectors_per_iteration);
   } else {
     result.bytes = blocks * (4.0 * d * d + 4.0) + 4.0 * nodes * d * single_vectors_per_iteration +

@@ -1,10 +1,11 @@
-#include <numeric>
+#include <algorithm>
 
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/factored_stage.hpp"
 #include "ricochet/solver/gathered_zones.hpp"
 #include "ricochet/solver/stage_operator.hpp"
 #include "ricochet/solver/stage_solver.hpp"
+#include "ricochet/solver/stage_terms.hpp"
 
 namespace ricochet {
 
@@ -52,22 +53,38 @@ class GatheredStage final : public StageSolver {
   StageSolution near_solution_;
 };
 
+/// A's rows of supported dofs, without making the whole of A.
+SparseRowMatrix supported_part(const SemidiscreteProblem& problem, const StageTerms& terms) {
+  const int d = problem.dimension;
+  std::vector<Index> nodes;
+  for (const Index dof : problem.supports.dofs()) nodes.push_back(dof / d);
+  if (nodes.empty()) return {0, problem.dof_count()};
+  for (const NodeMatrix::Term& term : terms.all()) {
+    const std::vector<Index> more = layers_around(MatrixGraph(term.matrix->pattern()), nodes, 1).nodes;
+    nodes.insert(nodes.end(), more.begin(), more.end());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  const std::vector<int> supports =
+      number_dofs(problem, {problem.supports.dofs().begin(), problem.supports.dofs().end()});
+  std::vector<int> row, column;
+  for (const Index node : nodes) {
+    for (Index dof = node * d; dof < (node + 1) * d; ++dof) {
+      row.push_back(supports[static_cast<std::size_t>(dof)]);
+      column.push_back(static_cast<int>(dof));
+    }
+  }
+  return extract(terms.principal(nodes), row, problem.supports.size(), column, problem.dof_count());
+}
+
 GatheredStage::GatheredStage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                              const StepSolverOptions& options, GatheredContact& contact)
     : problem_(problem), contact_(contact) {
   const int d = problem.dimension;
   const std::vector<Index>& nodes = contact.nodes().nodes();
-  SparseMatrix on_contact;
-  {
-    const SparseMatrix matrix = combine_operator(problem, coefficients);
-    supported_ = supported_rows(problem, matrix);
-    std::vector<int> number(static_cast<std::size_t>(problem.dof_count()), -1);
-    int count = 0;
-    for (const Index node : nodes) {
-      for (Index dof = node * d; dof < (node + 1) * d; ++dof) number[static_cast<std::size_t>(dof)] = count++;
-    }
-    extract(matrix, number, count, number, count).swap(on_contact);
-  }
+  const StageTerms terms(problem, coefficients, Vector());
+  supported_ = supported_part(problem, terms);
+  const SparseMatrix on_contact = terms.principal(nodes);
   const SparseMatrix gathered = gather_matrix(*problem.ranks, on_contact, nodes, d, contact.nodes());
   near_ = contact.make_problem(contact.nodes());
   problem.ranks->together([&] {

@@ -110,13 +110,15 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
 /// Zones are made for the new operator when they are needed next.
 void IterativeStage::refactorize(const Vector& displacement) {
   displacement_ = displacement;
-  const SparseMatrix matrix = combine_operator(problem_, coefficients_, displacement);
   single_.reset();
-  product_ = StageProduct(problem_, coefficients_, matrix, displacement);
-  preconditioner_ = make_block_jacobi(matrix, problem_.dimension, solved_, *problem_.ranks);
-  const NodeMatrix* const blocks = product_.matrix();
-  if (!problem_.ranks->any(blocks == nullptr || blocks->is_scalar()))
-    single_ = std::make_unique<SingleGradients>(*blocks, solved_, *problem_.ranks);
+  product_ = StageProduct();  // before there is another
+  product_ = StageProduct(problem_, coefficients_, displacement);
+  Vector blocks = product_.diagonal_blocks();
+  problem_.ranks->accumulate(blocks);
+  preconditioner_ = make_block_jacobi(blocks, problem_.dimension, solved_);
+  const NodeMatrix* const matrix = product_.matrix();
+  if (!problem_.ranks->any(matrix == nullptr || matrix->is_scalar()))
+    single_ = std::make_unique<SingleGradients>(*matrix, blocks, solved_, *problem_.ranks);
   zones_->clear();
   near_.clear();
 }

@@ -40,7 +40,7 @@ double cells_crossed(const SemidiscreteProblem& problem, const OperatorCoefficie
 }
 
 const MatrixGraph& PointsNearby::graph() {
-  if (graph_.size() == 0) graph_ = MatrixGraph(problem_.internal_force->tangent(), problem_.dimension);
+  if (graph_.size() == 0) graph_ = problem_.internal_force->graph(problem_.dimension);
   return graph_;
 }
 

@@ -10,13 +10,17 @@ namespace ricochet {
 /// Where A has more entries than so many times those of K, its mass is kept apart.
 inline constexpr double most_growth_by_mass = 1.3;
 
+/// Whether it has, over all ranks, which ask together.
+[[nodiscard]] bool keeps_mass_apart(const SemidiscreteProblem& problem, const NodeMatrix& stiffness);
+
 /// A = αM + κK + ηC on all dofs. A mass that couples more nodes than the stiffness (an equivalent mass) is not added up
 /// with it: one number per pair of nodes is read for it then, and not d².
 class StageProduct {
  public:
   StageProduct() = default;
-  /// Keeps a reference to the problem. `matrix`: A at this displacement.
-  StageProduct(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, const SparseMatrix& matrix,
+  /// Of the problem, which is referred to, at this displacement; empty: of the undeformed body. Some coefficient is
+  /// not zero. Beside A nothing of its size is made where the tangent is constant.
+  StageProduct(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                const Vector& displacement = {});
 
   /// A given matrix, symmetric to the bit, with d dofs per node.
@@ -27,6 +31,8 @@ class StageProduct {
   /// The rows and columns of these nodes, ascending, of A.
   [[nodiscard]] SparseMatrix principal(const std::vector<Index>& nodes) const;
   [[nodiscard]] Vector diagonal() const;
+  /// Of A, d² numbers per node. Ranks have a part each.
+  [[nodiscard]] Vector diagonal_blocks() const;
   /// A, where it is stored as one matrix; else null.
   [[nodiscard]] const NodeMatrix* matrix() const { return mass_ == nullptr ? &matrix_ : nullptr; }
 

@@ -16,7 +16,7 @@ TEST(GraphComponents, AreTheRingsThatWerePutIn) {
   std::vector<Index> number(static_cast<std::size_t>(nodes));
   std::iota(number.begin(), number.end(), Index{0});
   std::shuffle(number.begin(), number.end(), random);
-  for (const Index node_size : {Index{1}, Index{2}, Index{3}}) {
+  for (const int node_size : {1, 2, 3}) {
     std::vector<std::vector<Index>> wanted;
     std::vector<Eigen::Triplet<double>> entries;
     Index begin = 0;
@@ -39,7 +39,7 @@ TEST(GraphComponents, AreTheRingsThatWerePutIn) {
     std::sort(wanted.begin(), wanted.end());
     SparseMatrix matrix(nodes * node_size, nodes * node_size);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    std::vector<std::vector<Index>> found = graph_components(matrix, node_size);
+    std::vector<std::vector<Index>> found = graph_components(MatrixGraph(matrix, node_size));
     for (std::vector<Index>& component : found) {
       EXPECT_EQ(component.front(), *std::min_element(component.begin(), component.end()));
       std::sort(component.begin(), component.end());
@@ -49,7 +49,7 @@ TEST(GraphComponents, AreTheRingsThatWerePutIn) {
 }
 
 TEST(GraphComponents, NodesWithoutEntriesAreAlone) {
-  EXPECT_EQ(graph_components(SparseMatrix(4, 4), 2), (std::vector<std::vector<Index>>{{0}, {1}}));
+  EXPECT_EQ(graph_components(MatrixGraph(SparseMatrix(4, 4), 2)), (std::vector<std::vector<Index>>{{0}, {1}}));
 }
 
 }  // namespace

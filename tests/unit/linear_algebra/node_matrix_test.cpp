@@ -72,6 +72,42 @@ TEST(NodeMatrix, MultipliesAsTheWholeMatrixDoes) {
   }
 }
 
+/// Of patterns of which none is in another, blocks and single numbers: to the bit what sparse sums are.
+TEST(NodeMatrix, AddsUp) {
+  for (const int d : {2, 3}) {
+    const auto test = body_of(d);
+    SparseMatrix stiffness = stiffness_of(*test), mass = mass_of(*test);
+    const auto is_cut = [d](Index dof) { return dof / d % 7 == 3; };
+    mass.prune(
+        [&](Index row, Index column, double) { return row / d == column / d || !is_cut((row / d + column / d) * d); });
+    SparseMatrix wide = SparseMatrix(mass * mass);  // second neighbours
+    wide = SparseMatrix(0.5 * (wide + SparseMatrix(wide.transpose())));
+    stiffness.prune([&](Index row, Index column, double) {
+      return row / d == column / d || !is_cut((row / d) * (column / d) * d);
+    });
+    const NodeMatrix first(mass, d), second(stiffness, d), third(wide, d);
+    const NodeMatrix sum({{0.3, &first}, {-1.7, &second}, {2.5, &third}});
+    SparseMatrix expected = 0.3 * mass;
+    expected = add_sparse(expected, SparseMatrix(-1.7 * stiffness));
+    expected = add_sparse(expected, SparseMatrix(2.5 * wide));
+    const Vector x = Vector::Random(expected.cols());
+    expect_product(sum, expected, x);
+    const SparseMatrix difference = SparseMatrix(sum.whole() - expected);
+    EXPECT_EQ(difference.norm(), 0.0);
+    EXPECT_EQ(sum.pattern().column, NodeMatrix(expected, d).pattern().column);
+    EXPECT_EQ(sum.diagonal(), Vector(expected.diagonal()));
+    const Vector blocks = sum.diagonal_blocks();
+    for (Index dof = 0; dof < expected.cols(); ++dof) {
+      for (int k = 0; k < d; ++k) {
+        EXPECT_EQ(blocks[dof * d + k], expected.coeff(dof / d * d + k, dof));
+      }
+    }
+    // Of single numbers alone it has single numbers.
+    EXPECT_TRUE(NodeMatrix({{0.3, &first}, {2.0, &first}}).is_scalar());
+    EXPECT_EQ(NodeMatrix({{1.0, &first}, {2.0, &first}}).diagonal(), 3.0 * first.diagonal());
+  }
+}
+
 TEST(NodeMatrix, GivesTheRowsAndColumnsOfNodes) {
   for (const int d : {2, 3}) {
     const auto test = body_of(d);

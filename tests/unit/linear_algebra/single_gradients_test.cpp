@@ -53,8 +53,8 @@ TEST(SingleGradients, ReachDoublePrecisionInRounds) {
   for (const Problem& problem : problems()) {
     const NodeMatrix matrix(problem.matrix, problem.d);
     ASSERT_FALSE(matrix.is_scalar());
-    SingleGradients single(matrix, problem.solved);
-    const auto blocks = make_block_jacobi(problem.matrix, problem.d, problem.solved);
+    SingleGradients single(matrix, matrix.diagonal_blocks(), problem.solved);
+    const auto blocks = make_block_jacobi(matrix.diagonal_blocks(), problem.d, problem.solved);
     ConjugateGradients gradients;
     Vector x = Vector::Zero(problem.force.size()), residual = problem.force;
     const double begin = gradients.norm(*blocks, residual);
@@ -79,8 +79,8 @@ TEST(SingleGradients, ReachDoublePrecisionInRounds) {
 TEST(SingleGradients, TakeTheIterationsOfDiagonalBlocks) {
   for (const Problem& problem : problems()) {
     const NodeMatrix matrix(problem.matrix, problem.d);
-    SingleGradients single(matrix, problem.solved);
-    const auto blocks = make_block_jacobi(problem.matrix, problem.d, problem.solved);
+    SingleGradients single(matrix, matrix.diagonal_blocks(), problem.solved);
+    const auto blocks = make_block_jacobi(matrix.diagonal_blocks(), problem.d, problem.solved);
     ConjugateGradients gradients;
     Vector x = Vector::Zero(problem.force.size()), residual = problem.force;
     const int found = single.solve(residual, 1e-5, 5000, x).iterations;
@@ -95,7 +95,7 @@ TEST(SingleGradients, TakeTheIterationsOfDiagonalBlocks) {
 TEST(SingleGradients, AreTheSameBitsForAnyNumberOfThreads) {
   const Problem problem = problems().back();
   const NodeMatrix matrix(problem.matrix, problem.d);
-  SingleGradients single(matrix, problem.solved);
+  SingleGradients single(matrix, matrix.diagonal_blocks(), problem.solved);
   Vector one = Vector::Zero(problem.force.size()), three = one;
   single.solve(problem.force, 1e-5, 5000, one);
   set_thread_count(3);
@@ -109,11 +109,12 @@ TEST(SingleGradients, DoNotKnowUnits) {
   const Problem problem = problems().front();
   const NodeMatrix matrix(problem.matrix, problem.d);
   Vector usual = Vector::Zero(problem.force.size());
-  SingleGradients(matrix, problem.solved).solve(problem.force, 1e-5, 5000, usual);
+  SingleGradients(matrix, matrix.diagonal_blocks(), problem.solved).solve(problem.force, 1e-5, 5000, usual);
   for (const double unit : {1e-60, 1e60}) {
     const NodeMatrix other(SparseMatrix(unit * problem.matrix), problem.d);
     Vector x = Vector::Zero(problem.force.size());
-    const auto result = SingleGradients(other, problem.solved).solve(Vector(1e-100 * problem.force), 1e-5, 5000, x);
+    const auto result = SingleGradients(other, other.diagonal_blocks(), problem.solved)
+                            .solve(Vector(1e-100 * problem.force), 1e-5, 5000, x);
     EXPECT_TRUE(result.converged);
     EXPECT_LT((x * (1e100 * unit) - usual).norm(), 1e-4 * usual.norm());
   }
@@ -123,14 +124,16 @@ TEST(SingleGradients, SayWhereAMatrixIsNotPositiveDefinite) {
   const Problem problem = problems().front();
   const NodeMatrix matrix(SparseMatrix(-problem.matrix), problem.d);
   Vector x = Vector::Zero(problem.force.size());
-  EXPECT_FALSE(SingleGradients(matrix, problem.solved).solve(problem.force, 1e-5, 5000, x).converged);
+  EXPECT_FALSE(
+      SingleGradients(matrix, matrix.diagonal_blocks(), problem.solved).solve(problem.force, 1e-5, 5000, x).converged);
 }
 
 TEST(SingleGradients, LeaveXAloneWithoutAResidual) {
   const Problem problem = problems().front();
   const NodeMatrix matrix(problem.matrix, problem.d);
   Vector x = Vector::Ones(problem.force.size());
-  const auto result = SingleGradients(matrix, problem.solved).solve(Vector::Zero(x.size()), 1e-5, 5000, x);
+  const auto result =
+      SingleGradients(matrix, matrix.diagonal_blocks(), problem.solved).solve(Vector::Zero(x.size()), 1e-5, 5000, x);
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(x, Vector(Vector::Ones(x.size())));
 }

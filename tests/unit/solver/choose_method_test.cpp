@@ -93,10 +93,9 @@ TEST(ChooseMethod, DoesWhatItIsTold) {
 
 /// Of conjugate gradients for a force that is there everywhere.
 int iterations_of(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients, double tolerance) {
-  const SparseMatrix matrix = combine_operator(problem, coefficients);
-  const StageProduct product(problem, coefficients, matrix);
+  const StageProduct product(problem, coefficients);
   const std::vector<char> solved(static_cast<std::size_t>(problem.dof_count()), 1);
-  const auto preconditioner = make_block_jacobi(matrix, problem.dimension, solved);
+  const auto preconditioner = make_block_jacobi(product.diagonal_blocks(), problem.dimension, solved);
   Vector residual = Vector::NullaryExpr(problem.dof_count(),
                                         [](Index i) { return std::sin(0.9 * static_cast<double>(i * i % 1013)); });
   Vector x = Vector::Zero(problem.dof_count());
