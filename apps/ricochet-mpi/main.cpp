@@ -79,12 +79,10 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
   if (!ranks.is_first()) log::set_level(log::Level::off);
   set_thread_count(arguments.threads);
   reserve_blas_memory(arguments.threads);
-  if (ranks.are_several()) {
-    arguments.run.ranks = &ranks;
-    arguments.run.builder = [&world](const Case& input, BuildTimes* times) {
-      return build_divided_model(input, world, {}, times);
-    };
-  }
+  if (ranks.are_several()) arguments.run.ranks = &ranks;
+  arguments.run.builder = [&world](const Case& input, BuildTimes* times) {
+    return build_divided_model(input, world, {}, times);
+  };
   return program::run(arguments.run);
 }
 

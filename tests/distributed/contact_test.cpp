@@ -19,6 +19,7 @@ struct ContactCase {
   const char* obstacle;  ///< of type, place and motion
   const char* rest;      ///< [mass], [time] and what else there is
   double allowed;        ///< relative to the largest value of a column
+  const char* preconditioner = "auto";
 };
 
 constexpr const char* floor_2d = "type = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.05, 1.0]\n";
@@ -66,7 +67,7 @@ TEST_P(Contact, IsThatOfOneRank) {
     if (rank == world.rank()) path = test_support::write_temporary("case.toml", toml_of(test, mesh_of(test.dimension)));
     wait();
   }
-  Session whole(path), own(path);
+  Session whole(path), own(path, {std::string("solver.preconditioner=") + test.preconditioner});
   own.set_model_builder([&, method = method](const Case& input, BuildTimes*) {
     return build_divided_model(input, world, {.method = method, .seed = 5});
   });
@@ -117,15 +118,18 @@ const char* const midpoint = "[mass]\ntype = \"consistent\"\n[time]\nscheme = \"
 
 INSTANTIATE_TEST_SUITE_P(
     All, Contact,
-    testing::Combine(testing::Values(ContactCase{"newmark", 2, "", floor_2d, newmark, 1e-9},
-                                     ContactCase{"kane", 2, "friction = 0.3\n", floor_2d, kane, 1e-9},
-                                     ContactCase{"kane3d", 3, "friction = 0.3\n", floor_3d, kane, 1e-9},
-                                     ContactCase{"dual3d", 3, "friction = 0.3\nmultipliers = \"dual\"\n", floor_3d,
-                                                 newmark, 1e-9},
-                                     ContactCase{"p1", 2, "multipliers = \"p1\"\n", floor_2d, kane, 1e-9},
-                                     ContactCase{"midpoint", 2, "friction = 0.2\n", floor_2d, midpoint, 1e-9},
-                                     ContactCase{"cylinder", 2, "friction = 0.2\n", ball_2d, kane, 1e-8}),
-                     testing::Values(PartitionMethod::graph, PartitionMethod::random)),
+    testing::Combine(
+        testing::Values(ContactCase{"newmark", 2, "", floor_2d, newmark, 1e-9},
+                        ContactCase{"kane", 2, "friction = 0.3\n", floor_2d, kane, 1e-9},
+                        ContactCase{"kane3d", 3, "friction = 0.3\n", floor_3d, kane, 1e-9},
+                        ContactCase{"dual3d", 3, "friction = 0.3\nmultipliers = \"dual\"\n", floor_3d, newmark, 1e-9},
+                        ContactCase{"p1", 2, "multipliers = \"p1\"\n", floor_2d, kane, 1e-9},
+                        ContactCase{"midpoint", 2, "friction = 0.2\n", floor_2d, midpoint, 1e-9},
+                        ContactCase{"gamg", 3, "friction = 0.3\n", floor_3d, kane, 1e-9, "gamg"},
+                        ContactCase{"boomeramg", 2, "friction = 0.3\n", floor_2d, newmark, 1e-9, "boomeramg"},
+                        ContactCase{"mumps", 3, "", floor_3d, newmark, 1e-9, "mumps"},
+                        ContactCase{"cylinder", 2, "friction = 0.2\n", ball_2d, kane, 1e-8}),
+        testing::Values(PartitionMethod::graph, PartitionMethod::random)),
     [](const auto& info) {
       return std::get<0>(info.param).name +
              std::string(std::get<1>(info.param) == PartitionMethod::random ? "random" : "graph");

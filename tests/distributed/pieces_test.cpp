@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "distributed/cut_body.hpp"
+#include "ricochet/distributed/petsc_preconditioner.hpp"
 #include "ricochet/linear_algebra/block_jacobi.hpp"
 #include "ricochet/linear_algebra/single_gradients.hpp"
 
@@ -77,6 +78,51 @@ TEST_P(Pieces, HaveMatricesThatAddUp) {
   EXPECT_NEAR(ranks_.sum(own.form(part_of(x))), x.dot(expected), 1e-12 * whole.norm() * x.squaredNorm());
   EXPECT_NEAR(dot_product(part_of(x), part_of(expected), ranks_, d_), x.dot(expected),
               1e-12 * x.norm() * expected.norm());
+}
+
+/// A factor by MUMPS is exact; multigrid is symmetric and positive, and takes few iterations.
+TEST_P(Pieces, HavePreconditionersOfTheWhole) {
+  const SparseMatrix whole = operator_of(whole_->body), part = operator_of(own_);
+  std::vector<char> solved;
+  for (const std::int64_t node : piece_.node_number) {
+    for (int k = 0; k < d_; ++k) solved.push_back((node * d_ + k) % 11 == 3 ? 0 : 1);
+  }
+  const auto mask = [&](Vector& values) {
+    for (Index dof = 0; dof < values.size(); ++dof) values[dof] *= solved[static_cast<std::size_t>(dof)];
+  };
+  const NodeMatrix matrix(part, d_);
+  const auto product = [&](const Vector& x, Vector& y) {
+    matrix.multiply(x, y);
+    ranks_.accumulate(y);
+    mask(y);
+  };
+  Vector x = part_of(some(whole.cols())), other = part_of(Vector(some(whole.cols()).reverse())), image, z, of_other;
+  mask(x);
+  mask(other);
+  product(x, image);
+  const auto maker = make_petsc_preconditioners();
+  for (const char* const kind : {"gamg", "boomeramg", "mumps"}) {
+    const auto preconditioner = maker->make(kind, part, solved, piece_.space.nodes, ranks_);
+    preconditioner->apply(image, z);
+    if (kind == std::string("mumps")) {
+      EXPECT_LT((z - x).lpNorm<Eigen::Infinity>(), 1e-10 * x.lpNorm<Eigen::Infinity>());
+    }
+    // Ranks that share a node have the same bits.
+    Vector owners = z;
+    exchange_.spread(owners);
+    EXPECT_EQ(owners, z);
+    preconditioner->apply(other, of_other);
+    const double one = dot_product(other, z, ranks_, d_), two = dot_product(of_other, image, ranks_, d_);
+    EXPECT_NEAR(one, two, 1e-10 * std::abs(one)) << kind;
+    EXPECT_GT(dot_product(image, z, ranks_, d_), 0.0);
+    ConjugateGradients gradients(d_, ranks_);
+    Vector residual = image, found = Vector::Zero(x.size());
+    const double target = 1e-10 * gradients.norm(*preconditioner, residual);
+    const auto result = gradients.solve(product, *preconditioner, target, 1000, residual, found);
+    EXPECT_TRUE(result.converged);
+    EXPECT_LT(result.iterations, 30) << kind;
+    EXPECT_LT((found - x).lpNorm<Eigen::Infinity>(), 1e-8 * x.lpNorm<Eigen::Infinity>()) << kind << result.iterations;
+  }
 }
 
 /// Conjugate gradients in both precisions take the iterations that one rank takes, and find what it finds.

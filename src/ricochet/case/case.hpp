@@ -189,6 +189,7 @@ struct SolverSection {
   std::string method = "auto";
   double tolerance = 1e-10;
   std::optional<double> memory;  ///< GB
+  std::string preconditioner = "auto";
   std::string contact_points = "near";
 };
 

@@ -97,6 +97,16 @@ Section solver_section() {
            .unit = "GB",
            .range = positive,
            .doc = "Memory that factors may take when \"auto\" chooses. Default: half of the machine's memory."},
+          {.name = "preconditioner",
+           .type = KeyType::choice,
+           .standard = "auto",
+           .choices = {"auto", "block-jacobi", "gamg", "boomeramg", "mumps"},
+           .doc =
+               "Of the iterative method. \"block-jacobi\": the diagonal blocks of the nodes. The others are those of "
+               "`ricochet-mpi`: \"gamg\" and \"boomeramg\", algebraic multigrid of PETSc and hypre, and "
+               "\"mumps\", a factor of the whole body by all processes. \"auto\": diagonal blocks, and with "
+               "`ricochet-mpi` \"gamg\" where a wave crosses many cells in a step and there are steps enough to pay "
+               "for it."},
           {.name = "contact_points",
            .type = KeyType::choice,
            .standard = "near",

@@ -359,7 +359,7 @@ void read_sections(const TomlNode& root, Case& result, Problems& problems) {
   check_distinct(sections.all("probe"), "probe", "name");
   const SectionReader solver = sections.one("solver");
   result.solver = {solver.text("method"), solver.number("tolerance"), solver.optional_number("memory"),
-                   solver.text("contact_points")};
+                   solver.text("preconditioner"), solver.text("contact_points")};
   const SectionReader output = sections.one("output");
   result.output = {.fields_every = output.optional_integer("fields_every"),
                    .fields_interval = output.optional_number("fields_interval"),

@@ -12,6 +12,7 @@
 #include "ricochet/base/timer.hpp"
 #include "ricochet/distributed/cut_problem.hpp"
 #include "ricochet/distributed/mpi_ranks.hpp"
+#include "ricochet/distributed/petsc_preconditioner.hpp"
 #include "ricochet/distributed/refusals.hpp"
 #include "ricochet/fem/assembly.hpp"
 #include "ricochet/model/model_parts.hpp"
@@ -127,6 +128,11 @@ std::unique_ptr<Model> cut_model(Model& whole, const Communicator& ranks, const 
 
 std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator& ranks, const DivisionOptions& options,
                                            BuildTimes* times) {
+  if (ranks.size() == 1) {
+    std::unique_ptr<Model> model = build_model(input, times);
+    model->preconditioners = make_petsc_preconditioners();
+    return model;
+  }
   refuse_undividable_case(input);
   std::unique_ptr<Model> whole = build_model_without_forces(input, times);
   refuse_undividable_model(input, *whole);
@@ -141,6 +147,7 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
   add_loads(input, *model);
   add_sensors(input, *model);
   model->rotation = std::make_unique<RotationGauge>(model->body);
+  model->preconditioners = make_petsc_preconditioners();
   if (times != nullptr) times->model += timer.seconds();
   return model;
 }

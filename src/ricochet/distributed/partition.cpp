@@ -11,6 +11,7 @@
 #include <span>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/distributed/petsc_session.hpp"
 
 namespace ricochet {
 
@@ -53,27 +54,6 @@ Adjacency adjacency_of(const Mesh& mesh) {
   }
   return result;
 }
-
-/// PETSc, where nobody has begun it. MPI is there.
-class PetscSession {
- public:
-  PetscSession() {
-    PetscBool is_begun = PETSC_FALSE;
-    PetscInitialized(&is_begun);
-    if (is_begun) return;
-    // Signals are the program's.
-    PetscOptionsSetValue(nullptr, "-no_signal_handler", "");
-    began_ = PetscInitializeNoArguments() == 0;
-  }
-  ~PetscSession() {
-    if (began_) PetscFinalize();
-  }
-  PetscSession(const PetscSession&) = delete;
-  PetscSession& operator=(const PetscSession&) = delete;
-
- private:
-  bool began_ = false;
-};
 
 std::vector<int> divide_nodes(const Mesh& mesh, int parts) {
   const PetscSession petsc;

@@ -263,6 +263,7 @@ StepSolverOptions step_solver_options(const Case& input) {
   if (input.solver.method == "iterative") options.method = SolverMethod::iterative;
   options.tolerance = input.solver.tolerance;
   options.memory = 1e9 * input.solver.memory.value_or(0.0);
+  options.preconditioner = input.solver.preconditioner;
   options.all_points = input.solver.contact_points == "all";
   options.solves = step_count(input.time);
   return options;

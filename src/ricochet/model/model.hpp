@@ -50,7 +50,8 @@ struct Model {
   /// Those with a file of their own, by the steps between its rows.
   std::map<long, std::vector<std::shared_ptr<Sensor>>> sampled_sensors;
   std::unique_ptr<RotationGauge> rotation;
-  std::shared_ptr<const void> kept;  ///< what its ranks are, where the body is divided
+  std::shared_ptr<const PreconditionerMaker> preconditioners;  ///< of other libraries; null: none
+  std::shared_ptr<const void> kept;                            ///< what its ranks are, where the body is divided
   /// Of a divided body: where its nodes and cells are in what is written, and on the first rank the whole.
   struct Written {
     std::vector<Index> node_rows, cell_rows;

@@ -18,6 +18,19 @@ void refuse_use(const std::string& why) {
   throw Error(ErrorKind::usage, "session: " + why);
 }
 
+/// With the preconditioners that the model has.
+StepSolverOptions solver_options(const Case& input, const Model& model) {
+  StepSolverOptions options = step_solver_options(input);
+  options.preconditioners = model.preconditioners;
+  const std::string& name = options.preconditioner;
+  if (model.preconditioners != nullptr || name == "auto" || name == "block-jacobi") return options;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{}: \"{}\" is one of `ricochet-mpi`, which runs with one process, too "
+                          "(docs/distributed.md); here there is \"block-jacobi\", and a factor with solver.method = "
+                          "\"direct\"",
+                          input.where("solver.preconditioner").text(), name));
+}
+
 }  // namespace
 
 Session::Session(const std::string& path, const std::vector<std::string>& changes) : changes_(changes) {
@@ -50,7 +63,7 @@ void Session::start() {
   if (simulation_ != nullptr) return;
   const log::CollectWarnings collect(warnings_);
   Model& built = model();
-  simulation_ = std::make_unique<Simulation>(built.problem, scheme(), built.initial, step_solver_options(input_),
+  simulation_ = std::make_unique<Simulation>(built.problem, scheme(), built.initial, solver_options(input_, built),
                                              step_control_options(input_.time));
 }
 
@@ -68,7 +81,7 @@ void Session::resume(const Snapshot& snapshot) {
     for (const std::string& name : snapshot.texts(steered_name))
       steered_path(name).load(snapshot, "session.motion." + name);
   }
-  simulation_ = std::make_unique<Simulation>(model().problem, scheme(), snapshot, step_solver_options(input_),
+  simulation_ = std::make_unique<Simulation>(model().problem, scheme(), snapshot, solver_options(input_, model()),
                                              step_control_options(input_.time));
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/log.hpp"
 #include "ricochet/linear_algebra/block_jacobi.hpp"
 #include "ricochet/linear_algebra/single_gradients.hpp"
 #include "ricochet/solver/contact_zones.hpp"
@@ -25,6 +27,11 @@ constexpr double single_reduction = 1e-5;
 /// Iterations in single precision have gone astray where they leave so many times what they say.
 constexpr double astray = 10.0;
 
+/// Where a stage takes so many iterations with diagonal blocks, multigrid takes two thirds of the time
+/// (docs/distributed.md).
+constexpr int iterations_for_multigrid = 600;
+constexpr const char *block_jacobi = "block-jacobi", *multigrid = "gamg";
+
 /// The stages of one operator without a factor of it: conjugate gradients on the whole body and the contact zones in
 /// turn. The zones come last: contact and friction hold to rounding, and what is left over is a force of at most
 /// `tolerance` times the forces of the step, in the energy norm as the preconditioner sees it.
@@ -45,6 +52,8 @@ class IterativeStage final : public StageSolver {
   [[nodiscard]] std::size_t factor_entries() const override { return zones_->factor_entries(); }
 
  private:
+  void make_preconditioner();
+  bool turn_to_multigrid();
   void begin(const Stage& stage, StageSolution& solution);
   [[nodiscard]] bool are_outside(const std::vector<Index>& points) const;
   void make_zones(const Stage& stage, const std::vector<Index>& points);
@@ -64,6 +73,8 @@ class IterativeStage final : public StageSolver {
   std::vector<int> unsolved_;  ///< dofs
   StageProduct product_;       ///< with A
   std::unique_ptr<Preconditioner> preconditioner_;
+  std::string kind_ = block_jacobi;  ///< of the preconditioner
+  int iterations_ = 0;               ///< of conjugate gradients in this stage
   ConjugateGradients gradients_;
   std::unique_ptr<SingleGradients> single_;  ///< null where A is not stored in blocks
   bool single_is_trusted_ = true;            ///< in this stage
@@ -102,6 +113,7 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
   for (std::size_t dof = 0; dof < count; ++dof) {
     if (solved_[dof] == 0) unsolved_.push_back(static_cast<int>(dof));
   }
+  if (options.preconditioner != "auto") kind_ = options.preconditioner;
   refactorize(Vector());
   increment_.setZero(problem.dof_count());
   previous_ = increment_;
@@ -111,16 +123,39 @@ IterativeStage::IterativeStage(const SemidiscreteProblem& problem, const Operato
 void IterativeStage::refactorize(const Vector& displacement) {
   displacement_ = displacement;
   single_.reset();
+  preconditioner_.reset();
   product_ = StageProduct();  // before there is another
   product_ = StageProduct(problem_, coefficients_, displacement);
+  make_preconditioner();
+  zones_->clear();
+  near_.clear();
+}
+
+void IterativeStage::make_preconditioner() {
+  single_.reset();
+  preconditioner_.reset();
+  if (kind_ != block_jacobi) {
+    std::vector<Index> all(static_cast<std::size_t>(problem_.nodes.cols()));
+    std::iota(all.begin(), all.end(), Index{0});
+    preconditioner_ =
+        options_.preconditioners->make(kind_, product_.principal(all), solved_, problem_.nodes, *problem_.ranks);
+    return;
+  }
   Vector blocks = product_.diagonal_blocks();
   problem_.ranks->accumulate(blocks);
   preconditioner_ = make_block_jacobi(blocks, problem_.dimension, solved_);
   const NodeMatrix* const matrix = product_.matrix();
   if (!problem_.ranks->any(matrix == nullptr || matrix->is_scalar()))
     single_ = std::make_unique<SingleGradients>(*matrix, blocks, solved_, *problem_.ranks);
-  zones_->clear();
-  near_.clear();
+}
+
+/// Diagonal blocks need too many iterations: all ranks see the same number.
+bool IterativeStage::turn_to_multigrid() {
+  if (options_.preconditioner != "auto" || !options_.preconditioners || kind_ == multigrid) return false;
+  log::info("the step is long for the mesh: iterations are preconditioned by multigrid (gamg) from now on");
+  kind_ = multigrid;
+  make_preconditioner();
+  return true;
 }
 
 void IterativeStage::mask(Vector& values) const {
@@ -160,6 +195,7 @@ void IterativeStage::save(Snapshot& snapshot, const std::string& name) const {
   snapshot.save(name + ".increment", increment_);
   snapshot.save(name + ".previous", previous_);
   snapshot.save(name + ".has_previous", has_previous_);
+  snapshot.save(name + ".preconditioner", kind_);
   near_.save_history(snapshot, name + ".near");
   snapshot.save(name + ".has_zone", zones_->are_made());
   if (!zones_->are_made()) return;
@@ -171,6 +207,7 @@ void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
   increment_ = snapshot.reals(name + ".increment", problem_.dof_count());
   previous_ = snapshot.reals(name + ".previous", problem_.dof_count());
   has_previous_ = snapshot.flag(name + ".has_previous");
+  if (snapshot.text(name + ".preconditioner") == multigrid) turn_to_multigrid();
   if (snapshot.flag(name + ".has_zone")) {
     const std::vector<Index>& points = snapshot.integers(name + ".near.points", 0, problem_.contact.size() - 1);
     near_.clear();
@@ -251,11 +288,13 @@ void IterativeStage::solve_linear(double norm, double target) {
     const auto result = single_->solve(residual_, std::max(target / norm, single_reduction), iteration_limit, guess_);
     promised_ = result.residual;
     single_is_trusted_ = result.converged;
+    iterations_ += result.iterations;
     return;
   }
   promised_ = 0.0;
   const auto result = gradients_.solve(product, *preconditioner_, target, iteration_limit, residual_, guess_);
-  if (result.converged) return;
+  iterations_ += result.iterations;
+  if (result.converged || turn_to_multigrid()) return;
   throw Error(ErrorKind::not_converged,
               fmt::format("conjugate gradients stopped after {} iterations at {:.2g} of the residual asked for; "
                           "set solver.method = \"direct\" if memory allows",
@@ -274,6 +313,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   begin(stage, solution);
   single_is_trusted_ = true;
   promised_ = 0.0;
+  iterations_ = 0;
   reactions_.setZero(problem_.dof_count());
   double target = 0.0;
   bool must_touch = false;  // points have penetrated where none was thought to touch
@@ -314,6 +354,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
 }
 
 void IterativeStage::end(const Stage& stage, StageSolution& solution) {
+  if (iterations_ > iterations_for_multigrid) turn_to_multigrid();
   near_.learn(stage, motion_, static_cast<std::size_t>((solution.normal_reaction.array() > 0.0).count()));
   previous_ = increment_;
   increment_ = guess_;

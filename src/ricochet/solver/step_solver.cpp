@@ -176,7 +176,8 @@ class StagesStepSolver final : public StepSolver {
     FactoredStage* const layer =
         coefficients.layer >= 0 ? stages_.at(static_cast<std::size_t>(coefficients.layer))->factored() : nullptr;
     stages_.push_back(make_iterative_stage(problem, coefficients, options, layer, gathered_.get()));
-    methods_.push_back({.method = SolverMethod::iterative, .reason = "the body is divided among processes"});
+    const std::string kind = options.preconditioner == "auto" ? "" : ", preconditioned by " + options.preconditioner;
+    methods_.push_back({.method = SolverMethod::iterative, .reason = "the body is divided among processes" + kind});
   }
   void add_stage(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
                  const StepSolverOptions& options) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/base/snapshot.hpp"
+#include "ricochet/linear_algebra/preconditioner_maker.hpp"
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/contact/contact_solver.hpp"
@@ -29,6 +30,10 @@ struct StepSolverOptions {
   /// Solves that are expected of each operator: what a factorization is worth. 0: nobody knows, and it counts as a
   /// thousand.
   long solves = 0;
+  /// What iterations are preconditioned by: "block-jacobi", or a name that `preconditioners` knows; "auto": one of
+  /// both, by what is expected to take less time.
+  std::string preconditioner = "auto";
+  std::shared_ptr<const PreconditionerMaker> preconditioners = {};  ///< null: there are no others
   /// What was chosen before for these operators, one by one: a run that goes on keeps it. Empty: chosen anew.
   std::vector<SolverMethod> chosen = {};
 };

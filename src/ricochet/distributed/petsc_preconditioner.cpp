@@ -1,0 +1,214 @@
+#include "ricochet/distributed/petsc_preconditioner.hpp"
+
+#include <fmt/format.h>
+#include <petscpc.h>
+
+#include <array>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/distributed/petsc_session.hpp"
+
+namespace ricochet {
+
+namespace {
+
+/// Numbers of PETSc: a rank's own nodes follow one another, rank after rank.
+struct Numbering {
+  std::vector<Index> own;         ///< nodes for which this rank speaks
+  std::vector<PetscInt> of_node;  ///< per node of this rank
+};
+
+Numbering number_nodes(Index count, int d, const Ranks& ranks) {
+  Numbering result;
+  for (Index node = 0; node < count; ++node) {
+    if (ranks.is_owned(node)) result.own.push_back(node);
+  }
+  const auto own = static_cast<double>(result.own.size());
+  const Ranks::ForEach<double> counts = ranks.of_all({own});
+  double next = 0.0;
+  for (int rank = 0; rank < ranks.rank(); ++rank) next += counts[static_cast<std::size_t>(rank)].front();
+  // Who speaks for a node tells the others.
+  Vector numbers = Vector::Zero(count * d);
+  for (const Index node : result.own) numbers[node * d] = next++;
+  ranks.accumulate(numbers);
+  for (Index node = 0; node < count; ++node) result.of_node.push_back(static_cast<PetscInt>(numbers[node * d]));
+  return result;
+}
+
+/// Entries of this rank's part, for MatSetPreallocationCOO: rows and columns of dofs that are solved for, and 1 on the
+/// diagonals of the others.
+struct Entries {
+  std::vector<PetscInt> row, column;
+  std::vector<PetscScalar> value;
+  void add(PetscInt i, PetscInt j, double v) {
+    row.push_back(i);
+    column.push_back(j);
+    value.push_back(v);
+  }
+};
+
+class PetscPreconditioner final : public Preconditioner {
+ public:
+  PetscPreconditioner(const std::string& kind, const SparseMatrix& part, const std::vector<char>& solved,
+                      const Points& nodes, const Ranks& ranks)
+      : ranks_(ranks), d_(static_cast<int>(nodes.rows())), numbering_(number_nodes(nodes.cols(), d_, ranks)) {
+    for (Index dof = 0; dof < part.cols(); ++dof) {
+      if (solved[static_cast<std::size_t>(dof)] == 0) unsolved_.push_back(dof);
+    }
+    check(set_up(kind, entries_of(part, solved), nodes), kind);
+  }
+  ~PetscPreconditioner() override {
+    PCDestroy(&preconditioner_);
+    MatDestroy(&matrix_);
+    VecDestroy(&given_);
+    VecDestroy(&found_);
+  }
+  PetscPreconditioner(const PetscPreconditioner&) = delete;
+  PetscPreconditioner& operator=(const PetscPreconditioner&) = delete;
+
+  void apply(const Vector& r, Vector& z) const override {
+    z.setZero(r.size());
+    check(apply_to_own(r, z), "preconditioner");
+    ranks_.accumulate(z);
+    // Coarse motions reach dofs that are not solved for, too. What is left without these is as symmetric.
+    for (const Index dof : unsolved_) z[dof] = r[dof];
+  }
+
+ private:
+  static void check(PetscErrorCode code, const std::string& what) {
+    if (code != 0) throw Error(ErrorKind::invalid_input, fmt::format("PETSc, {}: {}", what, petsc_message(code)));
+  }
+
+  [[nodiscard]] PetscInt number_of(Index dof) const {
+    return numbering_.of_node[static_cast<std::size_t>(dof / d_)] * d_ + static_cast<PetscInt>(dof % d_);
+  }
+
+  [[nodiscard]] Entries entries_of(const SparseMatrix& part, const std::vector<char>& solved) const {
+    Entries entries;
+    for (Index column = 0; column < part.cols(); ++column) {
+      if (solved[static_cast<std::size_t>(column)] == 0) {
+        if (ranks_.is_owned(column / d_)) entries.add(number_of(column), number_of(column), 1.0);
+        continue;
+      }
+      for (SparseMatrix::InnerIterator entry(part, column); entry; ++entry) {
+        if (solved[static_cast<std::size_t>(entry.row())] != 0)
+          entries.add(number_of(entry.row()), number_of(column), entry.value());
+      }
+    }
+    return entries;
+  }
+
+  PetscErrorCode set_up(const std::string& kind, Entries entries, const Points& nodes) {
+    PetscFunctionBeginUser;
+    const auto own = static_cast<PetscInt>(numbering_.own.size()) * d_;
+    PetscCall(MatCreate(PETSC_COMM_WORLD, &matrix_));
+    PetscCall(MatSetSizes(matrix_, own, own, PETSC_DETERMINE, PETSC_DETERMINE));
+    PetscCall(MatSetType(matrix_, MATAIJ));
+    PetscCall(MatSetBlockSize(matrix_, d_));
+    PetscCall(MatSetPreallocationCOO(matrix_, static_cast<PetscCount>(entries.value.size()), entries.row.data(),
+                                     entries.column.data()));
+    PetscCall(MatSetValuesCOO(matrix_, entries.value.data(), INSERT_VALUES));
+    entries = {};
+    PetscCall(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+    PetscCall(MatCreateVecs(matrix_, &given_, &found_));
+    PetscCall(set_rigid_motions(nodes));
+    PetscCall(PCCreate(PETSC_COMM_WORLD, &preconditioner_));
+    PetscCall(PCSetOptionsPrefix(preconditioner_, "ricochet_"));
+    PetscCall(PCSetOperators(preconditioner_, matrix_, matrix_));
+    if (kind == "mumps") {
+      PetscCall(PCSetType(preconditioner_, PCCHOLESKY));
+      PetscCall(PCFactorSetMatSolverType(preconditioner_, MATSOLVERMUMPS));
+    } else if (kind == "boomeramg") {
+      PetscCall(PCSetType(preconditioner_, PCHYPRE));
+      PetscCall(PCHYPRESetType(preconditioner_, "boomeramg"));
+      PetscCall(set_lean_coarsening());
+    } else {
+      PetscCall(PCSetType(preconditioner_, PCGAMG));
+    }
+    PetscCall(PCSetFromOptions(preconditioner_));
+    PetscCall(PCSetUp(preconditioner_));
+    PCFailedReason failed = PC_NOERROR;
+    PetscCall(PCGetFailedReason(preconditioner_, &failed));
+    PetscFunctionReturn(failed == PC_NOERROR ? 0 : PETSC_ERR_MAT_CH_ZRPVT);
+  }
+
+  /// Its defaults for three dimensions take four times as long on elastic bodies. What the user says goes before.
+  static PetscErrorCode set_lean_coarsening() {
+    PetscFunctionBeginUser;
+    constexpr std::array<std::pair<const char*, const char*>, 4> options{
+        {{"strong_threshold", "0.5"}, {"coarsen_type", "HMIS"}, {"interp_type", "ext+i"}, {"P_max", "4"}}};
+    for (const auto& [name, value] : options) {
+      const std::string option = std::string("-ricochet_pc_hypre_boomeramg_") + name;
+      PetscBool is_set = PETSC_FALSE;
+      PetscCall(PetscOptionsHasName(nullptr, nullptr, option.c_str(), &is_set));
+      if (is_set == PETSC_FALSE) PetscCall(PetscOptionsSetValue(nullptr, option.c_str(), value));
+    }
+    PetscFunctionReturn(0);
+  }
+
+  PetscErrorCode set_rigid_motions(const Points& nodes) {
+    PetscFunctionBeginUser;
+    Vec places = nullptr;
+    PetscCall(VecDuplicate(given_, &places));
+    PetscCall(VecSetBlockSize(places, d_));
+    PetscScalar* values = nullptr;
+    PetscCall(VecGetArray(places, &values));
+    for (const Index node : numbering_.own) {
+      for (int k = 0; k < d_; ++k) *values++ = nodes(k, node);
+    }
+    PetscCall(VecRestoreArray(places, &values));
+    MatNullSpace motions = nullptr;
+    PetscCall(MatNullSpaceCreateRigidBody(places, &motions));
+    PetscCall(MatSetNearNullSpace(matrix_, motions));
+    PetscCall(MatNullSpaceDestroy(&motions));
+    PetscCall(VecDestroy(&places));
+    PetscFunctionReturn(0);
+  }
+
+  PetscErrorCode apply_to_own(const Vector& r, Vector& z) const {
+    PetscFunctionBeginUser;
+    PetscScalar* values = nullptr;
+    PetscCall(VecGetArrayWrite(given_, &values));
+    for (const Index node : numbering_.own) {
+      for (Index dof = node * d_; dof < (node + 1) * d_; ++dof) *values++ = r[dof];
+    }
+    PetscCall(VecRestoreArrayWrite(given_, &values));
+    PetscCall(PCApply(preconditioner_, given_, found_));
+    const PetscScalar* found = nullptr;
+    PetscCall(VecGetArrayRead(found_, &found));
+    for (const Index node : numbering_.own) {
+      for (Index dof = node * d_; dof < (node + 1) * d_; ++dof) z[dof] = *found++;
+    }
+    PetscCall(VecRestoreArrayRead(found_, &found));
+    PetscFunctionReturn(0);
+  }
+
+  PetscSession petsc_;
+  const Ranks& ranks_;
+  int d_;
+  Numbering numbering_;
+  std::vector<Index> unsolved_;  ///< dofs
+  Mat matrix_ = nullptr;
+  PC preconditioner_ = nullptr;
+  Vec given_ = nullptr, found_ = nullptr;  ///< of own dofs
+};
+
+class PetscPreconditioners final : public PreconditionerMaker {
+ public:
+  [[nodiscard]] std::unique_ptr<Preconditioner> make(const std::string& kind, const SparseMatrix& part,
+                                                     const std::vector<char>& solved, const Points& nodes,
+                                                     const Ranks& ranks) const override {
+    return std::make_unique<PetscPreconditioner>(kind, part, solved, nodes, ranks);
+  }
+
+ private:
+  PetscSession petsc_;
+};
+
+}  // namespace
+
+std::shared_ptr<const PreconditionerMaker> make_petsc_preconditioners() {
+  return std::make_shared<const PetscPreconditioners>();
+}
+
+}  // namespace ricochet

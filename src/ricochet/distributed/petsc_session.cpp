@@ -1,0 +1,25 @@
+#include "ricochet/distributed/petsc_session.hpp"
+
+namespace ricochet {
+
+PetscSession::PetscSession() {
+  PetscBool is_begun = PETSC_FALSE;
+  PetscInitialized(&is_begun);
+  if (is_begun != PETSC_FALSE) return;
+  // Signals are the program's, and so are messages.
+  PetscOptionsSetValue(nullptr, "-no_signal_handler", "");
+  began_ = PetscInitializeNoArguments() == 0;
+  if (began_) PetscPushErrorHandler(PetscIgnoreErrorHandler, nullptr);
+}
+
+PetscSession::~PetscSession() {
+  if (began_) PetscFinalize();
+}
+
+std::string petsc_message(PetscErrorCode code) {
+  const char* text = nullptr;
+  PetscErrorMessage(code, &text, nullptr);
+  return text != nullptr ? text : "an error without a name";
+}
+
+}  // namespace ricochet
