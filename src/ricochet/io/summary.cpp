@@ -50,6 +50,13 @@ Json processes_to_json(const RunSummary& summary) {
           {"reductions_per_step", p.reductions_per_step}};
 }
 
+/// null where steps are solved directly.
+Json iterations_to_json(const RunSummary& summary) {
+  if (!summary.iterations) return {};
+  return {{"rounds_per_step", summary.iterations->rounds_per_step},
+          {"gradients_per_step", summary.iterations->gradients_per_step}};
+}
+
 Json probes_to_json(const RunSummary& summary) {
   Json result = Json::array();
   for (std::size_t i = 0; i < summary.probes.size(); ++i) {
@@ -221,6 +228,7 @@ std::string to_json(const RunSummary& s) {
                {"solver", s.solver},
                {"solver_reason", s.solver_reason},
                {"processes", processes_to_json(s)},
+               {"iterations", iterations_to_json(s)},
                {"factor_entries", s.factor_entries},
                {"time_step", s.step},
                {"adaptive_steps", adaptive_steps_to_json(s)},
@@ -315,6 +323,8 @@ RunSummary summary_from_json(const std::string& text, const std::string& path) {
                                   processes.at("most_dofs"),      processes.at("messages_per_step"),
                                   processes.at("bytes_per_step"), processes.at("reductions_per_step")};
     }
+    if (const Json iterations = json.value("iterations", Json()); iterations.is_object())
+      s.iterations = IterationReport{iterations.at("rounds_per_step"), iterations.at("gradients_per_step")};
     s.step = json.at("time_step");
     s.end_time = json.at("end_time");
     const Json& critical = json.at("critical_time_step");

@@ -83,7 +83,6 @@ struct RotationReport {
   }
 };
 
-/// The largest von Mises stress of a run, and where it was.
 /// Of several processes, and of what they send in a step the most that one of them does.
 struct ProcessReport {
   int count = 0;
@@ -91,6 +90,13 @@ struct ProcessReport {
   double messages_per_step = 0.0, bytes_per_step = 0.0, reductions_per_step = 0.0;
 };
 
+/// Of the iterative method, in a step.
+struct IterationReport {
+  double rounds_per_step = 0.0;     ///< of contact zones and conjugate gradients in turn
+  double gradients_per_step = 0.0;  ///< iterations of conjugate gradients
+};
+
+/// The largest von Mises stress of a run, and where it was.
 struct PeakStressDescription {
   PeakStressResult peak;
   std::vector<double> place;  ///< centre of the cell, reference configuration
@@ -138,7 +144,8 @@ struct RunSummary {
   std::size_t factor_entries = 0;
   std::string solver = "direct";                ///< or "iterative"
   std::string solver_reason;                    ///< why that one
-  std::optional<ProcessReport> processes = {};  ///< none where there is one
+  std::optional<ProcessReport> processes = {};     ///< none where there is one
+  std::optional<IterationReport> iterations = {};  ///< none where steps are solved directly
   double step = 0.0, end_time = 0.0;            ///< of adaptive steps the longest possible
   double critical_step =
       std::numeric_limits<double>::infinity();  ///< above it the scheme is unstable; none if infinite

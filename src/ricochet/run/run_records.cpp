@@ -130,6 +130,11 @@ void Run::describe_progress(RunSummary& summary) {
   recording_->describe(summary);
   summary.steered = session_.is_steered();
   summary.factor_entries = session_.simulation().factor_entries();
+  const IterationCounts counts = session_.simulation().iteration_counts();
+  const auto new_steps = static_cast<double>(std::max(1L, session_.simulation().state().step - first_step_));
+  if (counts.rounds > 0)
+    summary.iterations = IterationReport{static_cast<double>(counts.rounds) / new_steps,
+                                         static_cast<double>(counts.gradients) / new_steps};
   summary.critical_step = session_.scheme().critical_step();
   summary.steps = session_.simulation().state().step;
   if (const StepControl* const control = session_.simulation().control()) {

@@ -125,6 +125,12 @@ std::size_t Simulation::factor_entries() const {
   return sum;
 }
 
+IterationCounts Simulation::iteration_counts() const {
+  IterationCounts sum;
+  for (const auto& [number, level] : levels_) sum += level.solver->iteration_counts();
+  return sum;
+}
+
 double Simulation::contact_seconds() const {
   double sum = 0.0;
   for (const auto& [number, level] : levels_) sum += level.solver->contact_seconds();

@@ -52,6 +52,7 @@ class Simulation : private StageSolve {
   /// Of all operators that were factorized.
   [[nodiscard]] std::size_t factor_entries() const;
   [[nodiscard]] double contact_seconds() const;
+  [[nodiscard]] IterationCounts iteration_counts() const;
   [[nodiscard]] const std::vector<ChosenMethod>& methods() const { return current_->solver->methods(); }
 
  private:

@@ -49,6 +49,7 @@ class IterativeStage final : public StageSolver {
   void save(Snapshot& snapshot, const std::string& name) const override;
   void load(const Snapshot& snapshot, const std::string& name) override;
   [[nodiscard]] double contact_seconds() const override { return zones_->contact_seconds(); }
+  [[nodiscard]] IterationCounts iteration_counts() const override { return counts_; }
   [[nodiscard]] std::size_t factor_entries() const override { return zones_->factor_entries(); }
 
  private:
@@ -74,7 +75,8 @@ class IterativeStage final : public StageSolver {
   StageProduct product_;       ///< with A
   std::unique_ptr<Preconditioner> preconditioner_;
   std::string kind_ = block_jacobi;  ///< of the preconditioner
-  int iterations_ = 0;               ///< of conjugate gradients in this stage
+  IterationCounts counts_;
+  long gradients_before_ = 0;  ///< this stage
   ConjugateGradients gradients_;
   std::unique_ptr<SingleGradients> single_;  ///< null where A is not stored in blocks
   bool single_is_trusted_ = true;            ///< in this stage
@@ -288,12 +290,12 @@ void IterativeStage::solve_linear(double norm, double target) {
     const auto result = single_->solve(residual_, std::max(target / norm, single_reduction), iteration_limit, guess_);
     promised_ = result.residual;
     single_is_trusted_ = result.converged;
-    iterations_ += result.iterations;
+    counts_.gradients += result.iterations;
     return;
   }
   promised_ = 0.0;
   const auto result = gradients_.solve(product, *preconditioner_, target, iteration_limit, residual_, guess_);
-  iterations_ += result.iterations;
+  counts_.gradients += result.iterations;
   if (result.converged || turn_to_multigrid()) return;
   throw Error(ErrorKind::not_converged,
               fmt::format("conjugate gradients stopped after {} iterations at {:.2g} of the residual asked for; "
@@ -313,11 +315,12 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   begin(stage, solution);
   single_is_trusted_ = true;
   promised_ = 0.0;
-  iterations_ = 0;
+  gradients_before_ = counts_.gradients;
   reactions_.setZero(problem_.dof_count());
   double target = 0.0;
   bool must_touch = false;  // points have penetrated where none was thought to touch
   for (int round = 0; round < round_limit; ++round) {
+    ++counts_.rounds;
     find_residual(stage);
     watch_single_precision();
     const bool touches = zones_->are_made() && (must_touch || presses_at_start_ || may_touch_);
@@ -354,7 +357,7 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
 }
 
 void IterativeStage::end(const Stage& stage, StageSolution& solution) {
-  if (iterations_ > iterations_for_multigrid) turn_to_multigrid();
+  if (counts_.gradients - gradients_before_ > iterations_for_multigrid) turn_to_multigrid();
   near_.learn(stage, motion_, static_cast<std::size_t>((solution.normal_reaction.array() > 0.0).count()));
   previous_ = increment_;
   increment_ = guess_;

@@ -31,6 +31,7 @@ class StageSolver {
   virtual void load(const Snapshot& snapshot, const std::string& name) = 0;
   [[nodiscard]] virtual double contact_seconds() const = 0;
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
+  [[nodiscard]] virtual IterationCounts iteration_counts() const { return {}; }
   /// The factor of the whole operator, where there is one: what a later stage's layer is solved with.
   [[nodiscard]] virtual FactoredStage* factored() { return nullptr; }
 };

@@ -101,6 +101,11 @@ class StagesStepSolver final : public StepSolver {
     for (const auto& stage : stages_) sum += stage->contact_seconds();
     return sum;
   }
+  [[nodiscard]] IterationCounts iteration_counts() const override {
+    IterationCounts sum;
+    for (const auto& stage : stages_) sum += stage->iteration_counts();
+    return sum;
+  }
   [[nodiscard]] std::size_t factor_entries() const override {
     std::size_t sum = 0;
     for (const auto& stage : stages_) sum += stage->factor_entries();

@@ -49,6 +49,17 @@ struct ChosenMethod {
   double factorization_seconds = 0.0;
 };
 
+/// What the iterative method has done so far.
+struct IterationCounts {
+  long rounds = 0;     ///< of zones and conjugate gradients in turn
+  long gradients = 0;  ///< iterations of conjugate gradients
+  IterationCounts& operator+=(const IterationCounts& other) {
+    rounds += other.rounds;
+    gradients += other.gradients;
+    return *this;
+  }
+};
+
 class StepSolver {
  public:
   virtual ~StepSolver() = default;
@@ -72,6 +83,8 @@ class StepSolver {
   [[nodiscard]] virtual double contact_seconds() const = 0;
   /// Entries of all factors, for the summary.
   [[nodiscard]] virtual std::size_t factor_entries() const = 0;
+  /// Of all stages; zero where all are solved directly.
+  [[nodiscard]] virtual IterationCounts iteration_counts() const = 0;
   /// What stages have left for later ones: guesses, warm starts, the points that may touch. A solver made for the same
   /// operators that has loaded it goes on with the same bits.
   virtual void save(Snapshot& snapshot, const std::string& name) const = 0;

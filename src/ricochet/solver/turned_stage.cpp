@@ -34,6 +34,7 @@ class TurnedStage final : public StageSolver {
   void observe_contact(const ContactObserver& observer) override { solver_->observe_contact(observer); }
   void save(Snapshot& snapshot, const std::string& name) const override { solver_->save(snapshot, name); }
   void load(const Snapshot& snapshot, const std::string& name) override { solver_->load(snapshot, name); }
+  [[nodiscard]] IterationCounts iteration_counts() const override { return solver_->iteration_counts(); }
   [[nodiscard]] double contact_seconds() const override { return solver_->contact_seconds(); }
   [[nodiscard]] std::size_t factor_entries() const override { return solver_->factor_entries(); }
   [[nodiscard]] FactoredStage* factored() override { return solver_->factored(); }

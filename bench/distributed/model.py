@@ -1,0 +1,61 @@
+"""What a step should cost on more cores than there are here: a model whose numbers are measured or guessed, and marked as such."""
+
+import math
+
+# Guessed: what is not here to be measured.
+LATENCY = 1e-6          # s per message
+NEIGHBOURS = 14         # of a part
+OFF_MACHINE = 0.25      # of what lies on a part's boundary
+LINK = 0.2e9            # bytes/s per core between machines
+CORES_PER_MACHINE, MACHINE_MEMORY = 64, 200e9  # bytes/s, which its cores share
+SUM = (5e-6, 2.5e-6)    # s of a sum over all: first, and for each doubling
+PRESSED = 0.03          # of one face
+
+
+def shared_nodes(dofs):
+    """On the boundary of a part of so many dofs in three dimensions (distributed.md, section 6 of the design: 3 n^(2/3) nodes)."""
+    return 3.0 * (dofs / 3.0) ** (2.0 / 3.0)
+
+
+class Step:
+    """`measured`: of one process: seconds per dof and iteration (of one core that has the memory for itself), bytes of it, iterations and rounds
+    of a step, and seconds of a zone of 256 points in a round."""
+
+    def __init__(self, measured):
+        self.measured = measured
+
+    def iteration(self, dofs, cores):
+        own, m = dofs / cores, self.measured
+        sharing = min(cores, CORES_PER_MACHINE)
+        rate = min(m["bytes"] / m["seconds"], MACHINE_MEMORY / sharing)
+        work = own * m["bytes"] / rate
+        bytes_of_boundary = shared_nodes(own) * 12.0
+        exchange = NEIGHBOURS * LATENCY + OFF_MACHINE * bytes_of_boundary / LINK
+        sums = 2.0 * (SUM[0] + SUM[1] * math.log2(max(cores, 2)))
+        return work + (exchange + sums if cores > 1 else 0.0)
+
+    def zones(self, dofs):
+        """One process solves them all, one after another."""
+        nodes_of_face = (dofs / 3.0) ** (2.0 / 3.0)
+        return max(1.0, PRESSED * nodes_of_face / 256.0) * self.measured["zone"]
+
+    def seconds(self, dofs, cores):
+        m = self.measured
+        return m["iterations"] * self.iteration(dofs, cores), m["rounds"] * self.zones(dofs)
+
+
+def table(steps, memory_per_dof):
+    """`steps`: name and Step. Seconds of gradients + of contact."""
+    cores = (10, 100, 1000, 10000)
+    lines = ["| dofs | memory | of a step where a wave crosses | " + " | ".join(f"{c:,} cores" for c in cores) + " |",
+             "|---|---|---|" + "---|" * len(cores)]
+    for dofs in (1e7, 1e8, 1e9):
+        for name, step in steps:
+            cells = []
+            for count in cores:
+                gradients, contact = step.seconds(dofs, count)
+                cells.append(f"{gradients:.2g} + {contact:.2g} s" if dofs / count > 1000 else "too small")
+            memory = dofs * memory_per_dof
+            text = f"{memory / 1e9:,.0f} GB" if memory < 1e12 else f"{memory / 1e12:.1f} TB"
+            lines.append(f"| 10^{round(math.log10(dofs))} | {text} | {name} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)

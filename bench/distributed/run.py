@@ -1,0 +1,179 @@
+#!/usr/bin/python3
+"""What several processes cost and gain: `./dev bench distributed`. Writes tables of docs/distributed.md.
+
+One core for each process of those that are timed; medians of --repeat runs, one after another of each kind. Counts on more processes than cores
+are of shared cores, and not timed. The peer is dolfinx (dolfinx_steps.py): the same mesh, rule, material, load and tolerance.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path += [str(HERE.parent), str(HERE.parent / "step")]
+
+import bodies
+import model
+import page
+
+ROOT = HERE.parent.parent
+BUILD = ROOT / "build"
+ENVIRONMENT = os.environ | {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1",
+                            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+CROSSING = 5.6e-3  # step in which a wave crosses a median cell of a ball, for cells of size 1
+STEPS = 30
+PEAK = "import resource, subprocess, sys; s = subprocess.run(sys.argv[1:]).returncode; " \
+       "print('peak', resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss); sys.exit(s)"
+
+
+class Bench:
+    def __init__(self, directory, repeat):
+        self.directory, self.repeat = directory, repeat
+        directory.mkdir(parents=True, exist_ok=True)
+
+    def case(self, size, cells, contact):
+        """A ball that lies nearly on the floor and slides over it, or flies and vibrates."""
+        step = CROSSING * size * cells
+        rule = "textbook-half" if contact else "trapezoidal"
+        time = f'scheme = "newmark"\npreset = "{rule}"\nstep = {step}\nend = {step * STEPS}\n'
+        path = bodies.case(self.directory, ("ball", 3, size), "equivalent" if contact else "consistent", 0.3 if contact else 0.0, "iterative",
+                           time, down=0.1 - 0.2 * step if contact else 0.0)
+        if not contact:
+            text = re.sub(r"\[obstacle.*?\[load\]", "[load]", path.read_text(), flags=re.S)
+            text = re.sub(r"displacement = .*\n", "", text)
+            text = re.sub(r"velocity = .*\n", 'velocity = ["sin(9*x)", "0", "cos(7*y)"]\n', text)
+            path = path.with_name(path.stem + "-free.toml")
+            path.write_text(text)
+        return path, step
+
+    def run(self, case, processes, *more):
+        """The summary of a run, with the peak memory of a process."""
+        out = self.directory / "out"
+        command = [sys.executable, "-c", PEAK, str(BUILD / "ricochet-mpi"), "run", str(case), "-o", str(out), "--force", "--quiet", *more]
+        done = subprocess.run(["mpirun", "-n", str(processes), *command], capture_output=True, text=True, env=ENVIRONMENT)
+        if done.returncode != 0:
+            sys.exit(done.stderr)
+        summary = json.loads((out / "summary.json").read_text())
+        summary["memory_mb"] = max(int(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("peak")) / 1024
+        summary["ms"] = 1e3 * summary["timings_seconds"]["steps"] / summary["steps"]
+        return summary
+
+    def timed(self, variants):
+        """The median run of each of some calls, which take turns."""
+        runs = [[] for _ in variants]
+        for _ in range(self.repeat):
+            for made, variant in zip(runs, variants):
+                made.append(variant())
+        return [sorted(made, key=lambda run: run["ms"])[len(made) // 2] for made in runs]
+
+
+def scaling(bench, sizes, small):
+    """Strong scaling of the larger of two bodies, and weak from the smaller one, of half as many dofs, to it."""
+    lines = ["| cells crossed | dofs | processes | ms per step | of one process | memory of a process | of one | rounds | iterations |",
+             "|---|---|---|---|---|---|---|---|---|"]
+    measured = {}
+    for cells in (1, 5):
+        whole, half = bench.case(sizes, cells, True)[0], bench.case(small, cells, True)[0]
+        calls = [lambda: bench.run(half, 1), lambda: bench.run(whole, 1), lambda: bench.run(whole, 2)]
+        of_half, one, two = bench.timed(calls)
+        for run, beside in ((of_half, None), (one, None), (two, one)):
+            count = run["iterations"]
+            ratio = f"{run['ms'] / beside['ms']:.2f}" if beside else ""
+            memory = f"{run['memory_mb'] / beside['memory_mb']:.2f}" if beside else ""
+            processes = 2 if run is two else 1
+            lines.append(f"| {cells} | {run['dofs']:,} | {processes} | {run['ms']:.0f} | {ratio} | {run['memory_mb']:.0f} MB | {memory} | "
+                         f"{count['rounds_per_step']:.1f} | {count['gradients_per_step']:.0f} |")
+        measured[cells] = {"half": of_half, "one": one, "two": two}
+    weak = ", ".join(f"{m['two']['ms'] / m['half']['ms']:.2f} for {cells}" for cells, m in measured.items())
+    lines.append(f"\nWeak scaling, two processes on the larger body over one on the smaller: {weak} cells crossed.")
+    return "\n".join(lines), measured
+
+
+def traffic(bench, size):
+    """What is sent on 2 to 8 processes, beside the formula of 3 n^(2/3) nodes on the boundary of a part."""
+    lines = ["| processes | dofs of each | rounds | iterations | messages in a step, at most | sums | MB in a step, at most | by the formula |",
+             "|---|---|---|---|---|---|---|---|"]
+    case = bench.case(size, 1, True)[0]
+    for processes in (1, 2, 4, 8):
+        run = bench.run(case, processes)
+        count, sent = run["iterations"], run["processes"]
+        if sent is None:
+            lines.append(f"| 1 | {run['dofs']:,} | {count['rounds_per_step']:.1f} | {count['gradients_per_step']:.0f} | | | | |")
+            continue
+        # An iteration exchanges single numbers at shared nodes, a round six times double ones.
+        nodes = model.shared_nodes(sent["most_dofs"])
+        expected = nodes * (12 * count["gradients_per_step"] + 6 * 24 * count["rounds_per_step"])
+        lines.append(f"| {processes} | {sent['most_dofs']:,} | {count['rounds_per_step']:.1f} | {count['gradients_per_step']:.0f} | "
+                     f"{sent['messages_per_step']:.0f} | {sent['reductions_per_step']:.0f} | {1e-6 * sent['bytes_per_step']:.1f} | "
+                     f"{1e-6 * expected:.1f} |")
+    return "\n".join(lines)
+
+
+def peers(bench, size):
+    """The step without contact."""
+    case, step = bench.case(size, 1, False)
+    mesh = bodies.mesh(bench.directory, "ball", 3, size)
+
+    def peer(processes, solver):
+        command = ["mpirun", "-n", str(processes), "/usr/bin/python3", str(HERE / "dolfinx_steps.py"), str(mesh), "--step", repr(step), "--steps",
+                   str(STEPS), "--solver", solver, "--tolerance", "1e-10"]
+        done = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT)
+        if done.returncode != 0:
+            sys.exit(done.stderr)
+        found = json.loads(done.stdout.splitlines()[-1])
+        return found | {"ms": found["ms_per_step"]}
+
+    lines = ["| | processes | ms per step | over ours | iterations | until the first step | memory of a process | energy at the end |",
+             "|---|---|---|---|---|---|---|---|"]
+    for processes in (1, 2):
+        ours, gamg, jacobi = bench.timed([lambda: bench.run(case, processes), lambda: peer(processes, "gamg"), lambda: peer(processes, "jacobi")])
+        setup = ours["timings_seconds"]["total"] - ours["timings_seconds"]["steps"]
+        energy = float((bench.directory / "out" / "history.csv").read_text().splitlines()[-1].split(",")[6])
+        lines.append(f"| Ricochet, diagonal blocks | {processes} | {ours['ms']:.0f} | | {ours['iterations']['gradients_per_step']:.0f} | "
+                     f"{setup:.1f} s | {ours['memory_mb']:.0f} MB | {energy:.12g} |")
+        for name, run in (("dolfinx, diagonal blocks", jacobi), ("dolfinx, GAMG", gamg)):
+            lines.append(f"| {name} | {processes} | {run['ms']:.0f} | {run['ms'] / ours['ms']:.1f} | {run['iterations']:.0f} | "
+                         f"{run['setup']:.1f} s | {run['memory_mb']:.0f} MB | {run['energy']:.12g} |")
+    return f"{ours['dofs']:,} dofs:\n\n" + "\n".join(lines)
+
+
+def beyond(measured):
+    """The model, from what one process was measured at."""
+    steps = []
+    for cells, runs in measured.items():
+        one, count = runs["one"], runs["one"]["iterations"]
+        seconds = 1e-3 * one["ms"]  # a zone has a few points here, and takes little of it
+        steps.append((f"{cells} cell" + ("s" if cells > 1 else ""), model.Step({
+            "seconds": seconds / count["gradients_per_step"] / one["dofs"], "bytes": 150.0,
+            "iterations": count["gradients_per_step"], "rounds": count["rounds_per_step"], "zone": 0.030 if cells == 1 else 0.048})))
+    per_dof = max(runs["two"]["memory_mb"] * 2**20 * 2 / runs["two"]["dofs"] for runs in measured.values())
+    return model.table(steps, per_dof)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--repeat", type=int, default=3, help="runs of each kind that is timed (default: 3)")
+    parser.add_argument("--directory", type=pathlib.Path, default=BUILD / "bench-distributed", help="of meshes and runs")
+    parser.add_argument("--quick", action="store_true", help="small bodies, and no table is written")
+    arguments = parser.parse_args()
+    bench = Bench(arguments.directory, arguments.repeat)
+    large, small = (0.0325, 0.041) if not arguments.quick else (0.09, 0.11)
+    parts = {}
+    parts["scaling"], measured = scaling(bench, large, small)
+    print(parts["scaling"], flush=True)
+    parts["traffic"] = traffic(bench, small)
+    print(parts["traffic"], flush=True)
+    parts["peers"] = peers(bench, small)
+    print(parts["peers"], flush=True)
+    parts["beyond"] = beyond(measured)
+    print(parts["beyond"], flush=True)
+    if not arguments.quick:
+        page.write_parts(ROOT / "docs" / "distributed.md", parts)
+
+
+main()
