@@ -27,7 +27,7 @@ CONFINED = {
     "CHOLMOD": (r"cholmod|suitesparse/", {"src/ricochet/linear_algebra": 1}),
     "spdlog": (r"spdlog/", {"src/ricochet/base": 1}),
     "MPI": (r"mpi\.h", {"src/ricochet/distributed": 1}),
-    "PETSc": (r"petsc", {"src/ricochet/distributed": 1}),
+    "PETSc": (r"petsc", {"src/ricochet/distributed": 3}),
     "muParser": (r"muParser", {"src/ricochet/base": 1}),
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import os
 import pathlib
 import signal
@@ -115,6 +116,23 @@ class Study(TestCase):
         self.assertIn(f'href="runs/{rows[0]["run"]}"', page)
         self.assertTrue((self.output / "runs.html").exists())
         self.assertIn("tip.displacement", self.expect_status(0, run("info", self.output)).stdout)
+
+    def test_orders_in_cells_that_are_halved(self):
+        """The energy of an interpolated displacement is of second order; mesh.refine counts halvings."""
+        exact = 1e-6 * math.pi**2 * 0.1 / 16
+        self.study("halved", "--vary", "mesh.refine=0,1,2", "--exact", f"history.elastic_energy[0]={exact!r}", "--order", "mesh.refine",
+                   "--reference", "finest", "--compare", "tip.displacement", case=ROD, values={**FREE, "time.scheme": "midpoint", "time.end": 0.02})
+        rows = table(self.output)
+        orders = [row["order:history.elastic_energy[0]"] for row in rows]
+        self.assertEqual(orders[0], "")
+        for order in orders[1:]:
+            self.assertAlmostEqual(float(order), 2.0, delta=0.05)
+        cells = [self.summary(row)["cells"] for row in rows]
+        self.assertEqual(cells[1:], [4 * cells[0], 16 * cells[0]])
+        # The finest is that of the most halvings.
+        self.assertEqual([row["error:tip.displacement"] == "" for row in rows], [False, False, True])
+        self.expect_status(0, run("plot", self.output, "--what", "order:history.elastic_energy[0]", "-o", self.folder / "order.svg"))
+        self.assertIn("2^-mesh.refine", (self.folder / "order.svg").read_text())
 
     def test_orders_that_mean_nothing_are_told(self):
         """Against a wrong value the error does not fall; against the finest run orders are too large."""

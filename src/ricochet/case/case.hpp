@@ -28,6 +28,7 @@ struct BodyFile {
   std::string file;  ///< as resolved: relative paths are relative to the case file's directory
   std::optional<double> size;
   double scale = 1.0;
+  int refinements = 0;
   Placement placement;  ///< turn and move
 };
 

@@ -45,6 +45,16 @@ std::vector<Key> file_keys() {
        .standard = "1",
        .range = positive,
        .doc = "Multiplies all coordinates of the mesh."},
+      {.name = "refine",
+       .type = KeyType::integer,
+       .unit = "1",
+       .standard = "0",
+       .range = {.at_least = 0, .at_most = 8},
+       .doc = "So many times every cell is cut in four, in three dimensions in eight, once the mesh is read. New nodes "
+              "lie "
+              "on the edges of straight cells, also where these stand for a curve, and on the geometry of a mesh of "
+              "second "
+              "order."},
       turn_key(),
       {.name = "move",
        .type = KeyType::vector,

@@ -29,6 +29,7 @@ void read_file(const SectionReader& reader, const std::string& case_path, BodyFi
     body.file = (std::filesystem::path(case_path).parent_path() / file).lexically_normal().string();
   body.size = reader.optional_number("size");
   body.scale = reader.optional_number("scale").value_or(1.0);
+  body.refinements = static_cast<int>(reader.optional_integer("refine").value_or(0));
   body.placement = read_placement(reader);
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),

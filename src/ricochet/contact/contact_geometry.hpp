@@ -8,7 +8,8 @@
 /// @file Where the contact conditions come from when they follow the motion.
 namespace ricochet {
 
-struct ContactCut;  // contact_cut.hpp
+struct ContactCut;         // contact_cut.hpp
+struct CurvedContactData;  // curved_contact.hpp
 
 /// Where a step began.
 struct StepStart {
@@ -57,6 +58,8 @@ class ContactGeometry {
   [[nodiscard]] virtual Vector row_values(const ContactRows&) const { return {}; }
   /// Makes them those that had these normals (d × points), gaps and values.
   virtual void restore(const Points& normals, const Vector& gap, const Vector& row_values, ContactRows& rows) const = 0;
+  /// What it is made of, where it is of curved obstacles alone; else null.
+  [[nodiscard]] virtual const CurvedContactData* curved() const { return nullptr; }
   /// The same of some points and nodes, in their numbers; null where that is not to be had.
   [[nodiscard]] virtual std::unique_ptr<ContactGeometry> cut(const ContactCut&) const { return nullptr; }
 };

@@ -139,6 +139,7 @@ class CurvedContact final : public ContactGeometry {
     });
   }
 
+  [[nodiscard]] const CurvedContactData* curved() const override { return &data_; }
   [[nodiscard]] std::unique_ptr<ContactGeometry> cut(const ContactCut& part) const override;
 
  private:

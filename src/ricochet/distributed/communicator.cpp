@@ -2,6 +2,7 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <limits>
@@ -71,6 +72,29 @@ void Communicator::swap(std::vector<Message>& messages) const {
               handle_->ranks, &requests[2 * i + 1]);
   }
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+void Communicator::send(int rank, std::span<const char> bytes) const {
+  constexpr std::size_t largest = std::size_t{1} << 30;  // MPI counts up to 2³¹
+  do {
+    const std::span<const char> piece = bytes.first(std::min(bytes.size(), largest));
+    bytes = bytes.subspan(piece.size());
+    MPI_Send(piece.data(), static_cast<int>(piece.size()), MPI_CHAR, rank, message_tag, handle_->ranks);
+  } while (!bytes.empty());
+}
+
+std::vector<char> Communicator::receive(int rank) const {
+  std::vector<char> bytes;
+  for (;;) {
+    MPI_Status status;
+    int length = 0;
+    MPI_Probe(rank, message_tag, handle_->ranks, &status);
+    MPI_Get_count(&status, MPI_CHAR, &length);
+    const std::size_t before = bytes.size();
+    bytes.resize(before + static_cast<std::size_t>(length));
+    MPI_Recv(bytes.data() + before, length, MPI_CHAR, rank, message_tag, handle_->ranks, MPI_STATUS_IGNORE);
+    if (length == 0) return bytes;
+  }
 }
 
 template <class Number>

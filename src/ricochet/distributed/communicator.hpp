@@ -46,6 +46,10 @@ class Communicator {
   [[nodiscard]] std::vector<std::vector<double>> exchange(const std::vector<std::vector<double>>& to_each) const;
   /// The same numbers of every rank, rank after rank.
   [[nodiscard]] std::vector<double> gather(std::span<const double> values) const;
+  /// Bytes for another rank, in as many pieces as one likes, and an empty one at the end; all of them there. The two of
+  /// them alone.
+  void send(int rank, std::span<const char> bytes) const;
+  [[nodiscard]] std::vector<char> receive(int rank) const;
   /// Sends and receives at once. Only the ranks that are named take part; each names the others.
   void swap(std::vector<Message>& messages) const;
 

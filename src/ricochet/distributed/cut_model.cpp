@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/memory.hpp"
@@ -11,6 +12,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/base/timer.hpp"
 #include "ricochet/distributed/cut_problem.hpp"
+#include "ricochet/distributed/model_message.hpp"
 #include "ricochet/distributed/mpi_ranks.hpp"
 #include "ricochet/distributed/petsc_preconditioner.hpp"
 #include "ricochet/distributed/refusals.hpp"
@@ -84,61 +86,87 @@ std::unique_ptr<const Model::Written> what_is_written(Model& whole, const Piece&
   return result;
 }
 
-std::unique_ptr<Model> cut_model(Model& whole, const Communicator& ranks, const DivisionOptions& options) {
-  const Division division(whole.space, whole.problem,
-                          partition_cells(whole.mesh, ranks.size(), options.method, options.seed));
-  Piece piece =
-      cut_piece(whole.mesh, whole.space, division.rank_of_cell(), ranks.rank(), division.more_nodes(ranks.rank()));
-  auto kept = std::make_shared<OwnRanks>(ranks, piece.node_number, whole.space.node_count());
-
-  auto model = std::make_unique<Model>();
-  model->problem = cut_problem(whole.problem, division, piece, ranks.rank());
-  model->problem.ranks = &kept->as_ranks;
-  model->kept = kept;
+/// The part of a rank; the first takes what nobody needs after it.
+ModelPart cut_model(Model& whole, const Division& division, int rank) {
+  Piece piece = cut_piece(whole.mesh, whole.space, division.rank_of_cell(), rank, division.more_nodes(rank));
+  ModelPart part;
+  part.node_number = piece.node_number;
+  part.all_nodes = whole.space.node_count();
+  for (const auto& obstacle : whole.obstacles) part.obstacles.push_back(obstacle.get());
+  part.model = std::make_unique<Model>();
+  Model& model = *part.model;
+  model.problem = cut_problem(whole.problem, division, piece, rank);
   if (const NodeMatrix* damping = whole.problem.damping.mass_part(); damping != nullptr)
-    model->problem.damping.set_mass_part(cut_matrix(*damping, division, piece, ranks.rank()), model->problem.nodes);
-  model->sizes = whole.sizes;
-  model->mass_built = whole.mass_built;
-  model->contains_rotations = whole.contains_rotations;
-  model->initial.static_equilibrium = whole.initial.static_equilibrium;
-  model->initial.displacement = cut_values(whole.initial.displacement, piece, whole.problem.dimension);
-  model->initial.velocity = cut_values(whole.initial.velocity, piece, whole.problem.dimension);
-  model->history_bodies.labels = whole.history_bodies.labels;
-  model->history_bodies.of_node = chosen(whole.history_bodies.of_node, piece.node_number);
-  cut_bodies(whole.bodies, whole, piece, model->bodies);
-  cut_watched(whole.watched, piece, whole.problem.contact, model->problem.contact, model->watched);
-  model->contact_pairs = whole.contact_pairs;
-  for (ContactPair& pair : model->contact_pairs) pair.facets = places_in(pair.facets, piece.facet_number);
-  model->pair_facings = whole.pair_facings;
-  model->obstacles = std::move(whole.obstacles);
-  model->body = whole.body;
-  model->body.tied = nullptr;
-  model->body.cell_material = chosen(whole.body.cell_material, piece.cell_number);
-  model->written = what_is_written(whole, piece, ranks.rank());
+    model.problem.damping.set_mass_part(cut_matrix(*damping, division, piece, rank), model.problem.nodes);
+  model.sizes = whole.sizes;
+  model.mass_built = whole.mass_built;
+  model.contains_rotations = whole.contains_rotations;
+  model.initial.static_equilibrium = whole.initial.static_equilibrium;
+  model.initial.displacement = cut_values(whole.initial.displacement, piece, whole.problem.dimension);
+  model.initial.velocity = cut_values(whole.initial.velocity, piece, whole.problem.dimension);
+  model.history_bodies.labels = whole.history_bodies.labels;
+  model.history_bodies.of_node = chosen(whole.history_bodies.of_node, piece.node_number);
+  cut_bodies(whole.bodies, whole, piece, model.bodies);
+  cut_watched(whole.watched, piece, whole.problem.contact, model.problem.contact, model.watched);
+  model.contact_scales = whole.contact_scales;
+  model.contact_pairs = whole.contact_pairs;
+  for (ContactPair& pair : model.contact_pairs) pair.facets = places_in(pair.facets, piece.facet_number);
+  model.pair_facings = whole.pair_facings;
+  model.body = whole.body;
+  model.body.tied = nullptr;
+  model.body.cell_material = chosen(whole.body.cell_material, piece.cell_number);
+  model.written = what_is_written(whole, piece, rank);
+  if (rank == 0) model.obstacles = std::move(whole.obstacles);
   // Here its own nodes are all that there are.
   std::iota(piece.space.number.begin(), piece.space.number.end(), Index{0});
-  model->mesh = std::move(piece.mesh);
-  model->space = std::move(piece.space);
-  model->body.mesh = &model->mesh;
-  model->body.space = &model->space;
-  return model;
+  model.mesh = std::move(piece.mesh);
+  model.space = std::move(piece.space);
+  model.body.mesh = &model.mesh;
+  model.body.space = &model.space;
+  return part;
+}
+
+/// The first rank has the whole, and gives each its part.
+ModelPart hand_out(const Case& input, std::unique_ptr<Model> whole, std::optional<Division> division,
+                   const Communicator& ranks) {
+  if (ranks.rank() > 0) return unpack(input, ranks.receive(0));
+  for (int rank = 1; rank < ranks.size(); ++rank) {
+    ModelPart part = cut_model(*whole, *division, rank);
+    pack(input, part, [&](std::span<const char> bytes) {
+      if (!bytes.empty()) ranks.send(rank, bytes);
+    });
+    ranks.send(rank, {});
+  }
+  return cut_model(*whole, *division, 0);
 }
 
 }  // namespace
 
 std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator& ranks, const DivisionOptions& options,
                                            BuildTimes* times) {
+  // All begin PETSc together, which then divides the mesh on the first.
+  const std::shared_ptr<const PreconditionerMaker> preconditioners = make_petsc_preconditioners();
   if (ranks.size() == 1) {
     std::unique_ptr<Model> model = build_model(input, times);
-    model->preconditioners = make_petsc_preconditioners();
+    model->preconditioners = preconditioners;
     return model;
   }
   refuse_undividable_case(input);
-  std::unique_ptr<Model> whole = build_model_without_forces(input, times);
-  refuse_undividable_model(input, *whole);
+  std::unique_ptr<Model> whole;
+  std::optional<Division> division;
+  WorldRanks(ranks).together([&] {
+    if (ranks.rank() > 0) return;
+    whole = build_model_without_forces(input, times);
+    refuse_undividable_model(input, *whole);
+    division.emplace(whole->space, whole->problem,
+                     partition_cells(whole->mesh, ranks.size(), options.method, options.seed));
+  });
   Timer timer;
-  std::unique_ptr<Model> model = cut_model(*whole, ranks, options);
-  whole.reset();
+  ModelPart part = hand_out(input, std::move(whole), std::move(division), ranks);
+  std::unique_ptr<Model> model = std::move(part.model);
+  auto kept = std::make_shared<OwnRanks>(ranks, part.node_number, part.all_nodes);
+  model->problem.ranks = &kept->as_ranks;
+  model->kept = kept;
   release_freed_memory();
   if (times != nullptr) times->model += timer.restart();
   assemble_forces(input, *model);
@@ -147,7 +175,7 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
   add_loads(input, *model);
   add_sensors(input, *model);
   model->rotation = std::make_unique<RotationGauge>(model->body);
-  model->preconditioners = make_petsc_preconditioners();
+  model->preconditioners = preconditioners;
   if (times != nullptr) times->model += timer.seconds();
   return model;
 }

@@ -1,5 +1,7 @@
 #include "ricochet/distributed/petsc_session.hpp"
 
+#include <petscsys.h>
+
 namespace ricochet {
 
 PetscSession::PetscSession() {
@@ -16,7 +18,7 @@ PetscSession::~PetscSession() {
   if (began_) PetscFinalize();
 }
 
-std::string petsc_message(PetscErrorCode code) {
+std::string petsc_message(int code) {
   const char* text = nullptr;
   PetscErrorMessage(code, &text, nullptr);
   return text != nullptr ? text : "an error without a name";

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <petscsys.h>
-
 #include <string>
 
-/// @file PETSc, where nobody has begun it. Included by sources alone.
+/// @file PETSc, where nobody has begun it.
 namespace ricochet {
 
 /// Begins PETSc for as long as it lives. MPI is there.
@@ -20,6 +18,6 @@ class PetscSession {
 };
 
 /// What PETSc calls an error of this number.
-[[nodiscard]] std::string petsc_message(PetscErrorCode code);
+[[nodiscard]] std::string petsc_message(int code);
 
 }  // namespace ricochet

@@ -142,11 +142,11 @@ struct RunSummary {
   int degree = 1;
   Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
   std::size_t factor_entries = 0;
-  std::string solver = "direct";                ///< or "iterative"
-  std::string solver_reason;                    ///< why that one
+  std::string solver = "direct";                   ///< or "iterative"
+  std::string solver_reason;                       ///< why that one
   std::optional<ProcessReport> processes = {};     ///< none where there is one
   std::optional<IterationReport> iterations = {};  ///< none where steps are solved directly
-  double step = 0.0, end_time = 0.0;            ///< of adaptive steps the longest possible
+  double step = 0.0, end_time = 0.0;               ///< of adaptive steps the longest possible
   double critical_step =
       std::numeric_limits<double>::infinity();  ///< above it the scheme is unstable; none if infinite
   std::optional<AdaptiveSteps> adaptive = {};   ///< none where all steps are of one length, `step`

@@ -35,6 +35,7 @@ struct Model {
   DisplacementSpace space;
   Body body;
   std::vector<std::unique_ptr<Obstacle>> obstacles;
+  std::vector<ContactScale> contact_scales;  ///< of each obstacle, what it is fitted to
   std::vector<ContactPair> contact_pairs;
   TiedNodes tied;                        ///< nodes of surfaces that are glued to others
   std::vector<PairFacing> pair_facings;  ///< of each; nothing of those with obstacles
@@ -87,6 +88,7 @@ struct CaseMeshFile {
   std::string section;  ///< of the case: "mesh", "part.ball"
   std::string part;     ///< its name; empty for the file of [mesh]
   MeshFile file;
+  int refinements = 0;  ///< once it is read (refine_mesh.hpp)
   Placement placement;
 };
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/mesh/refine_mesh.hpp"
 #include "ricochet/model/model_parts.hpp"
 
 /// @file The mesh of a case, from one file or from those of its parts.
@@ -11,7 +12,8 @@ namespace ricochet {
 
 std::vector<CaseMeshFile> mesh_files(const Case& input) {
   const auto made = [&](const std::string& section, const std::string& part, const BodyFile& body) {
-    return CaseMeshFile{section, part, {body.file, body.size, body.scale, input.mesh.degree}, body.placement};
+    return CaseMeshFile{
+        section, part, {body.file, body.size, body.scale, input.mesh.degree}, body.refinements, body.placement};
   };
   if (input.parts.empty()) return {made("mesh", "", input.mesh)};
   std::vector<CaseMeshFile> files;
@@ -36,9 +38,14 @@ Mesh read_part(const Case& input, const CaseMeshFile& file) {
                                         [](const ContactSection& contact) { return !contact.against.empty(); });
   MeshFile wanted = file.file;
   wanted.bodies_may_touch = bodies_touch;
-  if (file.part.empty()) return read_mesh(wanted);
+  const auto read = [&] {
+    Mesh mesh = read_mesh(wanted);
+    refine(mesh, file.refinements);
+    return mesh;
+  };
+  if (file.part.empty()) return read();
   try {
-    return read_mesh(wanted);
+    return read();
   } catch (const Error& problem) {
     throw Error(problem.kind(), fmt::format("{}: part \"{}\": {}", input.where(file.section + ".file").text(),
                                             file.part, problem.what()));

@@ -64,13 +64,15 @@ std::unique_ptr<Obstacle> make_obstacle(const Case& input, const ObstacleSection
 }
 
 void fit_obstacles(const Case& input, Model& model) {
+  const bool are_known = !model.contact_scales.empty();  // of the whole, where this is a part of it
   for (std::size_t k = 0; k < model.obstacles.size(); ++k) {
     ContactScale scale{extent(model.mesh.nodes), 0.0};
     for (const ContactPair& pair : model.contact_pairs) {
       if (pair.obstacle == model.obstacles[k].get())
         scale.spacing = std::max(scale.spacing, node_spacing(model.space, pair.facets));
     }
-    model.obstacles[k]->fit(scale);
+    if (!are_known) model.contact_scales.push_back(scale);
+    model.obstacles[k]->fit(model.contact_scales[k]);
     const std::string remarks = model.obstacles[k]->shape().remarks();
     if (!remarks.empty()) log::info(fmt::format("obstacle \"{}\": {}", input.obstacles[k].name, remarks));
   }

@@ -14,6 +14,7 @@ struct Column {
   std::string name;
   Reduction by = Reduction::sum;
 
+  Column() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): a name alone is a column that is a sum
   Column(std::string of_name, Reduction reduction = Reduction::sum) : name(std::move(of_name)), by(reduction) {}
   Column(const char* of_name, Reduction reduction = Reduction::sum) : name(of_name), by(reduction) {}

@@ -31,7 +31,7 @@ std::vector<std::optional<double>> orders_of(const Study& study, const ResultTab
   const KeyPlace place = find_varied(study.plan, study.questions.order_key, "--order");
   const auto step = [&](std::size_t run) {
     const std::size_t at = study.runs[run].planned.at[place.axis];
-    return number_in(study.plan.axes[place.axis].values[at][place.key]).value();
+    return step_of(study.questions.order_key, number_in(study.plan.axes[place.axis].values[at][place.key]).value());
   };
   std::vector<std::optional<double>> orders(table.rows.size());
   for (std::size_t run = 0; run < orders.size(); ++run) {

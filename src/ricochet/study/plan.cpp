@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string_view>
@@ -165,6 +166,14 @@ std::vector<PlannedRun> runs_of(const StudyPlan& plan) {
     run.name = name_of(short_keys, run.values);
   }
   return runs;
+}
+
+bool counts_halvings(const std::string& key) {
+  return key.ends_with(".refine");
+}
+
+double step_of(const std::string& key, double value) {
+  return counts_halvings(key) ? std::exp2(-value) : value;
 }
 
 KeyPlace find_varied(const StudyPlan& plan, const std::string& key, const std::string& option) {

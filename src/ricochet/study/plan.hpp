@@ -47,6 +47,11 @@ struct KeyPlace {
 /// Throws Error(usage) that lists the varied keys; `option` names what asked.
 [[nodiscard]] KeyPlace find_varied(const StudyPlan& plan, const std::string& key, const std::string& option);
 
+/// Of keys that count halvings (mesh.refine, part.NAME.refine): 2^−value goes with the size of cells.
+[[nodiscard]] bool counts_halvings(const std::string& key);
+/// What orders of convergence are about: 2^−value of these, of all others the value.
+[[nodiscard]] double step_of(const std::string& key, double value);
+
 /// All values of the key are numbers, and there are two at least.
 [[nodiscard]] bool is_numeric(const StudyPlan& plan, KeyPlace place);
 

@@ -130,7 +130,8 @@ std::vector<StudyLine> lines_of(const StudyPanel& panel, const Study& study, con
   for (std::size_t i = 0; i < study.runs.size(); ++i) {
     const std::string text = text_of(table.rows[i][x_column]);
     const auto place = std::find(categories.begin(), categories.end(), text) - categories.begin();
-    const double x = categories.empty() ? number_of(table.rows[i][x_column]) : static_cast<double>(place);
+    const double number = categories.empty() ? number_of(table.rows[i][x_column]) : static_cast<double>(place);
+    const double x = panel.log_x ? step_of(panel.x, number) : number;
     const double y = number_of(table.rows[i][y_column]);
     const bool is_shown =
         std::isfinite(x) && std::isfinite(y) && !(panel.log_x && x <= 0.0) && !(panel.log_y && y <= 0.0);
@@ -204,8 +205,12 @@ Json describe_panel(StudyPanel panel, const Study& study, const ResultTable& tab
   if (all_numbers) categories.clear();
   const std::vector<StudyLine> lines = lines_of(panel, study, table, categories);
   if (lines.empty()) refuse_figure(what, fmt::format("no run has numbers under {} and {}", panel.x, panel.y));
-  Json json{{"kind", "lines"},        {"x_label", axis_label(panel.x)}, {"y_label", axis_label(panel.y)},
-            {"log_y", panel.log_y},   {"categories", categories},       {"slopes", Json::array()},
+  Json json{{"kind", "lines"},
+            {"x_label", (panel.log_x && counts_halvings(panel.x) ? "2^-" : "") + axis_label(panel.x)},
+            {"y_label", axis_label(panel.y)},
+            {"log_y", panel.log_y},
+            {"categories", categories},
+            {"slopes", Json::array()},
             {"curves", Json::array()}};
   const std::vector<std::string> keys = varied_keys(study.plan);
   json["names_steps"] = std::count(keys.begin(), keys.end(), panel.x) > 0;

@@ -41,7 +41,8 @@ std::vector<std::string> expected_quantities(const Study& study) {
 
 std::string reference_in_words(const std::string& reference) {
   const std::string key = reference.substr(reference.find(':') + 1);
-  if (reference.starts_with("finest:")) return fmt::format("the run with the smallest {}", key);
+  if (reference.starts_with("finest:"))
+    return fmt::format("the run with the {} {}", counts_halvings(key) ? "largest" : "smallest", key);
   if (reference.starts_with("last:")) return fmt::format("the run with the last {}", key);
   return reference;
 }
@@ -196,13 +197,14 @@ std::string StudyTableMaker::reference_of(std::size_t run) const {
   const std::size_t colon = questions_.reference.find(':');
   const std::string kind = questions_.reference.substr(0, colon);
   if (colon == std::string::npos || (kind != "last" && kind != "finest")) return questions_.reference;
-  const KeyPlace place = find_varied(study_.plan, questions_.reference.substr(colon + 1), "--reference");
+  const std::string key = questions_.reference.substr(colon + 1);
+  const KeyPlace place = find_varied(study_.plan, key, "--reference");
   const auto& values = study_.plan.axes[place.axis].values;
   std::size_t chosen = values.size() - 1;
   if (kind == "finest") {
-    const auto finest = std::min_element(values.begin(), values.end(), [&](const auto& a, const auto& b) {
-      return number_in(a[place.key]) < number_in(b[place.key]);
-    });
+    const auto step = [&](const auto& value) { return step_of(key, number_in(value[place.key]).value_or(0.0)); };
+    const auto finest =
+        std::min_element(values.begin(), values.end(), [&](const auto& a, const auto& b) { return step(a) < step(b); });
     chosen = static_cast<std::size_t>(finest - values.begin());
   }
   std::vector<std::size_t> at = study_.runs[run].planned.at;

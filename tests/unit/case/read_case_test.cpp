@@ -204,6 +204,7 @@ TEST(ReadCase, FillsInEveryDefault) {
   EXPECT_FALSE(read.check.stops);
   EXPECT_EQ(read.values, (std::map<std::string, std::string>{{"title", ""},
                                                              {"mesh.file", "a.msh"},
+                                                             {"mesh.refine", "0"},
                                                              {"mesh.scale", "1"},
                                                              {"mesh.degree", "1"},
                                                              {"mesh.plane", "strain"},
@@ -220,6 +221,7 @@ TEST(ReadCase, FillsInEveryDefault) {
                                                              {"time.step", "0.1"},
                                                              {"time.end", "1"},
                                                              {"solver.method", "auto"},
+                                                             {"solver.preconditioner", "auto"},
                                                              {"solver.tolerance", "1e-10"},
                                                              {"solver.contact_points", "near"},
                                                              {"output.format", "xdmf"},

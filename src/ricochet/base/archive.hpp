@@ -1,0 +1,140 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "ricochet/base/error.hpp"
+#include "ricochet/base/types.hpp"
+
+/// @file Values as bytes and back, for another process of the same program.
+namespace ricochet {
+
+/// One description serves both ways: `archive(value)` appends the value, or fills it. What has parts has a function
+/// transfer(Archive&, Value&) beside it, which names them. Between processes of one machine type: nothing is said of
+/// versions or the order of bytes.
+class Archive {
+ public:
+  /// To be written.
+  Archive() = default;
+  /// To be handed on as it is written, some bytes at a time; finish() hands on the last ones.
+  using Sink = std::function<void(std::span<const char>)>;
+  explicit Archive(Sink sink) : sink_(std::move(sink)) {}
+  /// To be read.
+  explicit Archive(std::vector<char> bytes) : bytes_(std::move(bytes)), reads_(true) {}
+
+  [[nodiscard]] bool reads() const { return reads_; }
+  [[nodiscard]] std::vector<char> take() { return std::move(bytes_); }
+  void finish() {
+    sink_(bytes_);
+    bytes_.clear();
+  }
+  [[nodiscard]] bool is_at_end() const { return place_ == bytes_.size(); }
+
+  template <class... Values>
+  void all(Values&... values) {
+    ((*this)(values), ...);
+  }
+
+  template <class Value>
+  void operator()(Value& value) {
+    if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
+      block(&value, 1);
+    } else {
+      transfer(*this, value);
+    }
+  }
+  void operator()(std::string& text) { sequence(text); }
+  template <class Value>
+  void operator()(std::vector<Value>& values) {
+    if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
+      sequence(values);
+    } else {
+      values.resize(count(values.size()));
+      for (Value& value : values) (*this)(value);
+    }
+  }
+  template <class Value, std::size_t size>
+  void operator()(std::array<Value, size>& values) {
+    for (Value& value : values) (*this)(value);
+  }
+  template <class First, class Second>
+  void operator()(std::pair<First, Second>& values) {
+    all(values.first, values.second);
+  }
+  template <class Value>
+  void operator()(std::optional<Value>& value) {
+    bool is_there = value.has_value();
+    (*this)(is_there);
+    if (is_there && !value) value.emplace();
+    if (is_there) (*this)(*value);
+  }
+  template <class Number, int rows, int columns, int options, int most_rows, int most_columns>
+  void operator()(Eigen::Matrix<Number, rows, columns, options, most_rows, most_columns>& matrix) {
+    const std::size_t high = count(static_cast<std::size_t>(matrix.rows()));
+    const std::size_t wide = count(static_cast<std::size_t>(matrix.cols()));
+    if (reads_) matrix.resize(static_cast<Index>(high), static_cast<Index>(wide));
+    block(matrix.data(), static_cast<std::size_t>(matrix.size()));
+  }
+  /// Written ones are compressed.
+  template <int order>
+  void operator()(Eigen::SparseMatrix<double, order, int>& matrix) {
+    if (!reads_) matrix.makeCompressed();
+    const std::size_t rows = count(static_cast<std::size_t>(matrix.rows()));
+    const std::size_t columns = count(static_cast<std::size_t>(matrix.cols()));
+    const std::size_t entries = count(static_cast<std::size_t>(matrix.nonZeros()));
+    if (reads_) {
+      matrix.resize(static_cast<Index>(rows), static_cast<Index>(columns));
+      matrix.resizeNonZeros(static_cast<Index>(entries));
+    }
+    block(matrix.outerIndexPtr(), static_cast<std::size_t>(matrix.outerSize()) + 1);
+    block(matrix.innerIndexPtr(), entries);
+    block(matrix.valuePtr(), entries);
+  }
+
+ private:
+  [[nodiscard]] std::size_t count(std::size_t own) {
+    block(&own, 1);
+    return own;
+  }
+  template <class Sequence>
+  void sequence(Sequence& values) {
+    values.resize(count(values.size()));
+    block(values.data(), values.size());
+  }
+  template <class Value>
+  void block(Value* values, std::size_t size) {
+    const std::size_t length = size * sizeof(Value);
+    if (length == 0) return;
+    if (reads_) {
+      if (bytes_.size() - place_ < length)
+        throw Error(ErrorKind::invalid_input, "what another process has sent is not what was expected");
+      std::memcpy(values, bytes_.data() + place_, length);
+      place_ += length;
+    } else {
+      const char* const begin = reinterpret_cast<const char*>(values);
+      if (sink_ && bytes_.size() + length > most_kept) finish();
+      if (sink_ && length > most_kept) {
+        sink_({begin, length});
+      } else {
+        bytes_.insert(bytes_.end(), begin, begin + length);
+      }
+    }
+  }
+
+  static constexpr std::size_t most_kept = std::size_t{1} << 22;
+
+  std::vector<char> bytes_;
+  Sink sink_;
+  bool reads_ = false;
+  std::size_t place_ = 0;
+};
+
+}  // namespace ricochet
