@@ -104,6 +104,14 @@ ModelPart cut_model(Model& whole, const Division& division, int rank) {
   model.initial.static_equilibrium = whole.initial.static_equilibrium;
   model.initial.displacement = cut_values(whole.initial.displacement, piece, whole.problem.dimension);
   model.initial.velocity = cut_values(whole.initial.velocity, piece, whole.problem.dimension);
+  if (whole.initial.found) {
+    std::vector<Index> points;
+    for (Index point = 0; point < whole.problem.contact.size(); ++point) {
+      if (division.rank_of_point(point) == rank) points.push_back(point);
+    }
+    model.initial.found = {cut_values(whole.initial.found->displacement, piece, whole.problem.dimension),
+                           chosen(whole.initial.found->normal_reaction, points)};
+  }
   model.history_bodies.labels = whole.history_bodies.labels;
   model.history_bodies.of_node = chosen(whole.history_bodies.of_node, piece.node_number);
   cut_bodies(whole.bodies, whole, piece, model.bodies);
@@ -124,6 +132,17 @@ ModelPart cut_model(Model& whole, const Division& division, int rank) {
   model.body.mesh = &model.mesh;
   model.body.space = &model.space;
   return part;
+}
+
+/// By this process alone, before the body is divided: with all the memory that this takes.
+void find_equilibrium(const Case& input, Model& whole) {
+  const std::shared_ptr<const InternalForce> none = whole.problem.internal_force;
+  const Damping by_mass = whole.problem.damping;
+  assemble_forces(input, whole);
+  whole.initial.found = find_static_equilibrium(whole.problem, whole.initial.velocity, step_solver_options(input));
+  whole.problem.internal_force = none;
+  whole.problem.damping = by_mass;
+  release_freed_memory();
 }
 
 /// The first rank has the whole, and gives each its part.
@@ -158,6 +177,7 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
     if (ranks.rank() > 0) return;
     whole = build_model_without_forces(input, times);
     refuse_undividable_model(input, *whole);
+    if (whole->initial.static_equilibrium) find_equilibrium(input, *whole);
     division.emplace(whole->space, whole->problem,
                      partition_cells(whole->mesh, ranks.size(), options.method, options.seed));
   });

@@ -52,8 +52,11 @@ void transfer(Archive& archive, ModelSizes& sizes) {
 void transfer(Archive& archive, ContactScale& scale) {
   archive.all(scale.body_size, scale.spacing);
 }
+void transfer(Archive& archive, StaticEquilibrium& equilibrium) {
+  archive.all(equilibrium.displacement, equilibrium.normal_reaction);
+}
 void transfer(Archive& archive, InitialConditions& initial) {
-  archive.all(initial.static_equilibrium, initial.displacement, initial.velocity);
+  archive.all(initial.static_equilibrium, initial.displacement, initial.velocity, initial.found);
 }
 void transfer(Archive& archive, NodeMatrix& matrix) {
   int d = matrix.dimension();

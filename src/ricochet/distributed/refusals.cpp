@@ -34,7 +34,6 @@ void refuse_undividable_case(const Case& input) {
       refuse_several(input, "output.fields",
                      fmt::format("the field \"{}\"{}", name, name == "all" ? ", with stresses at nodes," : ""));
   }
-  if (input.initial.static_equilibrium) refuse_several(input, "initial.displacement", "a start in static equilibrium");
   if (!make_scheme(input.time)->takes_ranks())
     refuse_several(input, "time.scheme", fmt::format("scheme \"{}\"", input.time.scheme));
 }

@@ -280,6 +280,8 @@ namespace {
                   search));
 }
 
+}  // namespace
+
 StaticEquilibrium find_static_equilibrium(const SemidiscreteProblem& problem, const Vector& velocity,
                                           const StepSolverOptions& options) {
   const Vector undeformed = Vector::Zero(problem.dof_count());
@@ -293,14 +295,13 @@ StaticEquilibrium find_static_equilibrium(const SemidiscreteProblem& problem, co
   }
 }
 
-}  // namespace
-
 State make_starting_state(const SemidiscreteProblem& problem, const InitialConditions& initial, double step,
                           const StepSolverOptions& options) {
   State state;
   Vector pressed;
   if (initial.static_equilibrium) {
-    StaticEquilibrium equilibrium = find_static_equilibrium(problem, initial.velocity, options);
+    StaticEquilibrium equilibrium =
+        initial.found ? *initial.found : find_static_equilibrium(problem, initial.velocity, options);
     state.displacement = std::move(equilibrium.displacement);
     pressed = std::move(equilibrium.normal_reaction);
     log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(problem, state.displacement)));

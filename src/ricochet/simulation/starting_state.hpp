@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "ricochet/problem/semidiscrete_problem.hpp"
 #include "ricochet/scheme/state.hpp"
+#include "ricochet/simulation/static_equilibrium.hpp"
 #include "ricochet/solver/step_solver.hpp"
 
 /// @file The state at t = 0.
@@ -11,7 +14,14 @@ struct InitialConditions {
   bool static_equilibrium = false;  ///< the displacement is the equilibrium under the loads at t = 0, contact included
   Vector displacement;              ///< per dof, otherwise
   Vector velocity;                  ///< per dof
+  /// The equilibrium, where it was found before: of a body that was divided after it.
+  std::optional<StaticEquilibrium> found = {};
 };
+
+/// From the undeformed body. Throws Error(invalid_input) or Error(not_converged) which says why there is none, and
+/// where the body lies inside of something.
+[[nodiscard]] StaticEquilibrium find_static_equilibrium(const SemidiscreteProblem& problem, const Vector& velocity,
+                                                        const StepSolverOptions& options);
 
 /// Contact points that a displacement puts inside their obstacle at t = 0, by more than rounding.
 struct PointsInside {

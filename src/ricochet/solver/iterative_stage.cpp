@@ -58,7 +58,7 @@ class IterativeStage final : public StageSolver {
   void begin(const Stage& stage, StageSolution& solution);
   [[nodiscard]] bool are_outside(const std::vector<Index>& points) const;
   void make_zones(const Stage& stage, const std::vector<Index>& points);
-  void find_residual(const Stage& stage);
+  void find_residual();
   void find_reactions(const Stage& stage, const StageSolution& solution);
   void mask(Vector& values) const;
   void put_together(Vector& force) const;
@@ -90,7 +90,8 @@ class IterativeStage final : public StageSolver {
   Vector displacement_;            ///< of the tangent; empty: the undeformed body
   Vector increment_, previous_;    ///< of this stage and the last one, for the guess
   bool has_previous_ = false;
-  Vector reactions_;  ///< their forces, those of the last zones
+  Vector reactions_;        ///< their forces, those of the last zones
+  Vector right_hand_side_;  ///< put together
   Vector guess_, residual_, work_, motion_, prescribed_, supported_force_;
 };
 
@@ -221,6 +222,8 @@ void IterativeStage::load(const Snapshot& snapshot, const std::string& name) {
 
 /// The guess: increments of a smooth motion go on as they did. Supports are exact.
 void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
+  right_hand_side_ = stage.right_hand_side;
+  put_together(right_hand_side_);
   guess_ = increment_;
   if (has_previous_) guess_ += increment_ - previous_;
   for (const int dof : unsolved_) guess_[dof] = 0.0;
@@ -253,11 +256,12 @@ void IterativeStage::put_together(Vector& force) const {
   mask(force);
 }
 
-/// b − A x.
-void IterativeStage::find_residual(const Stage& stage) {
+/// b − A x. Of several ranks b is put together once: their parts may be large where it vanishes, in an equilibrium, and
+/// would leave their rounding in every residual.
+void IterativeStage::find_residual() {
   product_.multiply(guess_, residual_);
-  residual_ = stage.right_hand_side - residual_;
   put_together(residual_);
+  residual_ = right_hand_side_ - residual_;
 }
 
 void IterativeStage::find_reactions(const Stage& stage, const StageSolution& solution) {
@@ -268,14 +272,14 @@ void IterativeStage::find_reactions(const Stage& stage, const StageSolution& sol
 
 /// The norm of all that acts, what moving supports exert among it: what the residual is small beside.
 double IterativeStage::forces(const Stage& stage) {
-  work_ = stage.right_hand_side;
-  if (!stage.prescribed.isZero(0.0)) {
+  work_ = right_hand_side_;
+  if (problem_.ranks->any(!stage.prescribed.isZero(0.0))) {
     prescribed_.setZero(problem_.dof_count());
     prescribe(problem_, stage, prescribed_);
     product_.multiply(prescribed_, supported_force_);
+    put_together(supported_force_);
     work_ -= supported_force_;
   }
-  put_together(work_);
   const double given = gradients_.norm(*preconditioner_, work_);
   return std::max(given, gradients_.norm(*preconditioner_, reactions_));
 }
@@ -321,12 +325,12 @@ void IterativeStage::solve(const Stage& stage, StageSolution& solution) {
   bool must_touch = false;  // points have penetrated where none was thought to touch
   for (int round = 0; round < round_limit; ++round) {
     ++counts_.rounds;
-    find_residual(stage);
+    find_residual();
     watch_single_precision();
     const bool touches = zones_->are_made() && (must_touch || presses_at_start_ || may_touch_);
     if (touches) {
       zones_->solve(stage, residual_, guess_, solution);
-      find_residual(stage);
+      find_residual();
       find_reactions(stage, solution);
       residual_ += reactions_;
     }
