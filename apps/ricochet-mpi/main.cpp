@@ -26,7 +26,7 @@ using namespace ricochet;
 
 constexpr int defect_status = 70;
 /// In seconds: where a process has failed, for the others to come to the same end. Then all are ended.
-constexpr double patience = 3.0;
+constexpr double patience = 1.5;
 
 struct Arguments {
   program::RunArguments run;

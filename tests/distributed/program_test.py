@@ -34,6 +34,47 @@ BOUNCE = {"contact.0.friction": 0.3, "initial.velocity": "[0.03,-0.1]", "output.
           "output.fields_every": 20, "time.end": 0.06, "solver.tolerance": 1e-12}
 
 
+# A column that stands on the floor, of which the probe watches the top alone.
+STRIP_GEOMETRY = """
+Rectangle(1) = {0, 0, 0, 0.2, 1}; Rectangle(2) = {0, 1, 0, 0.2, 0.1};
+Coherence;
+"""
+STRIP_GEOMETRY = "SetFactory(\"OpenCASCADE\");" + STRIP_GEOMETRY + """
+Physical Surface("low") = {1}; Physical Surface("end") = {2};
+bottom() = Curve In BoundingBox{-1, -0.01, -1, 1, 0.01, 1};
+Physical Curve("bottom") = bottom();
+Mesh.MeshSizeMax = 0.07;
+"""
+STRIP = """
+[mesh]
+file = "strip.msh"
+plane = "axisymmetric"
+[[material]]
+group = ["low", "end"]
+density = 1000.0
+young = 1e6
+poisson = 0.3
+[obstacle.floor]
+type = "plane"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+[[contact]]
+group = "bottom"
+obstacle = "floor"
+[initial]
+velocity = ["0", "-1"]
+[[probe]]
+name = "end"
+group = "end"
+[time]
+step = 1e-3
+end = 0.03
+[solver]
+method = "iterative"
+tolerance = 1e-12
+"""
+
+
 def command(ranks, *arguments):
     return [MPIRUN, "-n", str(ranks), PROGRAM, *map(str, arguments)]
 
@@ -139,10 +180,37 @@ class Results(Distributed):
                     near = numpy.allclose(own, values, rtol=0.0, atol=1e-6 * scale[field], equal_nan=True)
                     self.assertTrue(near, f"{frame} {field}")
 
+    def test_at_nodes_between_two_points_are_those_of_one_process(self):
+        """Of degree 2 the pressure of a node is made of contact points that several processes have."""
+        values = {**BOUNCE, "mesh.degree": 2, "time.end": 0.03, "output.fields_every": 10}
+        self.assertEqual(self.bounce(0, "one", values=values).returncode, 0)
+        self.assertEqual(self.bounce(3, "three", values=values).returncode, 0)
+        with h5py.File(self.folder / "one" / "results.h5") as one:
+            pressures = [numpy.nanmax(numpy.abs(frame["contact_pressure"])) for frame in one["frames"].values()]
+        self.assertGreater(max(pressures), 0.0)
+        self.expect_same_fields("one", "three")
+
     def test_are_the_same_bits_for_as_many_processes(self):
         for name in ("first", "second"):
             self.assertEqual(self.bounce(3, name).returncode, 0)
         self.expect_same_files("first", "second")
+
+
+class Groups(Distributed):
+    def test_may_have_nothing_on_a_process(self):
+        """A probe of cells, and an axisymmetric contact, of which some processes have none."""
+        case = self.write("strip.toml", STRIP)
+        geometry = self.write("strip.geo", STRIP_GEOMETRY)
+        mesh = self.folder / "strip.msh"
+        subprocess.run(["gmsh", "-2", str(geometry), "-o", str(mesh), "-v", "0"], check=True)
+        self.assertEqual(run("run", case, "-o", self.folder / "one", "--quiet").returncode, 0)
+        finished = several(4, "run", case, "-o", self.folder / "four", "--quiet")
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        one, four = (History(self.folder / name / "history.csv") for name in ("one", "four"))
+        self.assertEqual(one.names, four.names)
+        for column in ("end.von_mises_maximum", "end.displacement_average_y", "max_penetration", "contact_force_y"):
+            largest = max(max(map(abs, one[column])), 1e-9)
+            self.assertLessEqual(max(abs(a - b) for a, b in zip(one[column], four[column])), 1e-6 * largest, column)
 
 
 class Ends(Distributed):
@@ -170,6 +238,16 @@ class Ends(Distributed):
             self.assertNotEqual(process.returncode, 0)
             self.finish(3, name)
             self.expect_same_files("whole", name)
+
+    def test_of_an_error_that_one_process_finds(self):
+        """A load that has no value at a place where one of them has cells: all end within seconds, with one message."""
+        begin = time.monotonic()
+        values = {**BOUNCE, "load.body_force": '["x > 0.0195 && t > 0.01 ? sqrt(-1) : 0", "0"]'}
+        finished = self.bounce(3, "lost", values=values)
+        self.assertLess(time.monotonic() - begin, 20)
+        self.assertNotEqual(finished.returncode, 0)
+        self.assertIn("has no finite value at x = ", finished.stderr)
+        self.assertIn("step ", finished.stderr)
 
     def test_by_a_signal_leave_a_checkpoint(self):
         self.assertEqual(self.bounce(2, "whole", values=self.LONG).returncode, 0)

@@ -54,6 +54,8 @@ class Ranks {
   /// The nodes for which another rank speaks, ascending: what they have in a sum over all nodes is taken off again.
   [[nodiscard]] virtual std::span<const Index> not_owned() const { return {}; }
 
+  /// Whether all come here within so many seconds: after an error that maybe only this rank has found.
+  [[nodiscard]] virtual bool all_arrive(double /* seconds */) const { return true; }
   [[nodiscard]] virtual Traffic traffic() const { return {}; }
   /// Of a node of this rank in the whole body.
   [[nodiscard]] virtual std::int64_t number_of(Index node) const { return node; }

@@ -83,7 +83,8 @@ Section solver_section() {
                   "\"auto\": iterative where a factor does not fit into memory, or where making it and solving with it "
                   "takes longer than the iterations of all steps, by estimate (one that is made within ten seconds is "
                   "always made). A "
-                  "static start is solved as by \"auto\", the contact nodes of \"semi-explicit\" always directly. Several processes "
+                  "static start is solved as by \"auto\", the contact nodes of \"semi-explicit\" always directly. "
+                  "Several processes "
                   "of `ricochet-mpi` always iterate."},
           {.name = "tolerance",
            .type = KeyType::number,

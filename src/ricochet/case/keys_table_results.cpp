@@ -123,8 +123,10 @@ Section output_section() {
            .range = {.at_least = 1.0},
            .doc =
                "Steps between rows of history.csv; there is one at the end in any case. Default: 1, and 2 with the "
-               "scheme semi-explicit, whose steps cost little more than a row. Impacts, impulses, penetration and the "
-               "largest stress are taken from every step, whatever this is; extrema, rotation and the checks of "
+               "scheme semi-explicit, whose steps cost little more than a row. Impacts, impulses and penetration are "
+               "taken from every step, whatever this is, the largest stress from as many as a twentieth of the time "
+               "pays "
+               "for; extrema, rotation and the checks of "
                "[check] from the rows."},
           {.name = "checkpoint_every",
            .type = KeyType::integer,

@@ -107,7 +107,7 @@ struct ContactBoundary {
   std::vector<Index> nodes;        ///< ascending; all nodes that the trace of some point reaches
   std::vector<int> node_pair;      ///< index of the (first) ContactPair
   std::vector<char> is_opposite;   ///< 1: of the side of a pair of bodies that carries no multipliers
-  std::vector<Index> own_point;    ///< the contact point anchored at the node, or −1
+  std::vector<Index> own_point;    ///< the contact point anchored at the node, or −1; −2: another rank has it
   Points node_normals;             ///< towards the node's body, at the start, d × nodes
   Vector node_initial_gap;         ///< NaN where the node faces nothing
   SparseRowMatrix opposite_place;  ///< contact nodes × nodes: where the node faces another body; 0 × 0 without such

@@ -92,7 +92,8 @@ ContactBoundary cut_contact(const ContactBoundary& whole, const ContactCut& part
     const auto at = static_cast<std::size_t>(entry);
     own.nodes.push_back(place_of_node(whole.nodes[at]));
     const Index point = whole.own_point[at];
-    own.own_point.push_back(point < 0 ? -1 : point_place[static_cast<std::size_t>(point)]);
+    const Index place = point < 0 ? -1 : point_place[static_cast<std::size_t>(point)];
+    own.own_point.push_back(point >= 0 && place < 0 ? -2 : place);
   }
   own.node_pair = chosen(whole.node_pair, part.entries);
   own.is_opposite = chosen(whole.is_opposite, part.entries);

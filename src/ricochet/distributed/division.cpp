@@ -44,6 +44,14 @@ Division::Division(const DisplacementSpace& space, const SemidiscreteProblem& pr
       if (!has(rank, node)) more[static_cast<std::size_t>(rank)].push_back(node);
     });
   }
+  // The pressure at a node is made of points around it: each adds its part where it is.
+  for (std::size_t entry = 0; entry < problem.contact.nodes.size(); ++entry) {
+    const Index node = problem.contact.nodes[entry];
+    problem.contact.visit_recovery(static_cast<Index>(entry), [&](Index point, double) {
+      const int rank = rank_of_point(point);
+      if (!has(rank, node)) more[static_cast<std::size_t>(rank)].push_back(node);
+    });
+  }
   give(more);
   for (auto& nodes : more) nodes.clear();
   const NodePattern& pattern = problem.mass.pattern();

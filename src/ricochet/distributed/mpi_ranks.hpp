@@ -22,6 +22,7 @@ class WorldRanks : public Ranks {
     count(to_each);
     return ranks_.exchange(to_each);
   }
+  [[nodiscard]] bool all_arrive(double seconds) const override { return Processes::all_arrive(seconds); }
   [[nodiscard]] Traffic traffic() const override { return traffic_; }
 
  private:

@@ -99,7 +99,7 @@ std::vector<Index> facets_off_axis(const Case& input, const std::string& key_pat
     if (mesh.nodes(0, nodes[0]) != 0.0 || mesh.nodes(0, nodes[1]) != 0.0) result.push_back(facet);
   }
   const std::size_t left_out = group.members.size() - result.size();
-  if (result.empty())
+  if (result.empty() && !mesh.is_piece)
     refuse(input, key_path, fmt::format("group \"{}\" lies on the axis, which is no surface of the body", group.name));
   if (left_out > 0) {
     log::info(fmt::format("{}: {} of group \"{}\" {} on the axis, which is no surface of the body, and {} left out",

@@ -280,6 +280,9 @@ bool Run::take_step() {
     if (!session_.at_end() && advance()) return true;
     end_steps();
   } catch (const Error& problem) {
+    // What one rank alone has found ends all at once: the others are still in the step, and answer nothing.
+    constexpr double patience = 1.5;
+    if (ranks_.are_several() && !ranks_.all_arrive(patience)) throw;
     failure_ = problem;
     if (problem.kind() == ErrorKind::not_converged && !ranks_.are_several()) write_failure_bundle(step_);
   }

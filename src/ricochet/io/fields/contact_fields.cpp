@@ -71,10 +71,8 @@ void ContactFields::evaluate(const State& state) {
         status_[node] = std::max(status_[node], static_cast<int>(state.contact_status[at]));
     };
     const Index own = contact.own_point[static_cast<std::size_t>(i)];
-    if (own >= 0) {
-      take(own);
-      continue;
-    }
+    if (own >= 0) take(own);
+    if (own != -1) continue;
     contact.visit_recovery(i, [&](Index point, double value) {
       if (value != 0.0) take(point);
     });

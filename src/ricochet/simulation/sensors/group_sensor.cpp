@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "ricochet/fem/cell_integration.hpp"
 #include "ricochet/fem/stress.hpp"
@@ -52,14 +53,15 @@ std::vector<WeightedNode> weighted_nodes(const Body& body, const std::vector<Cel
 
 class GroupSensor final : public Sensor {
  public:
-  GroupSensor(std::string name, const Body& body, std::vector<WeightedNode> nodes, std::vector<Index> cells,
-              const Ranks& ranks)
+  GroupSensor(std::string name, const Body& body, std::vector<WeightedNode> nodes,
+              std::optional<std::vector<Index>> cells, const Ranks& ranks)
       : name_(std::move(name)),
         dimension_(body.mesh->dimension),
         nodes_(std::move(nodes)),
-        cells_(std::move(cells)),
+        is_of_cells_(cells.has_value()),
+        cells_(std::move(cells).value_or(std::vector<Index>())),
         stress_of_(body) {
-    if (cells_.empty()) return;
+    if (!is_of_cells_) return;
     const Vector volumes = cell_volumes(body);
     double sum = 0.0;
     for (const Index cell : cells_) sum += volumes[cell];
@@ -75,7 +77,7 @@ class GroupSensor final : public Sensor {
       for (const Column& statistic : statistics)
         add_vector_columns(columns, name_ + motion + statistic.name, dimension_, statistic.by);
     }
-    if (!cells_.empty()) {
+    if (is_of_cells_) {
       for (const Column& statistic : statistics)
         columns.emplace_back(name_ + ".von_mises" + statistic.name, statistic.by);
     }
@@ -85,7 +87,7 @@ class GroupSensor final : public Sensor {
   void observe(const Observation& observation, std::vector<double>& row) override {
     observe_vector(observation.state.displacement, row);
     observe_vector(observation.state.velocity, row);
-    if (!cells_.empty()) observe_stress(observation.state, row);
+    if (is_of_cells_) observe_stress(observation.state, row);
   }
 
  private:
@@ -105,7 +107,7 @@ class GroupSensor final : public Sensor {
     append(largest, row);
   }
   void observe_stress(const State& state, std::vector<double>& row) {
-    stress_of_.evaluate(state.displacement, stress_, energy_density_, state.internal_strain);
+    if (!cells_.empty()) stress_of_.evaluate(state.displacement, stress_, energy_density_, state.internal_strain);
     double average = 0.0, least = std::numeric_limits<double>::infinity(), largest = 0.0;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       const double own = von_mises_stress(stress_.data() + tensor_components * cells_[i]);
@@ -119,7 +121,8 @@ class GroupSensor final : public Sensor {
   std::string name_;
   int dimension_;
   std::vector<WeightedNode> nodes_;  ///< weights that add up to 1
-  std::vector<Index> cells_;         ///< of a group of cells
+  bool is_of_cells_;                 ///< else of facets
+  std::vector<Index> cells_;         ///< those that are here, of a group of cells
   std::vector<double> cell_weights_, stress_, energy_density_;
   CellStress stress_of_;
 };
@@ -153,7 +156,7 @@ std::unique_ptr<Sensor> make_facet_group_sensor(const std::string& name, const B
                                                 const std::vector<Index>& facets, const Ranks& ranks) {
   auto nodes =
       body.mesh->dimension == 2 ? nodes_of_facets<2>(body, facets, ranks) : nodes_of_facets<3>(body, facets, ranks);
-  return std::make_unique<GroupSensor>(name, body, std::move(nodes), std::vector<Index>{}, ranks);
+  return std::make_unique<GroupSensor>(name, body, std::move(nodes), std::nullopt, ranks);
 }
 
 }  // namespace ricochet
