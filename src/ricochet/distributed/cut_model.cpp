@@ -105,12 +105,8 @@ ModelPart cut_model(Model& whole, const Division& division, int rank) {
   model.initial.displacement = cut_values(whole.initial.displacement, piece, whole.problem.dimension);
   model.initial.velocity = cut_values(whole.initial.velocity, piece, whole.problem.dimension);
   if (whole.initial.found) {
-    std::vector<Index> points;
-    for (Index point = 0; point < whole.problem.contact.size(); ++point) {
-      if (division.rank_of_point(point) == rank) points.push_back(point);
-    }
     model.initial.found = {cut_values(whole.initial.found->displacement, piece, whole.problem.dimension),
-                           chosen(whole.initial.found->normal_reaction, points)};
+                           chosen(whole.initial.found->normal_reaction, division.points_of(rank))};
   }
   model.history_bodies.labels = whole.history_bodies.labels;
   model.history_bodies.of_node = chosen(whole.history_bodies.of_node, piece.node_number);

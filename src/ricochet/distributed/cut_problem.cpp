@@ -9,9 +9,7 @@ namespace {
 
 ContactCut contact_part(const SemidiscreteProblem& whole, const Division& division, const Piece& piece, int rank) {
   ContactCut part;
-  for (Index point = 0; point < whole.contact.size(); ++point) {
-    if (division.rank_of_point(point) == rank) part.points.push_back(point);
-  }
+  part.points = division.points_of(rank);
   part.place_of = places_of_all(piece.node_number, whole.nodes.cols());
   part.nodes = static_cast<Index>(piece.node_number.size());
   for (std::size_t entry = 0; entry < whole.contact.nodes.size(); ++entry) {

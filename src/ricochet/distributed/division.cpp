@@ -77,6 +77,14 @@ int Division::rank_of_pair(Index one, Index other) const {
   return -1;
 }
 
+std::vector<Index> Division::points_of(int rank) const {
+  std::vector<Index> result;
+  for (std::size_t point = 0; point < rank_of_point_.size(); ++point) {
+    if (rank_of_point_[point] == rank) result.push_back(static_cast<Index>(point));
+  }
+  return result;
+}
+
 void Division::give(const std::vector<std::vector<Index>>& more) {
   if (std::all_of(more.begin(), more.end(), [](const auto& nodes) { return nodes.empty(); })) return;
   const auto nodes = static_cast<Index>(begin_.size()) - 1;

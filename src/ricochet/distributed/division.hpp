@@ -27,6 +27,8 @@ class Division {
   /// The rank that an entry of a matrix belongs to: the first one that has both nodes.
   [[nodiscard]] int rank_of_pair(Index one, Index other) const;
   [[nodiscard]] int rank_of_point(Index point) const { return rank_of_point_[static_cast<std::size_t>(point)]; }
+  /// Ascending.
+  [[nodiscard]] std::vector<Index> points_of(int rank) const;
   /// Nodes of a rank that are none of its cells.
   [[nodiscard]] const std::vector<Index>& more_nodes(int rank) const {
     return more_nodes_[static_cast<std::size_t>(rank)];

@@ -293,7 +293,7 @@ Bounds bounds_of(const Mesh& mesh) {
                 fmt::format("{}: refined it would have {} cells, more than can be counted", mesh.source, cells));
   const auto faces = static_cast<std::size_t>(of_faces), middles = faces / 6;
   if (mesh.degree == 1) return {count_edges(mesh), faces, middles};
-  // Of the parts, without what they share: 37 edges of those of a tetrahedron, 54 of those of a hexahedron.
+  // Of the parts, without what they share: 25 edges of those of a tetrahedron, 54 of those of a hexahedron.
   return {54 * static_cast<std::size_t>(mesh.cell_count()), 36 * faces, 8 * middles};
 }
 
