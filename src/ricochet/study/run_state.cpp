@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/json.hpp"
 #include "ricochet/io/checkpoint.hpp"
@@ -22,6 +23,18 @@ std::string outcome_path(const std::string& directory) {
   return (std::filesystem::path(directory) / outcome_file).string();
 }
 
+bool is_done(const RunState& state) {
+  return state.summary && state.summary->status == "done";
+}
+
+/// What tells one summary from another; of none, that of no bytes.
+std::string summary_checksum(const std::string& directory) {
+  const std::string path = (std::filesystem::path(directory) / "summary.json").string();
+  std::error_code ignored;
+  const std::string text = std::filesystem::exists(path, ignored) ? read_file(path) : "";
+  return Checksum().add_bytes(text.data(), text.size()).text();
+}
+
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
@@ -29,7 +42,8 @@ std::string first_line(const std::string& text) {
 }  // namespace
 
 std::optional<int> RunState::final_status() const {
-  if (summary && summary->status == "done") {
+  const bool ended_well = !exit_status || exit_status == unexpected_status;
+  if (is_done(*this) && ended_well) {
     const auto& all = summary->expectations;
     const bool hold = std::all_of(all.begin(), all.end(), [](const auto& e) { return !e.checked || e.holds; });
     return hold ? 0 : unexpected_status;
@@ -45,7 +59,7 @@ std::string RunState::word() const {
 }
 
 NextAction next_action(const RunState& state) {
-  if (state.summary && state.summary->status == "done") return NextAction::nothing;
+  if (state.word() == "done") return NextAction::nothing;
   if (state.exit_status == refused_status) return NextAction::nothing;
   // Status 3 without a summary that knows of it: out of memory, which may be otherwise next time.
   const bool knows = state.summary && state.summary->status == "failed";
@@ -69,6 +83,8 @@ RunState read_run_state(const std::string& directory) {
   if (!std::filesystem::exists(outcome_path(directory), ignored)) return state;
   try {
     const Json json = Json::parse(read_file(outcome_path(directory)));
+    // Somebody has gone on with the run by hand, to its end: how an earlier process ended no longer matters.
+    if (is_done(state) && json.value("summary", "") != summary_checksum(directory)) return state;
     state.exit_status = json.at("exit_status").get<int>();
     state.message = json.at("message").get<std::string>();
   } catch (const Json::Exception&) {  // then it is not known, and the run is tried again
@@ -80,7 +96,8 @@ void record_outcome(const std::string& directory, int exit_status, const std::st
   std::error_code ignored;
   std::filesystem::remove(outcome_path(directory), ignored);
   if (exit_status == 0) return;
-  write_durably(outcome_path(directory), Json{{"exit_status", exit_status}, {"message", message}}.dump(2) + "\n");
+  const Json outcome{{"exit_status", exit_status}, {"message", message}, {"summary", summary_checksum(directory)}};
+  write_durably(outcome_path(directory), outcome.dump(2) + "\n");
 }
 
 std::string last_error(const std::string& messages, const std::string& run_name) {

@@ -16,11 +16,11 @@ struct RunState {
   std::optional<RunSummary> summary;  ///< none: there is none, or it cannot be read
   std::string summary_json;
   bool has_checkpoint = false;
-  std::optional<int> exit_status;  ///< that its process has left, where it was not 0; 128 + N: signal N killed it
+  std::optional<int> exit_status;  ///< that its last process has left, where not 0; 128 + N: signal N killed it
   std::string message;             ///< with that status, one line
 
-  /// The status that the study gives it: 0, 5 where an expectation does not hold, or that of its process. Nothing where
-  /// it has not come to an end.
+  /// The status that the study gives it: that of its process where it was not 0, whatever its files say; else 0, or 5
+  /// where an expectation does not hold. Nothing where it has not come to an end.
   [[nodiscard]] std::optional<int> final_status() const;
   /// "done", "refused", "failed", "interrupted" or "not run".
   [[nodiscard]] std::string word() const;

@@ -33,6 +33,8 @@ TEST(RunState, DecidesWhatIsStillToBeDone) {
   EXPECT_EQ(next_action(state("failed", 4)), NextAction::resume) << "the disk was full";
   EXPECT_EQ(next_action(state("running", 137)), NextAction::resume) << "its process was killed";
   EXPECT_EQ(next_action(state("", 4)), NextAction::start);
+  EXPECT_EQ(next_action(state("done", 5)), NextAction::nothing);
+  EXPECT_EQ(next_action(state("done", 139)), NextAction::resume) << "its process was killed after its last step";
 }
 
 TEST(RunState, SaysWhatHasBecomeOfIt) {
@@ -41,6 +43,8 @@ TEST(RunState, SaysWhatHasBecomeOfIt) {
   EXPECT_EQ(state("done").word(), "done");
   EXPECT_EQ(state("", 2).word(), "refused");
   EXPECT_EQ(state("failed", 3).word(), "failed");
+  EXPECT_EQ(state("done", 139).word(), "failed");
+  EXPECT_EQ(state("done", 139).final_status(), 139);
   RunState unexpected = state("done");
   unexpected.summary->expectations.push_back({.quantity = "a", .holds = false});
   EXPECT_EQ(unexpected.final_status(), 5);
@@ -62,6 +66,11 @@ TEST(RunState, IsReadFromItsDirectory) {
   summary.expectations.push_back({.quantity = "q", .wanted = "≤ 1", .holds = false});
   write_summary(folder.file("summary.json"), summary);
   EXPECT_EQ(read_run_state(directory).final_status(), 5);
+  record_outcome(directory, 139, "its process was killed by signal 11");
+  EXPECT_EQ(read_run_state(directory).final_status(), 139);
+  summary.steps = 1;
+  write_summary(folder.file("summary.json"), summary);
+  EXPECT_EQ(read_run_state(directory).final_status(), 5) << "it was run again by hand";
   std::ofstream(folder.file("summary.json")) << "{";
   EXPECT_FALSE(read_run_state(directory).summary.has_value());
 }
