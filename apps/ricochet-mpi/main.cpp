@@ -90,6 +90,7 @@ int dispatch(int argc, char** argv, const WorldRanks& ranks, const Communicator&
 int end(const WorldRanks& ranks, int status, const std::string& message) {
   if (Processes::all_arrive(patience)) {
     if (ranks.is_first()) std::fputs(fmt::format("ricochet-mpi: {}\n", message).c_str(), stderr);
+    program::stop_silently();  // mpirun stops those that end a little later
     return status;
   }
   std::fputs(fmt::format("ricochet-mpi: process {} of {}: {}\n", ranks.rank(), ranks.size(), message).c_str(), stderr);
@@ -104,10 +105,11 @@ int main(int argc, char** argv) {
   program::keep_memory();
   program::open_closed_streams();
   prepare_blas();  // before there are threads
-  program::wait_for_stop_signals();
+  program::wait_for_stop_signals("ricochet-mpi");
   const Processes processes(argc, argv);
   const Communicator world = Communicator::world();
   const WorldRanks ranks(world);
+  if (!ranks.is_first()) program::stop_silently();
   try {
     return dispatch(argc, argv, ranks, world);
   } catch (const Error& problem) {

@@ -9,10 +9,12 @@
 #include "outcome_text.hpp"
 #include "penetration_text.hpp"
 #include "progress_text.hpp"
+#include "ricochet/base/checksum.hpp"
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/run_name.hpp"
 #include "ricochet/base/text.hpp"
 #include "ricochet/io/checkpoint.hpp"
+#include "ricochet/io/durable_file.hpp"
 #include "ricochet/io/progress.hpp"
 #include "ricochet/io/run_directory.hpp"
 #include "ricochet/run/old_run.hpp"
@@ -79,8 +81,36 @@ RunArguments with_origin(RunArguments arguments) {
 
 }  // namespace
 
+namespace {
+
+/// Each process reads the case. Throws Error(file_access) on all where some cannot, or read another text.
+void require_same_case_file(const Ranks& ranks, const std::string& path) {
+  constexpr double unreadable = -1.0;
+  double own = unreadable;
+  try {
+    const std::string text = read_file(path);
+    own = static_cast<double>(Checksum().add_bytes(text.data(), text.size()).value());
+  } catch (const Error&) {  // reading the case says why, where no process can
+  }
+  const Ranks::ForEach<double> all = ranks.of_all({own});
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (all[i] == all[0]) continue;
+    const bool is_missing = all[i][0] == unreadable || all[0][0] == unreadable;
+    throw Error(
+        ErrorKind::file_access,
+        fmt::format("{}: {}: put the case where all machines have it under this name, as in a shared folder", path,
+                    is_missing
+                        ? fmt::format("process {} of {} cannot read it", all[0][0] == unreadable ? 0 : i, all.size())
+                        : fmt::format("process {} of {} reads another text than process 0", i, all.size())));
+  }
+}
+
+}  // namespace
+
 int run(const RunArguments& given) {
-  const RunArguments arguments = with_origin(given);
+  RunArguments arguments;
+  given.ranks->together([&] { arguments = with_origin(given); });
+  if (given.ranks->are_several()) require_same_case_file(*given.ranks, arguments.case_file);
   RunOptions options;
   options.output_directory = arguments.output_directory;
   options.settings = arguments.overrides;

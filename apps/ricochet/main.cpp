@@ -335,7 +335,7 @@ int dispatch(int argc, char** argv) {
 int run_program(int argc, char** argv) {
   try {
     prepare_blas();  // before there are threads; and whatever is asked for, an environment that is wrong is refused
-    program::wait_for_stop_signals();
+    program::wait_for_stop_signals("ricochet");
     const int status = dispatch(argc, argv);
     program::flush_standard_output();
     return status;

@@ -25,6 +25,11 @@ constexpr int patience = 1200;
 constexpr std::chrono::milliseconds same_request{250};
 
 std::atomic<int> received = 0;
+std::atomic<const char*> speaker = nullptr;  ///< null: says nothing
+
+void say(const std::string& what) {
+  if (const char* name = speaker) interruption::say(fmt::format("\n{}: {}\n", name, what).c_str());
+}
 
 // SIGHUP: the terminal or the connection to it has gone.
 constexpr int stop_signals[] = {SIGINT, SIGTERM, SIGHUP};
@@ -81,10 +86,10 @@ void wait(const sigset_t& awaited) {
   if (const int second = next_request(awaited, first, instant, 0); second != 0) _exit(128 + second);
   received = first;
   if (interruption::has_stopping_points()) {
-    interruption::say("\nricochet: stopping at the end of this step; once more stops at once\n");
+    say("stopping at the end of this step; once more stops at once");
     if (const int second = next_request(awaited, first, instant, patience); second != 0) _exit(128 + second);
   } else {
-    interruption::say(fmt::format("\nricochet: stopped by SIG{}\n", sigabbrev_np(first)).c_str());
+    say(fmt::format("stopped by SIG{}", sigabbrev_np(first)));
   }
   end_process(first);
   const int second = next_request(awaited, first, instant, -1);
@@ -93,7 +98,8 @@ void wait(const sigset_t& awaited) {
 
 }  // namespace
 
-void wait_for_stop_signals() {
+void wait_for_stop_signals(const char* program_name) {
+  speaker = program_name;
   // A file that may not grow any more is an error like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   sigset_t awaited;
@@ -108,6 +114,10 @@ void wait_for_stop_signals() {
   } catch (const std::system_error&) {  // no room for a thread: signals end the process as they do elsewhere
     pthread_sigmask(SIG_UNBLOCK, &awaited, nullptr);
   }
+}
+
+void stop_silently() {
+  speaker = nullptr;
 }
 
 int stop_signal() {

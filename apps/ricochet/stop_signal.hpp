@@ -4,8 +4,10 @@
 /// that takes too long, and in all other work, the process ends in the middle of it. A second one ends it at once.
 namespace ricochet::program {
 
-/// Second in main(): a thread waits for signals from here on.
-void wait_for_stop_signals();
+/// Second in main(): a thread waits for signals from here on, and says so under the name of the program.
+void wait_for_stop_signals(const char* program_name);
+/// From here on it says nothing: of several processes one speaks.
+void stop_silently();
 
 /// The signal that has come, or 0.
 [[nodiscard]] int stop_signal();

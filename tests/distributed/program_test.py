@@ -18,7 +18,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "end_to_
 import unittest  # noqa: E402
 
 import interrupted_runs  # noqa: E402
-from harness import DISC, SOURCE, TIME_LIMIT, History, TestCase, run, settings, wait_for, with_more  # noqa: E402
+from harness import (DISC, SOURCE, TIME_LIMIT, History, TestCase, block_case, run, settings, wait_for,
+                     with_more)  # noqa: E402
 
 PROGRAM = os.environ["RICOCHET_MPI_PROGRAM"]
 MPIRUN = os.environ["RICOCHET_MPIRUN"]
@@ -86,7 +87,7 @@ def several(ranks, *arguments, directory=None):
 
 def own_lines(text):
     """Without what mpirun says."""
-    return [line for line in text.splitlines() if line.startswith("ricochet-mpi:")]
+    return [line for line in text.splitlines() if line.startswith("ricochet")]
 
 
 def processes_of(process):
@@ -307,6 +308,45 @@ class Refusals(Distributed):
     def test_of_bad_input_come_once(self):
         self.expect(self.bounce(3, "bad", values={"material.0.density": -1.0}), 2, "density")
         self.expect(several(2, "run", self.folder / "none.toml"), 4, "none.toml")
+        (self.folder / "taken").write_text("a file")
+        self.expect(self.bounce(3, "taken"), 4, "taken", "cannot make this directory")
+        few = self.write("few.toml", block_case())
+        self.expect(several(30, "run", few, "-o", self.folder / "few"), 2, "few.toml:", "too few for 30 processes")
+
+    def test_of_a_body_inside_of_an_obstacle_count_all_of_it(self):
+        case = self.write("block.toml", block_case())
+
+        def start_at(height, ranks, name):
+            arguments = ["run", case, "-o", self.folder / name, "--quiet", "--set",
+                         f"obstacle.floor.point=[0.1,{0.2 + height}]", "--set", "obstacle.floor.normal=[0.1,1.2]",
+                         "--set", "solver.method=iterative", "--set", "time.end=0.05"]
+            return several(ranks, *arguments) if ranks > 1 else run(*arguments)
+        alone = start_at(0.05, 1, "deep")
+        self.assertEqual(alone.returncode, 2)
+        self.expect(start_at(0.05, 3, "deep"), 2, alone.stderr.split("deep: ", 1)[-1].strip().removeprefix("ricochet: "))
+        for ranks, name in ((1, "one"), (3, "three")):
+            self.assertEqual(start_at(5e-4, ranks, name).returncode, 0)
+        self.assertTrue(any("inside of an obstacle" in warning for warning in self.summary("one")["warnings"]))
+        self.assertEqual(self.summary("three")["warnings"], self.summary("one")["warnings"])
+
+    def test_of_cases_that_processes_do_not_share(self):
+        """Every other process is in a folder of its own."""
+        case = self.disc.read_text().replace('file = "', f'file = "{self.disc.parent}/')
+        for name in ("a", "b"):
+            (self.folder / name).mkdir()
+            (self.folder / name / "case.toml").write_text(case)
+        arguments = ["run", "case.toml", "-o", self.folder / "run", "--quiet"]
+
+        def run_two():
+            apart = [MPIRUN]
+            for name in ("a", "b"):
+                apart += ["-n", "1", "-wdir", str(self.folder / name), PROGRAM, *map(str, arguments), ":"]
+            return subprocess.run(apart[:-1], text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, timeout=TIME_LIMIT)
+        (self.folder / "b" / "case.toml").write_text(case + "# another\n")
+        self.expect(run_two(), 4, "case.toml", "process 1 of 2 reads another text")
+        (self.folder / "b" / "case.toml").unlink()
+        self.expect(run_two(), 4, "case.toml", "process 1 of 2 cannot read it")
         bad = several(2, "walk")
         self.assertEqual(bad.returncode, 1)
         self.assertEqual(bad.stderr.count("Run with --help"), 1, bad.stderr)

@@ -1,6 +1,7 @@
 #include "ricochet/base/text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <numeric>
 
@@ -67,6 +68,32 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
 std::optional<std::string_view> between(std::string_view text, std::string_view begin, std::string_view end) {
   if (text.size() < begin.size() + end.size() || !text.starts_with(begin) || !text.ends_with(end)) return std::nullopt;
   return text.substr(begin.size(), text.size() - begin.size() - end.size());
+}
+
+std::string form_of(std::string_view message) {
+  const auto is_any_of = [](char c, std::string_view these) { return these.find(c) != std::string_view::npos; };
+  constexpr std::string_view digits = "0123456789";
+  std::string form;
+  bool in_quotes = false;
+  for (std::size_t i = 0; i < message.size(); ++i) {
+    const char c = message[i];
+    if (c == '"') in_quotes = !in_quotes;
+    const bool in_word = i > 0 && (std::isalnum(static_cast<unsigned char>(message[i - 1])) || message[i - 1] == '_');
+    if (in_quotes || in_word || !is_any_of(c, "0123456789-")) {
+      form += c;
+      continue;
+    }
+    std::size_t end = i + 1;
+    while (end < message.size() &&
+           (is_any_of(message[end], "0123456789.e") || (is_any_of(message[end], "+-") && message[end - 1] == 'e')))
+      ++end;
+    const bool is_number = is_any_of(c, digits) || end > i + 1;
+    // A full stop is the sentence's.
+    while (end > i + 1 && !is_any_of(message[end - 1], digits)) --end;
+    form += is_number ? '0' : c;
+    i = end - 1;
+  }
+  return form;
 }
 
 bool is_digits(std::string_view text, std::size_t least, std::size_t most) {

@@ -17,6 +17,10 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
 
 /// What stands between this beginning and this end; none where the text has another form.
 std::optional<std::string_view> between(std::string_view text, std::string_view begin, std::string_view end);
+/// Of a message: every number that stands alone, and not within quotes, is 0. Two that say the same of different places
+/// have the same form.
+std::string form_of(std::string_view message);
+
 /// Decimal digits alone, at least so many and at most so many.
 bool is_digits(std::string_view text, std::size_t least, std::size_t most = std::string_view::npos);
 

@@ -172,7 +172,7 @@ std::unique_ptr<Model> build_divided_model(const Case& input, const Communicator
   WorldRanks(ranks).together([&] {
     if (ranks.rank() > 0) return;
     whole = build_model_without_forces(input, times);
-    refuse_undividable_model(input, *whole);
+    refuse_undividable_model(input, *whole, ranks.size());
     if (whole->initial.static_equilibrium) find_equilibrium(input, *whole);
     division.emplace(whole->space, whole->problem,
                      partition_cells(whole->mesh, ranks.size(), options.method, options.seed));

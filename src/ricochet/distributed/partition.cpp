@@ -98,10 +98,6 @@ std::vector<int> divide_nodes(const Mesh& mesh, int parts) {
 
 std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod method, std::uint64_t seed) {
   const Index cells = mesh.cell_count();
-  if (cells < ranks)
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("{} has {} cells, fewer than the {} ranks of this run: take fewer ranks", mesh.source,
-                            cells, ranks));
   std::vector<int> result(static_cast<std::size_t>(cells), 0);
   if (ranks == 1) return result;
   if (method == PartitionMethod::random) {

@@ -15,7 +15,7 @@ enum class PartitionMethod : char {
 };
 
 /// The rank of each cell, numbered through all blocks. By graph: nodes are divided, and a cell goes where most of its
-/// nodes are, of equals to the first. Throws Error(invalid_input) where there are more ranks than cells.
+/// nodes are, of equals to the first. There are at least as many cells as ranks.
 [[nodiscard]] std::vector<int> partition_cells(const Mesh& mesh, int ranks, PartitionMethod method,
                                                std::uint64_t seed = 0);
 

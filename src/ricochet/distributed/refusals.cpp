@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "ricochet/base/text.hpp"
 #include "ricochet/model/model_parts.hpp"
 
 namespace ricochet {
@@ -38,13 +39,17 @@ void refuse_undividable_case(const Case& input) {
     refuse_several(input, "time.scheme", fmt::format("scheme \"{}\"", input.time.scheme));
 }
 
-void refuse_undividable_model(const Case& input, const Model& whole) {
+void refuse_undividable_model(const Case& input, const Model& whole, int processes) {
   if (has_finite_strain(whole.body)) refuse_several(input, "material", "a body of finite strain");
   if (whole.bodies.connected.count > 1) {
     refuse_several(
         input, input.parts.empty() ? "mesh.file" : "part",
         fmt::format("{} bodies, which nobody would keep from going through each other,", whole.bodies.connected.count));
   }
+  if (const Index cells = whole.mesh.cell_count(); cells < processes)
+    refuse(input, "mesh.file",
+           fmt::format("the mesh has {}, too few for {}: take fewer", counted(cells, "cell"),
+                       counted(processes, "process", "processes")));
 }
 
 }  // namespace ricochet

@@ -7,6 +7,6 @@ namespace ricochet {
 
 /// Throw Error(invalid_input) at the place in the case, and say what runs it.
 void refuse_undividable_case(const Case& input);
-void refuse_undividable_model(const Case& input, const Model& whole);
+void refuse_undividable_model(const Case& input, const Model& whole, int processes);
 
 }  // namespace ricochet

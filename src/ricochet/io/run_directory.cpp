@@ -34,8 +34,13 @@ int open_directory(const std::string& path) {
 
 }  // namespace
 
-RunDirectory::RunDirectory(std::string path, bool holds) : path_(std::move(path)) {
-  if (!holds) return;
+RunDirectory::RunDirectory(std::string path, const Ranks& ranks) : path_(std::move(path)) {
+  ranks.together([&] {
+    if (ranks.is_first()) take();
+  });
+}
+
+void RunDirectory::take() {
   std::error_code problem;
   at_interruption_.emplace([&] { is_new_ = fs::create_directories(path_, problem); },
                            [this] {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ricochet/base/interruption.hpp"
+#include "ricochet/base/ranks.hpp"
 
 /// @file The directory that a run writes into, for one run at a time.
 namespace ricochet {
@@ -13,8 +14,8 @@ class RunDirectory {
  public:
   /// Makes the directory where it is missing, and keeps other runs out of it until this object or the process ends,
   /// however it ends. Throws Error(file_access): it cannot be made or written to, or another run is in it.
-  /// `holds`: false on ranks other than the first, which has it for all.
-  explicit RunDirectory(std::string path, bool holds = true);
+  /// All ranks make one together; the first has the directory for all.
+  explicit RunDirectory(std::string path, const Ranks& ranks = one_rank());
   /// Removes the directory again where this object has made it and nothing has been written into it.
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
@@ -32,6 +33,8 @@ class RunDirectory {
   [[nodiscard]] static bool is_in_use(const std::string& path);
 
  private:
+  void take();
+
   std::string path_;
   int lock_ = -1;
   bool is_new_ = false;

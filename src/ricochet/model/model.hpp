@@ -28,6 +28,7 @@ struct WatchedPlaces {
 /// Of the whole body, whatever part of it is here.
 struct ModelSizes {
   Index nodes = 0, cells = 0, dofs = 0, contact_points = 0, supported_dofs = 0;
+  double extent = 0.0;  ///< the diagonal of the box around the mesh
 };
 
 struct Model {
@@ -69,7 +70,7 @@ struct Model {
 
 /// Throws Error(invalid_input) where contact points begin deeper inside of an obstacle than facets may be off a curved
 /// surface: to push them out creates energy. Not where the start is a static one. For programs that run cases as they
-/// are; a model may begin anywhere.
+/// are; a model may begin anywhere. All ranks call it.
 void refuse_bodies_inside_obstacles(const Case& input, const Model& model);
 
 /// The scheme that [time] asks for.

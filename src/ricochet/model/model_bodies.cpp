@@ -9,6 +9,7 @@
 #include "ricochet/contact/choose_side.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
 #include "ricochet/model/model_parts.hpp"
+#include "ricochet/problem/points_inside.hpp"
 
 /// @file [[contact]] between bodies: which side carries the multipliers, and how the groups face each other.
 namespace ricochet {
@@ -30,31 +31,6 @@ std::string names_of_pair(const ContactPair& pair) {
 /// Of the mesh: what facets that stand for curved surfaces may put bodies into obstacles by.
 constexpr double off_by_facets = 1e-3;
 
-/// The contact points of a pair with a gap below zero by more than rounding, or by more than a given depth.
-struct Overlap {
-  Index inside = 0;
-  double deepest = 0.0;  ///< positive
-  Vector place;          ///< of the deepest, in the mesh
-};
-
-Overlap find_overlap(const Model& model, std::size_t number, const Vector& gap, double depth = 0.0) {
-  const ContactBoundary& contact = model.problem.contact;
-  Overlap result;
-  Index deepest = -1;
-  for (Index i = 0; i < contact.size(); ++i) {
-    if (contact.pair[static_cast<std::size_t>(i)] != static_cast<int>(number)) continue;
-    if (!(gap[i] < -std::max(depth, contact.rows->gap_rounding[i]))) continue;
-    ++result.inside;
-    if (deepest < 0 || gap[i] < gap[deepest]) deepest = i;
-  }
-  if (deepest < 0) return result;
-  result.deepest = -gap[deepest];
-  result.place = Vector::Zero(model.mesh.dimension);
-  contact.visit_own_nodes(deepest,
-                          [&](Index node, double weight) { result.place += weight * model.space.nodes.col(node); });
-  return result;
-}
-
 /// Bodies that pair_at has moved into each other have gone past where they meet: what faces what there is not what will
 /// when they touch.
 void warn_of_overlap_where_paired(const Case& input, std::size_t number, const Model& model) {
@@ -63,14 +39,14 @@ void warn_of_overlap_where_paired(const Case& input, std::size_t number, const M
   const ContactBoundary& contact = model.problem.contact;
   Vector gap = contact.initial_gap;
   for (Index i = 0; i < gap.size(); ++i) gap[i] += contact.rows->normal(i).dot(pair.pair_at);
-  const Overlap overlap = find_overlap(model, number, gap);
-  if (overlap.inside == 0) return;
+  const PointsInside overlap = points_inside(model.problem, gap, static_cast<int>(number));
+  if (overlap.count == 0) return;
   log::warning(fmt::format(
       "{}: {} overlap where pair_at puts them: {} inside of the other body, the deepest by {:.3g} at {} of the mesh, "
       "so that facets are paired past where they will meet; give the displacement at which the bodies begin to touch, "
       "or set initial_gap = \"closed\" where surfaces that touch overlap since their facets are flat",
       input.where(fmt::format("contact.{}.pair_at", number)).text(), names_of_pair(pair),
-      counted(overlap.inside, "contact point is", "contact points are"), overlap.deepest, place_text(overlap.place)));
+      counted(overlap.count, "contact point is", "contact points are"), overlap.deepest, place_text(overlap.place)));
 }
 
 /// What a point sees that slides far is told by its body.
@@ -212,15 +188,15 @@ void check_body_overlaps(const Case& input, const Model& model) {
   for (std::size_t number = 0; number < model.contact_pairs.size(); ++number) {
     const ContactPair& pair = model.contact_pairs[number];
     if (!pair.between_bodies() || pair.tied) continue;
-    const Overlap overlap = find_overlap(model, number, gap);
-    if (overlap.inside == 0) continue;
+    const PointsInside overlap = points_inside(model.problem, gap, static_cast<int>(number));
+    if (overlap.count == 0) continue;
     refuse(
         input, fmt::format("contact.{}.group", number),
         fmt::format("{} overlap at the start: {} inside of the other body, the deepest by {:.3g} at {}, and would be "
                     "pushed out at once, which creates energy; move the bodies apart, set initial_gap = \"closed\" "
                     "where surfaces that touch overlap since their facets are flat, or set initial.displacement = "
                     "\"static\" for a press fit",
-                    names_of_pair(pair), counted(overlap.inside, "contact point is", "contact points are"),
+                    names_of_pair(pair), counted(overlap.count, "contact point is", "contact points are"),
                     overlap.deepest, place_text(overlap.place)));
   }
 }
@@ -229,14 +205,15 @@ namespace {
 
 void refuse_overlap_with_obstacle(const Case& input, const Model& model, std::size_t number, const Vector& gap) {
   const ContactPair& pair = model.contact_pairs[number];
-  const Overlap overlap = find_overlap(model, number, gap, off_by_facets * extent(model.mesh.nodes));
-  if (overlap.inside == 0) return;
+  const PointsInside overlap =
+      points_inside(model.problem, gap, static_cast<int>(number), off_by_facets * model.sizes.extent);
+  if (overlap.count == 0) return;
   refuse(input, fmt::format("contact.{}.group", number),
          fmt::format("at the start {} of group \"{}\" {} inside of obstacle \"{}\", the deepest by {:.3g} at {}, and "
                      "would be pushed out at once, which creates energy; move one of them away, look on which side of "
                      "the obstacle the body lies (a plane's normal points out of it, other shapes have a \"side\"), or "
                      "start from initial.displacement = \"static\"",
-                     counted(overlap.inside, "contact point"), pair.group, overlap.inside == 1 ? "is" : "are",
+                     counted(overlap.count, "contact point"), pair.group, overlap.count == 1 ? "is" : "are",
                      pair.obstacle_name, overlap.deepest, place_text(overlap.place)));
 }
 

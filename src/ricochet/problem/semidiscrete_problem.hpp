@@ -64,6 +64,9 @@ struct SemidiscreteProblem {
   [[nodiscard]] bool has_singular_mass() const { return has_massless_elsewhere || !massless_dofs.empty(); }
   /// Of all ranks, which ask together.
   [[nodiscard]] bool has_diagonal_mass() const { return !ranks->any(!mass.is_diagonal()); }
+  [[nodiscard]] Index all_contact_points() const {
+    return static_cast<Index>(ranks->sum(static_cast<double>(contact.size())));
+  }
   [[nodiscard]] bool has_contact_dofs() const { return has_contact_elsewhere || !contact_dofs.empty(); }
   /// What values per dof are on contact_dofs, and the other way. (Eigen's indexed views copy their indices.)
   void take_contact(const Vector& values, Eigen::Ref<Vector> on_contact) const;

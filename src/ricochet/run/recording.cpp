@@ -8,6 +8,7 @@
 #include "ricochet/base/error.hpp"
 #include "ricochet/base/log.hpp"
 #include "ricochet/fem/connected_bodies.hpp"
+#include "ricochet/problem/points_inside.hpp"
 
 namespace ricochet {
 
@@ -49,7 +50,7 @@ ImpactRecorder make_impact_recorder(const Model& model, const Scheme& scheme, co
   ImpactRecorder impacts(model.problem, scheme, state, model.contact_pairs, model.bodies.connected.of_node,
                          model.bodies.crossing_times);
   if (!model.initial.static_equilibrium)
-    impacts.begin_inside(points_inside(model.problem, model.initial.displacement).points);
+    impacts.begin_inside(points_inside_at_start(model.problem, model.initial.displacement).points);
   return impacts;
 }
 

@@ -55,7 +55,7 @@ Run::Run(Session& session, const RunOptions& options)
       input_(session.input()),
       options_(options),
       ranks_(*options.ranks),
-      directory_(options.output_directory, options.ranks->is_first()),
+      directory_(options.output_directory, *options.ranks),
       steps_(session.steps()),
       of_reading_(static_cast<std::ptrdiff_t>(session.warnings().size())),
       at_interruption_([this] { end_early(); }) {}

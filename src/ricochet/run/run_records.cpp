@@ -166,7 +166,8 @@ void Run::describe_processes(RunSummary& summary) const {
                                     most_per_step(now.reductions, traffic_before_.reductions)};
 }
 
-/// What ranks have found in their parts of the body. Warnings are said by the first.
+/// What ranks have found in their parts of the body. Warnings are said by the first; of those that several ranks have,
+/// each of places of its own, once.
 void Run::gather_from_ranks(RunSummary& summary) {
   if (!ranks_.are_several()) return;
   describe_processes(summary);
@@ -177,7 +178,9 @@ void Run::gather_from_ranks(RunSummary& summary) {
     merge_findings(other, summary);
     for (const std::string& warning : other.warnings) {
       const std::vector<std::string>& said = session_.warnings();
-      if (std::find(said.begin(), said.end(), warning) == said.end()) log::warning(warning);
+      if (std::none_of(said.begin(), said.end(),
+                       [&, form = form_of(warning)](const std::string& before) { return form_of(before) == form; }))
+        log::warning(warning);
     }
   }
 }

@@ -36,7 +36,11 @@ constexpr const char* nameless = "this time scheme";
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const InitialConditions& initial,
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
-    : problem_(problem), scheme_(scheme), options_(options), whole_step_(scheme.step()) {
+    : problem_(problem),
+      contact_points_(problem.all_contact_points()),
+      scheme_(scheme),
+      options_(options),
+      whole_step_(scheme.step()) {
   if (!scheme_.takes_nonlinear_force()) require_linear(*problem_.internal_force, nameless);
   require_relaxation(scheme_, problem_, nameless);
   scheme_.analyse(problem_);
@@ -56,7 +60,11 @@ Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const
 
 Simulation::Simulation(const SemidiscreteProblem& problem, Scheme& scheme, const Snapshot& snapshot,
                        const StepSolverOptions& options, const std::optional<StepControlOptions>& control)
-    : problem_(problem), scheme_(scheme), options_(options), whole_step_(scheme.step()) {
+    : problem_(problem),
+      contact_points_(problem.all_contact_points()),
+      scheme_(scheme),
+      options_(options),
+      whole_step_(scheme.step()) {
   for (std::size_t k = 0; k < problem_.free_bodies.size(); ++k)
     problem_.free_bodies[k]->load(snapshot, fmt::format("free_body.{}", k));
   state_ = load_state(problem_, snapshot, "state");
@@ -236,9 +244,9 @@ void Simulation::attempt_step() {
     const std::string advice = kind != ErrorKind::not_converged ? ""
                                : has_critical_step              ? "; try a smaller time.step"
                                                    : "; try a smaller time.step, or a finer mesh where contact begins";
-    throw Error(kind, fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}{}", state_.step + 1,
-                                  state_.time + scheme_.step(), scheme_.step(), problem_.contact.size(), problem.what(),
-                                  advice));
+    throw Error(kind,
+                fmt::format("step {} (t = {:.9g}, step size {:.3g}, {} contact points): {}{}", state_.step + 1,
+                            state_.time + scheme_.step(), scheme_.step(), contact_points_, problem.what(), advice));
   }
   if (problem_.contact.follows_motion()) problem_.contact.geometry->end_step();
   state_.iterations = iterations_;

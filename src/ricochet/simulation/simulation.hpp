@@ -87,6 +87,7 @@ class Simulation : private StageSolve {
   }
 
   const SemidiscreteProblem& problem_;
+  Index contact_points_;  ///< of all ranks
   Scheme& scheme_;
   State state_;
   StepSolverOptions options_;

@@ -14,6 +14,7 @@
 #include "ricochet/base/text.hpp"
 #include "ricochet/mass/mass.hpp"
 #include "ricochet/problem/contact_conditions.hpp"
+#include "ricochet/problem/points_inside.hpp"
 #include "ricochet/problem/viscous_force.hpp"
 #include "ricochet/simulation/finite_equilibrium.hpp"
 #include "ricochet/simulation/starting_stage.hpp"
@@ -45,6 +46,8 @@ void take_supports(const SemidiscreteProblem& problem, double step, State& state
     state.displacement[dof] = values[i];
     state.velocity[dof] = velocities[i];
   }
+  largest_change = problem.ranks->maximum(largest_change);
+  largest_velocity_change = problem.ranks->maximum(largest_velocity_change);
   if (largest_change > 0.0 || largest_velocity_change > 0.0) {
     log::info(
         fmt::format("initial conditions on supported boundaries follow the supports: displacement changed by up to "
@@ -188,31 +191,16 @@ namespace {
 
 /// What is deeper is refused (model_bodies.cpp).
 void warn_of_overlap(const SemidiscreteProblem& problem, const State& state) {
-  const PointsInside inside = points_inside(problem, state.displacement);
-  const auto& points = inside.points;
-  if (points.empty()) return;
+  const PointsInside inside = points_inside_at_start(problem, state.displacement);
+  const Index points = problem.all_contact_points();
+  if (inside.count == 0) return;
   log::warning(
       fmt::format("at the start {} of {} {} inside of an obstacle, the deepest by {:.3g}, as where facets stand "
                   "for a curved surface: they are pushed out at once, which creates energy; move the body away by that",
-                  points.size(), counted(problem.contact.size(), "contact point"), points.size() == 1 ? "is" : "are",
-                  inside.deepest));
+                  inside.count, counted(points, "contact point"), inside.count == 1 ? "is" : "are", inside.deepest));
 }
 
 }  // namespace
-
-PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& displacement) {
-  Vector gap;
-  problem.gaps(displacement, 0.0, gap);
-  PointsInside inside;
-  for (Index i = 0; i < gap.size(); ++i) {
-    if (!(gap[i] < -problem.contact.rows->gap_rounding[i])) continue;
-    inside.points.push_back(i);
-    if (-gap[i] <= inside.deepest) continue;
-    inside.deepest = -gap[i];
-    inside.deepest_point = i;
-  }
-  return inside;
-}
 
 /// A body that floats above another one is moved by a static start until that one holds it. One that is moved onto an
 /// obstacle is what static starts are for.
@@ -258,23 +246,19 @@ namespace {
 /// reasons of the search are about what came of it.
 [[noreturn]] void refuse_static_from_inside(const SemidiscreteProblem& problem, const PointsInside& inside,
                                             const Error& reason) {
-  Vector place = Vector::Zero(problem.dimension);
-  problem.contact.visit_own_nodes(inside.deepest_point,
-                                  [&](Index node, double weight) { place += weight * problem.nodes.col(node); });
-  const int contact = problem.contact.pair[static_cast<std::size_t>(inside.deepest_point)];
   constexpr std::string_view key = "initial.displacement = \"static\": ";
   std::string search = reason.what();
   if (search.starts_with(key)) search.erase(0, key.size());
-  const bool at_obstacle = problem.obstacles[static_cast<std::size_t>(contact)] != nullptr;
+  const bool at_obstacle = problem.obstacles[static_cast<std::size_t>(inside.pair)] != nullptr;
   throw Error(
       reason.kind(),
       fmt::format("initial.displacement = \"static\": without it {} of {} {} inside of {}, the deepest by {:.3g} at "
                   "({:.6g}) (contact.{}), and pushing them out has led to no equilibrium. {}, so that no more overlaps "
                   "than a press fit takes, a part of a cell; a body that nothing presses on another one needs a "
                   "[[support]], or no static start. The search says: {}",
-                  inside.points.size(), counted(problem.contact.size(), "contact point"),
-                  inside.points.size() == 1 ? "is" : "are", at_obstacle ? "their obstacle" : "the other body",
-                  inside.deepest, fmt::join(place, ", "), contact,
+                  inside.count, counted(problem.contact.size(), "contact point"), inside.count == 1 ? "is" : "are",
+                  at_obstacle ? "their obstacle" : "the other body", inside.deepest, fmt::join(inside.place, ", "),
+                  inside.pair,
                   at_obstacle ? "Move the obstacle or the body (a plane's normal points out of it, a sphere has a side)"
                               : "Move the bodies apart",
                   search));
@@ -286,11 +270,15 @@ StaticEquilibrium find_static_equilibrium(const SemidiscreteProblem& problem, co
                                           const StepSolverOptions& options) {
   const Vector undeformed = Vector::Zero(problem.dof_count());
   try {
-    return problem.internal_force->is_linear() ? static_equilibrium(problem, undeformed, velocity, options)
-                                               : finite_equilibrium(problem, undeformed, options);
+    StaticEquilibrium found = problem.internal_force->is_linear()
+                                  ? static_equilibrium(problem, undeformed, velocity, options)
+                                  : finite_equilibrium(problem, undeformed, options);
+    log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(problem, found.displacement)));
+    warn_of_closed_gaps(problem, found.normal_reaction);
+    return found;
   } catch (const Error& reason) {
-    const PointsInside inside = points_inside(problem, undeformed);
-    if (inside.points.empty()) throw;
+    const PointsInside inside = points_inside_at_start(problem, undeformed);
+    if (inside.count == 0) throw;
     refuse_static_from_inside(problem, inside, reason);
   }
 }
@@ -304,8 +292,6 @@ State make_starting_state(const SemidiscreteProblem& problem, const InitialCondi
         initial.found ? *initial.found : find_static_equilibrium(problem, initial.velocity, options);
     state.displacement = std::move(equilibrium.displacement);
     pressed = std::move(equilibrium.normal_reaction);
-    log::info(fmt::format("static equilibrium displaces nodes by up to {:.3g}", largest(problem, state.displacement)));
-    warn_of_closed_gaps(problem, pressed);
   } else {
     state.displacement = initial.displacement;
     require_upright_cells(problem, state.displacement);

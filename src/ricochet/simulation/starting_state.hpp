@@ -18,18 +18,10 @@ struct InitialConditions {
   std::optional<StaticEquilibrium> found = {};
 };
 
-/// From the undeformed body. Throws Error(invalid_input) or Error(not_converged) which says why there is none, and
-/// where the body lies inside of something.
+/// From the undeformed body; warns of gaps that it closes. Throws Error(invalid_input) or Error(not_converged) which
+/// says why there is none, and where the body lies inside of something.
 [[nodiscard]] StaticEquilibrium find_static_equilibrium(const SemidiscreteProblem& problem, const Vector& velocity,
                                                         const StepSolverOptions& options);
-
-/// Contact points that a displacement puts inside their obstacle at t = 0, by more than rounding.
-struct PointsInside {
-  std::vector<Index> points;
-  double deepest = 0.0;  ///< of them, positive
-  Index deepest_point = -1;
-};
-[[nodiscard]] PointsInside points_inside(const SemidiscreteProblem& problem, const Vector& displacement);
 
 /// Displacement, velocity, acceleration and forces that satisfy the momentum equation at t = 0:
 ///   supported dofs take their prescribed displacement, and velocity and acceleration from its first values (spacing
