@@ -74,16 +74,23 @@ void print_critical_step(double step, double critical) {
   fmt::print("  critical step {:.6g}; the step is {:.3g} of it\n", critical, step / critical);
 }
 
+std::string refinement_text(int refinements) {
+  if (refinements == 0) return "";
+  return fmt::format(", its cells cut {}", refinements == 1 ? "once" : fmt::format("{} times", refinements));
+}
+
 void print_files(const Case& input) {
   const char* const axisymmetric = input.mesh.plane == "axisymmetric" ? ", axisymmetric" : "";
   if (input.parts.empty()) {
-    fmt::print("  mesh    {} (displacement of degree {}{})\n", input.mesh.file, input.mesh.degree, axisymmetric);
+    fmt::print("  mesh    {}{} (displacement of degree {}{})\n", input.mesh.file,
+               refinement_text(input.mesh.refinements), input.mesh.degree, axisymmetric);
     return;
   }
   fmt::print("  mesh    of {} (displacement of degree {}{})\n", counted(input.parts.size(), "part"), input.mesh.degree,
              axisymmetric);
   for (const PartSection& part : input.parts)
-    fmt::print("  part \"{}\": {}{}\n", part.name, part.file, placement_text(part));
+    fmt::print("  part \"{}\": {}{}{}\n", part.name, part.file, refinement_text(part.refinements),
+               placement_text(part));
 }
 
 /// Files that are not meshed yet, and must not be without being asked.
@@ -95,8 +102,8 @@ std::string unmeshed_files(const Case& input) {
   return join_names(paths, " and ", false);
 }
 
-void describe_case(const std::string& path) {
-  const Case input = read_case(path);
+void describe_case(const std::string& path, const std::vector<std::string>& overrides) {
+  const Case input = read_case(path, overrides);
   fmt::print("{}: {}\n", path, input.title.empty() ? "a case" : input.title);
   print_files(input);
   for (const MaterialSection& m : input.materials) {
@@ -183,13 +190,22 @@ void describe_result(const std::string& directory) {
   for (const std::string& warning : s.warnings) fmt::print("  warning: {}\n", warning);
 }
 
+bool is_case(const std::string& path) {
+  return !fs::is_directory(path) && fs::path(path).extension() == ".toml";
+}
+
 bool is_result(const std::string& path) {
   return fs::is_directory(path);
 }
 
 }  // namespace
 
-int info(const std::vector<std::string>& paths) {
+int info(const InfoArguments& arguments) {
+  const std::vector<std::string>& paths = arguments.paths;
+  for (const std::string& path : paths) {
+    if (!arguments.overrides.empty() && !is_case(path))
+      throw Error(ErrorKind::usage, fmt::format("info: --set changes a case file, and {} is none", path));
+  }
   const bool any_study =
       std::any_of(paths.begin(), paths.end(), holds_study) || std::any_of(paths.begin(), paths.end(), holds_benchmarks);
   if (paths.size() > 1 && !any_study && std::all_of(paths.begin(), paths.end(), is_result)) {
@@ -204,8 +220,8 @@ int info(const std::vector<std::string>& paths) {
       describe_benchmarks(path);
     } else if (is_result(path)) {
       describe_result(path);
-    } else if (fs::path(path).extension() == ".toml") {
-      describe_case(path);
+    } else if (is_case(path)) {
+      describe_case(path, arguments.overrides);
     } else if (fs::path(path).extension() == ".ckpt") {
       describe_checkpoint(path);
     } else if (is_foreign_mesh(path)) {  // some of which are HDF5 files, too

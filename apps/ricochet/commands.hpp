@@ -28,6 +28,10 @@ struct ValidateArguments {
   bool mesh = false;  ///< also where that takes the gmsh program, and was not done before
 };
 
+struct InfoArguments {
+  std::vector<std::string> paths, overrides;
+};
+
 struct ContactArguments {
   std::string problem;
   std::string solver = "automatic";
@@ -72,7 +76,7 @@ struct BenchmarkArguments {
 
 int run(const RunArguments& arguments);
 int validate(const ValidateArguments& arguments);
-int info(const std::vector<std::string>& paths);
+int info(const InfoArguments& arguments);
 int schema(bool markdown);
 int contact(const ContactArguments& arguments);
 int report(const ReportArguments& arguments);

@@ -39,7 +39,7 @@ struct Arguments {
   program::PlotArguments plot;
   program::StudyArguments study;
   program::BenchmarkArguments benchmark;
-  std::vector<std::string> info_paths;
+  program::InfoArguments info;
   std::string shell;
   bool markdown = false;
   std::string log_level = "info";
@@ -228,9 +228,12 @@ int dispatch(int argc, char** argv) {
       "info",
       "Describe a mesh, a case, a contact problem, a checkpoint, or a run that goes on or has ended, in a few lines; "
       "several runs are compared in a table");
-  info->add_option("path", arguments.info_paths, "mesh, case file, FCLib file, checkpoint or output directory")
+  info->add_option("path", arguments.info.paths, "mesh, case file, FCLib file, checkpoint or output directory")
       ->required()
       ->type_name("FILE_OR_DIR");
+  info->add_option("--set", arguments.info.overrides, "override an entry of a case")
+      ->type_name("key.path=value")
+      ->allow_extra_args(false);
   add_common(*info, arguments.log_level);
 
   CLI::App* contact = app.add_subcommand("contact", "Solve a contact problem from an FCLib file");
@@ -318,7 +321,7 @@ int dispatch(int argc, char** argv) {
     reserve_blas_memory(arguments.threads);
   if (run->parsed()) return program::run(arguments.run);
   if (validate->parsed()) return program::validate(arguments.validate);
-  if (info->parsed()) return program::info(arguments.info_paths);
+  if (info->parsed()) return program::info(arguments.info);
   if (contact->parsed()) return program::contact(arguments.contact);
   if (plot->parsed()) return program::plot(arguments.plot);
   if (app.got_subcommand("study")) return program::study(arguments.study);

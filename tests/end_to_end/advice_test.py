@@ -39,6 +39,15 @@ class Advice(TestCase):
         self.assertIn('group "all": ', case)
         self.assertIn('group "boundary": ', case)
 
+    def test_settings_change_what_is_described(self):
+        case = self.write("case.toml", block_case())
+        text = self.said(case, "--set", "mesh.refine=2", "--set", "time.end=0.5")
+        self.assertIn(", its cells cut 2 times (displacement of degree 1)", text)
+        self.assertIn("to 0.5\n", text)
+        self.assertIn('group "body": 96 cells', text)
+        self.assertIn("--set changes a case file", self.expect_status(1, run("info", MESHES, "--set", "a=1")).stderr)
+        self.assertIn("refined 16 times it would have", self.expect_status(2, run("info", case, "--set", "mesh.refine=16")).stderr)
+
     def test_where_the_mesh_came_to_lie(self):
         placement = "turn = { angle = 30.0, about = [0.1, 0.2] }\nmove = [2.0, 0.5]\n[[material]]"
         case = self.write("case.toml", block_case().replace("[[material]]", placement, 1))

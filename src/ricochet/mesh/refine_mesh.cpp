@@ -5,10 +5,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "ricochet/base/error.hpp"
+#include "ricochet/base/memory.hpp"
 #include "ricochet/mesh/reference_cell.hpp"
 #include "ricochet/mesh/vertex_set_table.hpp"
 
@@ -281,16 +283,32 @@ std::size_t count_edges(const Mesh& mesh) {
   return static_cast<std::size_t>(std::unique(edges.begin(), edges.end()) - edges.begin());
 }
 
-/// Throws where there would be too many to be counted.
-Bounds bounds_of(const Mesh& mesh) {
-  Index cells = 0, of_faces = 0;
+/// Long before memory is full.
+void require_room(const Mesh& mesh, int times) {
+  double cells = 0.0, bytes = 0.0;
   for (const CellBlock& block : mesh.cells) {
-    cells += block.size() * parts_of(block.shape);
+    const double parts =
+        std::pow(static_cast<double>(parts_of(block.shape)), times) * static_cast<double>(block.size());
+    cells += parts;
+    bytes += parts *
+             static_cast<double>(static_cast<std::size_t>(block.nodes_per_cell) * sizeof(Index) + sizeof(std::int64_t));
+  }
+  const double there = physical_memory();
+  if (cells <= std::numeric_limits<int>::max() && bytes <= there) return;
+  throw Error(ErrorKind::invalid_input,
+              fmt::format("{}: refined {} times it would have {:.3g} cells, {}: refine it less often", mesh.source,
+                          times, cells,
+                          bytes > there ? fmt::format("whose nodes' numbers alone need {:.3g} GB of the {:.3g} GB of "
+                                                      "this machine",
+                                                      1e-9 * bytes, 1e-9 * there)
+                                        : "more than can be counted"));
+}
+
+Bounds bounds_of(const Mesh& mesh) {
+  Index of_faces = 0;
+  for (const CellBlock& block : mesh.cells) {
     if (is_tensor(block.shape)) of_faces += block.size() * (dimension(block.shape) == 2 ? 1 : 6);
   }
-  if (cells > std::numeric_limits<int>::max())
-    throw Error(ErrorKind::invalid_input,
-                fmt::format("{}: refined it would have {} cells, more than can be counted", mesh.source, cells));
   const auto faces = static_cast<std::size_t>(of_faces), middles = faces / 6;
   if (mesh.degree == 1) return {count_edges(mesh), faces, middles};
   // Of the parts, without what they share: 25 edges of those of a tetrahedron, 54 of those of a hexahedron.
@@ -315,6 +333,7 @@ void refine_once(Mesh& mesh) {
 }  // namespace
 
 void refine(Mesh& mesh, int times) {
+  require_room(mesh, times);
   for (int i = 0; i < times; ++i) refine_once(mesh);
 }
 

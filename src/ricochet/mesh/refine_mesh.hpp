@@ -10,7 +10,7 @@ namespace ricochet {
 /// taken. Facets and groups follow. Nodes keep their numbers, and new ones come after them; elements keep the tags of
 /// those that they are parts of, and new nodes have the tag 0. On a geometry of second order all nodes lie on that
 /// geometry, on one of first order on its straight edges: where these stand for a curve it is not found again. `times`
-/// ≥ 0. Throws Error(invalid_input) where there would be more nodes than can be counted.
+/// ≥ 0. Throws Error(invalid_input) where the cells could not be counted or do not fit into memory.
 void refine(Mesh& mesh, int times);
 
 }  // namespace ricochet

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "ricochet/base/error.hpp"
 #include "ricochet/mesh/boundary_facets.hpp"
 #include "support/box_mesh.hpp"
 
@@ -92,6 +93,19 @@ TEST_P(RefineMesh, HasNoTangledCells) {
       EXPECT_GT(edges.determinant(), 0.0);
     }
   }
+}
+
+TEST(RefinedMesh, RefusesMoreCellsThanTheMachineHolds) {
+  Mesh mesh = make_box_mesh(bent_box(CellShape::tetrahedron, 1));
+  const Index before = mesh.cell_count();
+  try {
+    refine(mesh, 16);
+    FAIL() << "it was not refused";
+  } catch (const Error& problem) {
+    EXPECT_EQ(problem.kind(), ErrorKind::invalid_input);
+    EXPECT_NE(std::string(problem.what()).find("refined 16 times it would have "), std::string::npos) << problem.what();
+  }
+  EXPECT_EQ(mesh.cell_count(), before);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RefineMesh,
