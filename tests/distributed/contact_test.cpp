@@ -21,9 +21,11 @@ struct ContactCase {
   double allowed;        ///< relative to the largest value of a column
   const char* preconditioner = "auto";
   bool is_static = false;  ///< lies on the floor in equilibrium, and is pushed
+  bool is_long = false;    ///< so many points touch that they are several zones, of which each home has some
 };
 
 constexpr const char* floor_2d = "type = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.05, 1.0]\n";
+constexpr const char* level_2d = "type = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n";
 constexpr const char* floor_3d = "type = \"plane\"\npoint = [0.0, 0.0, 0.0]\nnormal = [0.02, 0.03, 1.0]\n";
 constexpr const char* ball_2d = "type = \"sphere\"\ncentre = [0.45, -2.0]\nradius = 2.0\nside = \"outside\"\n";
 
@@ -44,8 +46,13 @@ std::string toml_of(const ContactCase& test, const std::string& mesh) {
          "end = 0.06\n";
 }
 
-std::string mesh_of(int dimension) {
-  return dimension == 2
+std::string mesh_of(const ContactCase& test) {
+  if (test.is_long)
+    return test_support::mesh_geometry("ranks-long",
+                                       "Rectangle(1)={0,0,0,40,0.2}; Physical Surface(\"block\")={1}; Physical "
+                                       "Curve(\"bottom\")={1}; Physical Curve(\"side\")={4};",
+                                       0.07, 1);
+  return test.dimension == 2
              ? test_support::mesh_geometry("ranks-2d",
                                            "Rectangle(1)={0,0,0,1,0.5}; Physical Surface(\"block\")={1}; Physical "
                                            "Curve(\"bottom\")={1}; Physical Curve(\"side\")={4};",
@@ -66,7 +73,7 @@ TEST_P(Contact, IsThatOfOneRank) {
   std::string path;
   // One makes the files that all read.
   for (int rank = 0; rank < world.size(); ++rank) {
-    if (rank == world.rank()) path = test_support::write_temporary("case.toml", toml_of(test, mesh_of(test.dimension)));
+    if (rank == world.rank()) path = test_support::write_temporary("case.toml", toml_of(test, mesh_of(test)));
     wait();
   }
   Session whole(path), own(path, {std::string("solver.preconditioner=") + test.preconditioner});
@@ -92,7 +99,10 @@ TEST_P(Contact, IsThatOfOneRank) {
     ASSERT_TRUE(own.step());
     take_rows();
   }
-  EXPECT_GT(most_points, 2.0);  // there is contact
+  EXPECT_GT(most_points, test.is_long ? 512.0 : 2.0);  // there is contact
+  const Ranks& ranks = *own.model().problem.ranks;
+  const double homes = ranks.sum(own.simulation().factor_entries() > 0 ? 1.0 : 0.0);
+  EXPECT_EQ(homes, test.is_long ? std::min(ranks.size(), 4) : 1.0);
   const auto largest = [&](const std::string& name) {
     const std::size_t column = column_index(expected.columns(), name);
     double result = 0.0;
@@ -141,6 +151,7 @@ INSTANTIATE_TEST_SUITE_P(
                         ContactCase{"gamg", 3, "friction = 0.3\n", floor_3d, kane, 1e-9, "gamg"},
                         ContactCase{"boomeramg", 2, "friction = 0.3\n", floor_2d, newmark, 1e-9, "boomeramg"},
                         ContactCase{"mumps", 3, "", floor_3d, newmark, 1e-9, "mumps"},
+                        ContactCase{"long", 2, "friction = 0.3\n", level_2d, newmark, 1e-9, "auto", false, true},
                         ContactCase{"cylinder", 2, "friction = 0.2\n", ball_2d, kane, 1e-8}),
         testing::Values(PartitionMethod::graph, PartitionMethod::random)),
     [](const auto& info) {

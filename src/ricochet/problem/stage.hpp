@@ -107,6 +107,14 @@ struct StageSolution {
   double path_friction_work = 0.0;  ///< of tangential reactions along the path
   double end_weight = 1.0;          ///< μ of this stage
 
+  /// No reactions: so many points, d − 1 tangents of each with friction and none without.
+  void open_all(Index points, Index tangents) {
+    normal_reaction.setZero(points);
+    tangential_reaction.setZero(points * tangents);
+    contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
+    clear_mean();
+    iterations = 0;
+  }
   /// The mean reactions are those of the end, until a stage says otherwise.
   void clear_mean() {
     mean_normal_reaction.resize(0);

@@ -47,7 +47,7 @@ void ContactZones::clear() {
 }
 
 /// Clusters of at most so many points with the layers around them, as zones.
-std::vector<ContactZone::Extent> ContactZones::divide(const std::vector<Index>& points, std::size_t most) {
+std::vector<ContactZone::Extent> ContactZones::zones_of(const std::vector<Index>& points, std::size_t most) {
   std::vector<ContactZone::Extent> zones;
   struct Owner {
     std::size_t zone;
@@ -78,22 +78,28 @@ std::vector<ContactZone::Extent> ContactZones::divide(const std::vector<Index>& 
   return zones;
 }
 
-void ContactZones::make(const std::vector<Index>& points) {
+std::size_t ContactZones::divide(const std::vector<Index>& points) {
   clear();
   if (layers_ == 0) layers_ = nearby_.layers_to_solve(points, coefficients_, product_);
   // A layer of the stage makes the motion of a contact node depend on all reactions near it.
-  std::vector<ContactZone::Extent> extents = divide(points, points.size());
+  extents_ = zones_of(points, points.size());
   if (layer_ == nullptr) {
     for (std::size_t most = least_cluster; most < points.size(); most *= 2) {
-      std::vector<ContactZone::Extent> others = divide(points, most);
-      if (dense_work(others) < dense_work(extents)) extents = std::move(others);
+      std::vector<ContactZone::Extent> others = zones_of(points, most);
+      if (dense_work(others) < dense_work(extents_)) extents_ = std::move(others);
     }
   }
-  for (const ContactZone::Extent& extent : extents) {
+  is_one_ = extents_.size() == 1;
+  return extents_.size();
+}
+
+void ContactZones::make_share(std::size_t number, std::size_t count) {
+  for (std::size_t i = number; i < extents_.size(); i += count) {
     zones_.push_back(
-        std::make_unique<ContactZone>(problem_, coefficients_, solved_, extent, product_, all_points_, layer_));
+        std::make_unique<ContactZone>(problem_, coefficients_, solved_, extents_[i], product_, all_points_, layer_));
     zones_.back()->observe(observer_);
   }
+  extents_.clear();
 }
 
 /// The stage on the correction: q and p at x instead of at δ = 0. All zones begin from the same residual.
@@ -107,7 +113,7 @@ void ContactZones::solve(const Stage& stage, const Vector& residual, Vector& x, 
     stage.rows->tangential_motion(x, slip_);
     stage_.slip_offset += stage.slip_factor * slip_;
   }
-  if (zones_.size() == 1) {
+  if (is_one_) {
     zones_.front()->solve(stage_, stage.eligible, residual, correction_, x, solution);
     return;
   }

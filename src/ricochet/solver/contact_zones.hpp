@@ -24,7 +24,13 @@ class ContactZones final : public NearContact {
                const std::vector<char>& solved, const StageProduct& product, PointsNearby& nearby, bool all_points,
                FactoredStage* layer);
 
-  void make(const std::vector<Index>& points) override;
+  void make(const std::vector<Index>& points) override {
+    divide(points);
+    make_share(0, 1);
+  }
+  /// In two parts, where others make zones, too: how many there are, and every `count`-th one from `number` on.
+  std::size_t divide(const std::vector<Index>& points);
+  void make_share(std::size_t number, std::size_t count);
   void clear() override;
   [[nodiscard]] bool are_made() const override { return !zones_.empty(); }
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
@@ -48,7 +54,7 @@ class ContactZones final : public NearContact {
   [[nodiscard]] std::size_t factor_entries() const override;
 
  private:
-  [[nodiscard]] std::vector<ContactZone::Extent> divide(const std::vector<Index>& points, std::size_t most);
+  [[nodiscard]] std::vector<ContactZone::Extent> zones_of(const std::vector<Index>& points, std::size_t most);
 
   const SemidiscreteProblem& problem_;
   OperatorCoefficients coefficients_;
@@ -59,6 +65,8 @@ class ContactZones final : public NearContact {
   FactoredStage* layer_;
   std::unique_ptr<ContactLayer> motion_layer_;  ///< null: the stage has none
   int layers_ = 0;                              ///< 0: not known yet
+  std::vector<ContactZone::Extent> extents_;    ///< of all zones, until they are made
+  bool is_one_ = false;                         ///< there is no other zone, here or elsewhere
   std::vector<std::unique_ptr<ContactZone>> zones_;
   ContactObserver observer_;
   double earlier_contact_seconds_ = 0.0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <stdexcept>
 
 #include "ricochet/solver/number_reader.hpp"
@@ -78,23 +79,20 @@ SparseRowMatrix with_columns(SparseRowMatrix matrix, Index columns) {
 
 }  // namespace
 
-GatheredContact::GatheredContact(const SemidiscreteProblem& problem) : problem_(problem), d_(problem.dimension) {
+GatheredContact::GatheredContact(const SemidiscreteProblem& problem, std::size_t home)
+    : problem_(problem), d_(problem.dimension) {
   const Ranks& ranks = *problem.ranks;
   const auto size = static_cast<std::size_t>(ranks.size());
   Ranks::ForEach<std::int64_t> told(size, {static_cast<std::int64_t>(problem.contact.size())});
-  int home = 0;
-  std::int64_t most = -1;
   first_.assign(1, 0);
   const Ranks::ForEach<std::int64_t> counts = ranks.exchange(std::move(told));
-  for (std::size_t rank = 0; rank < size; ++rank) {
-    const std::int64_t count = counts[rank].front();
-    first_.push_back(first_.back() + count);
-    if (count > most) {
-      most = count;
-      home = static_cast<int>(rank);
-    }
-  }
-  nodes_ = GatheredNodes(ranks, home, named_by_all(problem.contact.unique_nodes()));
+  for (const std::vector<std::int64_t>& count : counts) first_.push_back(first_.back() + count.front());
+  std::vector<int> by_points(size);
+  std::iota(by_points.begin(), by_points.end(), 0);
+  std::stable_sort(by_points.begin(), by_points.end(), [&](int a, int b) {
+    return counts[static_cast<std::size_t>(a)].front() > counts[static_cast<std::size_t>(b)].front();
+  });
+  nodes_ = GatheredNodes(ranks, by_points.at(home), named_by_all(problem.contact.unique_nodes()));
   gather_boundary();
 }
 

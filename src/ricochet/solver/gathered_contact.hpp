@@ -7,14 +7,14 @@
 #include "ricochet/problem/stage.hpp"
 #include "ricochet/solver/gathered_nodes.hpp"
 
-/// @file The contact points of a body that is divided among ranks, gathered on the one that has most of them: contact
+/// @file The contact points of a body that is divided among ranks, gathered on one of them, their home: contact
 /// problems are solved there. All functions are called by all ranks together.
 namespace ricochet {
 
 class GatheredContact {
  public:
-  /// Keeps a reference to the problem.
-  explicit GatheredContact(const SemidiscreteProblem& problem);
+  /// `home`: 0 is the rank with most contact points, 1 the next one, and so on. Keeps a reference to the problem.
+  explicit GatheredContact(const SemidiscreteProblem& problem, std::size_t home = 0);
 
   [[nodiscard]] bool is_home() const { return nodes_.is_home(); }
   /// The contact nodes.
@@ -29,7 +29,7 @@ class GatheredContact {
   /// A stage at home, of these points of this rank (others are not eligible there), with the gaps and slips that it has
   /// at a motion x: the stage on a correction of x. `points` is the same as that of spread().
   void gather(const Stage& stage, const Vector& x, const std::vector<Index>& points, Stage& at_home);
-  /// What a solution at home says of these points; all others are open. Adds up iterations.
+  /// Adds what a solution at home says of these points: reactions, status and iterations.
   void spread(const StageSolution& at_home, const std::vector<Index>& points, StageSolution& solution) const;
 
   /// At home, of a point of a rank.

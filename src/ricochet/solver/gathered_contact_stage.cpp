@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "ricochet/solver/gathered_contact.hpp"
@@ -19,6 +20,10 @@ double value_of(const Vector& values, Index i) {
 
 void set_value(Vector& values, Index i, double value) {
   if (values.size() > 0) values[i] = value;
+}
+
+void add_value(Vector& values, Index i, double value) {
+  if (values.size() > 0) values[i] += value;
 }
 
 }  // namespace
@@ -136,21 +141,18 @@ void GatheredContact::read_solution(const std::vector<double>& message, const st
   const Index count = problem_.contact.size(), tangents = d_ - 1;
   const bool has_friction = problem_.contact.has_friction();
   NumberReader numbers(message);
-  solution.clear_mean();
   solution.iterations += static_cast<int>(numbers.integer());
   const bool has_mean = numbers.next() != 0.0;
   solution.end_weight = numbers.next();
-  solution.normal_reaction.setZero(count);
-  solution.contact_status.assign(static_cast<std::size_t>(count), ContactStatus::open);
-  solution.tangential_reaction.setZero(has_friction ? count * tangents : 0);
   if (has_mean) solution.mean_normal_reaction.setZero(count);
   if (has_mean && has_friction) solution.mean_tangential_reaction.setZero(count * tangents);
   for (const Index point : points) {
-    solution.normal_reaction[point] = numbers.next();
+    add_value(solution.normal_reaction, point, numbers.next());
     set_value(solution.mean_normal_reaction, point, numbers.next());
-    solution.contact_status[static_cast<std::size_t>(point)] = static_cast<ContactStatus>(numbers.integer());
+    ContactStatus& status = solution.contact_status[static_cast<std::size_t>(point)];
+    status = std::max(status, static_cast<ContactStatus>(numbers.integer()));
     for (Index row = point * tangents; row < (point + 1) * tangents; ++row) {
-      set_value(solution.tangential_reaction, row, numbers.next());
+      add_value(solution.tangential_reaction, row, numbers.next());
       set_value(solution.mean_tangential_reaction, row, numbers.next());
     }
   }

@@ -2,7 +2,8 @@
 
 #include "ricochet/linear_algebra/sparse_matrix.hpp"
 #include "ricochet/solver/factored_stage.hpp"
-#include "ricochet/solver/gathered_zones.hpp"
+#include "ricochet/solver/gathered_contact.hpp"
+#include "ricochet/solver/gathered_matrix.hpp"
 #include "ricochet/solver/stage_operator.hpp"
 #include "ricochet/solver/stage_solver.hpp"
 #include "ricochet/solver/stage_terms.hpp"
@@ -116,7 +117,7 @@ void GatheredStage::solve(const Stage& stage, StageSolution& solution) {
   ranks.together([&] {
     if (stage_) stage_->solve(near_stage_, near_solution_);
   });
-  solution.iterations = 0;
+  solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? d - 1 : 0);
   solution.increment = held_;
   contact_.nodes().spread(near_solution_.increment, d, solution.increment);
   // What is held at a contact node is no part of what is solved for.

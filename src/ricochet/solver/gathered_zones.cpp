@@ -2,244 +2,144 @@
 
 #include <algorithm>
 
-#include "ricochet/solver/contact_zones.hpp"
+#include "ricochet/solver/zones_at_home.hpp"
 
 namespace ricochet {
 
 namespace {
 
+/// Each home has all contact points and what is near them, and hears of all in every round.
+constexpr std::size_t most_homes = 16;
+
 class GatheredZones final : public NearContact {
  public:
-  GatheredZones(const SemidiscreteProblem& problem, const OperatorCoefficients& coefficients,
-                const std::vector<char>& solved, const StageProduct& product, PointsNearby& nearby, bool all_points,
-                GatheredContact& contact, FactoredStage* layer)
-      : problem_(problem),
-        coefficients_(coefficients),
-        solved_(solved),
-        product_(product),
-        nearby_(nearby),
-        all_points_(all_points),
-        contact_(contact),
-        layer_(layer) {}
+  GatheredZones(const NearBody& body, bool all_points, GatheredContact& contact, FactoredStage* layer)
+      : body_(body), all_points_(all_points) {
+    homes_.push_back({nullptr, std::make_unique<ZonesAtHome>(body, all_points, contact, layer)});
+  }
 
   void make(const std::vector<Index>& points) override;
-  void clear() override;
-  [[nodiscard]] bool are_made() const override { return are_made_; }
+  void clear() override {
+    for (const Home& home : homes_) home.zones->clear();
+    active_ = 0;
+  }
+  [[nodiscard]] bool are_made() const override { return active_ > 0; }
   void solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) override;
   void find_motion(const ContactRows& rows, const StageSolution& solution, const Vector& increment,
                    Vector& motion) override;
 
   void save(Snapshot& snapshot, const std::string& name) const override {
-    if (zones_) zones_->save(snapshot, name);
+    visit([&](const ContactZones& zones) { zones.save(snapshot, name); });
   }
   void load(const Snapshot& snapshot, const std::string& name, const std::vector<Index>& points) override {
     make(points);
-    problem_.ranks->together([&] {
-      if (zones_) zones_->load_made(snapshot, name);
-    });
+    body_.problem.ranks->together([&] { visit([&](ContactZones& zones) { zones.load_made(snapshot, name); }); });
   }
   void report() const override {
-    if (zones_) zones_->report();
+    visit([](const ContactZones& zones) { zones.report(); });
   }
   void observe(const ContactObserver& observer) override {
     observer_ = observer;
-    if (zones_) zones_->observe(observer);
+    visit([&](ContactZones& zones) { zones.observe(observer); });
   }
   [[nodiscard]] double contact_seconds() const override {
-    return earlier_seconds_ + (zones_ ? zones_->contact_seconds() : 0.0);
+    double sum = 0.0;
+    for (const Home& home : homes_) sum += home.zones->earlier_seconds();
+    visit([&](const ContactZones& zones) { sum += zones.contact_seconds(); });
+    return sum;
   }
-  [[nodiscard]] std::size_t factor_entries() const override { return zones_ ? zones_->factor_entries() : 0; }
+  [[nodiscard]] std::size_t factor_entries() const override {
+    std::size_t sum = 0;
+    visit([&](const ContactZones& zones) { sum += zones.factor_entries(); });
+    return sum;
+  }
 
  private:
-  void make_at_home(SparseMatrix matrix, MatrixGraph graph, const Vector& solved, int layers);
-  [[nodiscard]] MatrixGraph gather_graph(const std::vector<Index>& nodes);
-  void gather_points();
-
-  const SemidiscreteProblem& problem_;
-  OperatorCoefficients coefficients_;
-  const std::vector<char>& solved_;
-  const StageProduct& product_;
-  PointsNearby& nearby_;
-  bool all_points_;
-  GatheredContact& contact_;
-  FactoredStage* layer_;
-  ContactObserver observer_;
-  double earlier_seconds_ = 0.0;
-  bool are_made_ = false;
-  std::vector<Index> points_;  ///< of this rank
-  GatheredNodes nodes_;
-  Vector correction_, layer_motion_;  ///< per dof
-  // At home:
-  std::vector<Index> points_at_home_;
-  std::unique_ptr<SemidiscreteProblem> near_;
-  std::vector<char> near_solved_;
-  StageProduct near_product_;
-  std::unique_ptr<PointsNearby> near_nearby_;
-  std::unique_ptr<ContactZones> zones_;
-  Stage stage_;
-  StageSolution solution_;
-  Vector near_x_, near_motion_;
-};
-
-void GatheredZones::clear() {
-  earlier_seconds_ = contact_seconds();
-  are_made_ = false;
-  zones_.reset();
-}
-
-void GatheredZones::gather_points() {
-  const Ranks& ranks = *problem_.ranks;
-  Ranks::ForEach<std::int64_t> told(static_cast<std::size_t>(ranks.size()));
-  told[static_cast<std::size_t>(nodes_.home())].assign(points_.begin(), points_.end());
-  const Ranks::ForEach<std::int64_t> known = ranks.exchange(std::move(told));
-  points_at_home_.clear();
-  for (std::size_t rank = 0; rank < known.size(); ++rank) {
-    for (const std::int64_t point : known[rank])
-      points_at_home_.push_back(contact_.number(static_cast<int>(rank), point));
-  }
-}
-
-/// Who is a neighbour of whom by the cells of all ranks.
-MatrixGraph GatheredZones::gather_graph(const std::vector<Index>& nodes) {
-  const Ranks& ranks = *problem_.ranks;
-  Ranks::ForEach<std::int64_t> told(static_cast<std::size_t>(ranks.size()));
-  std::vector<std::int64_t>& message = told[static_cast<std::size_t>(nodes_.home())];
-  for (const Index node : nodes) {
-    for (const int other : nearby_.graph().neighbours(node)) {
-      if (!std::binary_search(nodes.begin(), nodes.end(), Index{other})) continue;
-      message.push_back(ranks.number_of(node));
-      message.push_back(ranks.number_of(other));
+  struct Home {
+    std::unique_ptr<GatheredContact> contact;  ///< null of the first, which others keep
+    std::unique_ptr<ZonesAtHome> zones;
+  };
+  /// Those of this rank.
+  template <class Visit>
+  void visit(const Visit& visit) const {
+    for (std::size_t i = 0; i < active_; ++i) {
+      if (homes_[i].zones->zones() != nullptr) visit(*homes_[i].zones->zones());
     }
   }
-  const Ranks::ForEach<std::int64_t> known = ranks.exchange(std::move(told));
-  if (!contact_.is_home()) return {};
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const std::vector<std::int64_t>& pairs : known) {
-    for (std::size_t i = 0; i < pairs.size(); i += 2)
-      entries.emplace_back(static_cast<int>(nodes_.place_of(pairs[i])), static_cast<int>(nodes_.place_of(pairs[i + 1])),
-                           1.0);
-  }
-  SparseMatrix pattern(nodes_.count(), nodes_.count());
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  return MatrixGraph(pattern, 1);
-}
+  void find_homes(std::size_t zones);
 
-void GatheredZones::make_at_home(SparseMatrix matrix, MatrixGraph graph, const Vector& solved, int layers) {
-  near_solved_.assign(static_cast<std::size_t>(solved.size()), 0);
-  for (Index dof = 0; dof < solved.size(); ++dof) near_solved_[static_cast<std::size_t>(dof)] = solved[dof] > 0.0;
-  near_product_ = StageProduct(matrix, problem_.dimension);
-  near_nearby_ = std::make_unique<PointsNearby>(*near_, std::move(graph));
-  zones_ = std::make_unique<ContactZones>(*near_, coefficients_, near_solved_, near_product_, *near_nearby_,
-                                          all_points_, layer_);
-  zones_->set_layers(layers);
-  zones_->observe(observer_);
-  zones_->make(points_at_home_);
+  NearBody body_;
+  bool all_points_;
+  std::vector<Home> homes_;
+  std::size_t active_ = 0;     ///< homes that have zones
+  std::vector<Index> points_;  ///< of this rank
+  ContactObserver observer_;
+};
+
+/// For so many zones.
+void GatheredZones::find_homes(std::size_t zones) {
+  const auto ranks = static_cast<std::size_t>(body_.problem.ranks->size());
+  active_ = std::min({zones, ranks, most_homes});
+  while (homes_.size() < active_) {
+    auto contact = std::make_unique<GatheredContact>(body_.problem, homes_.size());
+    auto at_home = std::make_unique<ZonesAtHome>(body_, all_points_, *contact, nullptr);
+    homes_.push_back({std::move(contact), std::move(at_home)});
+  }
 }
 
 void GatheredZones::make(const std::vector<Index>& points) {
   clear();
   points_ = points;
-  const Ranks& ranks = *problem_.ranks;
-  const int d = problem_.dimension;
-  const int layers = nearby_.layers_to_solve(points, coefficients_, product_);
-  const std::vector<Index> nodes = nearby_.nodes_around(points, layers);
-  nodes_ = GatheredNodes(ranks, contact_.nodes().home(), nodes, &contact_.nodes());
-  gather_points();
-  near_ = contact_.make_problem(nodes_);
-  const Vector solved = nodes_.gather(
-      Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>(solved_.data(), static_cast<Index>(solved_.size()))
-          .cast<double>(),
-      d);
-  SparseMatrix matrix = gather_matrix(ranks, product_.principal(nodes), nodes, d, nodes_);
-  MatrixGraph graph = gather_graph(nodes);
+  NearNodes near;
+  near.layers = body_.nearby.layers_to_solve(points, body_.coefficients, body_.product);
+  near.nodes = body_.nearby.nodes_around(points, near.layers);
+  near.matrix = body_.product.principal(near.nodes);
+  const Ranks& ranks = *body_.problem.ranks;
+  homes_.front().zones->gather_body(points, near);
+  std::size_t zones = 0;
+  ranks.together([&] { zones = homes_.front().zones->divide_here(); });
+  find_homes(static_cast<std::size_t>(ranks.maximum(static_cast<double>(zones))));
+  for (std::size_t i = 1; i < active_; ++i) homes_[i].zones->gather_body(points, near);
   ranks.together([&] {
-    if (contact_.is_home()) make_at_home(std::move(matrix), std::move(graph), solved, layers);
+    for (std::size_t i = 0; i < active_; ++i) {
+      if (i > 0) homes_[i].zones->divide_here();
+      homes_[i].zones->make_here(i, active_);
+    }
   });
-  are_made_ = true;
+  observe(observer_);
 }
 
 void GatheredZones::solve(const Stage& stage, const Vector& residual, Vector& x, StageSolution& solution) {
-  const Ranks& ranks = *problem_.ranks;
-  const int d = problem_.dimension;
-  contact_.gather(stage, x, points_, stage_);
-  const Vector near_residual = nodes_.gather(residual, d);
-  ranks.together([&] {
-    if (!contact_.is_home()) return;
-    const Index count = contact_.point_count();
-    solution_.normal_reaction.setZero(count);
-    solution_.tangential_reaction.setZero(near_->contact.has_friction() ? count * (d - 1) : 0);
-    solution_.contact_status.assign(static_cast<std::size_t>(count), ContactStatus::open);
-    solution_.clear_mean();
-    solution_.iterations = 0;
-    near_x_.setZero(near_->dof_count());
-    zones_->solve(stage_, near_residual, near_x_, solution_);
+  for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->gather(stage, x, points_, residual);
+  body_.problem.ranks->together([&] {
+    for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->solve_here();
   });
-  if (correction_.size() != x.size()) correction_.setZero(x.size());
-  nodes_.spread(near_x_, d, correction_);
-  for (const Index node : nodes_.nodes()) {
-    x.segment(node * d, d) += correction_.segment(node * d, d);
-    correction_.segment(node * d, d).setZero();
-  }
-  contact_.spread(solution_, points_, solution);
+  solution.open_all(body_.problem.contact.size(),
+                    body_.problem.contact.has_friction() ? body_.problem.dimension - 1 : 0);
+  for (std::size_t i = 0; i < active_; ++i) homes_[i].zones->spread(points_, x, solution);
 }
 
 void GatheredZones::find_motion(const ContactRows&, const StageSolution& solution, const Vector& increment,
                                 Vector& motion) {
-  const int d = problem_.dimension;
-  if (motion.size() != problem_.dof_count()) motion.setZero(problem_.dof_count());
-  const GatheredNodes& contact_nodes = contact_.nodes();
-  for (const Index node : contact_nodes.nodes()) motion.segment(node * d, d) = increment.segment(node * d, d);
+  const int d = body_.problem.dimension;
+  if (motion.size() != body_.problem.dof_count()) motion.setZero(body_.problem.dof_count());
+  for (const Index node : homes_.front().zones->contact().nodes().nodes())
+    motion.segment(node * d, d) = increment.segment(node * d, d);
   const auto is_zero = [](const Vector& values) { return values.isZero(0.0); };
   const bool acts = !is_zero(solution.normal_reaction) || !is_zero(solution.tangential_reaction) ||
                     !is_zero(solution.acting_normal()) || !is_zero(solution.acting_tangential());
-  if (!problem_.ranks->any(acts)) return;
-  problem_.ranks->together([&] {
-    if (zones_) zones_->find_motion(*stage_.rows, solution_, Vector::Zero(near_->dof_count()), near_motion_);
-  });
-  if (layer_motion_.size() != motion.size()) layer_motion_.setZero(motion.size());
-  contact_nodes.spread(near_motion_, d, layer_motion_);
-  for (const Index node : contact_nodes.nodes()) motion.segment(node * d, d) += layer_motion_.segment(node * d, d);
+  if (body_.problem.ranks->any(acts)) homes_.front().zones->add_motion(motion);
 }
 
 }  // namespace
-
-SparseMatrix gather_matrix(const Ranks& ranks, const SparseMatrix& on_nodes, const std::vector<Index>& nodes, int d,
-                           const GatheredNodes& gathered) {
-  const auto dof_number = [&](Index dof) {
-    return ranks.number_of(nodes[static_cast<std::size_t>(dof / d)]) * d + dof % d;
-  };
-  const auto size = static_cast<std::size_t>(ranks.size());
-  Ranks::ForEach<std::int64_t> places(size);
-  Ranks::ForEach<double> values(size);
-  const auto home = static_cast<std::size_t>(gathered.home());
-  for (Index column = 0; column < on_nodes.outerSize(); ++column) {
-    for (SparseMatrix::InnerIterator entry(on_nodes, column); entry; ++entry) {
-      places[home].push_back(dof_number(entry.row()));
-      places[home].push_back(dof_number(column));
-      values[home].push_back(entry.value());
-    }
-  }
-  const Ranks::ForEach<std::int64_t> known_places = ranks.exchange(std::move(places));
-  const Ranks::ForEach<double> known_values = ranks.exchange(std::move(values));
-  if (!gathered.is_home()) return {};
-  const auto place_of = [&](std::int64_t dof) { return static_cast<int>(gathered.place_of(dof / d) * d + dof % d); };
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t rank = 0; rank < size; ++rank) {
-    for (std::size_t i = 0; i < known_values[rank].size(); ++i)
-      entries.emplace_back(place_of(known_places[rank][2 * i]), place_of(known_places[rank][2 * i + 1]),
-                           known_values[rank][i]);
-  }
-  SparseMatrix result(gathered.count() * d, gathered.count() * d);
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
-}
 
 std::unique_ptr<NearContact> make_gathered_zones(const SemidiscreteProblem& problem,
                                                  const OperatorCoefficients& coefficients,
                                                  const std::vector<char>& solved, const StageProduct& product,
                                                  PointsNearby& nearby, bool all_points, GatheredContact& contact,
                                                  FactoredStage* layer) {
-  return std::make_unique<GatheredZones>(problem, coefficients, solved, product, nearby, all_points, contact, layer);
+  return std::make_unique<GatheredZones>(NearBody{problem, coefficients, solved, product, nearby}, all_points, contact,
+                                         layer);
 }
 
 }  // namespace ricochet

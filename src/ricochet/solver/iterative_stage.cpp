@@ -231,12 +231,7 @@ void IterativeStage::begin(const Stage& stage, StageSolution& solution) {
   // Nothing that acts or is given: the residual of another guess would have nothing to be small beside.
   const bool is_loaded = !stage.right_hand_side.isZero(0.0) || !stage.prescribed.isZero(0.0);
   if (!problem_.ranks->any(is_loaded)) guess_.setZero();
-  const Index points = problem_.contact.size();
-  solution.normal_reaction.setZero(points);
-  if (problem_.contact.has_friction()) solution.tangential_reaction.setZero(points * (problem_.dimension - 1));
-  solution.contact_status.assign(static_cast<std::size_t>(points), ContactStatus::open);
-  solution.clear_mean();
-  solution.iterations = 0;
+  solution.open_all(problem_.contact.size(), problem_.contact.has_friction() ? problem_.dimension - 1 : 0);
   std::vector<Index> pressing;
   if (coefficients_.layer >= 0) pressing = pressing_at_start(coefficients_.mean, stage);
   const Ranks& ranks = *problem_.ranks;
