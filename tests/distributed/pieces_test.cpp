@@ -125,6 +125,35 @@ TEST_P(Pieces, HavePreconditionersOfTheWhole) {
   }
 }
 
+/// Nodes that are held are in the matrix of a preconditioner, too: the units of its numbers must not matter.
+TEST_P(Pieces, ArePreconditionedInAnyUnits) {
+  const SparseMatrix part = operator_of(own_);
+  std::vector<char> solved;
+  for (const std::int64_t node : piece_.node_number) {
+    for (int k = 0; k < d_; ++k) solved.push_back((node * d_ + k) % 11 == 3 ? 0 : 1);
+  }
+  Vector force = part_of(some(whole_->space.node_count() * d_)), one, other;
+  for (Index dof = 0; dof < force.size(); ++dof) force[dof] *= solved[static_cast<std::size_t>(dof)];
+  const auto maker = make_petsc_preconditioners();
+  for (const char* const kind : {"gamg", "boomeramg", "mumps"}) {
+    maker->make(kind, part, solved, piece_.space.nodes, ranks_)->apply(force, one);
+    for (const double unit : {std::ldexp(1.0, -30), std::ldexp(1.0, 30)}) {
+      maker->make(kind, unit * part, solved, piece_.space.nodes, ranks_)->apply(force, other);
+      for (Index dof = 0; dof < force.size(); ++dof)
+        other[dof] *= solved[static_cast<std::size_t>(dof)] != 0 ? unit : 1.0;
+      // PETSc estimates eigenvalues for its smoothers, which changes 2e-7. A one on these diagonals changes 0.02 and
+      // more.
+      EXPECT_LT((other - one).lpNorm<Eigen::Infinity>(), 1e-4 * one.lpNorm<Eigen::Infinity>()) << kind << unit;
+    }
+  }
+}
+
+TEST_P(Pieces, HaveNoPreconditionersOfUnknownNames) {
+  const SparseMatrix part = operator_of(own_);
+  const std::vector<char> solved(static_cast<std::size_t>(part.cols()), 1);
+  EXPECT_THROW((void)make_petsc_preconditioners()->make("ggma", part, solved, piece_.space.nodes, ranks_), Error);
+}
+
 /// Conjugate gradients in both precisions take the iterations that one rank takes, and find what it finds.
 TEST_P(Pieces, AreSolvedAsTheWhole) {
   const SparseMatrix whole = operator_of(whole_->body), part = operator_of(own_);

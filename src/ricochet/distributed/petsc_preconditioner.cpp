@@ -35,8 +35,9 @@ Numbering number_nodes(Index count, int d, const Ranks& ranks) {
   return result;
 }
 
-/// Entries of this rank's part, for MatSetPreallocationCOO: rows and columns of dofs that are solved for, and 1 on the
-/// diagonals of the others.
+/// Entries of this rank's part, for MatSetPreallocationCOO: rows and columns of dofs that are solved for, and a
+/// small part of the largest diagonal entry of all on the diagonals of the others: coarse motions see these, and should
+/// hardly feel them, in any units.
 struct Entries {
   std::vector<PetscInt> row, column;
   std::vector<PetscScalar> value;
@@ -85,9 +86,11 @@ class PetscPreconditioner final : public Preconditioner {
 
   [[nodiscard]] Entries entries_of(const SparseMatrix& part, const std::vector<char>& solved) const {
     Entries entries;
+    constexpr double small = 1e-4;
+    const double held = small * ranks_.maximum(part.cols() > 0 ? part.diagonal().maxCoeff() : 0.0);
     for (Index column = 0; column < part.cols(); ++column) {
       if (solved[static_cast<std::size_t>(column)] == 0) {
-        if (ranks_.is_owned(column / d_)) entries.add(number_of(column), number_of(column), 1.0);
+        if (ranks_.is_owned(column / d_)) entries.add(number_of(column), number_of(column), held);
         continue;
       }
       for (SparseMatrix::InnerIterator entry(part, column); entry; ++entry) {
@@ -122,8 +125,10 @@ class PetscPreconditioner final : public Preconditioner {
       PetscCall(PCSetType(preconditioner_, PCHYPRE));
       PetscCall(PCHYPRESetType(preconditioner_, "boomeramg"));
       PetscCall(set_lean_coarsening());
-    } else {
+    } else if (kind == "gamg") {
       PetscCall(PCSetType(preconditioner_, PCGAMG));
+    } else {
+      PetscFunctionReturn(PETSC_ERR_ARG_UNKNOWN_TYPE);
     }
     PetscCall(PCSetFromOptions(preconditioner_));
     PetscCall(PCSetUp(preconditioner_));
