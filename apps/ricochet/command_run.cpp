@@ -132,12 +132,15 @@ int run(const RunArguments& given) {
   if (arguments.ranks->is_first()) print_summary(summary, options.output_directory);
   // Whichever process was told.
   if (summary.status == "interrupted") return 128 + static_cast<int>(arguments.ranks->maximum(stop_signal()));
-  for (const ExpectationResult& e : summary.expectations) {
-    if (e.checked && !e.holds) {
-      throw Error(ErrorKind::expectation,
-                  fmt::format("{}: expected {} to be {}, {}", e.location, e.label(), e.wanted, found_text(e)));
+  // The first process knows, and all end for it.
+  arguments.ranks->together([&summary] {
+    for (const ExpectationResult& e : summary.expectations) {
+      if (e.checked && !e.holds) {
+        throw Error(ErrorKind::expectation,
+                    fmt::format("{}: expected {} to be {}, {}", e.location, e.label(), e.wanted, found_text(e)));
+      }
     }
-  }
+  });
   return 0;
 }
 

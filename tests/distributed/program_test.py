@@ -250,6 +250,16 @@ class Ends(Distributed):
         self.assertIn("has no finite value at x = ", finished.stderr)
         self.assertIn("step ", finished.stderr)
 
+    def test_of_an_expected_result_that_does_not_come(self):
+        """The first process alone compares: all end with its status, and one message."""
+        case = self.write("wrong.toml", with_more(DISC, '[[expect]]\nquantity = "max(history.total_energy)"\nmaximum = 0.0\n')
+                          .replace("end = 0.15", "end = 0.001"))
+        finished = several(2, "run", case, "-o", self.folder / "wrong", "--quiet")
+        self.assertEqual(finished.returncode, 5, finished.stderr)
+        self.assertEqual(len(own_lines(finished.stderr)), 1, finished.stderr)
+        self.assertIn("expected max(history.total_energy) to be", finished.stderr)
+        self.assertNotIn("MPI_ABORT", finished.stderr)
+
     def test_by_a_signal_leave_a_checkpoint(self):
         self.assertEqual(self.bounce(2, "whole", values=self.LONG).returncode, 0)
         process = self.start(2, "stopped", self.LONG | {"output.checkpoint_every": 1000000})
