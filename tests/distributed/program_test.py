@@ -294,6 +294,16 @@ class Ends(Distributed):
         newest.write_bytes(newest.read_bytes()[:-100])
         finished = several(2, "run", "--resume", self.folder / "damaged", "--quiet")
         self.assertEqual(finished.returncode, 0, finished.stderr)
+        self.assertEqual(finished.stderr.count(f"{newest.name}: it is not the file of the manifest"), 1, finished.stderr)
+        self.expect_same_files("whole", "damaged")
+        # With none that can be read nothing is begun anew.
+        for damaged in (self.folder / "damaged" / "ranks" / "0001").glob("*.ckpt"):
+            damaged.write_bytes(damaged.read_bytes()[:-100])
+        summary.write_text(summary.read_text().replace('"status": "done"', '"status": "running"'))
+        finished = several(2, "run", "--resume", self.folder / "damaged", "--quiet")
+        self.assertEqual(finished.returncode, 2, finished.stderr)
+        self.assertEqual(len(own_lines(finished.stderr)), 1, finished.stderr)
+        self.assertIn("no checkpoint can be read; start anew with --force", finished.stderr)
         self.expect_same_files("whole", "damaged")
 
 

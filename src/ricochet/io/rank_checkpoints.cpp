@@ -127,7 +127,11 @@ std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::st
       }
     }
     if (!ranks.any(!snapshot)) return snapshot;
-    if (!snapshot) log::warning(fmt::format("{}: this checkpoint cannot be used: {}", manifest.path, why));
+    std::vector<std::string> reasons = ranks.texts_of_all(snapshot ? "" : why);
+    reasons.erase(std::unique(reasons.begin(), reasons.end()), reasons.end());
+    for (const std::string& reason : reasons) {
+      if (!reason.empty()) log::warning(fmt::format("{}: this checkpoint cannot be used: {}", manifest.path, reason));
+    }
   }
   return std::nullopt;
 }
@@ -137,6 +141,10 @@ int ranks_of_checkpoints(const std::string& directory) {
     if (!manifest.checksums.empty()) return static_cast<int>(manifest.checksums.size());
   }
   return 0;
+}
+
+bool has_rank_checkpoints(const std::string& directory) {
+  return !manifests(directory).empty();
 }
 
 void require_ranks_of_checkpoints(const std::string& directory, int ranks) {

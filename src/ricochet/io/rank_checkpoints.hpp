@@ -20,12 +20,15 @@ namespace ricochet {
 /// On the disk when it returns, on all ranks; the last two are kept. Throws Error(file_access) on all.
 void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, long step, const Snapshot& snapshot);
 
-/// This rank's part of the newest one that all ranks can read and of which all files are those of its manifest. A
-/// warning names what cannot be used. None: there is none.
+/// This rank's part of the newest one that all ranks can read and of which all files are those of its manifest. The
+/// first rank warns of what cannot be used. None: there is none.
 [[nodiscard]] std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::string& directory);
 
 /// The number of ranks of the run in this directory, by its newest manifest; 0: there is none.
 [[nodiscard]] int ranks_of_checkpoints(const std::string& directory);
+
+/// Whether some were written, that can be read or not.
+[[nodiscard]] bool has_rank_checkpoints(const std::string& directory);
 
 /// Throws Error(invalid_input) where that is another number than this: only as many put the parts together.
 void require_ranks_of_checkpoints(const std::string& directory, int ranks);

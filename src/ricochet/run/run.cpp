@@ -144,7 +144,7 @@ void Run::look_at_checkpoint() {
                       "stay; resume it with that program",
                       options_.output_directory));
     }
-  } else if (!checkpoint_files(options_.output_directory).empty()) {
+  } else if (!checkpoint_files(options_.output_directory).empty() || has_rank_checkpoints(options_.output_directory)) {
     throw Error(ErrorKind::invalid_input,
                 fmt::format("{}: cannot be resumed: no checkpoint can be read; start anew with --force",
                             options_.output_directory));
