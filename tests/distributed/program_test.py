@@ -160,6 +160,8 @@ class Results(Distributed):
                 self.assertAlmostEqual(mine["begin"], theirs["begin"], places=12)
                 self.assertEqual(mine["contact_points"], theirs["contact_points"])
             self.assertAlmostEqual(own["peak_stress"]["von_mises"] / one["peak_stress"]["von_mises"], 1.0, places=2)
+            with h5py.File(self.folder / name / "results.h5") as results:
+                self.assertEqual(results["mesh"]["element"][own["peak_stress"]["cell"]], own["peak_stress"]["element"])
             self.expect_same_fields("one", name)
             # Others read it as ever.
             described = run("info", self.folder / name)

@@ -294,8 +294,10 @@ void Recording::describe_peak_stress(RunSummary& summary) const {
   const Body& body = model_.body;
   const CellPlace place = place_of_cell(*body.mesh, peak.cell);
   const auto material = static_cast<std::size_t>(body.cell_material[static_cast<std::size_t>(peak.cell)]);
+  PeakStressResult told = peak;
+  if (model_.written) told.cell = model_.written->cell_rows[static_cast<std::size_t>(peak.cell)];
   summary.peak_stress = PeakStressDescription{
-      peak, {place.centre.data(), place.centre.data() + place.centre.size()}, place.tag, body.materials[material].name};
+      told, {place.centre.data(), place.centre.data() + place.centre.size()}, place.tag, body.materials[material].name};
 }
 
 /// Energies are squares: they leave the range of numbers long before the displacement does.
