@@ -13,7 +13,7 @@ PRESSED = 0.03          # of one face
 
 
 def shared_nodes(dofs):
-    """On the boundary of a part of so many dofs in three dimensions (distributed.md, section 6 of the design: 3 n^(2/3) nodes)."""
+    """On the boundary of a part of so many dofs in three dimensions (docs/distributed.md: 3 n^(2/3) nodes)."""
     return 3.0 * (dofs / 3.0) ** (2.0 / 3.0)
 
 

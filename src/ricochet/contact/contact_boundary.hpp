@@ -104,7 +104,7 @@ struct ContactBoundary {
   std::vector<Index> opposite_node;  ///< per ContactPair, one of the opposite surface of a pair that slides far, or −1
 
   // Per node of the contact boundary (once per obstacle or pair), for what is reported node by node:
-  std::vector<Index> nodes;        ///< ascending; all nodes that the trace of some point reaches
+  std::vector<Index> nodes;        ///< ascending; all nodes that the trace of some point, of any rank, reaches
   std::vector<int> node_pair;      ///< index of the (first) ContactPair
   std::vector<char> is_opposite;   ///< 1: of the side of a pair of bodies that carries no multipliers
   std::vector<Index> own_point;    ///< the contact point anchored at the node, or −1; −2: another rank has it
@@ -145,7 +145,7 @@ struct ContactBoundary {
     for (SparseRowMatrix::InnerIterator from(pressure_recovery, entry); from; ++from)
       visit(static_cast<Index>(from.col()), from.value());
   }
-  /// Pressure at the entries of `nodes`, in stress units.
+  /// Pressure at the entries of `nodes`, in stress units; of several ranks what the points of this one add to it.
   void recover_pressure(const Vector& normal_reaction, Vector& pressure) const {
     pressure.noalias() = pressure_recovery * normal_reaction;
   }
@@ -157,7 +157,8 @@ struct ContactBoundary {
       result += entry.value() * node_positions.col(entry.col());
     return result;
   }
-  /// The nodes that the row of some point may reach, ascending, each once.
+  /// The nodes that the row of some point may reach, ascending, each once. Points of other ranks may reach more of the
+  /// nodes that are here, which are among `nodes`.
   [[nodiscard]] std::vector<Index> unique_nodes() const;
 };
 

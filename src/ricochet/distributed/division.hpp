@@ -11,9 +11,9 @@ namespace ricochet {
 
 class Division {
  public:
-  /// `rank_of_cell`: of partition_cells. A contact point goes where its first node belongs; the other nodes that it
-  /// sees, and those whose pressure it has a part in, go there, too. So does a node where the mass couples it to one
-  /// that no other rank has with it.
+  /// `rank_of_cell`: of partition_cells. A contact point goes where its first node belongs by the cells; the other
+  /// nodes that it sees, and those whose pressure it has a part in, go there, too. So does a node where the mass
+  /// couples it to one that no other rank has with it.
   Division(const DisplacementSpace& space, const SemidiscreteProblem& problem, std::vector<int> rank_of_cell);
 
   [[nodiscard]] const std::vector<int>& rank_of_cell() const { return rank_of_cell_; }

@@ -97,7 +97,7 @@ struct SemidiscreteProblem {
   [[nodiscard]] SpaceVector position(Index point, const Vector& displacement) const;
 };
 
-/// Dofs of the contact nodes, supported ones too, ascending.
+/// Dofs of the nodes that contact points reach, supported ones too, ascending; of several ranks, points of this one.
 [[nodiscard]] std::vector<Index> contact_node_dofs(const SemidiscreteProblem& problem);
 
 /// Fills massless_dofs, is_massless and contact_dofs from contact and supports, and takes the mass: dofs × dofs,

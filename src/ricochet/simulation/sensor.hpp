@@ -18,7 +18,7 @@ namespace ricochet {
 struct Observation {
   const State& state;
   const Vector& gap;       ///< per node of the contact boundary
-  const Vector& pressure;  ///< likewise
+  const Vector& pressure;  ///< likewise; of several ranks a part, which the sum over them completes
 };
 
 class Sensor {
@@ -26,14 +26,15 @@ class Sensor {
   virtual ~Sensor() = default;
   /// Its columns, named by the sensor's name, a dot, and what it is.
   [[nodiscard]] virtual Columns columns() const = 0;
-  /// Appends their values; allocates nothing after the first time.
+  /// Appends their values; allocates nothing after the first time. Of several ranks what this one has, which then is
+  /// put together as the columns say; all ranks have the same sensors and observe together.
   virtual void observe(const Observation& observation, std::vector<double>& row) = 0;
 };
 
 /// Motion of a node and, on the contact boundary, its gap, pressure and contact force.
 [[nodiscard]] std::unique_ptr<Sensor> make_point_sensor(const SemidiscreteProblem& problem, const Probe& probe);
 
-/// With these columns, all zero: of a node that other ranks have.
+/// With these columns, sums all of them, zero: of a node that other ranks have.
 [[nodiscard]] std::unique_ptr<Sensor> make_absent_sensor(Columns columns);
 
 /// Force and moment on the body of what supports and obstacles do to the nodes of some facets. Moments are about

@@ -23,7 +23,7 @@ class GatheredContact {
   [[nodiscard]] std::vector<Index> named_by_all(const std::vector<Index>& nodes) const;
 
   /// At home: a problem of nodes that are gathered there (contact nodes come first), with all contact points and no
-  /// forces. Supported dofs are not among its contact dofs. Its rows are those of the start.
+  /// forces. Supported dofs are not among its contact dofs. Its rows are those of the last stage that was gathered.
   [[nodiscard]] std::unique_ptr<SemidiscreteProblem> make_problem(const GatheredNodes& nodes) const;
 
   /// A stage at home, of these points of this rank (others are not eligible there), with the gaps and slips that it has
