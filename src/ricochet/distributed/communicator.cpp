@@ -5,17 +5,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <limits>
-#include <numeric>
 #include <thread>
-
-#include "ricochet/base/error.hpp"
 
 namespace ricochet {
 
 namespace {
 
-constexpr int message_tag = 26;
+constexpr int message_tag = 26, exchange_tag = 27;           ///< and the one after it
+constexpr std::size_t largest_piece = std::size_t{1} << 30;  ///< in bytes: MPI counts up to 2³¹
+/// By all groups: a rank may be in the next exchange already, and never in the one after it.
+int exchanges = 0;
+/// Where errors meet: others may be in any barrier of the run.
+MPI_Comm ends = MPI_COMM_NULL;
 
 }  // namespace
 
@@ -38,6 +39,7 @@ Communicator Communicator::world() {
 Processes::Processes(int& count, char**& arguments) {
   int provided = 0;
   MPI_Init_thread(&count, &arguments, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_dup(MPI_COMM_WORLD, &ends);
 }
 
 Processes::~Processes() {
@@ -46,7 +48,7 @@ Processes::~Processes() {
 
 bool Processes::all_arrive(double seconds) {
   MPI_Request request = MPI_REQUEST_NULL;
-  MPI_Ibarrier(MPI_COMM_WORLD, &request);
+  MPI_Ibarrier(ends, &request);
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   int done = 0;
   do {
@@ -75,9 +77,8 @@ void Communicator::swap(std::vector<Message>& messages) const {
 }
 
 void Communicator::send(int rank, std::span<const char> bytes) const {
-  constexpr std::size_t largest = std::size_t{1} << 30;  // MPI counts up to 2³¹
   do {
-    const std::span<const char> piece = bytes.first(std::min(bytes.size(), largest));
+    const std::span<const char> piece = bytes.first(std::min(bytes.size(), largest_piece));
     bytes = bytes.subspan(piece.size());
     MPI_Send(piece.data(), static_cast<int>(piece.size()), MPI_CHAR, rank, message_tag, handle_->ranks);
   } while (!bytes.empty());
@@ -97,27 +98,46 @@ std::vector<char> Communicator::receive(int rank) const {
   }
 }
 
+/// Nobody asks who has something for whom: messages go where there is something to say, and a barrier that all enter
+/// once theirs have been taken tells when no more come (Hoefler, Siebert, Lumsdaine 2010). A call to every rank would
+/// make each exchange as long as there are ranks.
 template <class Number>
 std::vector<std::vector<Number>> Communicator::exchange_any(const std::vector<std::vector<Number>>& to_each) const {
   const MPI_Datatype type = std::is_same_v<Number, double> ? MPI_DOUBLE : MPI_INT64_T;
-  const auto ranks = static_cast<std::size_t>(size_);
-  std::vector<int> counts_out(ranks), counts_in(ranks), begins_out(ranks), begins_in(ranks);
-  std::vector<Number> out, in;
-  for (std::size_t r = 0; r < ranks; ++r) {
-    begins_out[r] = static_cast<int>(out.size());
-    out.insert(out.end(), to_each[r].begin(), to_each[r].end());
-    if (out.size() > std::numeric_limits<int>::max())
-      throw Error(ErrorKind::invalid_input, "a rank has more to tell the others than MPI can count: take more ranks");
-    counts_out[r] = static_cast<int>(to_each[r].size());
+  const int tag = exchange_tag + exchanges++ % 2;
+  std::vector<std::vector<Number>> result(static_cast<std::size_t>(size_));
+  std::vector<MPI_Request> requests;
+  for (int to = 0; to < size_; ++to) {
+    const std::vector<Number>& numbers = to_each[static_cast<std::size_t>(to)];
+    if (to == rank_) {
+      result[static_cast<std::size_t>(to)] = numbers;
+      continue;
+    }
+    for (std::size_t begin = 0; begin < numbers.size(); begin += largest_piece / sizeof(Number)) {
+      const std::size_t count = std::min(numbers.size() - begin, largest_piece / sizeof(Number));
+      MPI_Issend(numbers.data() + begin, static_cast<int>(count), type, to, tag, handle_->ranks,
+                 &requests.emplace_back(MPI_REQUEST_NULL));
+    }
   }
-  MPI_Alltoall(counts_out.data(), 1, MPI_INT, counts_in.data(), 1, MPI_INT, handle_->ranks);
-  std::exclusive_scan(counts_in.begin(), counts_in.end(), begins_in.begin(), 0);
-  in.resize(static_cast<std::size_t>(begins_in.back() + counts_in.back()));
-  MPI_Alltoallv(out.data(), counts_out.data(), begins_out.data(), type, in.data(), counts_in.data(), begins_in.data(),
-                type, handle_->ranks);
-  std::vector<std::vector<Number>> result(ranks);
-  for (std::size_t r = 0; r < ranks; ++r)
-    result[r].assign(in.begin() + begins_in[r], in.begin() + begins_in[r] + counts_in[r]);
+  MPI_Request all_taken = MPI_REQUEST_NULL;
+  for (int are_taken = 0, is_end = 0; is_end == 0;) {
+    MPI_Status status;
+    int is_there = 0;
+    MPI_Iprobe(MPI_ANY_SOURCE, tag, handle_->ranks, &is_there, &status);
+    if (is_there != 0) {
+      int count = 0;
+      MPI_Get_count(&status, type, &count);
+      std::vector<Number>& numbers = result[static_cast<std::size_t>(status.MPI_SOURCE)];
+      const std::size_t before = numbers.size();
+      numbers.resize(before + static_cast<std::size_t>(count));
+      MPI_Recv(numbers.data() + before, count, type, status.MPI_SOURCE, tag, handle_->ranks, MPI_STATUS_IGNORE);
+    } else if (are_taken == 0) {
+      MPI_Testall(static_cast<int>(requests.size()), requests.data(), &are_taken, MPI_STATUSES_IGNORE);
+      if (are_taken != 0) MPI_Ibarrier(handle_->ranks, &all_taken);
+    } else {
+      MPI_Test(&all_taken, &is_end, MPI_STATUS_IGNORE);
+    }
+  }
   return result;
 }
 
