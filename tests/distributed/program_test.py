@@ -199,6 +199,20 @@ class Results(Distributed):
         self.expect_same_files("first", "second")
 
 
+class PeakStress(Distributed):
+    def test_is_looked_for_in_the_same_states(self):
+        """Frames aside, of which there are none here."""
+        values = BOUNCE | {"output.fields_every": 0}
+        for ranks, name in ((0, "one"), (2, "two"), (4, "four")):
+            self.assertEqual(self.bounce(ranks, name, values=values).returncode, 0)
+        one = self.summary("one")["peak_stress"]
+        self.assertLess(one["states_looked_at"], one["states"])
+        for name in ("two", "four"):
+            found = self.summary(name)["peak_stress"]
+            self.assertEqual((found["states_looked_at"], found["time"], found["cell"]), (one["states_looked_at"], one["time"], one["cell"]))
+            self.assertAlmostEqual(found["von_mises"], one["von_mises"], delta=1e-6 * one["von_mises"])
+
+
 class Groups(Distributed):
     def test_may_have_nothing_on_a_process(self):
         """A probe of cells, and an axisymmetric contact, of which some processes have none."""
@@ -382,6 +396,8 @@ class Refusals(Distributed):
         alone = run("run", "--resume", self.folder / "two", *longer)
         self.assertEqual(alone.returncode, 2)
         self.assertIn("mpirun -n 2 ricochet-mpi", alone.stderr)
+        self.assertEqual(self.bounce(0, "one", values=values).returncode, 0)
+        self.expect(several(2, "run", "--resume", self.folder / "one", *longer), 2, "one process", "ricochet run --resume")
         finished = several(2, "run", "--resume", self.folder / "two", "--quiet", *longer)
         self.assertEqual(finished.returncode, 0, finished.stderr)
         self.expect(self.bounce(2, "two"), 4, "holds a run already")

@@ -36,6 +36,10 @@ std::string folder_of_rank(const std::string& directory, int rank) {
   return (fs::path(folder_of(directory)) / fmt::format("{:04}", rank)).string();
 }
 
+std::string manifest_path(const std::string& directory, long step) {
+  return (fs::path(folder_of(directory)) / fmt::format("checkpoint-{:09}.manifest", step)).string();
+}
+
 std::string checkpoint_path(const std::string& directory, int rank, long step) {
   return (fs::path(folder_of_rank(directory, rank)) / fmt::format("checkpoint-{:09}.ckpt", step)).string();
 }
@@ -89,6 +93,7 @@ std::vector<Manifest> manifests(const std::string& directory) {
 }  // namespace
 
 void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, long step, const Snapshot& snapshot) {
+  std::string checksum;
   ranks.together([&] {
     std::error_code problem;
     const std::string own = folder_of_rank(directory, ranks.rank());
@@ -96,13 +101,14 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
     if (problem)
       throw Error(ErrorKind::file_access, fmt::format("{}: cannot make this directory: {}", own, problem.message()));
     write_checkpoint(own, step, snapshot);
+    const std::string path = checkpoint_path(directory, ranks.rank(), step);
+    checksum = checksum_of(path);
+    if (checksum.empty()) throw Error(ErrorKind::file_access, path + ": cannot be read after it was written");
   });
+  const std::vector<std::string> checksums = ranks.texts_of_all(checksum);
   ranks.together([&] {
     if (!ranks.is_first()) return;
-    Manifest manifest{
-        (fs::path(folder_of(directory)) / fmt::format("checkpoint-{:09}.manifest", step)).string(), step, {}};
-    for (int rank = 0; rank < ranks.size(); ++rank)
-      manifest.checksums.push_back(checksum_of(checkpoint_path(directory, rank, step)));
+    const Manifest manifest{manifest_path(directory, step), step, checksums};
     write_durably(manifest.path, text_of(manifest));
     const std::vector<Manifest> all = manifests(directory);
     for (std::size_t i = kept_manifests; i < all.size(); ++i) {
@@ -113,7 +119,14 @@ void write_rank_checkpoint(const Ranks& ranks, const std::string& directory, lon
 }
 
 std::optional<Snapshot> newest_rank_checkpoint(const Ranks& ranks, const std::string& directory) {
-  for (const Manifest& manifest : manifests(directory)) {
+  // As the first sees the folder: others may see one on a shared disk as it was before.
+  Ranks::ForEach<std::int64_t> steps(static_cast<std::size_t>(ranks.size()));
+  for (const Manifest& manifest : ranks.is_first() ? manifests(directory) : std::vector<Manifest>{}) {
+    for (std::vector<std::int64_t>& to : steps) to.push_back(manifest.step);
+  }
+  const Ranks::ForEach<std::int64_t> told = ranks.exchange(std::move(steps));
+  for (const std::int64_t step : told.front()) {
+    const Manifest manifest = read_manifest(manifest_path(directory, step), step);
     std::optional<Snapshot> snapshot;
     std::string why = "the manifest is damaged, or of another run";
     if (manifest.checksums.size() == static_cast<std::size_t>(ranks.size())) {
@@ -149,6 +162,10 @@ bool has_rank_checkpoints(const std::string& directory) {
 
 void require_ranks_of_checkpoints(const std::string& directory, int ranks) {
   const int own = ranks_of_checkpoints(directory);
+  if (own == 0 && ranks > 1 && !checkpoint_files(directory).empty())
+    throw Error(
+        ErrorKind::invalid_input,
+        fmt::format("{0}: this run is one of one process, and goes on as one: ricochet run --resume {0}", directory));
   if (own == 0 || own == ranks) return;
   throw Error(ErrorKind::invalid_input,
               fmt::format("{0}: this run is one of {1} processes, and goes on with as many: mpirun -n {1} ricochet-mpi "

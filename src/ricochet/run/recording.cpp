@@ -133,7 +133,7 @@ Recording::Recording(const Case& input, const Model& model, const Scheme& scheme
       model_(model),
       body_names_(names_of_all_bodies(input, model)),
       impacts_(make_impact_recorder(model, scheme, state)),
-      peak_stress_(model.body, step_work(model.body, factor_entries), *model.problem.ranks),
+      peak_stress_(model.body, step_work(model.sizes.dofs, factor_entries), *model.problem.ranks),
       penetration_(make_penetration_watch(input, model)),
       sliding_(model.body, model.problem, model.contact_pairs),
       late_(model.body, model.problem, model.contact_pairs),

@@ -123,7 +123,7 @@ bool Run::is_complete() {
 
 void Run::find_checkpoint() {
   const std::string& directory = options_.output_directory;
-  require_ranks_of_checkpoints(directory, ranks_.size());
+  ranks_.together([&] { require_ranks_of_checkpoints(directory, ranks_.size()); });
   snapshot_ = ranks_.are_several() ? newest_rank_checkpoint(ranks_, directory) : newest_checkpoint(directory);
   ranks_.together([&] { look_at_checkpoint(); });
 }
@@ -237,6 +237,15 @@ void Run::open_files() {
   }
 }
 
+/// Not those of contact zones, which come and go and are others on other processes: the states that are looked at for
+/// the largest stress depend on it.
+std::size_t Run::entries_of_whole_body() const {
+  const std::vector<ChosenMethod>& methods = session_.simulation().methods();
+  const bool is_factored = std::all_of(
+      methods.begin(), methods.end(), [](const ChosenMethod& chosen) { return chosen.method == SolverMethod::direct; });
+  return is_factored && !ranks_.are_several() ? session_.simulation().factor_entries() : 0;
+}
+
 void Run::start_recording() {
   const ContactProvenance provenance = describe_provenance(input_, summary_);
   if (!options_.export_contact.empty())
@@ -247,8 +256,7 @@ void Run::start_recording() {
     if (contact_export_) contact_export_->write(problem, solution);
   });
   recording_.emplace(input_, session_.model(), session_.scheme(), session_.simulation().state(),
-                     options_.output_directory, steps_, session_.simulation().factor_entries(),
-                     snapshot_ ? &*snapshot_ : nullptr);
+                     options_.output_directory, steps_, entries_of_whole_body(), snapshot_ ? &*snapshot_ : nullptr);
   if (!snapshot_) recording_->record(session_.simulation().state(), session_.simulation().account());
   // Only now, when the run has found its files as it left them.
   ranks_.together([&] {

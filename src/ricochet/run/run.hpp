@@ -48,6 +48,7 @@ class Run {
   void begin_simulation();
   void begin_session();
   void open_files();
+  [[nodiscard]] std::size_t entries_of_whole_body() const;
   void start_recording();
   bool advance();
   void end_steps();
@@ -68,6 +69,7 @@ class Run {
 
   void gather_from_ranks(RunSummary& summary);
   void describe_processes(RunSummary& summary) const;
+  void add_work_of_ranks(RunSummary& summary) const;
   void write_own_summary(const RunSummary& summary) const;
 
   Session& session_;

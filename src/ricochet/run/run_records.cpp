@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -166,11 +167,23 @@ void Run::describe_processes(RunSummary& summary) const {
                                     most_per_step(now.reductions, traffic_before_.reductions)};
 }
 
+/// Time and memory of all ranks; contact may be solved by others than the first.
+void Run::add_work_of_ranks(RunSummary& summary) const {
+  std::array<double, 2> sums{static_cast<double>(summary.factor_entries), summary.processor_seconds};
+  ranks_.sum(sums);
+  summary.factor_entries = static_cast<std::size_t>(sums[0]);
+  summary.processor_seconds = sums[1];
+  for (auto& [phase, seconds] : summary.timings) {
+    if (phase == "contact_solver") seconds = ranks_.maximum(seconds);
+  }
+}
+
 /// What ranks have found in their parts of the body. Warnings are said by the first; of those that several ranks have,
 /// each of places of its own, once.
 void Run::gather_from_ranks(RunSummary& summary) {
   if (!ranks_.are_several()) return;
   describe_processes(summary);
+  add_work_of_ranks(summary);
   summary.warnings = session_.warnings();
   for (const std::string& text : ranks_.texts_of_all(ranks_.is_first() ? "" : to_json(summary))) {
     if (text.empty()) continue;
@@ -231,7 +244,7 @@ void Run::write_end() {
       if (!failure_) throw;
     }
   };
-  attempt([this] { recording_->flush(); });
+  attempt([this] { ranks_.together([this] { recording_->flush(); }); });
   attempt([this] { write_own_summary(summary_); });
 }
 

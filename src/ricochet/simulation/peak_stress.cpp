@@ -32,16 +32,16 @@ double look_work(const Body& body) {
 
 }  // namespace
 
-double step_work(const Body& body, std::size_t factor_entries) {
+double step_work(Index dofs, std::size_t factor_entries) {
   constexpr double per_dof = 20.0;
-  return 2.0 * static_cast<double>(factor_entries) + per_dof * static_cast<double>(body.space->dof_count());
+  return 2.0 * static_cast<double>(factor_entries) + per_dof * static_cast<double>(dofs);
 }
 
 PeakStress::PeakStress(const Body& body, double step_work, const Ranks& ranks)
     : body_(body),
       ranks_(ranks),
       stress_(body),
-      looks_per_step_(std::min(1.0, share * ranks.sum(step_work) / ranks.sum(look_work(body)))) {}
+      looks_per_step_(std::min(1.0, share * step_work / ranks.sum(look_work(body)))) {}
 
 void PeakStress::enter(const State& state, bool is_frame) {
   ++result_.states;

@@ -19,7 +19,7 @@ class PeakStress {
   /// Of all looks together, in the time of the steps.
   static constexpr double share = 0.05;
 
-  /// `step_work`: how much a step does, see step_work(). Keeps a reference to the body.
+  /// `step_work`: how much a step of the whole body does, see step_work(). Keeps a reference to the body.
   /// Of a body that is divided: the largest of the cells of this rank, at the same looks on all.
   PeakStress(const Body& body, double step_work, const Ranks& ranks = one_rank());
   void save(Snapshot& snapshot, const std::string& name) const;
@@ -45,7 +45,7 @@ class PeakStress {
   PeakStressResult result_;
 };
 
-/// What a step reads at least, in numbers: the factor twice, or the stiffness of a scheme without one.
-[[nodiscard]] double step_work(const Body& body, std::size_t factor_entries);
+/// What a step reads at least, in numbers: the factor twice, or the stiffness where there is none.
+[[nodiscard]] double step_work(Index dofs, std::size_t factor_entries);
 
 }  // namespace ricochet
